@@ -1,0 +1,9 @@
+# One place for the warnings of our own code; warnings are errors.
+add_library(quiesce_warnings INTERFACE)
+target_compile_options(
+  quiesce_warnings
+  INTERFACE -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wcast-align
+            -Wundef -Wdouble-promotion
+            $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes>
+            $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
+            $<$<COMPILE_LANGUAGE:C>:-Wvla>)

@@ -1,0 +1,103 @@
+/// Quiesce: vibration control with a magnetorheological damper. The only header of the controller
+/// that the outside sees.
+///
+/// Integer arithmetic only; the same input stream gives the same bits on every target. No heap, no
+/// globals, no clock: the caller owns the state and calls quiesce_step once a control tick.
+#ifndef QUIESCE_H
+#define QUIESCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "quiesce_params.h"
+
+/// Spectral peaks in telemetry, strongest acceleration first.
+#define QUIESCE_PEAKS 3
+
+/// Supervisor states. Only RUN lets a law's request through; all others command safe_current_mA.
+typedef enum {
+    QUIESCE_STATE_INIT = 0,  ///< gathering its first samples
+    QUIESCE_STATE_IDLE = 1,  ///< healthy, not enabled
+    QUIESCE_STATE_RUN = 2,   ///< the law's request passes the guard
+    QUIESCE_STATE_SAFE = 3,  ///< a fault that clears by itself is present or has just gone
+    QUIESCE_STATE_FAULT = 4, ///< a latched fault; left only by fault_reset
+} quiesce_state_t;
+
+/// Faults: numbers are never reused. docs/faults.md has causes and reactions.
+typedef enum {
+    QUIESCE_FAULT_NONE = 0,
+    QUIESCE_FAULT_PARAMETER = 1,            ///< a parameter was refused at init (latched)
+    QUIESCE_FAULT_SENSOR_LOST = 2,          ///< no good sample for sensor_max_age_ticks
+    QUIESCE_FAULT_SENSOR_SATURATED = 3,     ///< at full scale for sensor_max_age_ticks
+    QUIESCE_FAULT_SENSOR_STUCK = 4,         ///< the same sample for sensor_stuck_ticks
+    QUIESCE_FAULT_SENSOR_RANGE = 5,         ///< samples beyond full scale for sensor_max_age_ticks
+    QUIESCE_FAULT_DRIVER_NOT_FOLLOWING = 6, ///< measured current off the command (latched)
+    QUIESCE_FAULT_COIL_OPEN = 7,            ///< no current although commanded (latched)
+    QUIESCE_FAULT_CURRENT_LOST = 8,         ///< current_check is on, no measurement arrives (latched)
+    QUIESCE_FAULT_TICK_LOST = 9,            ///< the tick number jumped
+    QUIESCE_FAULT_ESTOP = 10,               ///< emergency stop (latched)
+    QUIESCE_FAULT_COUNT
+} quiesce_fault_t;
+
+/// One tick's input.
+typedef struct {
+    uint32_t tick;            ///< number of this tick; the last one + 1 (wraps)
+    int32_t accel_counts;     ///< raw ADC counts; ignored unless accel_is_fresh
+    int32_t current_meas_mA;  ///< measured coil current; ignored unless current_is_measured
+    bool accel_is_fresh;      ///< a sample arrived since the last tick
+    bool current_is_measured; ///< a current measurement arrived
+    bool enable;              ///< operator enables the output
+    bool estop;               ///< emergency stop
+    bool fault_reset;         ///< operator acknowledges a latched fault (acts on its rising edge)
+} quiesce_in_t;
+
+/// One spectral peak.
+typedef struct {
+    int32_t freq_uHz;
+    int32_t amp_um_s2; ///< acceleration amplitude (peak, not RMS)
+} quiesce_peak_t;
+
+/// Everything that a tick leaves behind to look at; 32-bit words only, the same layout everywhere.
+typedef struct {
+    uint32_t tick;
+    uint32_t state;              ///< quiesce_state_t
+    uint32_t fault;              ///< quiesce_fault_t, the one that holds the state
+    uint32_t fault_count;        ///< faults entered since init, saturating
+    uint32_t bad_sample_count;   ///< samples refused since init, saturating
+    int32_t accel_um_s2;         ///< conditioned acceleration, DC removed
+    int32_t velocity_um_s;       ///< leaky integral of it
+    int32_t rms_um_s2;           ///< windowed RMS of it
+    uint32_t freq_is_valid;      ///< 1: freq_uHz can be trusted now
+    uint32_t freq_age_ticks;     ///< since freq_uHz was last valid, saturating
+    int32_t freq_uHz;            ///< dominant frequency (largest displacement), last valid value
+    int32_t freq_amp_um_s2;      ///< its acceleration amplitude
+    quiesce_peak_t peaks[QUIESCE_PEAKS]; ///< 0 Hz where there are fewer
+    uint32_t rules_fired;        ///< bit per fuzzy rule, row-major (frequency rows)
+    int32_t current_fuzzy_mA;    ///< the rule base's own output
+    int32_t current_law_mA;      ///< what the law requests
+    int32_t current_cmd_mA;      ///< what leaves the guard
+} quiesce_telemetry_t;
+
+/// One tick's output.
+typedef struct {
+    int32_t current_cmd_mA; ///< 0 .. max_current_mA
+    bool driver_enable;     ///< false only before init has finished and after ESTOP
+    quiesce_telemetry_t telemetry;
+} quiesce_out_t;
+
+/// Controller state, owned by the caller; contents are private. Copying it copies the controller.
+#define QUIESCE_STATE_BYTES 8192
+typedef struct {
+    uint64_t opaque[QUIESCE_STATE_BYTES / 8];
+} quiesce_t;
+
+/// Starts the controller from rest with a copy of the parameters.
+/// Returns false iff quiesce_params_check refuses them; the controller is then in FAULT with
+/// QUIESCE_FAULT_PARAMETER and commands min(max(safe_current_mA, 0), max_current_mA), or 0 where
+/// these are themselves out of range. Call it before the first step.
+bool quiesce_init(quiesce_t *self, const quiesce_params_t *params);
+
+/// One control tick. Bounded; safe in an interrupt. Writes all of *out.
+void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
+
+#endif

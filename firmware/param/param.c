@@ -1,0 +1,97 @@
+// Defaults, checks and access by index of the parameters.
+#include "quiesce_params.h"
+
+#include <stddef.h>
+
+#include "param_table.h"
+
+_Static_assert(sizeof(quiesce_params_t) == QUIESCE_PARAM_COUNT * sizeof(int32_t),
+               "one int32_t a parameter, no padding");
+
+// The struct is an array of int32_t by construction (generated, asserted above).
+static int32_t *slot(quiesce_params_t *params, uint32_t index) {
+    return (int32_t *)(void *)params + index;
+}
+
+static int32_t value_of(const quiesce_params_t *params, uint32_t index) {
+    return ((const int32_t *)(const void *)params)[index];
+}
+
+void quiesce_params_default(quiesce_params_t *params) {
+    for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
+        *slot(params, i) = param_table[i].default_value;
+    }
+}
+
+const quiesce_param_info_t *quiesce_param_info(uint32_t index) {
+    return index < QUIESCE_PARAM_COUNT ? &param_table[index] : NULL;
+}
+
+bool quiesce_param_set(quiesce_params_t *params, uint32_t index, int32_t value) {
+    if (index >= QUIESCE_PARAM_COUNT) {
+        return false;
+    }
+    *slot(params, index) = value;
+    return true;
+}
+
+bool quiesce_param_get(const quiesce_params_t *params, uint32_t index, int32_t *value) {
+    if (index >= QUIESCE_PARAM_COUNT) {
+        return false;
+    }
+    *value = value_of(params, index);
+    return true;
+}
+
+static bool is_choice(const quiesce_param_info_t *info, int32_t value) {
+    for (uint32_t i = 0; i < info->choice_count; i++) {
+        if (info->choices[i] == value) {
+            return true;
+        }
+    }
+    return info->choice_count == 0;
+}
+
+static bool refuse(quiesce_param_error_t *error, size_t offset, const char *reason) {
+    const uint32_t index = (uint32_t)(offset / sizeof(int32_t));
+    if (error != NULL) {
+        *error = (quiesce_param_error_t){index, param_table[index].name, reason};
+    }
+    return false;
+}
+
+static bool check_each(const quiesce_params_t *params, quiesce_param_error_t *error) {
+    for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
+        const quiesce_param_info_t *info = &param_table[i];
+        const int32_t value = value_of(params, i);
+        if (value < info->min || value > info->max) {
+            return refuse(error, i * sizeof(int32_t), "out of range");
+        }
+        if (!is_choice(info, value)) {
+            return refuse(error, i * sizeof(int32_t), "not one of the allowed values");
+        }
+    }
+    return true;
+}
+
+static bool check_together(const quiesce_params_t *params, quiesce_param_error_t *error) {
+    if (params->band_low_mHz >= params->band_high_mHz) {
+        return refuse(error, offsetof(quiesce_params_t, band_high_mHz),
+                      "must be above band_low_mHz");
+    }
+    if (params->constant_current_mA > params->max_current_mA) {
+        return refuse(error, offsetof(quiesce_params_t, constant_current_mA),
+                      "above max_current_mA");
+    }
+    if (params->safe_current_mA > params->max_current_mA) {
+        return refuse(error, offsetof(quiesce_params_t, safe_current_mA), "above max_current_mA");
+    }
+    if (params->unlock_current_mA > params->max_current_mA) {
+        return refuse(error, offsetof(quiesce_params_t, unlock_current_mA), "above max_current_mA");
+    }
+    return true;
+}
+
+bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t *error) {
+    return check_each(params, error) && check_together(params, error);
+}

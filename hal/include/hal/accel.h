@@ -1,0 +1,18 @@
+/// Accelerometer: one sample a control tick.
+///
+/// A backend defines struct hal_accel; handles are distinct types, so that a wrong one does not
+/// compile.
+#ifndef HAL_ACCEL_H
+#define HAL_ACCEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct hal_accel hal_accel_t;
+
+/// Latest sample. Call once a tick, from the tick.
+/// counts: raw ADC counts, signed; written only where the function returns true.
+/// Returns false iff no sample has arrived since the last call.
+bool hal_accel_read(hal_accel_t *accel, int32_t *counts);
+
+#endif

@@ -1,0 +1,29 @@
+/// Mailbox in RAM that the emulator shares with the bench (words only, little-endian, no padding).
+///
+/// One side writes its part and then its sequence word; the other spins on that word. A request is
+/// new when request_seq differs from reply_seq; the target copies the request's number when its
+/// reply is complete.
+#ifndef MAILBOX_H
+#define MAILBOX_H
+
+#include "lockstep.h"
+
+/// Base of mps2-an386's 16 MiB PSRAM, which QEMU backs with a shared file.
+#define MAILBOX_BASE 0x21000000u
+#define MAILBOX_BYTES (16u * 1024u * 1024u)
+
+#define MAILBOX_START 1u ///< params -> status 1 accepted, 0 refused
+#define MAILBOX_STEP 2u  ///< stimulus -> reply
+#define MAILBOX_STOP 3u  ///< the image ends
+
+typedef struct {
+    uint32_t request_seq;
+    uint32_t reply_seq;
+    uint32_t operation;
+    uint32_t status;
+    lockstep_stimulus_t stimulus;
+    lockstep_reply_t reply;
+    quiesce_params_t params;
+} mailbox_t;
+
+#endif

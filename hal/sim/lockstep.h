@@ -1,0 +1,47 @@
+/// Lock-step server: one stimulus in, one control tick, one reply out.
+///
+/// The bench drives every target through this: in its own process, through RAM shared with an
+/// emulator (mailbox.h), or as SLCAN frames over a UART (lockstep_can.h). The firmware behind it is
+/// the same application that a board runs, on simulated peripherals.
+#ifndef LOCKSTEP_H
+#define LOCKSTEP_H
+
+#include "app.h"
+#include "hal_sim.h"
+#include "quiesce.h"
+
+/// lockstep_stimulus_t.flags
+#define LOCKSTEP_FRESH 1u       ///< accel_counts is a new sample
+#define LOCKSTEP_ENABLE 2u      ///< operator enables the output
+#define LOCKSTEP_ESTOP 4u       ///< emergency stop pressed
+#define LOCKSTEP_FAULT_RESET 8u ///< operator acknowledges a latched fault
+#define LOCKSTEP_HAS_CURRENT 16u ///< current_meas_mA is a measurement
+
+/// What a target sees in one tick. Words only: the same layout on every target.
+typedef struct {
+    int32_t accel_counts;
+    uint32_t flags;
+    int32_t current_meas_mA;
+} lockstep_stimulus_t;
+
+/// What it answers.
+typedef struct {
+    int32_t current_cmd_mA;
+    uint32_t is_driver_enabled;
+    quiesce_telemetry_t telemetry;
+} lockstep_reply_t;
+
+typedef struct {
+    app_t app;
+    hal_accel_t accel;
+    hal_current_t current;
+} lockstep_t;
+
+/// (Re)starts the controller from rest. Returns false iff a parameter is refused; the controller is
+/// then in its latched fault state and keeps commanding the safe current.
+bool lockstep_start(lockstep_t *server, const quiesce_params_t *params);
+
+/// One control tick.
+void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out);
+
+#endif
