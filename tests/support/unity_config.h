@@ -1,0 +1,14 @@
+/// Unity's configuration for both builds: integers only; on the target, output by semihosting.
+#ifndef UNITY_CONFIG_H
+#define UNITY_CONFIG_H
+
+#define UNITY_EXCLUDE_FLOAT
+#define UNITY_EXCLUDE_DOUBLE
+#define UNITY_EXCLUDE_MATH_H
+
+#ifdef QUIESCE_TARGET_MPS2
+#include "semihost.h"
+#define UNITY_OUTPUT_CHAR(c) semihost_put_char((char)(c))
+#endif
+
+#endif
