@@ -1,0 +1,18 @@
+/// Commands of quiesce_bench: one file cmd_*.cpp each, one line in main.cpp's table.
+#ifndef QUIESCE_COMMANDS_H
+#define QUIESCE_COMMANDS_H
+
+#include <string>
+#include <vector>
+
+namespace quiesce {
+
+/// words: what follows the command's name. Prints its result on stdout and returns the exit code;
+/// throws InputError for what the user can put right.
+using Command = int (*)(const std::vector<std::string> &words);
+
+int cmd_params(const std::vector<std::string> &words);
+
+} // namespace quiesce
+
+#endif

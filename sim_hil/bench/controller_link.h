@@ -1,0 +1,43 @@
+/// A controller that the bench drives in lock-step, wherever it runs.
+#ifndef QUIESCE_CONTROLLER_LINK_H
+#define QUIESCE_CONTROLLER_LINK_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "firmware.h"
+
+namespace quiesce {
+
+/// Instructions that the target executed for each control tick, exactly counted.
+struct InstructionCounts {
+    std::uint64_t median;
+    std::uint64_t worst;
+};
+
+/// One stimulus in, one control tick, one reply out. Not thread-safe.
+/// Every function throws InputError when the target cannot be reached or stops answering.
+class ControllerLink {
+  public:
+    virtual ~ControllerLink() = default;
+
+    /// Name of the target, as --target takes it.
+    virtual std::string target() const = 0;
+
+    /// (Re)starts the controller from rest. Returns false iff it refuses a parameter; the
+    /// controller then stays in its latched fault state and still answers. May be called again for
+    /// a new run.
+    virtual bool start(const quiesce_params_t &params) = 0;
+
+    /// One control tick. Writes all of reply. Only after start.
+    virtual void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) = 0;
+
+    /// Ends the target. Returns its instruction counts iff it was started with a way to count them.
+    /// Call it at most once, as the last call.
+    virtual std::optional<InstructionCounts> finish() = 0;
+};
+
+} // namespace quiesce
+
+#endif

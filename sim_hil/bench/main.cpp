@@ -1,0 +1,51 @@
+/// quiesce_bench: the simulated plant in lock-step with the controller on one of its targets.
+#include <cstdio>
+#include <exception>
+
+#include "commands.h"
+
+namespace {
+
+struct Entry {
+    const char *name;
+    const char *usage;
+    quiesce::Command run;
+};
+
+const Entry kCommands[] = {
+    {"params", "", quiesce::cmd_params},
+};
+
+void print_usage(std::FILE *out) {
+    std::fprintf(out, "usage: quiesce_bench COMMAND [OPTION VALUE]...\n");
+    for (const Entry &entry : kCommands) {
+        std::fprintf(out, "  %s %s\n", entry.name, entry.usage);
+    }
+}
+
+int run_command(const Entry &entry, int argc, char **argv) {
+    try {
+        return entry.run(std::vector<std::string>(argv + 2, argv + argc));
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "quiesce_bench: %s\n", error.what());
+        return 2;
+    }
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+    const std::string name = argc > 1 ? argv[1] : "";
+    if (name == "--help" || name == "-h") {
+        print_usage(stdout);
+        return 0;
+    }
+    for (const Entry &entry : kCommands) {
+        if (name == entry.name) {
+            return run_command(entry, argc, argv);
+        }
+    }
+    std::fprintf(stderr, "quiesce_bench: %s; --help lists the commands\n",
+                 name.empty() ? "no command given" : ("unknown command " + name).c_str());
+    return 2;
+}
