@@ -2,7 +2,7 @@
 ///
 /// One side writes its part and then its sequence word; the other spins on that word. A request is
 /// new when request_seq differs from reply_seq; the target copies the request's number when its
-/// reply is complete.
+/// reply is complete. All words are 0 when the image starts.
 #ifndef MAILBOX_H
 #define MAILBOX_H
 
@@ -14,13 +14,15 @@
 
 #define MAILBOX_START 1u ///< params -> status 1 accepted, 0 refused
 #define MAILBOX_STEP 2u  ///< stimulus -> reply
-#define MAILBOX_STOP 3u  ///< the image ends
+#define MAILBOX_STOP 3u  ///< stack_used_bytes; the image ends
 
 typedef struct {
     uint32_t request_seq;
     uint32_t reply_seq;
     uint32_t operation;
     uint32_t status;
+    uint32_t layout_bytes;     ///< sizeof(mailbox_t) in the image; 0 until it runs
+    uint32_t stack_used_bytes; ///< high-water mark, valid after MAILBOX_STOP
     lockstep_stimulus_t stimulus;
     lockstep_reply_t reply;
     quiesce_params_t params;

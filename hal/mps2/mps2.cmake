@@ -1,5 +1,5 @@
-# Backend for mps2-an386 (Cortex-M4 under QEMU). hal_mps2 is what every image of it links.
-add_library(hal_mps2 STATIC mps2/semihost.c mps2/stack.c)
+# Backend for mps2-an386 (Cortex-M4 under QEMU) and its images.
+add_library(hal_mps2 STATIC mps2/semihost.c mps2/stack.c mps2/tick_mps2.c mps2/uart_mps2.c)
 target_include_directories(hal_mps2 PUBLIC mps2 include)
 target_compile_definitions(hal_mps2 PUBLIC QUIESCE_TARGET_MPS2)
 target_link_libraries(hal_mps2 PRIVATE quiesce_warnings)
@@ -15,6 +15,26 @@ function(quiesce_mps2_image target)
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:mps2_startup>)
   target_link_options(${target} PRIVATE -nostdlib -static -T${script} -Wl,--gc-sections
                       -Wl,--fatal-warnings -Wl,-Map=$<TARGET_FILE:${target}>.map)
-  target_link_libraries(${target} PRIVATE hal_mps2 c gcc)
+  target_link_libraries(${target} PRIVATE hal_mps2)
   set_target_properties(${target} PROPERTIES LINK_DEPENDS ${script} SUFFIX .elf)
 endfunction()
+
+# An image that the bench drives; its build prints its size. The markers bracket the control tick for
+# the instruction counter.
+function(quiesce_mps2_program target main)
+  cmake_parse_arguments(ARG "LOCKSTEP" "" "LIBRARIES" ${ARGN})
+  add_executable(${target} ${main})
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} quiesce_warnings)
+  if(ARG_LOCKSTEP)
+    target_sources(${target} PRIVATE mps2/count_markers.c)
+    target_link_libraries(${target} PRIVATE hal_sim)
+    target_link_options(${target} PRIVATE -Wl,--wrap=lockstep_exchange)
+  endif()
+  quiesce_mps2_image(${target})
+  add_custom_command(TARGET ${target} POST_BUILD COMMAND ${CROSS_SIZE} $<TARGET_FILE:${target}>)
+endfunction()
+
+find_program(CROSS_SIZE arm-none-eabi-size REQUIRED)
+quiesce_mps2_program(quiesce_mps2_shm mps2/main_shm.c LOCKSTEP)
+quiesce_mps2_program(quiesce_mps2_uart mps2/main_uart.c LOCKSTEP LIBRARIES lockstep_can)
+quiesce_mps2_program(uart_echo mps2/main_echo.c)

@@ -1,0 +1,47 @@
+/// Lock-step server over CAN frames: the protocol between a bench and a target (quiesce.dbc).
+///
+/// Pure: one frame in, its replies out; it knows no bus. The bench writes parameters, starts, then
+/// sends one LockstepStimulus a tick (before it, where there is one, the LockstepCurrent of the
+/// same sequence number) and gets, in this order, the telemetry frames that are due and one
+/// LockstepCommand. A frame that is unknown, of the wrong length, out of place or of the wrong
+/// sequence number is counted and never acted on.
+#ifndef LOCKSTEP_CAN_H
+#define LOCKSTEP_CAN_H
+
+#include "can_frame.h"
+#include "lockstep.h"
+#include "quiesce_can.h"
+
+/// Most frames that one frame is answered with: all telemetry words and the command.
+#define LOCKSTEP_CAN_MAX_REPLIES (QUIESCE_CAN_TELEMETRY_WORDS + 1u)
+
+/// Sequence numbers run from 0, modulo this.
+#define LOCKSTEP_CAN_SEQUENCE_PERIOD 16u
+
+typedef struct {
+    lockstep_t server;
+    lockstep_reply_t reply;  ///< of the last tick
+    quiesce_params_t params; ///< for the next start
+    uint32_t telemetry_every_ticks;
+    uint32_t telemetry_frames;
+    uint32_t telemetry_word; ///< next one to send
+    uint32_t ticks_to_burst;
+    int32_t current_meas_mA; ///< pending measurement, for the next stimulus
+    uint8_t sequence;        ///< of the next stimulus
+    uint8_t refused_index;
+    bool has_current;
+    bool is_started;
+    bool is_stopped; ///< the bench asked the target to end
+    bool param_is_refused;
+    uint16_t unknown_frames;  ///< saturating
+    uint16_t sequence_errors; ///< saturating
+} lockstep_can_t;
+
+/// Not started, every parameter at its default.
+void lockstep_can_init(lockstep_can_t *self);
+
+/// Takes one frame. Returns the number of frames written to out, in the order to send them.
+uint32_t lockstep_can_receive(lockstep_can_t *self, const can_frame_t *frame,
+                              can_frame_t out[LOCKSTEP_CAN_MAX_REPLIES]);
+
+#endif

@@ -1,0 +1,40 @@
+// Lock-step image for the shared-RAM link: serves the mailbox until it is told to stop.
+#include "mailbox.h"
+#include "stack.h"
+
+static void wait_for_request(const mailbox_t *box) {
+    while (__atomic_load_n(&box->request_seq, __ATOMIC_ACQUIRE) == box->reply_seq) {
+    }
+}
+
+static void serve(mailbox_t *box, lockstep_t *server) {
+    switch (box->operation) {
+    case MAILBOX_STEP:
+        lockstep_exchange(server, &box->stimulus, &box->reply);
+        break;
+    case MAILBOX_START:
+        box->status = lockstep_start(server, &box->params) ? 1u : 0u;
+        break;
+    case MAILBOX_STOP:
+        box->stack_used_bytes = stack_high_water_bytes();
+        break;
+    default:
+        box->status = 0;
+        break;
+    }
+}
+
+int main(void) {
+    static lockstep_t server;
+    mailbox_t *const box = (mailbox_t *)MAILBOX_BASE;
+    uint32_t operation;
+
+    box->layout_bytes = sizeof *box;
+    do {
+        wait_for_request(box);
+        operation = box->operation;
+        serve(box, &server);
+        __atomic_store_n(&box->reply_seq, box->request_seq, __ATOMIC_RELEASE);
+    } while (operation != MAILBOX_STOP);
+    return 0;
+}

@@ -1,0 +1,21 @@
+#include "uart_mps2.h"
+
+void uart_mps2_open(hal_uart_t *uart, cmsdk_uart_t *registers, uint32_t baud) {
+    uart->registers = registers;
+    registers->baud_divider = CMSDK_CLOCK_HZ / baud;
+    registers->control = CMSDK_UART_CONTROL_TX_ENABLE | CMSDK_UART_CONTROL_RX_ENABLE;
+}
+
+bool hal_uart_read(hal_uart_t *uart, uint8_t *byte) {
+    if ((uart->registers->state & CMSDK_UART_STATE_RX_FULL) == 0) {
+        return false;
+    }
+    *byte = (uint8_t)uart->registers->data;
+    return true;
+}
+
+void hal_uart_write(hal_uart_t *uart, uint8_t byte) {
+    while ((uart->registers->state & CMSDK_UART_STATE_TX_FULL) != 0) {
+    }
+    uart->registers->data = byte;
+}
