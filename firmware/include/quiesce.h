@@ -81,7 +81,7 @@ typedef struct {
 /// One tick's output.
 typedef struct {
     int32_t current_cmd_mA; ///< 0 .. max_current_mA
-    bool driver_enable;     ///< false only before init has finished and after ESTOP
+    bool driver_enable;     ///< false only in FAULT after ESTOP or PARAMETER
     quiesce_telemetry_t telemetry;
 } quiesce_out_t;
 

@@ -1,18 +1,215 @@
-// INTERIM: constant and off laws only, so that the rest links. Being replaced.
+// The one file that knows the order of the chain.
 #include "quiesce.h"
-#include <string.h>
-typedef struct { quiesce_params_t p; bool ok; } c_t;
-bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
-    c_t *c = (c_t *)(void *)self->opaque;
-    c->p = *params; c->ok = quiesce_params_check(params, 0); return c->ok;
+
+#include <stddef.h>
+
+#include "condition.h"
+#include "current_monitor.h"
+#include "fuzzy.h"
+#include "guard.h"
+#include "law.h"
+#include "motion.h"
+#include "rms.h"
+#include "spectrum.h"
+#include "squeeze_rules.h"
+#include "supervisor.h"
+#include "tracker.h"
+
+// Lives in the caller's opaque words; may_alias keeps that legal.
+typedef struct __attribute__((may_alias)) {
+    quiesce_params_t params;
+    condition_t condition;
+    rms_t rms;
+    spectrum_t spectrum;
+    tracker_t tracker;
+    motion_t motion;
+    const law_t *law;
+    law_state_t law_state;
+    supervisor_t supervisor;
+    current_monitor_t monitor;
+    guard_t guard;
+    int32_t last_command_mA;
+    uint32_t last_tick;
+    uint32_t bad_sample_count;
+    bool has_ticked;
+} controller_t;
+
+_Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
+_Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
+_Static_assert(QUIESCE_PEAKS == TRACKER_PEAKS, "telemetry holds the tracker's peaks");
+
+static void init_sense(controller_t *self, const quiesce_params_t *p) {
+    const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
+    condition_init(&self->condition, &(condition_cfg_t){
+                                         .tick_rate_Hz = rate_Hz,
+                                         .scale_nm_s2 = p->accel_scale_nm_s2,
+                                         .offset_counts = p->accel_offset_counts,
+                                         .polarity = p->accel_polarity,
+                                         .full_scale_counts = p->accel_full_scale_counts,
+                                         .max_age_ticks = (uint32_t)p->sensor_max_age_ticks,
+                                         .stuck_ticks = (uint32_t)p->sensor_stuck_ticks,
+                                         .dc_cutoff_mHz = p->dc_cutoff_mHz,
+                                     });
+    rms_init(&self->rms, rate_Hz, (uint32_t)p->rms_window_ms);
+    spectrum_init(&self->spectrum, rate_Hz);
+    tracker_init(&self->tracker, &(tracker_cfg_t){
+                                     .band_low_mHz = p->band_low_mHz,
+                                     .band_high_mHz = p->band_high_mHz,
+                                     .min_accel_um_s2 = p->track_min_accel_um_s2,
+                                     .snr_dB = p->track_snr_dB,
+                                     .rate_uHz = SPECTRUM_RATE_Hz * 1000000u,
+                                     .points_log2 = SPECTRUM_POINTS_LOG2,
+                                     .window_rounds = SPECTRUM_POINTS,
+                                 });
+    motion_init(&self->motion, rate_Hz, p->velocity_cutoff_mHz);
 }
+
+static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
+    const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
+    guard_init(&self->guard, &(guard_cfg_t){
+                                 .max_mA = p->max_current_mA,
+                                 .safe_mA = p->safe_current_mA,
+                                 .slew_mA_s = p->slew_mA_s,
+                                 .tick_rate_Hz = rate_Hz,
+                             });
+    self->last_command_mA = self->guard.cfg.safe_mA;
+    const current_monitor_cfg_t monitor = {
+        .is_on = is_accepted && p->current_check == QUIESCE_CURRENT_CHECK_ON,
+        .tick_rate_Hz = rate_Hz,
+        .error_mA = p->current_error_mA,
+        .lag_ms = is_accepted ? p->current_lag_ms : 0,
+        .fault_ticks = (uint32_t)p->current_fault_ticks,
+    };
+    current_monitor_init(&self->monitor, &monitor, self->last_command_mA);
+    supervisor_init(&self->supervisor, is_accepted ? QUIESCE_FAULT_NONE : QUIESCE_FAULT_PARAMETER);
+}
+
+bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    const bool is_accepted = quiesce_params_check(params, NULL);
+    *c = (controller_t){.params = *params};
+    if (!is_accepted) {
+        // The chain still runs, on defaults; the supervisor lets nothing of it out.
+        quiesce_params_default(&c->params);
+    }
+    init_sense(c, &c->params);
+    c->law = law_find(c->params.law);
+    init_output(c, params, is_accepted);
+    return is_accepted;
+}
+
+static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
+    static const uint8_t fault_of[] = {
+        [CONDITION_GOOD] = QUIESCE_FAULT_NONE,
+        [CONDITION_LOST] = QUIESCE_FAULT_SENSOR_LOST,
+        [CONDITION_SATURATED] = QUIESCE_FAULT_SENSOR_SATURATED,
+        [CONDITION_STUCK] = QUIESCE_FAULT_SENSOR_STUCK,
+        [CONDITION_RANGE] = QUIESCE_FAULT_SENSOR_RANGE,
+    };
+    return sample->is_fault ? (quiesce_fault_t)fault_of[sample->flag] : QUIESCE_FAULT_NONE;
+}
+
+static quiesce_fault_t driver_fault(current_verdict_t verdict) {
+    static const uint8_t fault_of[] = {
+        [CURRENT_OK] = QUIESCE_FAULT_NONE,
+        [CURRENT_NOT_FOLLOWING] = QUIESCE_FAULT_DRIVER_NOT_FOLLOWING,
+        [CURRENT_OPEN_COIL] = QUIESCE_FAULT_COIL_OPEN,
+        [CURRENT_MISSING] = QUIESCE_FAULT_CURRENT_LOST,
+    };
+    return (quiesce_fault_t)fault_of[verdict];
+}
+
+static bool is_tick_lost(controller_t *self, uint32_t tick) {
+    const bool is_lost = self->has_ticked && tick != self->last_tick + 1u;
+    self->has_ticked = true;
+    self->last_tick = tick;
+    return is_lost;
+}
+
+static void track(controller_t *self, const condition_out_t *sample) {
+    const spectrum_span_t span = spectrum_step(&self->spectrum, sample->accel_um_s2);
+    tracker_read(&self->tracker, self->spectrum.power, span.first, span.end);
+    if (span.is_round_end) {
+        tracker_end_round(&self->tracker, self->spectrum.power);
+    }
+    tracker_tick(&self->tracker, !sample->is_fault);
+}
+
+static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample) {
+    const current_verdict_t verdict = current_monitor_step(
+        &self->monitor, self->last_command_mA, in->current_meas_mA, in->current_is_measured);
+    const quiesce_fault_t lost =
+        is_tick_lost(self, in->tick) ? QUIESCE_FAULT_TICK_LOST : QUIESCE_FAULT_NONE;
+    const quiesce_fault_t sensor = sensor_fault(sample);
+    const supervisor_in_t events = {
+        .clearing_fault = sensor != QUIESCE_FAULT_NONE ? sensor : lost,
+        .latched_fault = in->estop ? QUIESCE_FAULT_ESTOP : driver_fault(verdict),
+        .is_ready = sample->good_ticks >= (uint32_t)self->params.sensor_recover_ticks,
+        .enable = in->enable,
+        .fault_reset = in->fault_reset,
+    };
+    if (supervisor_step(&self->supervisor, &events)) {
+        current_monitor_reset(&self->monitor);
+    }
+}
+
+static law_in_t law_input(const controller_t *self, const condition_out_t *sample,
+                          int64_t velocity_um_s_q32, int32_t fuzzy_mA) {
+    return (law_in_t){
+        .velocity_um_s_q32 = velocity_um_s_q32,
+        .accel_um_s2 = sample->accel_um_s2,
+        .freq_uHz = self->tracker.dominant.freq_uHz,
+        .freq_is_valid = self->tracker.is_valid,
+        .base_mA = self->tracker.is_valid ? fuzzy_mA : self->params.unlock_current_mA,
+    };
+}
+
+static void report(const controller_t *self, quiesce_telemetry_t *t) {
+    const tracker_t *tracker = &self->tracker;
+    t->state = (uint32_t)self->supervisor.state;
+    t->fault = (uint32_t)self->supervisor.fault;
+    t->fault_count = self->supervisor.fault_count;
+    t->bad_sample_count = self->bad_sample_count;
+    t->freq_is_valid = tracker->is_valid ? 1u : 0u;
+    t->freq_age_ticks = tracker->age_ticks;
+    t->freq_uHz = tracker->dominant.freq_uHz;
+    t->freq_amp_um_s2 = tracker->dominant.amp_um_s2;
+    for (uint32_t i = 0; i < QUIESCE_PEAKS; i++) {
+        t->peaks[i] = (quiesce_peak_t){tracker->peak[i].freq_uHz, tracker->peak[i].amp_um_s2};
+    }
+}
+
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
-    const c_t *c = (const c_t *)(const void *)self->opaque;
-    memset(out, 0, sizeof *out);
-    out->telemetry.tick = in->tick;
-    out->telemetry.accel_um_s2 = in->accel_counts;
-    out->telemetry.state = in->enable ? QUIESCE_STATE_RUN : QUIESCE_STATE_IDLE;
-    out->driver_enable = true;
-    if (in->enable && c->p.law == QUIESCE_LAW_CONSTANT) out->current_cmd_mA = c->p.constant_current_mA;
-    out->telemetry.current_cmd_mA = out->current_cmd_mA;
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    quiesce_telemetry_t *t = &out->telemetry;
+
+    condition_out_t sample;
+    condition_step(&c->condition, in->accel_counts, in->accel_is_fresh, &sample);
+    if (sample.flag != CONDITION_GOOD) {
+        c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
+    }
+    const int32_t rms_um_s2 = rms_step(&c->rms, sample.accel_um_s2);
+    track(c, &sample);
+    const int64_t velocity_um_s_q32 = motion_step(&c->motion, sample.accel_um_s2);
+
+    const fuzzy_out_t fuzzy =
+        fuzzy_evaluate(&squeeze_rules, c->tracker.dominant.freq_uHz, rms_um_s2);
+    const law_in_t law_in = law_input(c, &sample, velocity_um_s_q32, fuzzy.current_mA);
+    const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
+
+    supervise(c, in, &sample);
+    out->current_cmd_mA =
+        guard_step(&c->guard, request_mA, supervisor_allows_output(&c->supervisor));
+    out->driver_enable = supervisor_allows_driver(&c->supervisor);
+    c->last_command_mA = out->current_cmd_mA;
+
+    report(c, t);
+    t->tick = in->tick;
+    t->accel_um_s2 = sample.accel_um_s2;
+    t->velocity_um_s = motion_velocity_um_s(velocity_um_s_q32);
+    t->rms_um_s2 = rms_um_s2;
+    t->rules_fired = fuzzy.rules_fired;
+    t->current_fuzzy_mA = fuzzy.current_mA;
+    t->current_law_mA = request_mA;
+    t->current_cmd_mA = out->current_cmd_mA;
 }

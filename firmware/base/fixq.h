@@ -1,0 +1,73 @@
+/// Fixed-point arithmetic shared by all blocks. Qn: an integer that counts units of 2^-n.
+/// Every function is bounded, has no state and gives the same bits on every target.
+/// Right shifts of negative numbers are arithmetic on every compiler that we support
+/// (asserted below): they round towards minus infinity.
+#ifndef FIXQ_H
+#define FIXQ_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+_Static_assert((-3 >> 1) == -2, "arithmetic right shift");
+
+/// 2 pi / 1000 in Q32: radians a second of one milli-hertz.
+#define TWO_PI_PER_MILLI_Q32 INT64_C(26986075)
+
+/// value limited to low .. high (low <= high).
+static inline int32_t clamp_i32(int32_t value, int32_t low, int32_t high) {
+    return value < low ? low : value > high ? high : value;
+}
+
+/// value limited to low .. high (low <= high).
+static inline int64_t clamp_i64(int64_t value, int64_t low, int64_t high) {
+    return value < low ? low : value > high ? high : value;
+}
+
+/// Magnitude; saturates: abs_i32(INT32_MIN) = INT32_MAX.
+static inline int32_t abs_i32(int32_t value) {
+    return value >= 0 ? value : value == INT32_MIN ? INT32_MAX : -value;
+}
+
+/// -1, 0 or 1.
+static inline int32_t sign_i64(int64_t value) {
+    return (value > 0) - (value < 0);
+}
+
+/// value + 1, staying at UINT32_MAX.
+static inline uint32_t increment_sat_u32(uint32_t value) {
+    return value == UINT32_MAX ? value : value + 1u;
+}
+
+/// Leading zero bits of value != 0, 0 .. 63. The builtin becomes CLZ or a bounded library routine.
+static inline uint32_t leading_zeros_u64(uint64_t value) {
+    return (uint32_t)__builtin_clzll(value);
+}
+
+/// floor(sqrt(value)), exact. 32 steps.
+uint32_t isqrt_u64(uint64_t value);
+
+/// floor(sqrt(value)), exact. 16 steps.
+uint32_t isqrt_u32(uint32_t value);
+
+/// sqrt(value) with a relative error of at most 2^-15 (floor of the leading 32 bits' root).
+/// Half the cost of isqrt_u64. value < 2^62.
+uint32_t sqrt_fast_u64(uint64_t value);
+
+/// log2(value) in Q8, value >= 1; 0 for value 0. Linear between powers of two: at most 0.086 low.
+uint32_t log2_q8_u64(uint64_t value);
+
+/// A positive factor as mantissa x 2^-shift, so that one multiplication applies it at full
+/// precision.
+typedef struct {
+    int32_t mantissa; ///< 2^30 .. 2^31 - 1
+    uint32_t shift;   ///< 0 .. 62
+} scale_t;
+
+/// numerator / denominator as a scale, relative error at most 2^-30.
+/// numerator 1 .. 2^31 - 1, denominator 1 .. 2^31. Quotients below 2^-32 lose precision.
+scale_t scale_from_ratio(uint32_t numerator, uint32_t denominator);
+
+/// value x scale, rounded towards minus infinity, saturated to -limit .. limit.
+int32_t scale_apply(scale_t scale, int32_t value, int32_t limit);
+
+#endif

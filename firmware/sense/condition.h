@@ -1,0 +1,61 @@
+/// Conditioning of the accelerometer: plausibility, scale, polarity, removal of the DC part.
+///
+/// A bad sample never reaches the windows: the last good one is held, and the fault is reported
+/// once the bad run is longer than max_age_ticks. Bounded, about 60 instructions a tick.
+#ifndef CONDITION_H
+#define CONDITION_H
+
+#include "fixq.h"
+
+/// Conditioned accelerations saturate here (51 g), so that every later sum fits its word.
+#define CONDITION_LIMIT_um_s2 500000000
+
+/// Why the newest sample is bad; the value is held meanwhile.
+typedef enum {
+    CONDITION_GOOD = 0,
+    CONDITION_LOST = 1,      ///< no sample came
+    CONDITION_SATURATED = 2, ///< at the ADC's full scale
+    CONDITION_STUCK = 3,     ///< the same count for stuck_ticks
+    CONDITION_RANGE = 4,     ///< beyond the ADC's full scale
+} condition_flag_t;
+
+typedef struct {
+    uint32_t tick_rate_Hz;     ///< 500 .. 4000
+    int32_t scale_nm_s2;       ///< of one count, 1 .. 10^9
+    int32_t offset_counts;     ///< at zero acceleration
+    int32_t polarity;          ///< -1 or 1
+    int32_t full_scale_counts; ///< > 0
+    uint32_t max_age_ticks;    ///< longest hold
+    uint32_t stuck_ticks;      ///< 0: no check
+    int32_t dc_cutoff_mHz;     ///< 10 .. 1000
+} condition_cfg_t;
+
+typedef struct {
+    condition_cfg_t cfg;
+    scale_t scale;         ///< um/s2 per count
+    int64_t dc_q32;        ///< um/s2 in Q32
+    int64_t dc_gain_q32;   ///< share of the error taken over each tick
+    uint32_t mean_samples; ///< samples that the starting mean holds, plus one
+    int32_t held_um_s2;    ///< last good sample, before DC removal
+    int32_t last_counts;
+    uint32_t same_ticks; ///< identical samples in a row
+    uint32_t bad_ticks;  ///< bad samples in a row
+    uint32_t good_ticks; ///< good samples in a row, saturating
+} condition_t;
+
+typedef struct {
+    int32_t accel_um_s2;   ///< DC removed; at most +-CONDITION_LIMIT_um_s2
+    condition_flag_t flag; ///< of this tick's sample
+    bool is_fault;         ///< the bad run is older than max_age_ticks (stuck: at once)
+    uint32_t good_ticks;   ///< good samples in a row, saturating
+} condition_out_t;
+
+void condition_init(condition_t *self, const condition_cfg_t *cfg);
+
+/// One tick. counts is ignored unless is_fresh.
+/// Formats: counts x scale in 64 bit, floor, saturated to the limit; DC tracker in Q32,
+/// dc += gain (x - dc), gain = w/(1+w), w = 2 pi cutoff / tick rate (backward Euler); at the start
+/// the plain mean (gain 1/n) until it is the slower one.
+void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_out_t *out);
+
+#endif
