@@ -2,6 +2,8 @@
 
 #include "in_process_link.h"
 #include "input_error.h"
+#include "qemu_shm_link.h"
+#include "qemu_uart_link.h"
 
 namespace quiesce {
 
@@ -12,10 +14,31 @@ struct Target {
     std::unique_ptr<ControllerLink> (*make)(const LinkOptions &options);
 };
 
+QemuOptions emulated(const LinkOptions &options) {
+    if (options.image_path.empty()) {
+        throw InputError(
+            "an emulated target needs --image ELF; cmake --preset mps2 && cmake --build "
+            "--preset mps2 makes build/mps2/hal/quiesce_mps2_shm.elf (mps2) and "
+            "quiesce_mps2_uart.elf (mps2-uart)");
+    }
+    QemuOptions out;
+    out.image_path = options.image_path;
+    out.plugin_path = options.plugin_path;
+    return out;
+}
+
 const Target kTargets[] = {
     {"host",
      [](const LinkOptions &) -> std::unique_ptr<ControllerLink> {
          return std::make_unique<InProcessLink>();
+     }},
+    {"mps2",
+     [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
+         return std::make_unique<QemuShmLink>(emulated(options));
+     }},
+    {"mps2-uart",
+     [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
+         return std::make_unique<QemuUartLink>(emulated(options), kFullTelemetry);
      }},
 };
 

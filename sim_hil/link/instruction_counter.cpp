@@ -1,0 +1,84 @@
+#include "instruction_counter.h"
+
+#include <filesystem>
+#include <sstream>
+
+#include "elf_symbols.h"
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+std::string plugin_beside_this_program() {
+    return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "icount_plugin.so";
+}
+
+std::uint32_t marker(const std::string &image_path, const std::string &name) {
+    const auto symbols = read_elf_symbols(image_path);
+    const auto found = symbols.find(name);
+    if (found == symbols.end()) {
+        throw InputError("image " + image_path + ": has no symbol " + name +
+                         ", so its instructions cannot be counted; rebuild it, or pass --plugin "
+                         "none");
+    }
+    return found->second;
+}
+
+/// QEMU splits option values at commas; a doubled one stands for itself.
+std::string escape_commas(const std::string &path) {
+    std::string out;
+    for (const char c : path) {
+        out += c == ',' ? std::string(",,") : std::string(1, c);
+    }
+    return out;
+}
+
+} // namespace
+
+InstructionCounter::InstructionCounter(const QemuOptions &options) {
+    if (options.plugin_path == "none") {
+        return;
+    }
+    const std::string plugin =
+        options.plugin_path.empty() ? plugin_beside_this_program() : options.plugin_path;
+    if (!std::filesystem::exists(plugin)) {
+        throw InputError("plugin " + plugin +
+                         ": not found; build the target icount_plugin, or pass --plugin none");
+    }
+    report_ = make_memory_file("instruction-counts", 0);
+    std::ostringstream argument;
+    argument << escape_commas(plugin)
+             << ",begin=" << marker(options.image_path, "quiesce_count_begin")
+             << ",end=" << marker(options.image_path, "quiesce_count_end")
+             << ",fd=" << report_.number();
+    plugin_argument_ = argument.str();
+}
+
+std::vector<std::string> InstructionCounter::qemu_arguments() const {
+    if (plugin_argument_.empty()) {
+        return {};
+    }
+    return {"-plugin", plugin_argument_};
+}
+
+std::vector<int> InstructionCounter::inherited() const {
+    if (plugin_argument_.empty()) {
+        return {};
+    }
+    return {report_.number()};
+}
+
+std::optional<InstructionCounts> InstructionCounter::read() const {
+    std::istringstream report(read_memory_file(report_));
+    std::string passes_word, median_word, worst_word;
+    std::uint64_t passes = 0;
+    InstructionCounts counts{};
+    report >> passes_word >> passes >> median_word >> counts.median >> worst_word >> counts.worst;
+    if (!report || passes == 0) {
+        return std::nullopt;
+    }
+    return counts;
+}
+
+} // namespace quiesce

@@ -1,0 +1,20 @@
+/// What every emulated target is made from.
+#ifndef QUIESCE_QEMU_OPTIONS_H
+#define QUIESCE_QEMU_OPTIONS_H
+
+#include <chrono>
+#include <string>
+
+namespace quiesce {
+
+struct QemuOptions {
+    std::string image_path;
+    /// Instruction counter; empty: the one beside this program; "none": do not count.
+    std::string plugin_path;
+    /// Longest wait for one answer. Generous: a loaded machine must not look like a dead target.
+    std::chrono::milliseconds answer_time = std::chrono::seconds(10);
+};
+
+} // namespace quiesce
+
+#endif
