@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+// cppcheck-suppress shiftNegativeLHS
 _Static_assert((-3 >> 1) == -2, "arithmetic right shift");
 
 /// 2 pi / 1000 in Q32: radians a second of one milli-hertz.

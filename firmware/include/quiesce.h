@@ -33,9 +33,9 @@ typedef enum {
     QUIESCE_FAULT_SENSOR_RANGE = 5,         ///< samples beyond full scale for sensor_max_age_ticks
     QUIESCE_FAULT_DRIVER_NOT_FOLLOWING = 6, ///< measured current off the command (latched)
     QUIESCE_FAULT_COIL_OPEN = 7,            ///< no current although commanded (latched)
-    QUIESCE_FAULT_CURRENT_LOST = 8,         ///< current_check is on, no measurement arrives (latched)
-    QUIESCE_FAULT_TICK_LOST = 9,            ///< the tick number jumped
-    QUIESCE_FAULT_ESTOP = 10,               ///< emergency stop (latched)
+    QUIESCE_FAULT_CURRENT_LOST = 8, ///< current_check is on, no measurement arrives (latched)
+    QUIESCE_FAULT_TICK_LOST = 9,    ///< the tick number jumped
+    QUIESCE_FAULT_ESTOP = 10,       ///< emergency stop (latched)
     QUIESCE_FAULT_COUNT
 } quiesce_fault_t;
 
@@ -60,22 +60,22 @@ typedef struct {
 /// Everything that a tick leaves behind to look at; 32-bit words only, the same layout everywhere.
 typedef struct {
     uint32_t tick;
-    uint32_t state;              ///< quiesce_state_t
-    uint32_t fault;              ///< quiesce_fault_t, the one that holds the state
-    uint32_t fault_count;        ///< faults entered since init, saturating
-    uint32_t bad_sample_count;   ///< samples refused since init, saturating
-    int32_t accel_um_s2;         ///< conditioned acceleration, DC removed
-    int32_t velocity_um_s;       ///< leaky integral of it
-    int32_t rms_um_s2;           ///< windowed RMS of it
-    uint32_t freq_is_valid;      ///< 1: freq_uHz can be trusted now
-    uint32_t freq_age_ticks;     ///< since freq_uHz was last valid, saturating
-    int32_t freq_uHz;            ///< dominant frequency (largest displacement), last valid value
-    int32_t freq_amp_um_s2;      ///< its acceleration amplitude
+    uint32_t state;            ///< quiesce_state_t
+    uint32_t fault;            ///< quiesce_fault_t, the one that holds the state
+    uint32_t fault_count;      ///< faults entered since init, saturating
+    uint32_t bad_sample_count; ///< samples refused since init, saturating
+    int32_t accel_um_s2;       ///< conditioned acceleration, DC removed
+    int32_t velocity_um_s;     ///< leaky integral of it
+    int32_t rms_um_s2;         ///< windowed RMS of it
+    uint32_t freq_is_valid;    ///< 1: freq_uHz can be trusted now
+    uint32_t freq_age_ticks;   ///< since freq_uHz was last valid, saturating
+    int32_t freq_uHz;          ///< dominant frequency (largest displacement), last valid value
+    int32_t freq_amp_um_s2;    ///< its acceleration amplitude
     quiesce_peak_t peaks[QUIESCE_PEAKS]; ///< 0 Hz where there are fewer
-    uint32_t rules_fired;        ///< bit per fuzzy rule, row-major (frequency rows)
-    int32_t current_fuzzy_mA;    ///< the rule base's own output
-    int32_t current_law_mA;      ///< what the law requests
-    int32_t current_cmd_mA;      ///< what leaves the guard
+    uint32_t rules_fired;                ///< bit per fuzzy rule, row-major (frequency rows)
+    int32_t current_fuzzy_mA;            ///< the rule base's own output
+    int32_t current_law_mA;              ///< what the law requests
+    int32_t current_cmd_mA;              ///< what leaves the guard
 } quiesce_telemetry_t;
 
 /// One tick's output.

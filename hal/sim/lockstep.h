@@ -11,10 +11,10 @@
 #include "quiesce.h"
 
 /// lockstep_stimulus_t.flags
-#define LOCKSTEP_FRESH 1u       ///< accel_counts is a new sample
-#define LOCKSTEP_ENABLE 2u      ///< operator enables the output
-#define LOCKSTEP_ESTOP 4u       ///< emergency stop pressed
-#define LOCKSTEP_FAULT_RESET 8u ///< operator acknowledges a latched fault
+#define LOCKSTEP_FRESH 1u        ///< accel_counts is a new sample
+#define LOCKSTEP_ENABLE 2u       ///< operator enables the output
+#define LOCKSTEP_ESTOP 4u        ///< emergency stop pressed
+#define LOCKSTEP_FAULT_RESET 8u  ///< operator acknowledges a latched fault
 #define LOCKSTEP_HAS_CURRENT 16u ///< current_meas_mA is a measurement
 
 /// What a target sees in one tick. Words only: the same layout on every target.

@@ -37,6 +37,7 @@ std::vector<std::string> command_line(const std::string &image_path,
 
 std::vector<char *> as_argv(std::vector<std::string> &words) {
     std::vector<char *> argv;
+    argv.reserve(words.size() + 1);
     for (std::string &word : words) {
         argv.push_back(word.data());
     }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Write the C pack and unpack functions of firmware/comm/quiesce.dbc with cantools.
 
-Deterministic: the same DBC gives the same bytes (cantools' date and version stamp is replaced by the
-DBC's hash). `--check` writes nothing and exits 1 where a committed file differs.
+Deterministic: the same DBC gives the same bytes (cantools' date and version stamp is replaced by
+the DBC's hash). `--check` writes nothing and exits 1 where a committed file differs.
 
 Telemetry messages carry one 32-bit word each, id and word number in step, so that C sends them by
 index; the header gets their first id and their number instead of functions.
