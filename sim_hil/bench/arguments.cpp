@@ -61,6 +61,19 @@ Arguments::Arguments(std::string command, const std::vector<std::string> &words,
     }
 }
 
+std::string Arguments::only_positional(const std::string &name) const {
+    if (positional_.size() != 1) {
+        throw InputError(command_ + ": expected exactly one " + name);
+    }
+    return positional_.front();
+}
+
+void Arguments::require_no_positional() const {
+    if (!positional_.empty()) {
+        throw InputError(command_ + ": unexpected word " + positional_.front());
+    }
+}
+
 std::vector<std::string> Arguments::all(const std::string &name) const {
     const auto found = values_.find(name);
     return found == values_.end() ? std::vector<std::string>{} : found->second;

@@ -13,12 +13,16 @@ namespace quiesce {
 class Arguments {
   public:
     /// words: what follows the command. names: options that it takes, without the dashes.
-    /// Throws InputError on an undeclared option or an option without its value. Words that are not
-    /// options are kept in order as positional().
+    /// Throws InputError on an undeclared option or an option without its value.
     Arguments(std::string command, const std::vector<std::string> &words,
               const std::vector<std::string> &names);
 
-    const std::vector<std::string> &positional() const { return positional_; }
+    /// The only word that is not an option. Throws InputError, calling it name, unless there is
+    /// exactly one.
+    std::string only_positional(const std::string &name) const;
+
+    /// Throws InputError when there is a word that is not an option.
+    void require_no_positional() const;
 
     /// Every value given for the option, in order.
     std::vector<std::string> all(const std::string &name) const;

@@ -31,7 +31,7 @@ nlohmann::ordered_json describe(const quiesce_param_info_t &info) {
 } // namespace
 
 int cmd_params(const std::vector<std::string> &words) {
-    const Arguments arguments("params", words, {});
+    Arguments("params", words, {}).require_no_positional();
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::uint32_t index = 0; index < QUIESCE_PARAM_COUNT; ++index) {
         list.push_back(describe(*quiesce_param_info(index)));

@@ -12,6 +12,10 @@ namespace quiesce {
 using Command = int (*)(const std::vector<std::string> &words);
 
 int cmd_params(const std::vector<std::string> &words);
+int cmd_plant_check(const std::vector<std::string> &words);
+int cmd_replay(const std::vector<std::string> &words);
+int cmd_run(const std::vector<std::string> &words);
+int cmd_scenario_check(const std::vector<std::string> &words);
 
 } // namespace quiesce
 

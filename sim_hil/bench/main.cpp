@@ -14,6 +14,14 @@ struct Entry {
 
 const Entry kCommands[] = {
     {"params", "", quiesce::cmd_params},
+    {"plant-check", "FILE", quiesce::cmd_plant_check},
+    {"replay", "--counts FILE --trace FILE [--law NAME] [--set NAME=VALUE]... [--target T]",
+     quiesce::cmd_replay},
+    {"run",
+     "--scenario FILE --law NAME [--plant FILE] [--set NAME=VALUE]... [--target T] [--image ELF] "
+     "[--plugin SO] [--seed N] [--noise-mg X] [--dt-us N] [--trace FILE] [--repeat N]",
+     quiesce::cmd_run},
+    {"scenario-check", "FILE", quiesce::cmd_scenario_check},
 };
 
 void print_usage(std::FILE *out) {

@@ -1,0 +1,226 @@
+#include "toml_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+std::string joined(const std::vector<std::string> &words) {
+    std::string out;
+    for (const std::string &word : words) {
+        out += (out.empty() ? "" : ", ") + word;
+    }
+    return out;
+}
+
+/// The value as the file has it, for "found ...".
+std::string shown(const toml::node &node) {
+    if (node.is_table() || node.is_array()) {
+        return node.is_table() ? "a table" : "an array";
+    }
+    std::ostringstream out;
+    node.visit([&out](const auto &value) {
+        if constexpr (toml::is_value<decltype(value)>) {
+            out << value;
+        }
+    });
+    return out.str();
+}
+
+std::string expected_number(const Range &range) {
+    std::ostringstream out;
+    out << "expected a number in " << range.min << " .. " << range.max << " (" << range.unit << ")";
+    return out.str();
+}
+
+} // namespace
+
+TomlTable::TomlTable(const toml::table &table, const std::string &file, std::string path)
+    : table_(&table), file_(file), path_(std::move(path)) {}
+
+std::string TomlTable::full_key(const std::string &key) const {
+    return path_.empty() ? key : path_ + "." + key;
+}
+
+void TomlTable::fail(const std::string &key, const std::string &message) const {
+    const toml::node *node = table_->get(key);
+    const auto line = (node != nullptr ? node : table_)->source().begin.line;
+    const std::string where = line > 0 ? ":" + std::to_string(line) : "";
+    throw InputError(file_ + where + ": " + full_key(key) + ": " + message);
+}
+
+bool TomlTable::has(const std::string &key) const {
+    return table_->contains(key);
+}
+
+const toml::node *TomlTable::find(const std::string &key) {
+    asked_.insert(key);
+    return table_->get(key);
+}
+
+const toml::node &TomlTable::require(const std::string &key, const std::string &expected) {
+    const toml::node *node = find(key);
+    if (node == nullptr) {
+        fail(key, "missing; " + expected);
+    }
+    return *node;
+}
+
+double TomlTable::checked_number(const std::string &key, const toml::node &node,
+                                 const Range &range) const {
+    const std::optional<double> value =
+        node.is_number() ? node.value<double>() : std::optional<double>{};
+    if (!value || !(*value >= range.min && *value <= range.max)) {
+        fail(key, expected_number(range) + ", found " + shown(node));
+    }
+    return *value;
+}
+
+double TomlTable::number(const std::string &key, const Range &range) {
+    return checked_number(key, require(key, expected_number(range)), range);
+}
+
+double TomlTable::number(const std::string &key, const Range &range, double fallback) {
+    const toml::node *node = find(key);
+    return node == nullptr ? fallback : checked_number(key, *node, range);
+}
+
+std::int64_t TomlTable::integer(const std::string &key, std::int64_t min, std::int64_t max) {
+    const std::string expected =
+        "expected an integer in " + std::to_string(min) + " .. " + std::to_string(max);
+    const toml::node &node = require(key, expected);
+    const auto *value = node.as_integer();
+    if (value == nullptr || value->get() < min || value->get() > max) {
+        fail(key, expected + ", found " + shown(node));
+    }
+    return value->get();
+}
+
+std::int64_t TomlTable::integer(const std::string &key, std::int64_t min, std::int64_t max,
+                                std::int64_t fallback) {
+    return find(key) == nullptr ? fallback : integer(key, min, max);
+}
+
+bool TomlTable::boolean(const std::string &key, bool fallback) {
+    const toml::node *node = find(key);
+    if (node != nullptr && !node->is_boolean()) {
+        fail(key, "expected true or false, found " + shown(*node));
+    }
+    return node == nullptr ? fallback : node->as_boolean()->get();
+}
+
+std::string TomlTable::text(const std::string &key) {
+    const toml::node &node = require(key, "expected a text in quotes");
+    if (!node.is_string() || node.as_string()->get().empty()) {
+        fail(key, "expected a text in quotes, found " + shown(node));
+    }
+    return node.as_string()->get();
+}
+
+std::string TomlTable::choice(const std::string &key, const std::vector<std::string> &choices) {
+    const std::string expected = "expected one of: " + joined(choices);
+    const toml::node &node = require(key, expected);
+    const std::string value = node.value<std::string>().value_or("");
+    if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
+        fail(key, expected + "; found " + shown(node));
+    }
+    return value;
+}
+
+std::vector<double> TomlTable::row(const std::string &key, const toml::node &node,
+                                   std::size_t length) const {
+    const toml::array *array = node.as_array();
+    if (array == nullptr || array->empty() || (length > 0 && array->size() != length)) {
+        const std::string count = length > 0 ? std::to_string(length) + " numbers" : "numbers";
+        fail(key, "expected an array of " + count + ", found " +
+                      (array == nullptr ? shown(node) : std::to_string(array->size())));
+    }
+    std::vector<double> out;
+    for (const toml::node &element : *array) {
+        out.push_back(checked_number(key, element, {-1e12, 1e12, "each element"}));
+    }
+    return out;
+}
+
+std::vector<double> TomlTable::numbers(const std::string &key, std::size_t length) {
+    return row(key, require(key, "expected an array of numbers"), length);
+}
+
+std::vector<std::vector<double>> TomlTable::square(const std::string &key, std::size_t count) {
+    const std::string expected =
+        "expected " + std::to_string(count) + " rows of " + std::to_string(count) + " numbers";
+    const toml::node &node = require(key, expected);
+    const toml::array *array = node.as_array();
+    if (array == nullptr || array->size() != count) {
+        fail(key, expected + ", found " +
+                      (array == nullptr ? shown(node) : std::to_string(array->size()) + " rows"));
+    }
+    std::vector<std::vector<double>> out;
+    for (const toml::node &element : *array) {
+        out.push_back(row(key, element, count));
+    }
+    return out;
+}
+
+TomlTable TomlTable::table(const std::string &key) {
+    const toml::node &node = require(key, "expected a table [" + full_key(key) + "]");
+    if (!node.is_table()) {
+        fail(key, "expected a table [" + full_key(key) + "], found " + shown(node));
+    }
+    return TomlTable(*node.as_table(), file_, full_key(key));
+}
+
+std::optional<TomlTable> TomlTable::optional_table(const std::string &key) {
+    return find(key) == nullptr ? std::nullopt : std::optional<TomlTable>(table(key));
+}
+
+std::vector<TomlTable> TomlTable::tables(const std::string &key) {
+    const toml::node *node = find(key);
+    std::vector<TomlTable> out;
+    if (node == nullptr) {
+        return out;
+    }
+    if (!node->is_array_of_tables()) {
+        fail(key, "expected tables [[" + full_key(key) + "]], found " + shown(*node));
+    }
+    for (const toml::node &element : *node->as_array()) {
+        const std::string index = "[" + std::to_string(out.size() + 1) + "]";
+        out.emplace_back(*element.as_table(), file_, full_key(key) + index);
+    }
+    return out;
+}
+
+void TomlTable::reject_unknown_keys() const {
+    for (const auto &[key, node] : *table_) {
+        const std::string name(key.str());
+        if (asked_.count(name) == 0) {
+            fail(name, "unknown key; expected one of: " +
+                           joined(std::vector<std::string>(asked_.begin(), asked_.end())));
+        }
+    }
+}
+
+TomlFile::TomlFile(const std::string &file, const std::string &schema, std::int64_t version)
+    : file_(file) {
+    try {
+        table_ = toml::parse_file(file);
+    } catch (const toml::parse_error &error) {
+        const auto line = error.source().begin.line;
+        const std::string where = line > 0 ? ":" + std::to_string(line) : "";
+        throw InputError(file + where + ": " + std::string(error.description()));
+    }
+    TomlTable checked = root();
+    checked.choice("schema", {schema});
+    checked.integer("version", version, version);
+}
+
+TomlTable TomlFile::root() const {
+    return TomlTable(table_, file_, "");
+}
+
+} // namespace quiesce

@@ -1,0 +1,86 @@
+/// Strict reading of TOML: every key is asked for with what is allowed, and a key that nobody asked
+/// for is an error. Messages read "FILE:LINE: key: expected ..., found ...".
+#ifndef QUIESCE_TOML_TABLE_H
+#define QUIESCE_TOML_TABLE_H
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <toml++/toml.h>
+
+namespace quiesce {
+
+/// What a number may be: min .. max, both allowed, in this unit.
+struct Range {
+    double min;
+    double max;
+    const char *unit;
+};
+
+/// One table of a file. All functions throw InputError for what the file has wrong; those without a
+/// fallback also for a key that is missing. Refers to the table of a TomlFile that must outlive it.
+class TomlTable {
+  public:
+    /// path: what comes before its keys in messages ("" for the root).
+    TomlTable(const toml::table &table, const std::string &file, std::string path);
+
+    bool has(const std::string &key) const;
+
+    double number(const std::string &key, const Range &range);
+    double number(const std::string &key, const Range &range, double fallback);
+    std::int64_t integer(const std::string &key, std::int64_t min, std::int64_t max);
+    std::int64_t integer(const std::string &key, std::int64_t min, std::int64_t max,
+                         std::int64_t fallback);
+    bool boolean(const std::string &key, bool fallback);
+    std::string text(const std::string &key);
+    std::string choice(const std::string &key, const std::vector<std::string> &choices);
+
+    /// An array of numbers with this length (any length >= 1 where it is 0).
+    std::vector<double> numbers(const std::string &key, std::size_t length);
+    /// An array of count arrays of count numbers.
+    std::vector<std::vector<double>> square(const std::string &key, std::size_t count);
+
+    TomlTable table(const std::string &key);
+    std::optional<TomlTable> optional_table(const std::string &key);
+    /// [[key]]; empty when there is none.
+    std::vector<TomlTable> tables(const std::string &key);
+
+    /// Throws for the first key that none of the above was asked for. Call it last.
+    void reject_unknown_keys() const;
+
+    /// Throws InputError: "FILE:LINE: key: message".
+    [[noreturn]] void fail(const std::string &key, const std::string &message) const;
+
+  private:
+    const toml::node *find(const std::string &key);
+    const toml::node &require(const std::string &key, const std::string &expected);
+    std::string full_key(const std::string &key) const;
+    double checked_number(const std::string &key, const toml::node &node, const Range &range) const;
+    std::vector<double> row(const std::string &key, const toml::node &node,
+                            std::size_t length) const;
+
+    const toml::table *table_;
+    std::string file_;
+    std::string path_;
+    std::set<std::string> asked_;
+};
+
+/// A parsed file, whose schema = "..." and version = N have been checked.
+class TomlFile {
+  public:
+    /// Throws InputError when the file cannot be read, is not TOML, or is of another schema.
+    TomlFile(const std::string &file, const std::string &schema, std::int64_t version);
+
+    TomlTable root() const;
+
+  private:
+    std::string file_;
+    toml::table table_;
+};
+
+} // namespace quiesce
+
+#endif

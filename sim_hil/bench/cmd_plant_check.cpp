@@ -1,0 +1,47 @@
+/// plant-check: validates a plant file and shows what it describes.
+#include <cmath>
+#include <cstdio>
+
+#include "arguments.h"
+#include "commands.h"
+#include "plant_file.h"
+
+namespace quiesce {
+
+namespace {
+
+constexpr double kTwoPi = 6.28318530717958647692;
+
+void print_modes(const Structure &structure) {
+    for (Eigen::Index i = 0; i < structure.mode_count(); ++i) {
+        const double omega = std::sqrt(structure.omega2_rad2_s2[i]);
+        const double ratio = omega > 0.0 ? 0.5 * structure.damping_1_s(i, i) / omega : 0.0;
+        std::printf("  mode %d: %.4g Hz, damping %.3g %%, shape at force %.4g, damper %.4g, "
+                    "sensor %.4g kg^-1/2\n",
+                    static_cast<int>(i) + 1, omega / kTwoPi, 100.0 * ratio, structure.at_force[i],
+                    structure.at_damper[i], structure.at_sensor[i]);
+    }
+    if (!structure.is_proportional) {
+        std::printf("  damping couples the modes: simulated with the full matrix\n");
+    }
+}
+
+} // namespace
+
+int cmd_plant_check(const std::vector<std::string> &words) {
+    const Arguments arguments("plant-check", words, {});
+    const std::string file = arguments.only_positional("FILE");
+    const PlantModel model = load_plant(file);
+    std::printf("%s: plant %s is valid\n", file.c_str(), model.name.c_str());
+    print_modes(model.structure);
+    std::printf("  damper: at most %.4g N s/m at %g A; coil %g/%g ms rise/fall\n",
+                model.damper->stiffest_N_s_m(model.driver.max_current_A),
+                model.driver.max_current_A, 1e3 * model.coil.rise_s, 1e3 * model.coil.fall_s);
+    std::printf("  sensor: +-%g g, %d bits, %g mg noise; drive %g V; integration step %g us "
+                "(at most %.0f us)\n",
+                model.sensor.full_scale_g, model.sensor.bits, model.sensor.noise_mg,
+                model.shaker.drive_V, 1e6 * model.max_step_s, 1e6 * longest_safe_step_s(model));
+    return 0;
+}
+
+} // namespace quiesce

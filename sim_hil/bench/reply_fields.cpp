@@ -1,0 +1,57 @@
+#include "reply_fields.h"
+
+namespace quiesce {
+
+namespace {
+
+constexpr bool kUnsigned = false;
+constexpr bool kSigned = true;
+
+constexpr WordField kTelemetry[] = {
+    {"tick", kUnsigned},
+    {"state", kUnsigned},
+    {"fault", kUnsigned},
+    {"fault_count", kUnsigned},
+    {"bad_sample_count", kUnsigned},
+    {"accel_um_s2", kSigned},
+    {"velocity_um_s", kSigned},
+    {"rms_um_s2", kSigned},
+    {"freq_is_valid", kUnsigned},
+    {"freq_age_ticks", kUnsigned},
+    {"freq_uHz", kSigned},
+    {"freq_amp_um_s2", kSigned},
+    {"peak0_freq_uHz", kSigned},
+    {"peak0_amp_um_s2", kSigned},
+    {"peak1_freq_uHz", kSigned},
+    {"peak1_amp_um_s2", kSigned},
+    {"peak2_freq_uHz", kSigned},
+    {"peak2_amp_um_s2", kSigned},
+    {"rules_fired", kUnsigned},
+    {"current_fuzzy_mA", kSigned},
+    {"current_law_mA", kSigned},
+    {"current_cmd_mA", kSigned},
+};
+static_assert(sizeof kTelemetry / sizeof kTelemetry[0] * 4 == sizeof(quiesce_telemetry_t));
+static_assert(QUIESCE_PEAKS == 3);
+static_assert(offsetof(lockstep_reply_t, telemetry) == 8);
+
+std::vector<WordField> with_reply_head() {
+    std::vector<WordField> fields = {{"reply_current_cmd_mA", kSigned},
+                                     {"reply_is_driver_enabled", kUnsigned}};
+    fields.insert(fields.end(), std::begin(kTelemetry), std::end(kTelemetry));
+    return fields;
+}
+
+} // namespace
+
+const std::vector<WordField> &telemetry_fields() {
+    static const std::vector<WordField> fields(std::begin(kTelemetry), std::end(kTelemetry));
+    return fields;
+}
+
+const std::vector<WordField> &reply_fields() {
+    static const std::vector<WordField> fields = with_reply_head();
+    return fields;
+}
+
+} // namespace quiesce

@@ -1,0 +1,35 @@
+/// Names of the words of a reply: telemetry fields by their C names.
+#ifndef QUIESCE_REPLY_FIELDS_H
+#define QUIESCE_REPLY_FIELDS_H
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "firmware.h"
+
+namespace quiesce {
+
+struct WordField {
+    const char *name;
+    bool is_signed;
+};
+
+/// Every 32-bit word of quiesce_telemetry_t in memory order.
+const std::vector<WordField> &telemetry_fields();
+
+/// Every 32-bit word of lockstep_reply_t in memory order; the telemetry comes last.
+const std::vector<WordField> &reply_fields();
+
+/// Word number index (< sizeof object / 4) of a structure of 32-bit words.
+template <typename Words>
+std::uint32_t word_of(const Words &words, std::size_t index) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, reinterpret_cast<const unsigned char *>(&words) + 4 * index, 4);
+    return word;
+}
+
+} // namespace quiesce
+
+#endif

@@ -1,0 +1,94 @@
+#include "run_options.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "input_error.h"
+#include "param_options.h"
+#include "plant_file.h"
+
+namespace quiesce {
+
+namespace {
+
+void apply_overrides(const Arguments &arguments, RunSetup &setup) {
+    setup.seed = setup.scenario.seed;
+    if (const auto seed = arguments.integer("seed", 0, INT64_MAX)) {
+        setup.seed = static_cast<std::uint64_t>(*seed);
+    }
+    if (setup.scenario.drive_V) {
+        setup.plant.shaker.drive_V = *setup.scenario.drive_V;
+    }
+    if (setup.scenario.noise_mg) {
+        setup.plant.sensor.noise_mg = *setup.scenario.noise_mg;
+    }
+    if (const auto noise_mg = arguments.number("noise-mg", 0.0, 1e4)) {
+        setup.plant.sensor.noise_mg = *noise_mg;
+    }
+    if (const auto step_us = arguments.number("dt-us", 1.0, 2000.0)) {
+        setup.plant.max_step_s = 1e-6 * *step_us;
+    }
+    if (setup.plant.max_step_s > longest_safe_step_s(setup.plant)) {
+        std::ostringstream message;
+        message << "--dt-us: too long for this plant; at most "
+                << std::floor(1e6 * longest_safe_step_s(setup.plant));
+        throw InputError(message.str());
+    }
+}
+
+} // namespace
+
+const std::vector<std::string> &run_option_names() {
+    static const std::vector<std::string> names = {"scenario", "plant",    "law",  "set",
+                                                   "seed",     "noise-mg", "dt-us"};
+    return names;
+}
+
+const std::vector<std::string> &target_option_names() {
+    static const std::vector<std::string> names = {"target", "image", "plugin"};
+    return names;
+}
+
+std::vector<std::string> options(std::initializer_list<std::vector<std::string>> lists) {
+    std::vector<std::string> all;
+    for (const std::vector<std::string> &list : lists) {
+        all.insert(all.end(), list.begin(), list.end());
+    }
+    return all;
+}
+
+quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base) {
+    if (const auto law = arguments.text("law")) {
+        try {
+            set_param(base, "law=" + *law);
+        } catch (const InputError &error) {
+            const std::string what = error.what();
+            throw InputError("--law " + *law + what.substr(what.find(": ")));
+        }
+    }
+    for (const std::string &assignment : arguments.all("set")) {
+        set_param(base, assignment);
+    }
+    require_accepted(base);
+    return base;
+}
+
+RunSetup run_setup(const Arguments &arguments) {
+    RunSetup setup{};
+    setup.scenario = load_scenario(arguments.required("scenario"));
+    setup.plant = load_plant(arguments.text("plant").value_or(setup.scenario.plant_file));
+    quiesce_params_default(&setup.params);
+    fit_to_sensor(setup.params, setup.plant.sensor);
+    arguments.required("law");
+    setup.params = params_from(arguments, setup.params);
+    apply_overrides(arguments, setup);
+    return setup;
+}
+
+std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {
+    const LinkOptions link_options = {arguments.text("image").value_or(""),
+                                      arguments.text("plugin").value_or("")};
+    return make_link(arguments.text("target").value_or("host"), link_options);
+}
+
+} // namespace quiesce

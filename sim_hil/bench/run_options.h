@@ -1,0 +1,33 @@
+/// Options that every command with a closed loop shares.
+#ifndef QUIESCE_RUN_OPTIONS_H
+#define QUIESCE_RUN_OPTIONS_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "link_factory.h"
+#include "run.h"
+
+namespace quiesce {
+
+/// Option names: run_setup reads the first list, target_link the second.
+const std::vector<std::string> &run_option_names();
+const std::vector<std::string> &target_option_names();
+
+/// Concatenation of option lists.
+std::vector<std::string> options(std::initializer_list<std::vector<std::string>> lists);
+
+/// Loads scenario and plant and applies every override. Throws InputError.
+RunSetup run_setup(const Arguments &arguments);
+
+/// Defaults with --law and every --set applied and accepted. base: before those.
+quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base);
+
+/// The link that --target, --image and --plugin describe; the host without --target.
+std::unique_ptr<ControllerLink> target_link(const Arguments &arguments);
+
+} // namespace quiesce
+
+#endif

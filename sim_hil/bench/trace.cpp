@@ -1,0 +1,59 @@
+#include "trace.h"
+
+#include <cstdio>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "input_error.h"
+#include "reply_fields.h"
+
+namespace quiesce {
+
+std::vector<std::string> with_telemetry_columns(std::vector<std::string> names) {
+    for (const WordField &field : telemetry_fields()) {
+        names.emplace_back(field.name);
+    }
+    return names;
+}
+
+void Trace::put_telemetry(const quiesce_telemetry_t &telemetry) {
+    const std::vector<WordField> &fields = telemetry_fields();
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        const std::uint32_t word = word_of(telemetry, i);
+        put(fields[i].is_signed ? static_cast<double>(static_cast<std::int32_t>(word))
+                                : static_cast<double>(word));
+    }
+}
+
+void Trace::write(const std::string &file) const {
+    const std::string unfinished = file + ".part";
+    std::ofstream out(unfinished, std::ios::binary);
+    const nlohmann::ordered_json head = {{"columns", columns_},
+                                         {"rows", values_.size() / columns_.size()}};
+    out << head.dump() << '\n';
+    out.write(reinterpret_cast<const char *>(values_.data()),
+              static_cast<std::streamsize>(values_.size() * sizeof(double)));
+    out.close();
+    if (!out || std::rename(unfinished.c_str(), file.c_str()) != 0) {
+        std::remove(unfinished.c_str());
+        throw InputError("--trace " + file + ": cannot write the file; check folder and space");
+    }
+}
+
+TraceObserver::TraceObserver()
+    : trace_(with_telemetry_columns(
+          {"t_s", "x5_um", "a5_mm_s2", "coil_A", "force_mN", "accel_counts", "flags"})) {}
+
+void TraceObserver::on_tick(const TickRecord &record) {
+    trace_.put(record.time_s);
+    trace_.put(1e6 * record.truth.displacement_m);
+    trace_.put(1e3 * record.truth.accel_m_s2);
+    trace_.put(record.truth.coil_A);
+    trace_.put(1e3 * record.truth.damper_force_N);
+    trace_.put(record.stimulus.accel_counts);
+    trace_.put(record.stimulus.flags);
+    trace_.put_telemetry(record.reply.telemetry);
+}
+
+} // namespace quiesce

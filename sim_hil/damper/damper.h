@@ -1,0 +1,39 @@
+/// A damper: the force with which it resists the motion of its two ends.
+#ifndef QUIESCE_DAMPER_H
+#define QUIESCE_DAMPER_H
+
+#include <cstddef>
+
+namespace quiesce {
+
+/// What a damper sees at one instant.
+struct DamperInput {
+    double velocity_m_s; ///< of the moving end; > 0 opens the gap (extends the damper)
+    double position_m;   ///< of the moving end from its rest position, same direction
+    double current_A;    ///< coil current, >= 0
+};
+
+/// Implementations are immutable: what a model remembers (hysteresis, a magnetic lag) is a state
+/// vector that the plant owns and integrates together with the structure.
+class Damper {
+  public:
+    virtual ~Damper() = default;
+
+    /// Length of the model's state vector, which starts at zero.
+    virtual std::size_t state_count() const { return 0; }
+
+    /// Resisting force in N: > 0 opposes a positive velocity. state has state_count() elements;
+    /// rates receives as many time derivatives. Both may be null where state_count() is 0.
+    virtual double force_N(const DamperInput &input, const double *state, double *rates) const = 0;
+
+    /// Upper bound of d force / d velocity (N s/m) at rest with this current: what the integration
+    /// step must cope with.
+    virtual double stiffest_N_s_m(double current_A) const = 0;
+
+    /// Positions at or below this are outside the model (plates that touch).
+    virtual double lowest_position_m() const = 0;
+};
+
+} // namespace quiesce
+
+#endif

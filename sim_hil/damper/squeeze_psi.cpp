@@ -1,0 +1,196 @@
+#include "squeeze_psi.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace quiesce {
+
+namespace {
+
+/// Nodes and weights of the 16-point Gauss-Legendre rule on [-1, 1], positive half.
+constexpr int kHalfNodes = 8;
+constexpr double kNode[kHalfNodes] = {
+    0.0950125098376374402, 0.281603550779258913, 0.458016777657227386, 0.617876244402643748,
+    0.755404408355003034,  0.865631202387831744, 0.944575023073232576, 0.989400934991649933};
+constexpr double kWeight[kHalfNodes] = {
+    0.189450610455068496, 0.182603415044923589,  0.169156519395002538,  0.149595988816576732,
+    0.124628971255533872, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
+
+/// Beyond this chi the asymptote is within 1e-11; a power of two.
+constexpr double kAsymptoteFrom = 1024.0;
+
+/// Pieces per octave: 2^kMantissaBits.
+constexpr int kMantissaBits = 4;
+
+double cube(double x) {
+    return x * x * x;
+}
+
+/// S - gamma/3 at G = 1 + x.
+double excess_at(double x, double gamma) {
+    const double g = 1.0 + x;
+    return x * (x * (2.0 * x + 3.0) + gamma * (2.0 + x)) / (6.0 * g * g);
+}
+
+/// dS/dG at G = 1 + x.
+double shear_slope(double x, double gamma) {
+    return (x * (3.0 + x * (3.0 + x)) + gamma) / (3.0 * cube(1.0 + x));
+}
+
+/// S^2 G dS/dG at G = 1 + x.
+double integrand(double x, double gamma) {
+    const double shear = gamma / 3.0 + excess_at(x, gamma);
+    return shear * shear * (1.0 + x) * shear_slope(x, gamma);
+}
+
+/// Integral of the integrand over [from, to] in x = G - 1.
+double panel(double from, double to, double gamma) {
+    const double half = 0.5 * (to - from);
+    const double middle = from + half;
+    double sum = 0.0;
+    for (int i = 0; i < kHalfNodes; ++i) {
+        const double offset = half * kNode[i];
+        sum += kWeight[i] * (integrand(middle - offset, gamma) + integrand(middle + offset, gamma));
+    }
+    return half * sum;
+}
+
+/// chi^3 Psi of the film that is just about to yield.
+double unyielded_part(double gamma) {
+    return cube(gamma) / 108.0;
+}
+
+/// Antiderivative of S^2 G dS/dG, k = 1 - gamma.
+double antiderivative(double g, double k) {
+    const double g2 = g * g;
+    const double g3 = g2 * g;
+    return (g2 * g2 / 36.0 - k * g3 / 9.0 + k * k * g2 / 8.0 + k * k / 6.0 * std::log(g) +
+            cube(k) / (4.0 * g) + k * k / (24.0 * g2) - cube(k) / (18.0 * g3) +
+            cube(k) / (180.0 * g2 * g3)) /
+           3.0;
+}
+
+/// Exponent and leading mantissa bits of a positive number, as one integer.
+std::uint64_t octave_index(double x) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &x, sizeof bits);
+    return bits >> (52 - kMantissaBits);
+}
+
+/// The smallest number with this index.
+double octave_start(std::uint64_t index) {
+    const std::uint64_t bits = index << (52 - kMantissaBits);
+    double x = 0.0;
+    std::memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/// Psi and its first two derivatives by chi.
+struct Jet {
+    double value;
+    double slope;
+    double curvature;
+};
+
+Jet psi_jet(double excess, double gamma) {
+    const double chi = gamma / 3.0 + excess;
+    const double x = squeeze_wall_excess(excess, gamma);
+    const double psi = squeeze_psi_quadrature(chi, gamma);
+    const double slope = (1.0 + x - 3.0 * psi) / chi;
+    return {psi, slope, (1.0 / shear_slope(x, gamma) - 4.0 * slope) / chi};
+}
+
+} // namespace
+
+double squeeze_wall_excess(double excess, double gamma) {
+    // S is convex in G, so that Newton from above converges monotonically. Two upper bounds: the
+    // asymptote G <= 3 S + 3/2 (1 - gamma), and x^2/2 (1 + ..) <= excess near the yield point.
+    const double shear = gamma / 3.0 + excess;
+    double x = std::max(3.0 * shear + 1.5 * (1.0 - gamma) - 1.0, 0.0);
+    if (excess < 0.01) {
+        x = std::min(x, 1.2 * std::sqrt(2.0 * excess));
+    }
+    for (int i = 0; i < 60; ++i) {
+        const double step = (excess_at(x, gamma) - excess) / shear_slope(x, gamma);
+        x = std::max(x - step, 0.0);
+        if (std::abs(step) <= 1e-16 * x) {
+            break;
+        }
+    }
+    return x;
+}
+
+double squeeze_psi_quadrature(double chi, double gamma) {
+    if (chi <= gamma / 3.0) {
+        return 0.75 * chi / gamma;
+    }
+    const double end = squeeze_wall_excess(chi - gamma / 3.0, gamma);
+    double sum = unyielded_part(gamma);
+    double from = 0.0;
+    while (from < end) {
+        // Panels of ratio 2 in G keep the pole at G = 0 away from each.
+        const double to = std::min(end, 2.0 * from + 1.0);
+        sum += panel(from, to, gamma);
+        from = to;
+    }
+    return sum / cube(chi);
+}
+
+double squeeze_psi_closed_form(double chi, double gamma) {
+    if (chi <= gamma / 3.0) {
+        return 0.75 * chi / gamma;
+    }
+    const double k = 1.0 - gamma;
+    const double g = 1.0 + squeeze_wall_excess(chi - gamma / 3.0, gamma);
+    return (unyielded_part(gamma) + antiderivative(g, k) - antiderivative(1.0, k)) / cube(chi);
+}
+
+SqueezePsi::SqueezePsi(double gamma)
+    : gamma_(gamma), yield_chi_(gamma / 3.0), yield_slope_(0.75 / gamma) {
+    // Past yield Psi leaves its pre-yield line by 13.5 d^3 (1 - gamma)/gamma^4: below 1e-11 of 1/4.
+    const double negligible = std::cbrt(1.8e-13 * std::pow(gamma, 4.0));
+    first_index_ = octave_index(negligible);
+    linear_to_ = octave_start(first_index_);
+    const std::uint64_t end_index = octave_index(kAsymptoteFrom);
+    for (std::uint64_t index = first_index_; index <= end_index; ++index) {
+        pieces_.push_back(fit_piece(octave_start(index), octave_start(index + 1)));
+    }
+}
+
+SqueezePsi::Piece SqueezePsi::fit_piece(double start, double end) const {
+    const double width = end - start;
+    const Jet a = psi_jet(start, gamma_);
+    const Jet b = psi_jet(end, gamma_);
+    const double slope_a = a.slope * width;
+    const double bend_a = 0.5 * a.curvature * width * width;
+    const double rise = b.value - a.value - slope_a - bend_a;
+    const double slope_b = b.slope * width - slope_a - 2.0 * bend_a;
+    const double bend_b = 0.5 * (b.curvature * width * width - 2.0 * bend_a);
+    return {start,
+            1.0 / width,
+            {a.value, slope_a, bend_a, 10.0 * rise - 4.0 * slope_b + bend_b,
+             -15.0 * rise + 7.0 * slope_b - 2.0 * bend_b, 6.0 * rise - 3.0 * slope_b + bend_b}};
+}
+
+double SqueezePsi::asymptote(double chi) const {
+    const double k = 1.0 - gamma_;
+    return 0.75 * chi + 0.5 * k - k / (18.0 * chi * chi);
+}
+
+double SqueezePsi::operator()(double chi) const {
+    const double distance = chi - yield_chi_;
+    if (distance < linear_to_) {
+        return yield_slope_ * chi;
+    }
+    if (chi >= kAsymptoteFrom) {
+        return asymptote(chi);
+    }
+    const Piece &piece = pieces_[octave_index(distance) - first_index_];
+    const double t = (distance - piece.start) * piece.inv_width;
+    const double t2 = t * t;
+    const double *c = piece.c;
+    return (c[0] + c[1] * t) + t2 * ((c[2] + c[3] * t) + t2 * (c[4] + c[5] * t));
+}
+
+} // namespace quiesce

@@ -1,0 +1,125 @@
+#include "plant.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+double dot(const Eigen::VectorXd &shape, const double *modal) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < shape.size(); ++i) {
+        sum += shape[i] * modal[i];
+    }
+    return sum;
+}
+
+[[noreturn]] void stop(double time_s, const std::string &why) {
+    std::ostringstream message;
+    message << "the simulation stopped at t = " << time_s << " s: " << why;
+    throw InputError(message.str());
+}
+
+} // namespace
+
+Plant::Plant(const PlantModel &model, const Excitation &excitation, double tick_s)
+    : structure_(model.structure), damper_(model.damper), excitation_(&excitation),
+      driver_(model.driver), steps_(quiesce::steps_per_tick(model, tick_s)), tick_s_(tick_s),
+      step_s_(tick_s / steps_), half_step_coil_(model.coil, 0.5 * step_s_),
+      rk4_(2 * static_cast<std::size_t>(structure_.mode_count()) + damper_->state_count()),
+      y_(2 * static_cast<std::size_t>(structure_.mode_count()) + damper_->state_count(), 0.0),
+      k1_(y_.size(), 0.0), excitation_now_(excitation.at(0.0)),
+      substeps_(static_cast<std::size_t>(steps_)) {
+    observe();
+}
+
+void Plant::command(double current_A, ActuatorFault fault) {
+    if (fault != ActuatorFault::driver_stuck) {
+        driver_A_ = fault == ActuatorFault::coil_open ? 0.0 : driver_.output_A(current_A);
+    }
+    if (fault == ActuatorFault::coil_open && coil_A_ != 0.0) {
+        coil_A_ = 0.0;
+        observe();
+    }
+}
+
+void Plant::rates(const Drive &drive, const std::vector<double> &y, std::vector<double> &out) {
+    const auto count = static_cast<std::size_t>(structure_.mode_count());
+    const double *eta = y.data();
+    const double *eta_rate = eta + count;
+    double *accel = out.data() + count;
+    damper_force_N_ = damper_->force_N(
+        {dot(structure_.at_damper, eta_rate), dot(structure_.at_damper, eta), drive.current_A},
+        eta_rate + count, accel + count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto mode = static_cast<Eigen::Index>(i);
+        out[i] = eta_rate[i];
+        accel[i] = structure_.at_force[mode] * drive.force_N -
+                   structure_.at_damper[mode] * damper_force_N_ -
+                   structure_.damping_1_s(mode, mode) * eta_rate[i] -
+                   structure_.omega2_rad2_s2[mode] * eta[i];
+    }
+    if (structure_.is_proportional) {
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = 0; j < count; ++j) {
+            accel[i] -= i == j ? 0.0
+                               : structure_.damping_1_s(static_cast<Eigen::Index>(i),
+                                                        static_cast<Eigen::Index>(j)) *
+                                     eta_rate[j];
+        }
+    }
+}
+
+void Plant::observe() {
+    const auto count = static_cast<std::size_t>(structure_.mode_count());
+    rates({excitation_now_.force_N, coil_A_}, y_, k1_);
+    truth_ = {dot(structure_.at_sensor, y_.data()), dot(structure_.at_sensor, k1_.data() + count),
+              coil_A_, damper_force_N_, excitation_now_.phase_cycles};
+}
+
+void Plant::step() {
+    const double start_s = static_cast<double>(step_count_) * step_s_;
+    ++step_count_;
+    const Excitation::Sample end = excitation_->at(static_cast<double>(step_count_) * step_s_);
+    Drive stage[3] = {};
+    stage[1] = {excitation_->at(start_s + 0.5 * step_s_).force_N,
+                half_step_coil_.step(coil_A_, driver_A_)};
+    stage[2] = {end.force_N, half_step_coil_.step(stage[1].current_A, driver_A_)};
+    rk4_.step(y_, k1_, step_s_,
+              [&](int at, const std::vector<double> &y, std::vector<double> &out) {
+                  rates(stage[at], y, out);
+              });
+    coil_A_ = stage[2].current_A;
+    excitation_now_ = end;
+    observe();
+}
+
+const std::vector<PlantTruth> &Plant::advance() {
+    for (PlantTruth &after : substeps_) {
+        step();
+        after = truth_;
+    }
+    ++tick_;
+    check_motion();
+    return substeps_;
+}
+
+void Plant::check_motion() const {
+    const double time_s = static_cast<double>(tick_) * tick_s_;
+    if (!std::isfinite(truth_.accel_m_s2)) {
+        stop(time_s, "it diverged; choose a smaller integration.max_step_us in the plant file or "
+                     "--dt-us");
+    }
+    const double position_m = dot(structure_.at_damper, y_.data());
+    if (position_m <= damper_->lowest_position_m()) {
+        stop(time_s, "the damper closed to the end of its range; reduce shaker.drive_V or check "
+                     "the damper's gap");
+    }
+}
+
+} // namespace quiesce

@@ -1,0 +1,90 @@
+#include "plant_file.h"
+
+#include <sstream>
+
+#include "damper_section.h"
+#include "structure_section.h"
+#include "toml_table.h"
+
+namespace quiesce {
+
+namespace {
+
+CurrentDriverParams read_driver(TomlTable section) {
+    CurrentDriverParams params{};
+    params.max_current_A = section.number("max_current_A", {1e-3, 65.0, "A"});
+    params.bits = static_cast<int>(section.integer("bits", 4, 24));
+    section.reject_unknown_keys();
+    return params;
+}
+
+CoilParams read_coil(TomlTable section) {
+    CoilParams params{};
+    params.rise_s = section.number("rise_s", {0.0, 10.0, "s"});
+    params.fall_s = section.number("fall_s", {0.0, 10.0, "s"}, params.rise_s);
+    section.reject_unknown_keys();
+    return params;
+}
+
+ShakerParams read_shaker(TomlTable section) {
+    ShakerParams params{};
+    params.gain_N_V = section.number("gain_N_V", {-1e6, 1e6, "N/V"});
+    params.drive_V = section.number("drive_V", {0.0, 1e6, "V"});
+    params.ref_freq_Hz = section.number("ref_freq_Hz", {1e-3, 1e5, "Hz"}, 10.0);
+    params.corner_Hz = section.number("corner_Hz", {0.0, 1e5, "Hz, 0: flat"}, 0.0);
+    section.reject_unknown_keys();
+    return params;
+}
+
+AccelerometerParams read_sensor(TomlTable section) {
+    AccelerometerParams params{};
+    params.full_scale_g = section.number("full_scale_g", {1e-3, 1e4, "g"});
+    params.bits = static_cast<int>(section.integer("bits", 8, 24));
+    params.noise_mg = section.number("noise_mg", {0.0, 1e4, "mg RMS per sample"}, 0.0);
+    const std::int64_t half = std::int64_t{1} << (params.bits - 1);
+    params.offset_counts =
+        static_cast<std::int32_t>(section.integer("offset_counts", 1 - half, half - 1, 0));
+    section.reject_unknown_keys();
+    return params;
+}
+
+double read_max_step_s(TomlTable &root, const PlantModel &model) {
+    constexpr double kDefault_us = 250.0;
+    const double safe_us = 1e6 * longest_safe_step_s(model);
+    std::optional<TomlTable> section = root.optional_table("integration");
+    TomlTable &owner = section ? *section : root;
+    const double step_us =
+        section ? section->number("max_step_us", {1.0, 2000.0, "us"}) : kDefault_us;
+    if (section) {
+        section->reject_unknown_keys();
+    }
+    if (step_us > safe_us) {
+        std::ostringstream message;
+        message << step_us << " us is too long for this plant's fastest motion; set "
+                << "integration.max_step_us to " << safe_us << " or less";
+        owner.fail(section ? "max_step_us" : "integration", message.str());
+    }
+    return 1e-6 * step_us;
+}
+
+} // namespace
+
+PlantModel load_plant(const std::string &file) {
+    const TomlFile toml(file, "quiesce-plant", 1);
+    TomlTable root = toml.root();
+    root.text("schema");
+    root.integer("version", 1, 1);
+    PlantModel model{};
+    model.name = root.text("name");
+    model.structure = read_structure(root.table("structure"));
+    model.damper = read_damper(root.table("damper"));
+    model.driver = read_driver(root.table("driver"));
+    model.coil = read_coil(root.table("coil"));
+    model.shaker = read_shaker(root.table("shaker"));
+    model.sensor = read_sensor(root.table("sensor"));
+    model.max_step_s = read_max_step_s(root, model);
+    root.reject_unknown_keys();
+    return model;
+}
+
+} // namespace quiesce

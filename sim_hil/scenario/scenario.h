@@ -1,0 +1,74 @@
+/// A scenario: which plant, how it is shaken, what goes wrong when, and where to measure.
+#ifndef QUIESCE_SCENARIO_H
+#define QUIESCE_SCENARIO_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "excitation.h"
+
+namespace quiesce {
+
+enum class FaultKind {
+    dropout,      ///< no fresh sample
+    stuck,        ///< the last sample again and again
+    saturate,     ///< samples at positive full scale
+    range,        ///< samples beyond full scale
+    estop,        ///< emergency stop pressed
+    fault_reset,  ///< operator acknowledges
+    disable,      ///< operator withdraws the enable
+    coil_open,    ///< no current flows
+    driver_stuck, ///< the driver keeps its last output
+};
+
+/// Present in the ticks that begin in [start_s, start_s + duration_s).
+struct InjectedFault {
+    FaultKind kind;
+    double start_s;
+    double duration_s;
+};
+
+/// A stretch of time in which steady state is measured.
+struct Window {
+    double start_s;
+    double end_s;
+};
+
+/// A change of the excitation, and what is measured after it.
+struct Transient {
+    double start_s;
+    double disp_end_s; ///< RMS displacement is taken from start_s to here
+};
+
+struct SegmentSpec {
+    double start_freq_Hz;
+    double end_freq_Hz; ///< = start_freq_Hz for a sine
+    double duration_s;
+};
+
+struct Scenario {
+    std::string name;
+    std::string plant_file; ///< relative paths resolved against the scenario's own folder
+    double duration_s;
+    std::optional<double> drive_V; ///< in place of the plant's
+    std::optional<double> noise_mg;
+    std::uint64_t seed;
+    bool feed_current; ///< the controller gets the measured coil current
+    std::vector<SegmentSpec> segments;
+    std::vector<InjectedFault> faults;
+    std::vector<Window> windows; ///< one, or two for a step
+    std::optional<Transient> transient;
+};
+
+/// Reads TOML, schema "quiesce-scenario" version 1 (docs/plant.md has the table of keys). Throws
+/// InputError naming file, line, key, what is wrong and what is allowed.
+Scenario load_scenario(const std::string &file);
+
+/// The scenario's excitation on this shaker.
+Excitation make_excitation(const Scenario &scenario, const ShakerParams &shaker);
+
+} // namespace quiesce
+
+#endif

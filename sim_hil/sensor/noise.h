@@ -1,0 +1,32 @@
+/// White Gaussian noise that is the same on every machine for the same seed.
+#ifndef QUIESCE_NOISE_H
+#define QUIESCE_NOISE_H
+
+#include <cstdint>
+
+namespace quiesce {
+
+/// Generator: xoshiro256++ (Blackman and Vigna), seeded through SplitMix64. Distribution:
+/// Marsaglia's polar method. Nothing comes from the C++ library's distributions, whose results
+/// vary.
+class Noise {
+  public:
+    explicit Noise(std::uint64_t seed);
+
+    /// Next 64 random bits.
+    std::uint64_t bits();
+
+    /// Next sample of mean 0 and variance 1.
+    double gaussian();
+
+  private:
+    double uniform_signed();
+
+    std::uint64_t state_[4];
+    double spare_ = 0.0;
+    bool has_spare_ = false;
+};
+
+} // namespace quiesce
+
+#endif

@@ -1,0 +1,55 @@
+/// A linear structure in modal coordinates, with one excitation point, one damper and one sensor.
+///
+///   eta'' + damping eta' + omega2 eta = at_force F_e - at_damper F_d
+///   displacement at a point = at_point . eta
+///
+/// Modes are mass-normalised. The damping matrix is diagonal where damping is proportional; where
+/// it is not, it is kept in full, so that M/C/K structures are simulated without approximation
+/// (other than modes that the user asks to leave out).
+#ifndef QUIESCE_STRUCTURE_H
+#define QUIESCE_STRUCTURE_H
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace quiesce {
+
+struct Structure {
+    Eigen::VectorXd omega2_rad2_s2; ///< squares of the natural frequencies
+    Eigen::MatrixXd damping_1_s;    ///< 2 xi omega on the diagonal
+    Eigen::VectorXd at_force;       ///< mode shapes in kg^-1/2
+    Eigen::VectorXd at_damper;
+    Eigen::VectorXd at_sensor;
+    bool is_proportional; ///< damping_1_s is diagonal
+
+    Eigen::Index mode_count() const { return omega2_rad2_s2.size(); }
+};
+
+struct Mode {
+    double freq_Hz;
+    double damping_ratio;
+    double at_force; ///< mass-normalised shape, kg^-1/2
+    double at_damper;
+    double at_sensor;
+};
+
+Structure structure_from_modes(const std::vector<Mode> &modes);
+
+/// n degrees of freedom: M q'' + C q' + K q = force F_e - damper F_d, sensor reads sensor . q.
+struct Matrices {
+    Eigen::MatrixXd mass_kg;
+    Eigen::MatrixXd damping_N_s_m;
+    Eigen::MatrixXd stiffness_N_m;
+    Eigen::VectorXd force;
+    Eigen::VectorXd damper;
+    Eigen::VectorXd sensor;
+};
+
+/// Keeps the mode_count lowest modes (1 .. n). Throws InputError unless all three matrices are
+/// symmetric, mass_kg positive definite, and the other two have no negative eigenvalue.
+Structure structure_from_matrices(const Matrices &matrices, Eigen::Index mode_count);
+
+} // namespace quiesce
+
+#endif
