@@ -36,5 +36,6 @@ launch() {
             launch_build "$preset"
         done
     fi
-    exec "$ROOT/.venv/bin/python" -m quiesce "$@"
+    # -I: nothing in the caller's folder or PYTHONPATH can stand in for a module.
+    exec "$ROOT/.venv/bin/python" -I -m quiesce "$@"
 }

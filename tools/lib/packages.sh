@@ -34,6 +34,11 @@ packages_unavailable() {
     done
 }
 
+# packages_reason: apt-get's last error, in its words.
+packages_reason() {
+    grep -h '^E:' "$LOG_DIR/setup-apt-install.log" | tail -n 1 | cut -c1-300 || true
+}
+
 # packages_install PACKAGE...: installs them or says which cannot be had, and stops.
 packages_install() {
     local line="apt-get update && apt-get install -y --no-install-recommends $*" unavailable apt
@@ -52,7 +57,7 @@ packages_install() {
     if [ -n "$unavailable" ]; then
         fail "this machine's package sources do not offer: ${unavailable% }. Quiesce is built on Debian 12 (bookworm): add its source, or $hint"
     fi
-    fail "apt-get could not install: $*. Check the network, then run again, or as root run: $line (log: build/logs/setup-apt-install.log)"
+    fail "apt-get could not install: $* ($(packages_reason)). Check the network, then run again, or as root run: $line (log: build/logs/setup-apt-install.log)"
 }
 
 # packages_setup PACKAGE...: nothing where all are installed.

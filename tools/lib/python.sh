@@ -57,7 +57,7 @@ python_require() {
 }
 
 python_pip() {
-    "$VENV/bin/python" -m pip --disable-pip-version-check --no-input "$@"
+    "$VENV/bin/python" -I -m pip --disable-pip-version-check --no-input "$@"
 }
 
 # pip_reason LOG: pip's last error, in its words.
