@@ -40,7 +40,7 @@ build_configure() {
 
 # build_preset PRESET [TARGET...]: says nothing where nothing is to do; ends the script on failure.
 build_preset() {
-    local preset="$1" log="$LOG_DIR/build-$1.log" start_s=$SECONDS status
+    local preset="$1" log="$LOG_DIR/build-$1.log" start_s=$SECONDS codes
     shift
     local targets=()
     (($# == 0)) || targets=(--target "$@")
@@ -50,11 +50,11 @@ build_preset() {
     set +e
     (cd "$ROOT" && cmake --build --preset "$preset" "${targets[@]}" --parallel "$(nproc)" \
         </dev/null 2>&1) | tee "$log" | build_progress "$preset"
-    status=("${PIPESTATUS[@]}")
+    codes=("${PIPESTATUS[@]}")
     set -e
-    ((status[0] == 0)) || build_failed "$preset" "$log"
+    ((codes[0] == 0)) || build_failed "$preset" "$log"
     exec 9>&-
-    ((status[2] != 0)) || build_done "$preset" $((SECONDS - start_s))
+    ((codes[2] != 0)) || build_done "$preset" $((SECONDS - start_s))
 }
 
 build_done() {
