@@ -68,7 +68,7 @@ typedef struct {
 /// numerator 1 .. 2^31 - 1, denominator 1 .. 2^31. Quotients below 2^-32 lose precision.
 scale_t scale_from_ratio(uint32_t numerator, uint32_t denominator);
 
-/// value x scale, rounded towards minus infinity, saturated to -limit .. limit.
+/// value x scale, rounded to nearest, saturated to -limit .. limit (limit >= 0).
 int32_t scale_apply(scale_t scale, int32_t value, int32_t limit);
 
 #endif

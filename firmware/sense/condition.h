@@ -53,7 +53,7 @@ typedef struct {
 void condition_init(condition_t *self, const condition_cfg_t *cfg);
 
 /// One tick. counts is ignored unless is_fresh.
-/// Formats: counts x scale in 64 bit, floor, saturated to the limit; DC tracker in Q32,
+/// Formats: counts x scale in 64 bit, to nearest, saturated to the limit; DC tracker in Q32,
 /// dc += gain (x - dc), gain = w/(1+w), w = 2 pi cutoff / tick rate (backward Euler); at the start
 /// the plain mean (gain 1/n) until it is the slower one.
 void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_out_t *out);

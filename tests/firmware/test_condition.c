@@ -1,0 +1,131 @@
+#include "condition.h"
+#include "signal.h"
+#include "unity.h"
+
+static condition_t condition;
+static condition_out_t out;
+
+static const condition_cfg_t config = {
+    .tick_rate_Hz = 1000,
+    .scale_nm_s2 = 57751,
+    .offset_counts = 0,
+    .polarity = 1,
+    .full_scale_counts = 8388607,
+    .max_age_ticks = 10,
+    .stuck_ticks = 50,
+    .dc_cutoff_mHz = 200,
+};
+
+void setUp(void) {
+    condition_init(&condition, &config);
+}
+void tearDown(void) {}
+
+static void step(int32_t counts) {
+    condition_step(&condition, counts, true, &out);
+}
+
+// Good samples that are never equal twice in a row.
+static void step_good(uint32_t ticks) {
+    for (uint32_t i = 0; i < ticks; i++) {
+        step(i % 2 ? 100 : -100);
+    }
+}
+
+static void test_scale_and_polarity(void) {
+    step(0);
+    step(1000000);
+    const int32_t plain_um_s2 = out.accel_um_s2;
+    TEST_ASSERT_INT32_WITHIN(1, 57751000, plain_um_s2);
+
+    condition_cfg_t inverted = config;
+    inverted.polarity = -1;
+    condition_init(&condition, &inverted);
+    step(0);
+    step(1000000);
+    TEST_ASSERT_INT32_WITHIN(1, -plain_um_s2, out.accel_um_s2);
+}
+
+static void test_gravity_is_gone_from_the_second_sample_on(void) {
+    for (uint32_t i = 0; i < 3000; i++) {
+        step(170000 + (i % 2 ? 1 : -1)); // 1 g
+        TEST_ASSERT_INT32_WITHIN(i == 0 ? 10000000 : 60000, 0, out.accel_um_s2);
+    }
+}
+
+static void test_offset_follows_slowly_and_a_tone_passes(void) {
+    int32_t peak = 0;
+    for (uint32_t i = 0; i < 6000; i++) {
+        step(signal_sine(100000, 5000, i, 1000) + 3000000);
+        if (i > 4000 && out.accel_um_s2 > peak) {
+            peak = out.accel_um_s2;
+        }
+    }
+    TEST_ASSERT_INT32_WITHIN(5775100 / 100, 5775100, peak);
+}
+
+static void test_full_scale_saturates_at_the_limit(void) {
+    condition_cfg_t coarse = config;
+    coarse.scale_nm_s2 = 1000000000;
+    condition_init(&condition, &coarse);
+    step(0);
+    step(8388606);
+    TEST_ASSERT_EQUAL_INT32(CONDITION_LIMIT_um_s2, out.accel_um_s2);
+    step(-8388606);
+    TEST_ASSERT_EQUAL_INT32(-CONDITION_LIMIT_um_s2, out.accel_um_s2);
+}
+
+static void test_dropout_holds_the_last_sample_then_faults_after_the_age_limit(void) {
+    step_good(1000);
+    step(123456);
+    for (uint32_t i = 1; i <= 12; i++) {
+        condition_step(&condition, 999999, false, &out);
+        TEST_ASSERT_EQUAL(CONDITION_LOST, out.flag);
+        TEST_ASSERT_EQUAL(i > config.max_age_ticks, out.is_fault);
+        TEST_ASSERT_INT32_WITHIN(300000, 7129707, out.accel_um_s2); // held, DC creeps towards it
+        TEST_ASSERT_EQUAL_UINT32(0, out.good_ticks);
+    }
+    step(1);
+    TEST_ASSERT_EQUAL(CONDITION_GOOD, out.flag);
+    TEST_ASSERT_FALSE(out.is_fault);
+    TEST_ASSERT_EQUAL_UINT32(1, out.good_ticks);
+}
+
+static void test_saturated_and_out_of_range_samples_are_told_apart(void) {
+    step_good(4);
+    step(8388607);
+    TEST_ASSERT_EQUAL(CONDITION_SATURATED, out.flag);
+    step(-8388607);
+    TEST_ASSERT_EQUAL(CONDITION_SATURATED, out.flag);
+    step(8388608);
+    TEST_ASSERT_EQUAL(CONDITION_RANGE, out.flag);
+    step(INT32_MIN);
+    TEST_ASSERT_EQUAL(CONDITION_RANGE, out.flag);
+    TEST_ASSERT_FALSE(out.is_fault);
+}
+
+static void test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off(void) {
+    for (uint32_t i = 0; i <= 60; i++) {
+        step(777);
+        TEST_ASSERT_EQUAL(i >= config.stuck_ticks, out.is_fault);
+    }
+    condition_cfg_t unchecked = config;
+    unchecked.stuck_ticks = 0;
+    condition_init(&condition, &unchecked);
+    for (uint32_t i = 0; i <= 60; i++) {
+        step(777);
+        TEST_ASSERT_FALSE(out.is_fault);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_scale_and_polarity);
+    RUN_TEST(test_gravity_is_gone_from_the_second_sample_on);
+    RUN_TEST(test_offset_follows_slowly_and_a_tone_passes);
+    RUN_TEST(test_full_scale_saturates_at_the_limit);
+    RUN_TEST(test_dropout_holds_the_last_sample_then_faults_after_the_age_limit);
+    RUN_TEST(test_saturated_and_out_of_range_samples_are_told_apart);
+    RUN_TEST(test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off);
+    return UNITY_END();
+}

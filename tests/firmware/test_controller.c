@@ -1,0 +1,237 @@
+// The wired controller, through the lock-step server as every target runs it.
+#include "lockstep.h"
+#include "signal.h"
+#include "unity.h"
+
+static lockstep_t server;
+static lockstep_reply_t reply;
+static quiesce_params_t params;
+static uint32_t flags;
+static uint32_t time_ticks;
+static uint32_t noise_seed;
+
+static void start(void) {
+    flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE;
+    time_ticks = 0;
+    noise_seed = 1;
+    TEST_ASSERT_TRUE(lockstep_start(&server, &params));
+}
+
+void setUp(void) {
+    quiesce_params_default(&params);
+}
+void tearDown(void) {}
+
+static void tick(int32_t accel_counts, int32_t current_mA) {
+    const lockstep_stimulus_t in = {accel_counts, flags, current_mA};
+    lockstep_exchange(&server, &in, &reply);
+    time_ticks++;
+}
+
+// A vibration of 0.3 m/s2 at freq_mHz in 0.5 mg of noise.
+static void vibrate(uint32_t freq_mHz, uint32_t ticks) {
+    for (uint32_t i = 0; i < ticks; i++) {
+        const int32_t noise = signal_noise(&noise_seed, 147);
+        tick(signal_sine(5195, freq_mHz, time_ticks, 1000) + noise, 0);
+    }
+}
+
+static void assert_state(quiesce_state_t state, quiesce_fault_t fault) {
+    TEST_ASSERT_EQUAL_UINT32(state, reply.telemetry.state);
+    TEST_ASSERT_EQUAL_UINT32(fault, reply.telemetry.fault);
+    if (state != QUIESCE_STATE_RUN) {
+        TEST_ASSERT_EQUAL_INT32(params.safe_current_mA, reply.current_cmd_mA);
+    }
+}
+
+static void test_chain_reaches_the_rule_bases_current(void) {
+    params.law = QUIESCE_LAW_FUZZY;
+    start();
+    vibrate(10000, 200);
+    assert_state(QUIESCE_STATE_INIT, QUIESCE_FAULT_NONE);
+    vibrate(10000, 300);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    TEST_ASSERT_EQUAL_INT32(5000, reply.current_cmd_mA); // unlock_current_mA
+    vibrate(10000, 1000);
+    TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.freq_is_valid);
+    TEST_ASSERT_INT32_WITHIN(5000, 10000000, reply.telemetry.freq_uHz);
+    TEST_ASSERT_INT32_WITHIN(3000, 212000, reply.telemetry.rms_um_s2);
+    TEST_ASSERT_INT32_WITHIN(5, 5000, reply.current_cmd_mA);
+    vibrate(5000, 1500);
+    TEST_ASSERT_INT32_WITHIN(20, 0, reply.current_cmd_mA);
+}
+
+static void test_unlock_current_is_not_the_safe_current(void) {
+    params.law = QUIESCE_LAW_FUZZY;
+    params.unlock_current_mA = 3210;
+    params.safe_current_mA = 123;
+    start();
+    vibrate(10000, 100);
+    assert_state(QUIESCE_STATE_INIT, QUIESCE_FAULT_NONE);
+    vibrate(10000, 400);
+    TEST_ASSERT_EQUAL_INT32(3210, reply.current_cmd_mA);
+}
+
+static void test_refused_parameter_latches_and_keeps_the_safe_current(void) {
+    params.safe_current_mA = 400;
+    params.law = 99;
+    TEST_ASSERT_FALSE(lockstep_start(&server, &params));
+    flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | LOCKSTEP_FAULT_RESET;
+    vibrate(10000, 600);
+    assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_PARAMETER);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.is_driver_enabled);
+}
+
+static void bad_samples(quiesce_fault_t fault, int32_t counts, bool is_fresh, uint32_t ticks) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    start();
+    vibrate(10000, 1500);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    TEST_ASSERT_EQUAL_INT32(5000, reply.current_cmd_mA);
+    flags = LOCKSTEP_ENABLE | (is_fresh ? LOCKSTEP_FRESH : 0);
+    for (uint32_t i = 0; i < ticks; i++) {
+        tick(counts, 0);
+    }
+    assert_state(QUIESCE_STATE_SAFE, fault);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.telemetry.freq_is_valid);
+    TEST_ASSERT_TRUE(reply.telemetry.bad_sample_count > 0);
+    flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE;
+    vibrate(10000, 200);
+    assert_state(QUIESCE_STATE_SAFE, fault);
+    vibrate(10000, 100);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+}
+
+static void test_sensor_faults_lead_to_safe_and_back(void) {
+    bad_samples(QUIESCE_FAULT_SENSOR_LOST, 0, false, 12);
+    bad_samples(QUIESCE_FAULT_SENSOR_SATURATED, 8388607, true, 12);
+    bad_samples(QUIESCE_FAULT_SENSOR_RANGE, -9000000, true, 12);
+    bad_samples(QUIESCE_FAULT_SENSOR_STUCK, 4711, true, 252);
+}
+
+static void test_short_dropout_is_bridged(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    start();
+    vibrate(10000, 1500);
+    flags = LOCKSTEP_ENABLE;
+    vibrate(10000, 9);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(9, reply.telemetry.bad_sample_count);
+}
+
+static void test_emergency_stop_latches_within_its_tick(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    start();
+    vibrate(10000, 500);
+    flags |= LOCKSTEP_ESTOP;
+    vibrate(10000, 1);
+    assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_ESTOP);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.is_driver_enabled);
+    flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE;
+    vibrate(10000, 500);
+    assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_ESTOP);
+    flags |= LOCKSTEP_FAULT_RESET;
+    vibrate(10000, 3);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+}
+
+static void test_disable_takes_the_current_away_and_enable_returns_it(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    start();
+    vibrate(10000, 500);
+    flags = LOCKSTEP_FRESH;
+    vibrate(10000, 1);
+    assert_state(QUIESCE_STATE_IDLE, QUIESCE_FAULT_NONE);
+    flags |= LOCKSTEP_ENABLE;
+    vibrate(10000, 1);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+}
+
+// A coil with the expected lag, of which share_percent of the current arrives.
+static void run_coil(int32_t share_percent, bool is_measured, uint32_t ticks) {
+    int64_t coil_uA = 0;
+    for (uint32_t i = 0; i < ticks; i++) {
+        const uint32_t measured = is_measured ? LOCKSTEP_HAS_CURRENT : 0;
+        flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | measured;
+        const int32_t noise = signal_noise(&noise_seed, 147);
+        tick(signal_sine(5195, 10000, time_ticks, 1000) + noise, (int32_t)(coil_uA / 1000));
+        coil_uA += ((int64_t)reply.current_cmd_mA * 10 * share_percent - coil_uA) / 6;
+    }
+}
+
+static void test_current_check_tells_its_faults_apart(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    params.current_check = QUIESCE_CURRENT_CHECK_ON;
+    start();
+    run_coil(100, true, 2000);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    start();
+    run_coil(60, true, 2000);
+    assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_DRIVER_NOT_FOLLOWING);
+    start();
+    run_coil(0, true, 2000);
+    assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_COIL_OPEN);
+    start();
+    run_coil(100, false, 2000);
+    assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_CURRENT_LOST);
+}
+
+static void test_lost_tick_is_a_clearing_fault(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    start();
+    vibrate(10000, 500);
+    server.app.tick += 3;
+    vibrate(10000, 1);
+    assert_state(QUIESCE_STATE_SAFE, QUIESCE_FAULT_TICK_LOST);
+    vibrate(10000, 3);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+}
+
+static void test_two_controllers_do_not_share_state(void) {
+    static lockstep_t other;
+    static lockstep_reply_t other_reply;
+    params.law = QUIESCE_LAW_FUZZY;
+    start();
+    TEST_ASSERT_TRUE(lockstep_start(&other, &params));
+    for (uint32_t i = 0; i < 1500; i++) {
+        vibrate(10000, 1);
+        const lockstep_stimulus_t in = {signal_sine(5195, 20000, i, 1000), flags, 0};
+        lockstep_exchange(&other, &in, &other_reply);
+    }
+    TEST_ASSERT_INT32_WITHIN(5000, 10000000, reply.telemetry.freq_uHz);
+    TEST_ASSERT_INT32_WITHIN(5000, 20000000, other_reply.telemetry.freq_uHz);
+}
+
+// Any bytes in: nothing undefined (sanitizers watch), the command never leaves its range.
+static void test_arbitrary_input_never_drives_the_command_out_of_range(void) {
+    uint32_t seed = 99;
+    params.law = QUIESCE_LAW_FUZZY_SELFTUNE;
+    params.current_check = QUIESCE_CURRENT_CHECK_ON;
+    start();
+    for (uint32_t i = 0; i < 20000; i++) {
+        const lockstep_stimulus_t in = {
+            .accel_counts = (int32_t)((uint32_t)signal_noise(&seed, INT32_MAX) >> (i / 640)),
+            .flags = (uint32_t)signal_noise(&seed, INT32_MAX) | (i & 1u),
+            .current_meas_mA = signal_noise(&seed, INT32_MAX),
+        };
+        lockstep_exchange(&server, &in, &reply);
+        TEST_ASSERT_TRUE(reply.current_cmd_mA >= 0 && reply.current_cmd_mA <= 5000);
+        TEST_ASSERT_TRUE(reply.telemetry.state == QUIESCE_STATE_RUN || reply.current_cmd_mA == 0);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_chain_reaches_the_rule_bases_current);
+    RUN_TEST(test_unlock_current_is_not_the_safe_current);
+    RUN_TEST(test_refused_parameter_latches_and_keeps_the_safe_current);
+    RUN_TEST(test_sensor_faults_lead_to_safe_and_back);
+    RUN_TEST(test_short_dropout_is_bridged);
+    RUN_TEST(test_emergency_stop_latches_within_its_tick);
+    RUN_TEST(test_disable_takes_the_current_away_and_enable_returns_it);
+    RUN_TEST(test_current_check_tells_its_faults_apart);
+    RUN_TEST(test_lost_tick_is_a_clearing_fault);
+    RUN_TEST(test_two_controllers_do_not_share_state);
+    RUN_TEST(test_arbitrary_input_never_drives_the_command_out_of_range);
+    return UNITY_END();
+}

@@ -1,0 +1,73 @@
+#include "fixq.h"
+#include "signal.h"
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void test_isqrt_is_the_floor_of_the_root(void) {
+    uint32_t seed = 1;
+    for (int i = 0; i < 2000; i++) {
+        const uint64_t high = (uint32_t)signal_noise(&seed, INT32_MAX);
+        const uint64_t value = (high << 32 | (uint32_t)signal_noise(&seed, INT32_MAX)) >> (i % 64);
+        const uint64_t root = isqrt_u64(value);
+        TEST_ASSERT_TRUE(root * root <= value);
+        TEST_ASSERT_TRUE(root == UINT32_MAX || (root + 1) * (root + 1) > value);
+        TEST_ASSERT_EQUAL_UINT32(isqrt_u64((uint32_t)value), isqrt_u32((uint32_t)value));
+    }
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, isqrt_u64(UINT64_MAX));
+    TEST_ASSERT_EQUAL_UINT32(0, isqrt_u64(0));
+    TEST_ASSERT_EQUAL_UINT32(65535, isqrt_u32(UINT32_MAX));
+}
+
+static void test_fast_root_keeps_fifteen_bits(void) {
+    for (uint64_t value = 1; value < (UINT64_C(1) << 61); value = value * 3 + 1) {
+        const uint64_t exact = isqrt_u64(value);
+        const uint64_t fast = sqrt_fast_u64(value);
+        TEST_ASSERT_TRUE(fast <= exact);
+        TEST_ASSERT_TRUE(exact - fast <= (exact >> 15) + 1);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, sqrt_fast_u64(0));
+}
+
+static void test_log2_at_powers_of_two_and_between(void) {
+    for (uint32_t bit = 0; bit < 64; bit++) {
+        TEST_ASSERT_EQUAL_UINT32(bit << 8, log2_q8_u64(UINT64_C(1) << bit));
+    }
+    TEST_ASSERT_EQUAL_UINT32((1u << 8) | 128u, log2_q8_u64(3));
+    TEST_ASSERT_EQUAL_UINT32(0, log2_q8_u64(0));
+    TEST_ASSERT_EQUAL_UINT32((63u << 8) | 255u, log2_q8_u64(UINT64_MAX));
+}
+
+static void test_clamps_and_signs_at_their_edges(void) {
+    TEST_ASSERT_EQUAL_INT32(-3, clamp_i32(-4, -3, 5));
+    TEST_ASSERT_EQUAL_INT32(5, clamp_i32(6, -3, 5));
+    TEST_ASSERT_EQUAL_INT32(4, clamp_i32(4, -3, 5));
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX, abs_i32(INT32_MIN));
+    TEST_ASSERT_EQUAL_INT32(7, abs_i32(-7));
+    TEST_ASSERT_EQUAL_INT32(-1, sign_i64(INT64_MIN));
+    TEST_ASSERT_EQUAL_INT32(0, sign_i64(0));
+    TEST_ASSERT_EQUAL_INT32(1, sign_i64(INT64_MAX));
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, increment_sat_u32(UINT32_MAX));
+}
+
+static void test_scale_applies_a_ratio_and_saturates(void) {
+    const scale_t scale = scale_from_ratio(57751, 1000);
+    TEST_ASSERT_EQUAL_INT32(57751, scale_apply(scale, 1000, INT32_MAX));
+    TEST_ASSERT_INT32_WITHIN(1, -57751000, scale_apply(scale, -1000000, INT32_MAX));
+    TEST_ASSERT_EQUAL_INT32(500, scale_apply(scale, 1000, 500));
+    TEST_ASSERT_EQUAL_INT32(-500, scale_apply(scale, -1000, 500));
+    TEST_ASSERT_EQUAL_INT32(1000000000,
+                            scale_apply(scale_from_ratio(1000000000, 1000), 1000, INT32_MAX));
+    TEST_ASSERT_INT32_WITHIN(1, 8388, scale_apply(scale_from_ratio(1, 1000), 8388607, INT32_MAX));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_isqrt_is_the_floor_of_the_root);
+    RUN_TEST(test_fast_root_keeps_fifteen_bits);
+    RUN_TEST(test_log2_at_powers_of_two_and_between);
+    RUN_TEST(test_clamps_and_signs_at_their_edges);
+    RUN_TEST(test_scale_applies_a_ratio_and_saturates);
+    return UNITY_END();
+}

@@ -1,0 +1,79 @@
+#include "quiesce_params.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "unity.h"
+
+static quiesce_params_t params;
+static quiesce_param_error_t error;
+
+void setUp(void) {
+    quiesce_params_default(&params);
+}
+void tearDown(void) {}
+
+static void test_defaults_are_accepted(void) {
+    TEST_ASSERT_TRUE(quiesce_params_check(&params, NULL));
+}
+
+static void test_each_value_outside_its_range_is_named(void) {
+    for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
+        const quiesce_param_info_t *info = quiesce_param_info(i);
+        const int64_t bad[] = {(int64_t)info->min - 1, (int64_t)info->max + 1};
+        for (uint32_t k = 0; k < 2; k++) {
+            quiesce_params_default(&params);
+            TEST_ASSERT_TRUE(quiesce_param_set(&params, i, (int32_t)bad[k]));
+            TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+            TEST_ASSERT_EQUAL_STRING(info->name, error.name);
+            TEST_ASSERT_EQUAL_UINT32(i, error.index);
+            TEST_ASSERT_EQUAL_STRING("out of range", error.reason);
+        }
+    }
+}
+
+static void test_values_between_the_choices_are_refused(void) {
+    params.tick_rate_Hz = 1500;
+    TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+    TEST_ASSERT_EQUAL_STRING("tick_rate_Hz", error.name);
+    setUp();
+    params.selftune_polarity = 0;
+    TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+    TEST_ASSERT_EQUAL_STRING("selftune_polarity", error.name);
+}
+
+static void test_contradictions_are_named(void) {
+    params.band_low_mHz = params.band_high_mHz = 20000;
+    TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+    TEST_ASSERT_EQUAL_STRING("band_high_mHz", error.name);
+    const size_t currents[] = {offsetof(quiesce_params_t, constant_current_mA),
+                               offsetof(quiesce_params_t, safe_current_mA),
+                               offsetof(quiesce_params_t, unlock_current_mA)};
+    for (uint32_t i = 0; i < 3; i++) {
+        setUp();
+        const uint32_t index = (uint32_t)(currents[i] / sizeof(int32_t));
+        TEST_ASSERT_TRUE(quiesce_param_set(&params, index, params.max_current_mA + 1));
+        TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+        TEST_ASSERT_EQUAL_UINT32(index, error.index);
+        TEST_ASSERT_EQUAL_STRING("above max_current_mA", error.reason);
+    }
+}
+
+static void test_access_by_index(void) {
+    int32_t value = -1;
+    TEST_ASSERT_TRUE(quiesce_param_get(&params, 0, &value));
+    TEST_ASSERT_EQUAL_INT32(params.tick_rate_Hz, value);
+    TEST_ASSERT_FALSE(quiesce_param_get(&params, QUIESCE_PARAM_COUNT, &value));
+    TEST_ASSERT_FALSE(quiesce_param_set(&params, QUIESCE_PARAM_COUNT, 0));
+    TEST_ASSERT_NULL(quiesce_param_info(QUIESCE_PARAM_COUNT));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_defaults_are_accepted);
+    RUN_TEST(test_each_value_outside_its_range_is_named);
+    RUN_TEST(test_values_between_the_choices_are_refused);
+    RUN_TEST(test_contradictions_are_named);
+    RUN_TEST(test_access_by_index);
+    return UNITY_END();
+}
