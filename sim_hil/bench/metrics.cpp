@@ -27,15 +27,22 @@ void WindowMetrics::add(double time_s, const PlantTruth &truth) {
     if (time_s > window_.end_s + kSlack_s) {
         return;
     }
+    const Integrand now = {truth.accel_m_s2 * truth.accel_m_s2,
+                           truth.displacement_m * truth.displacement_m, truth.coil_A};
     if (time_s <= window_.start_s + kSlack_s) {
         start_cycles_ = truth.phase_cycles;
-        return;
+    } else {
+        accumulate(now);
+        track_cycle(truth);
     }
-    count_ += 1.0;
-    accel_square_sum_ += truth.accel_m_s2 * truth.accel_m_s2;
-    displacement_square_sum_ += truth.displacement_m * truth.displacement_m;
-    current_sum_A_ += truth.coil_A;
-    track_cycle(truth);
+    last_ = now;
+}
+
+void WindowMetrics::accumulate(const Integrand &now) {
+    step_count_ += 1.0;
+    sum_.accel_square += 0.5 * (last_.accel_square + now.accel_square);
+    sum_.displacement_square += 0.5 * (last_.displacement_square + now.displacement_square);
+    sum_.current_A += 0.5 * (last_.current_A + now.current_A);
 }
 
 void WindowMetrics::track_cycle(const PlantTruth &truth) {
@@ -68,15 +75,15 @@ double WindowMetrics::amplitude_m() const {
 }
 
 double WindowMetrics::accel_rms_m_s2() const {
-    return std::sqrt(accel_square_sum_ / count_);
+    return std::sqrt(sum_.accel_square / step_count_);
 }
 
 double WindowMetrics::displacement_rms_m() const {
-    return std::sqrt(displacement_square_sum_ / count_);
+    return std::sqrt(sum_.displacement_square / step_count_);
 }
 
 double WindowMetrics::mean_current_A() const {
-    return current_sum_A_ / count_;
+    return sum_.current_A / step_count_;
 }
 
 std::optional<double> settling_time_s(const std::vector<double> &squares, double sample_s,

@@ -15,7 +15,7 @@
 
 namespace quiesce {
 
-/// Steady state over one window; samples are integration steps that end in (start_s, end_s].
+/// Steady state over one window: means by the trapezoidal rule over the integration steps in it.
 class WindowMetrics {
   public:
     explicit WindowMetrics(const Window &window) : window_(window) {}
@@ -36,6 +36,14 @@ class WindowMetrics {
         bool has_sample = false;
     };
 
+    /// What is averaged, at one instant.
+    struct Integrand {
+        double accel_square;
+        double displacement_square;
+        double current_A;
+    };
+
+    void accumulate(const Integrand &now);
     void track_cycle(const PlantTruth &truth);
     void close_cycle();
 
@@ -43,11 +51,10 @@ class WindowMetrics {
     double start_cycles_ = 0.0;
     Cycle cycle_;
     double half_peaks_sum_m_ = 0.0;
-    double count_ = 0.0;
     double cycle_count_ = 0.0;
-    double accel_square_sum_ = 0.0;
-    double displacement_square_sum_ = 0.0;
-    double current_sum_A_ = 0.0;
+    double step_count_ = 0.0;
+    Integrand last_{};
+    Integrand sum_{};
 };
 
 /// Time from start_s until the trailing RMS over window_s of a signal stays within tolerance

@@ -17,11 +17,12 @@ class Loop {
     Loop(const RunSetup &setup, ControllerLink &link)
         : setup_(setup), link_(link),
           excitation_(make_excitation(setup.scenario, setup.plant.shaker)),
-          plant_(setup.plant, excitation_, setup.tick_s()), sensor_(setup.plant.sensor, setup.seed),
+          plant_(setup.plant, excitation_, setup.params.tick_rate_Hz),
+          sensor_(setup.plant.sensor, setup.seed),
           injector_(setup.scenario.faults, sensor_.full_scale_counts()) {}
 
     void tick(std::int64_t tick, const std::vector<TickObserver *> &observers) {
-        const double time_s = static_cast<double>(tick) * setup_.tick_s();
+        const double time_s = static_cast<double>(tick) / setup_.params.tick_rate_Hz;
         // What the controller answered one tick ago acts from here on.
         const double command_A = reply_.is_driver_enabled != 0 ? 1e-3 * reply_.current_cmd_mA : 0.0;
         plant_.command(command_A, injector_.actuator(time_s));
@@ -32,7 +33,7 @@ class Loop {
         }
         const std::vector<PlantTruth> &steps = plant_.advance();
         for (TickObserver *observer : observers) {
-            observer->on_steps(time_s, setup_.tick_s() / plant_.steps_per_tick(), steps);
+            observer->on_steps(time_s, plant_.step_s(), steps);
         }
     }
 

@@ -17,12 +17,6 @@ constexpr double kWeight[kHalfNodes] = {
     0.189450610455068496, 0.182603415044923589,  0.169156519395002538,  0.149595988816576732,
     0.124628971255533872, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
 
-/// Beyond this chi the asymptote is within 1e-11; a power of two.
-constexpr double kAsymptoteFrom = 1024.0;
-
-/// Pieces per octave: 2^kMantissaBits.
-constexpr int kMantissaBits = 4;
-
 double cube(double x) {
     return x * x * x;
 }
@@ -69,21 +63,6 @@ double antiderivative(double g, double k) {
             cube(k) / (4.0 * g) + k * k / (24.0 * g2) - cube(k) / (18.0 * g3) +
             cube(k) / (180.0 * g2 * g3)) /
            3.0;
-}
-
-/// Exponent and leading mantissa bits of a positive number, as one integer.
-std::uint64_t octave_index(double x) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &x, sizeof bits);
-    return bits >> (52 - kMantissaBits);
-}
-
-/// The smallest number with this index.
-double octave_start(std::uint64_t index) {
-    const std::uint64_t bits = index << (52 - kMantissaBits);
-    double x = 0.0;
-    std::memcpy(&x, &bits, sizeof x);
-    return x;
 }
 
 /// Psi and its first two derivatives by chi.
@@ -146,6 +125,13 @@ double squeeze_psi_closed_form(double chi, double gamma) {
     return (unyielded_part(gamma) + antiderivative(g, k) - antiderivative(1.0, k)) / cube(chi);
 }
 
+double SqueezePsi::octave_start(std::uint64_t index) {
+    const std::uint64_t bits = index << (52 - kMantissaBits);
+    double x = 0.0;
+    std::memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 SqueezePsi::SqueezePsi(double gamma)
     : gamma_(gamma), yield_chi_(gamma / 3.0), yield_slope_(0.75 / gamma) {
     // Past yield Psi leaves its pre-yield line by 13.5 d^3 (1 - gamma)/gamma^4: below 1e-11 of 1/4.
@@ -176,21 +162,6 @@ SqueezePsi::Piece SqueezePsi::fit_piece(double start, double end) const {
 double SqueezePsi::asymptote(double chi) const {
     const double k = 1.0 - gamma_;
     return 0.75 * chi + 0.5 * k - k / (18.0 * chi * chi);
-}
-
-double SqueezePsi::operator()(double chi) const {
-    const double distance = chi - yield_chi_;
-    if (distance < linear_to_) {
-        return yield_slope_ * chi;
-    }
-    if (chi >= kAsymptoteFrom) {
-        return asymptote(chi);
-    }
-    const Piece &piece = pieces_[octave_index(distance) - first_index_];
-    const double t = (distance - piece.start) * piece.inv_width;
-    const double t2 = t * t;
-    const double *c = piece.c;
-    return (c[0] + c[1] * t) + t2 * ((c[2] + c[3] * t) + t2 * (c[4] + c[5] * t));
 }
 
 } // namespace quiesce

@@ -12,6 +12,7 @@
 #define QUIESCE_SQUEEZE_PSI_H
 
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace quiesce {
@@ -46,6 +47,17 @@ class SqueezePsi {
         double c[6];      ///< polynomial in (distance - start) * inv_width
     };
 
+    /// Pieces per octave: 2^kMantissaBits.
+    static constexpr int kMantissaBits = 4;
+
+    /// Beyond this chi the asymptote is within 1e-11; a power of two.
+    static constexpr double kAsymptoteFrom = 1024.0;
+
+    /// Exponent and leading mantissa bits of a positive number, as one integer; and the smallest
+    /// number with an index.
+    static std::uint64_t octave_index(double x);
+    static double octave_start(std::uint64_t index);
+
     Piece fit_piece(double start, double end) const;
     double asymptote(double chi) const;
 
@@ -56,6 +68,27 @@ class SqueezePsi {
     std::uint64_t first_index_ = 0;
     std::vector<Piece> pieces_;
 };
+
+inline std::uint64_t SqueezePsi::octave_index(double x) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &x, sizeof bits);
+    return bits >> (52 - kMantissaBits);
+}
+
+inline double SqueezePsi::operator()(double chi) const {
+    const double distance = chi - yield_chi_;
+    if (distance < linear_to_) {
+        return yield_slope_ * chi;
+    }
+    if (chi >= kAsymptoteFrom) {
+        return asymptote(chi);
+    }
+    const Piece &piece = pieces_[octave_index(distance) - first_index_];
+    const double t = (distance - piece.start) * piece.inv_width;
+    const double t2 = t * t;
+    const double *c = piece.c;
+    return (c[0] + c[1] * t) + t2 * ((c[2] + c[3] * t) + t2 * (c[4] + c[5] * t));
+}
 
 } // namespace quiesce
 

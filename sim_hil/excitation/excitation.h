@@ -3,6 +3,7 @@
 #ifndef QUIESCE_EXCITATION_H
 #define QUIESCE_EXCITATION_H
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -24,8 +25,14 @@ class Excitation {
         double phase_cycles; ///< since time 0, not wrapped
     };
 
-    /// At time_s >= 0. At least one segment must have been appended.
-    Sample at(double time_s) const;
+    /// The segment that holds at time_s >= 0: it includes its start, not its end. At least one must
+    /// have been appended.
+    std::size_t segment_at(double time_s) const;
+
+    /// The excitation at time_s as this segment has it, also at its very end.
+    Sample sample(std::size_t segment, double time_s) const;
+
+    Sample at(double time_s) const { return sample(segment_at(time_s), time_s); }
 
   private:
     struct Placed {

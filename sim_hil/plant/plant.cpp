@@ -17,18 +17,19 @@ double dot(const Eigen::VectorXd &shape, const double *modal) {
     return sum;
 }
 
-[[noreturn]] void stop(double time_s, const std::string &why) {
+[[noreturn]] void stop(double now_s, const std::string &why) {
     std::ostringstream message;
-    message << "the simulation stopped at t = " << time_s << " s: " << why;
+    message << "the simulation stopped at t = " << now_s << " s: " << why;
     throw InputError(message.str());
 }
 
 } // namespace
 
-Plant::Plant(const PlantModel &model, const Excitation &excitation, double tick_s)
+Plant::Plant(const PlantModel &model, const Excitation &excitation, int tick_rate_Hz)
     : structure_(model.structure), damper_(model.damper), excitation_(&excitation),
-      driver_(model.driver), steps_(quiesce::steps_per_tick(model, tick_s)), tick_s_(tick_s),
-      step_s_(tick_s / steps_), half_step_coil_(model.coil, 0.5 * step_s_),
+      driver_(model.driver), steps_(steps_per_tick(model, 1.0 / tick_rate_Hz)),
+      step_rate_Hz_(static_cast<double>(tick_rate_Hz * steps_)), step_s_(1.0 / step_rate_Hz_),
+      half_step_coil_(model.coil, 0.5 * step_s_),
       rk4_(2 * static_cast<std::size_t>(structure_.mode_count()) + damper_->state_count()),
       y_(2 * static_cast<std::size_t>(structure_.mode_count()) + damper_->state_count(), 0.0),
       k1_(y_.size(), 0.0), excitation_now_(excitation.at(0.0)),
@@ -83,11 +84,11 @@ void Plant::observe() {
 }
 
 void Plant::step() {
-    const double start_s = static_cast<double>(step_count_) * step_s_;
-    ++step_count_;
-    const Excitation::Sample end = excitation_->at(static_cast<double>(step_count_) * step_s_);
+    const auto start = static_cast<double>(step_count_);
+    const double end_s = time_s(start + 1.0);
+    const Excitation::Sample end = excitation_->sample(segment_, end_s);
     Drive stage[3] = {};
-    stage[1] = {excitation_->at(start_s + 0.5 * step_s_).force_N,
+    stage[1] = {excitation_->sample(segment_, time_s(start + 0.5)).force_N,
                 half_step_coil_.step(coil_A_, driver_A_)};
     stage[2] = {end.force_N, half_step_coil_.step(stage[1].current_A, driver_A_)};
     rk4_.step(y_, k1_, step_s_,
@@ -95,7 +96,11 @@ void Plant::step() {
                   rates(stage[at], y, out);
               });
     coil_A_ = stage[2].current_A;
-    excitation_now_ = end;
+    ++step_count_;
+    // A new segment's force may differ from what the old one ended with.
+    const std::size_t segment = excitation_->segment_at(end_s);
+    excitation_now_ = segment == segment_ ? end : excitation_->sample(segment, end_s);
+    segment_ = segment;
     observe();
 }
 
@@ -104,21 +109,20 @@ const std::vector<PlantTruth> &Plant::advance() {
         step();
         after = truth_;
     }
-    ++tick_;
     check_motion();
     return substeps_;
 }
 
 void Plant::check_motion() const {
-    const double time_s = static_cast<double>(tick_) * tick_s_;
+    const double now_s = time_s(static_cast<double>(step_count_));
     if (!std::isfinite(truth_.accel_m_s2)) {
-        stop(time_s, "it diverged; choose a smaller integration.max_step_us in the plant file or "
-                     "--dt-us");
+        stop(now_s, "it diverged; choose a smaller integration.max_step_us in the plant file or "
+                    "--dt-us");
     }
     const double position_m = dot(structure_.at_damper, y_.data());
     if (position_m <= damper_->lowest_position_m()) {
-        stop(time_s, "the damper closed to the end of its range; reduce shaker.drive_V or check "
-                     "the damper's gap");
+        stop(now_s, "the damper closed to the end of its range; reduce shaker.drive_V or check "
+                    "the damper's gap");
     }
 }
 

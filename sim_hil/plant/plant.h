@@ -3,9 +3,9 @@
 ///   eta'' + damping eta' + omega2 eta = at_force F_e(t) - at_damper F_d(v_d, x_d, I)
 ///   I follows the driver's output with the coil's lag
 ///
-/// Classical Runge-Kutta with a fixed step that divides the tick; time is n * dt, never
-/// accumulated. Error budget (docs/plant.md, measured against dt = 20 us): the default longest step
-/// of 250 us keeps every reduction of the frozen plant within 0.01 point.
+/// Classical Runge-Kutta with a fixed step that divides the tick; time is n / rate, never
+/// accumulated. Error budget (docs/plant.md): the default longest step of 500 us keeps every
+/// reduction of the frozen plant within 0.03 point of a run at 20 us.
 #ifndef QUIESCE_PLANT_H
 #define QUIESCE_PLANT_H
 
@@ -38,13 +38,14 @@ enum class ActuatorFault {
 
 class Plant {
   public:
-    /// At rest at time 0, no current. excitation must outlive the plant. tick_s: control period.
-    Plant(const PlantModel &model, const Excitation &excitation, double tick_s);
+    /// At rest at time 0, no current. excitation must outlive the plant. tick_rate_Hz: control
+    /// ticks a second.
+    Plant(const PlantModel &model, const Excitation &excitation, int tick_rate_Hz);
 
-    /// Now, that is at tick() * tick_s.
+    /// Now, that is at tick() / tick_rate_Hz.
     const PlantTruth &truth() const { return truth_; }
-    std::int64_t tick() const { return tick_; }
-    int steps_per_tick() const { return steps_; }
+    std::int64_t tick() const { return step_count_ / steps_; }
+    double step_s() const { return step_s_; }
 
     /// What the driver is told for the tick that advance integrates next.
     void command(double current_A, ActuatorFault fault);
@@ -61,6 +62,7 @@ class Plant {
     };
 
     void rates(const Drive &drive, const std::vector<double> &y, std::vector<double> &out);
+    double time_s(double steps) const { return steps / step_rate_Hz_; }
     void step();
     void observe();
     void check_motion() const;
@@ -69,8 +71,8 @@ class Plant {
     std::shared_ptr<const Damper> damper_;
     const Excitation *excitation_;
     CurrentDriver driver_;
-    int steps_;
-    double tick_s_;
+    std::int64_t steps_;  ///< in a tick
+    double step_rate_Hz_; ///< an integer, so that step counts over it are exact times
     double step_s_;
     Coil half_step_coil_;
     Rk4 rk4_;
@@ -79,8 +81,8 @@ class Plant {
     double driver_A_ = 0.0;
     double coil_A_ = 0.0;
     double damper_force_N_ = 0.0;
+    std::size_t segment_ = 0; ///< of the excitation, now
     Excitation::Sample excitation_now_;
-    std::int64_t tick_ = 0;
     std::int64_t step_count_ = 0;
     PlantTruth truth_{};
     std::vector<PlantTruth> substeps_;

@@ -49,7 +49,7 @@ AccelerometerParams read_sensor(TomlTable section) {
 }
 
 double read_max_step_s(TomlTable &root, const PlantModel &model) {
-    constexpr double kDefault_us = 250.0;
+    constexpr double kDefault_us = 500.0;
     const double safe_us = 1e6 * longest_safe_step_s(model);
     std::optional<TomlTable> section = root.optional_table("integration");
     TomlTable &owner = section ? *section : root;

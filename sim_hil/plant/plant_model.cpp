@@ -15,9 +15,9 @@ double longest_safe_step_s(const PlantModel &model) {
     return 0.9 / rate_1_s;
 }
 
-int steps_per_tick(const PlantModel &model, double tick_s) {
+std::int64_t steps_per_tick(const PlantModel &model, double tick_s) {
     // The tolerance keeps a quotient such as 1 ms / 0.25 ms from being rounded up.
-    return static_cast<int>(std::ceil(tick_s / model.max_step_s * (1.0 - 1e-9)));
+    return static_cast<std::int64_t>(std::ceil(tick_s / model.max_step_s * (1.0 - 1e-9)));
 }
 
 } // namespace quiesce

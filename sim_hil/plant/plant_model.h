@@ -2,6 +2,7 @@
 #ifndef QUIESCE_PLANT_MODEL_H
 #define QUIESCE_PLANT_MODEL_H
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -30,7 +31,7 @@ struct PlantModel {
 double longest_safe_step_s(const PlantModel &model);
 
 /// Integration steps in one tick of tick_s: the fewest that are no longer than max_step_s.
-int steps_per_tick(const PlantModel &model, double tick_s);
+std::int64_t steps_per_tick(const PlantModel &model, double tick_s);
 
 } // namespace quiesce
 
