@@ -11,11 +11,13 @@ namespace quiesce {
 /// throws InputError for what the user can put right.
 using Command = int (*)(const std::vector<std::string> &words);
 
+int cmd_compare(const std::vector<std::string> &words);
 int cmd_params(const std::vector<std::string> &words);
 int cmd_plant_check(const std::vector<std::string> &words);
 int cmd_replay(const std::vector<std::string> &words);
 int cmd_run(const std::vector<std::string> &words);
 int cmd_scenario_check(const std::vector<std::string> &words);
+int cmd_uart_rate(const std::vector<std::string> &words);
 
 } // namespace quiesce
 

@@ -13,6 +13,11 @@ struct Entry {
 };
 
 const Entry kCommands[] = {
+    {"compare",
+     "--scenario FILE --law NAME --seeds N,N,... --target T --image ELF [--plugin SO] [--plant "
+     "FILE] "
+     "[--set NAME=VALUE]... [--noise-mg X] [--dt-us N]",
+     quiesce::cmd_compare},
     {"params", "", quiesce::cmd_params},
     {"plant-check", "FILE", quiesce::cmd_plant_check},
     {"replay", "--counts FILE --trace FILE [--law NAME] [--set NAME=VALUE]... [--target T]",
@@ -22,6 +27,7 @@ const Entry kCommands[] = {
      "[--plugin SO] [--seed N] [--noise-mg X] [--dt-us N] [--trace FILE] [--repeat N]",
      quiesce::cmd_run},
     {"scenario-check", "FILE", quiesce::cmd_scenario_check},
+    {"uart-rate", "--image ELF --echo-image ELF [--exchanges N]", quiesce::cmd_uart_rate},
 };
 
 void print_usage(std::FILE *out) {

@@ -1,0 +1,121 @@
+/// uart-rate: lock-step exchanges a second over the UART, beside a raw echo of the same bytes.
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "arguments.h"
+#include "commands.h"
+#include "qemu_uart_link.h"
+
+namespace quiesce {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+/// The two take turns in blocks, so that a machine whose speed drifts favours neither.
+constexpr std::int64_t kBlockExchanges = 200;
+/// One telemetry frame every so many ticks.
+constexpr std::uint16_t kTelemetryTicks = 20;
+
+lockstep_stimulus_t stimulus_of(std::int64_t tick) {
+    const double counts = 50000.0 * std::sin(0.0628 * static_cast<double>(tick)); // 10 Hz
+    return {static_cast<std::int32_t>(std::lround(counts)), LOCKSTEP_FRESH | LOCKSTEP_ENABLE, 0};
+}
+
+double run_protocol(QemuUartLink &link, std::int64_t first_tick, std::int64_t count) {
+    const auto start = Clock::now();
+    lockstep_reply_t reply;
+    for (std::int64_t tick = first_tick; tick < first_tick + count; ++tick) {
+        link.exchange(stimulus_of(tick), reply);
+    }
+    return Seconds(Clock::now() - start).count();
+}
+
+/// The bytes of one stimulus frame, there and back, count times.
+double run_echo(QemuUart &uart, std::int64_t count) {
+    static constexpr std::array<std::uint8_t, 14> kBytes = {'t', '6', '0', '3', '4', '0', '0',
+                                                            '2', 'A', '0', '0', '0', '3', '\r'};
+    const auto start = Clock::now();
+    std::array<std::uint8_t, kBytes.size()> back;
+    for (std::int64_t i = 0; i < count; ++i) {
+        uart.send(kBytes.data(), kBytes.size());
+        for (std::size_t received = 0; received < back.size();) {
+            received += uart.receive(back.data() + received, back.size() - received);
+        }
+    }
+    return Seconds(Clock::now() - start).count();
+}
+
+struct Rates {
+    double protocol_s = 0;
+    double echo_s = 0;
+};
+
+/// Only one emulator runs at a time: an idle image polls its UART and would take a processor.
+Rates run_blocks(QemuUartLink &link, QemuUart &echo, std::int64_t exchanges) {
+    Rates rates;
+    run_echo(echo, kBlockExchanges); // both are warm before the clock runs
+    echo.pause();
+    for (std::int64_t done = 0; done < exchanges; done += kBlockExchanges) {
+        const std::int64_t count = std::min(kBlockExchanges, exchanges - done);
+        link.uart().resume();
+        rates.protocol_s += run_protocol(link, done, count);
+        link.uart().pause();
+        echo.resume();
+        rates.echo_s += run_echo(echo, count);
+        echo.pause();
+    }
+    link.uart().resume();
+    return rates;
+}
+
+QemuOptions image(const Arguments &arguments, const char *option) {
+    QemuOptions options;
+    options.image_path = arguments.required(option);
+    options.plugin_path = "none"; // the echo has no tick to count; neither side pays for counting
+    return options;
+}
+
+} // namespace
+
+int cmd_uart_rate(const std::vector<std::string> &words) {
+    const Arguments arguments("uart-rate", words, {"image", "echo-image", "exchanges"});
+    arguments.require_no_positional();
+    const std::int64_t exchanges =
+        arguments.integer("exchanges", kBlockExchanges, 100000000).value_or(20000);
+    const QemuOptions echo_options = image(arguments, "echo-image");
+    QemuUartLink link(image(arguments, "image"), {kTelemetryTicks, 1});
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    link.start(params);
+    run_protocol(link, 0, kBlockExchanges);
+    link.uart().pause();
+    QemuUart echo(echo_options);
+    const std::size_t sent_before = link.sent_bytes();
+    const std::size_t received_before = link.received_bytes();
+    const Rates rates = run_blocks(link, echo, exchanges);
+
+    const auto per_exchange = [&](std::size_t bytes) {
+        return static_cast<double>(bytes) / static_cast<double>(exchanges);
+    };
+    const double protocol_per_s = static_cast<double>(exchanges) / rates.protocol_s;
+    const double echo_per_s = static_cast<double>(exchanges) / rates.echo_s;
+    const nlohmann::ordered_json out = {
+        {"exchanges", exchanges},
+        {"protocol_per_s", protocol_per_s},
+        {"echo_per_s", echo_per_s},
+        {"ratio", protocol_per_s / echo_per_s},
+        {"realtime_factor", protocol_per_s / params.tick_rate_Hz},
+        {"bytes_each_way", per_exchange(link.sent_bytes() - sent_before)},
+        {"reply_bytes", per_exchange(link.received_bytes() - received_before)}};
+    link.finish();
+    std::cout << out.dump() << '\n';
+    return 0;
+}
+
+} // namespace quiesce

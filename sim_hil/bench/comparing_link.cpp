@@ -1,0 +1,43 @@
+#include "comparing_link.h"
+
+#include <cstring>
+
+#include "input_error.h"
+#include "reply_fields.h"
+
+namespace quiesce {
+
+bool ComparingLink::start(const quiesce_params_t &params) {
+    const bool is_accepted = reference_.start(params);
+    if (checked_.start(params) != is_accepted) {
+        throw InputError("targets " + reference_.target() + " and " + checked_.target() +
+                         " disagree on whether the parameters are allowed; rebuild the image");
+    }
+    ++runs_;
+    tick_ = 0;
+    return is_accepted;
+}
+
+void ComparingLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {
+    lockstep_reply_t checked;
+    reference_.exchange(stimulus, reply);
+    checked_.exchange(stimulus, checked);
+    if (std::memcmp(&reply, &checked, sizeof reply) != 0) {
+        compare(reply, checked);
+    }
+    ++tick_;
+}
+
+void ComparingLink::compare(const lockstep_reply_t &expected, const lockstep_reply_t &actual) {
+    const std::vector<WordField> &fields = reply_fields();
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        if (word_of(expected, i) != word_of(actual, i)) {
+            ++mismatches_;
+            if (!first_mismatch_) {
+                first_mismatch_ = FirstMismatch{runs_ - 1, tick_, fields[i].name};
+            }
+        }
+    }
+}
+
+} // namespace quiesce

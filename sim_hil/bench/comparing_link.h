@@ -1,0 +1,48 @@
+/// Two controllers driven by the same stimuli, their replies compared word by word.
+#ifndef QUIESCE_COMPARING_LINK_H
+#define QUIESCE_COMPARING_LINK_H
+
+#include <string>
+
+#include "controller_link.h"
+
+namespace quiesce {
+
+/// Where two replies first differed.
+struct FirstMismatch {
+    std::uint64_t run; ///< number of the start, from 0
+    std::int64_t tick; ///< within the run, from 0
+    const char *field; ///< name of the word
+};
+
+/// Answers like the reference; the plant never sees the checked target.
+class ComparingLink final : public ControllerLink {
+  public:
+    ComparingLink(ControllerLink &reference, ControllerLink &checked)
+        : reference_(reference), checked_(checked) {}
+
+    std::string target() const override { return checked_.target(); }
+
+    /// Throws InputError when one accepts the parameters and the other does not.
+    bool start(const quiesce_params_t &params) override;
+    void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
+    std::optional<InstructionCounts> finish() override { return checked_.finish(); }
+
+    /// Words that differed, over all runs.
+    std::uint64_t mismatches() const { return mismatches_; }
+    const std::optional<FirstMismatch> &first_mismatch() const { return first_mismatch_; }
+
+  private:
+    void compare(const lockstep_reply_t &expected, const lockstep_reply_t &actual);
+
+    ControllerLink &reference_;
+    ControllerLink &checked_;
+    std::uint64_t runs_ = 0;
+    std::int64_t tick_ = 0;
+    std::uint64_t mismatches_ = 0;
+    std::optional<FirstMismatch> first_mismatch_;
+};
+
+} // namespace quiesce
+
+#endif
