@@ -1,8 +1,9 @@
 /// Velocity from acceleration by a leaky integrator, v' = a - w v.
 ///
-/// Phase against the true velocity: a lead of atan(cutoff / f) (5.7 degrees at 5 Hz for 0.5 Hz);
-/// gain 1/sqrt(1 + (cutoff/f)^2). Trapezoidal in a, so the sampling itself adds no phase. State in
-/// um/s, Q32, saturated at +-1073 m/s. Bounded, about 25 instructions.
+/// Against the true velocity it leads by atan(cutoff / f) and half a tick (at 5 Hz, 0.5 Hz and 1
+/// kHz: 5.7 + 0.9 degrees); gain 1/sqrt(1 + (cutoff/f)^2). The lead is wanted: a law on sgn(v a)
+/// sees its two quarters equally long without it, and then the rounding to ticks decides which way
+/// it drifts. State in um/s, Q32, saturated at +-1073 m/s. Bounded, about 25 instructions.
 #ifndef MOTION_H
 #define MOTION_H
 
@@ -10,9 +11,8 @@
 
 typedef struct {
     int64_t velocity_um_s_q32;
-    int64_t half_step_q32; ///< half a tick in seconds, Q32
-    int64_t leak_q32;      ///< w times a tick, Q32
-    int32_t last_um_s2;
+    int64_t step_q32; ///< a tick in seconds, Q32
+    int64_t leak_q32; ///< w times a tick, Q32
 } motion_t;
 
 /// tick_rate_Hz: 500 .. 4000; cutoff_mHz: 50 .. 5000.

@@ -24,7 +24,7 @@ static void test_velocity_of_a_sine_at_every_rate(void) {
             }
         }
         // 1 m/s2 / (2 pi 5 Hz) = 31831 um/s, x 0.995 for the leak; peak half a period after t = 0,
-        // 5.71 degrees (0.0159 of a period) early.
+        // 5.71 degrees (0.0159 of a period) and half a tick early.
         TEST_ASSERT_INT32_WITHIN(160, 31674, peak_um_s);
         TEST_ASSERT_INT32_WITHIN(rate_Hz / 500 + 1, (int32_t)(rate_Hz * 4841 / 50000),
                                  (int32_t)peak_tick);
