@@ -100,4 +100,8 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params);
 /// One control tick. Bounded; safe in an interrupt. Writes all of *out.
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
 
+/// The rule base alone, for drawing and checking it: current in mA at a frequency and an RMS
+/// acceleration. *rules_fired (may be NULL) receives a bit per rule, row-major (frequency rows).
+int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *rules_fired);
+
 #endif

@@ -213,3 +213,11 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     t->current_law_mA = request_mA;
     t->current_cmd_mA = out->current_cmd_mA;
 }
+
+int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *rules_fired) {
+    const fuzzy_out_t out = fuzzy_evaluate(&squeeze_rules, freq_uHz, rms_um_s2);
+    if (rules_fired != NULL) {
+        *rules_fired = out.rules_fired;
+    }
+    return out.current_mA;
+}

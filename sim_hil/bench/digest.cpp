@@ -11,7 +11,9 @@ void DigestObserver::add(const lockstep_reply_t &reply) {
     fault_count_ = reply.telemetry.fault_count;
     if (reply.telemetry.fault != last_fault_) {
         last_fault_ = reply.telemetry.fault;
-        faults_seen_.insert(last_fault_);
+        if (last_fault_ != QUIESCE_FAULT_NONE) {
+            faults_seen_.insert(last_fault_);
+        }
     }
     if (reply.current_cmd_mA != last_command_mA_) {
         last_command_mA_ = reply.current_cmd_mA;

@@ -18,6 +18,7 @@ const Entry kCommands[] = {
      "FILE] "
      "[--set NAME=VALUE]... [--noise-mg X] [--dt-us N]",
      quiesce::cmd_compare},
+    {"fuzzy-surface", "", quiesce::cmd_fuzzy_surface},
     {"params", "", quiesce::cmd_params},
     {"plant-check", "FILE", quiesce::cmd_plant_check},
     {"replay", "--counts FILE --trace FILE [--law NAME] [--set NAME=VALUE]... [--target T]",

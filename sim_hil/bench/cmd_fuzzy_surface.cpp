@@ -1,0 +1,51 @@
+/// fuzzy-surface: the controller's rule base over its two inputs, as JSON.
+#include <cmath>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "arguments.h"
+#include "commands.h"
+#include "firmware.h"
+
+namespace quiesce {
+
+namespace {
+
+constexpr int kPoints = 101;
+constexpr double kFreqLast_Hz = 25.0;
+constexpr double kRmsLast_m_s2 = 0.5;
+
+std::vector<double> axis(double last) {
+    std::vector<double> values;
+    for (int i = 0; i < kPoints; ++i) {
+        values.push_back(last * i / (kPoints - 1));
+    }
+    return values;
+}
+
+std::int32_t micro(double value) {
+    return static_cast<std::int32_t>(std::lround(value * 1e6));
+}
+
+} // namespace
+
+int cmd_fuzzy_surface(const std::vector<std::string> &words) {
+    Arguments("fuzzy-surface", words, {}).require_no_positional();
+    const std::vector<double> freq_Hz = axis(kFreqLast_Hz);
+    const std::vector<double> rms_m_s2 = axis(kRmsLast_m_s2);
+    nlohmann::ordered_json current_A = nlohmann::ordered_json::array();
+    for (const double f : freq_Hz) {
+        std::vector<double> row;
+        for (const double rms : rms_m_s2) {
+            row.push_back(quiesce_rules_current_mA(micro(f), micro(rms), nullptr) / 1000.0);
+        }
+        current_A.push_back(row);
+    }
+    const nlohmann::ordered_json out = {
+        {"freq_Hz", freq_Hz}, {"rms_m_s2", rms_m_s2}, {"current_A", current_A}};
+    std::cout << out.dump() << '\n';
+    return 0;
+}
+
+} // namespace quiesce
