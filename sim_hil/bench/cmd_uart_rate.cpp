@@ -1,8 +1,10 @@
 /// uart-rate: lock-step exchanges a second over the UART, beside a raw echo of the same bytes.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <iostream>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -51,27 +53,33 @@ double run_echo(QemuUart &uart, std::int64_t count) {
     return Seconds(Clock::now() - start).count();
 }
 
-struct Rates {
-    double protocol_s = 0;
-    double echo_s = 0;
+struct BlockTimes {
+    std::vector<double> protocol_s;
+    std::vector<double> echo_s;
 };
 
 /// Only one emulator runs at a time: an idle image polls its UART and would take a processor.
-Rates run_blocks(QemuUartLink &link, QemuUart &echo, std::int64_t exchanges) {
-    Rates rates;
+BlockTimes run_blocks(QemuUartLink &link, QemuUart &echo, std::int64_t blocks) {
+    BlockTimes times;
     run_echo(echo, kBlockExchanges); // both are warm before the clock runs
     echo.pause();
-    for (std::int64_t done = 0; done < exchanges; done += kBlockExchanges) {
-        const std::int64_t count = std::min(kBlockExchanges, exchanges - done);
+    for (std::int64_t block = 0; block < blocks; ++block) {
         link.uart().resume();
-        rates.protocol_s += run_protocol(link, done, count);
+        times.protocol_s.push_back(run_protocol(link, block * kBlockExchanges, kBlockExchanges));
         link.uart().pause();
         echo.resume();
-        rates.echo_s += run_echo(echo, count);
+        times.echo_s.push_back(run_echo(echo, kBlockExchanges));
         echo.pause();
     }
     link.uart().resume();
-    return rates;
+    return times;
+}
+
+/// Rate of the median block: a burst of other work on the machine does not count.
+double median_per_s(std::vector<double> block_s) {
+    const auto middle = block_s.begin() + static_cast<std::ptrdiff_t>(block_s.size() / 2);
+    std::nth_element(block_s.begin(), middle, block_s.end());
+    return static_cast<double>(kBlockExchanges) / *middle;
 }
 
 QemuOptions image(const Arguments &arguments, const char *option) {
@@ -86,8 +94,10 @@ QemuOptions image(const Arguments &arguments, const char *option) {
 int cmd_uart_rate(const std::vector<std::string> &words) {
     const Arguments arguments("uart-rate", words, {"image", "echo-image", "exchanges"});
     arguments.require_no_positional();
-    const std::int64_t exchanges =
-        arguments.integer("exchanges", kBlockExchanges, 100000000).value_or(20000);
+    const std::int64_t blocks =
+        arguments.integer("exchanges", kBlockExchanges, 100000000).value_or(20000) /
+        kBlockExchanges;
+    const std::int64_t exchanges = blocks * kBlockExchanges;
     const QemuOptions echo_options = image(arguments, "echo-image");
     QemuUartLink link(image(arguments, "image"), {kTelemetryTicks, 1});
     quiesce_params_t params;
@@ -98,13 +108,13 @@ int cmd_uart_rate(const std::vector<std::string> &words) {
     QemuUart echo(echo_options);
     const std::size_t sent_before = link.sent_bytes();
     const std::size_t received_before = link.received_bytes();
-    const Rates rates = run_blocks(link, echo, exchanges);
+    const BlockTimes times = run_blocks(link, echo, blocks);
 
     const auto per_exchange = [&](std::size_t bytes) {
         return static_cast<double>(bytes) / static_cast<double>(exchanges);
     };
-    const double protocol_per_s = static_cast<double>(exchanges) / rates.protocol_s;
-    const double echo_per_s = static_cast<double>(exchanges) / rates.echo_s;
+    const double protocol_per_s = median_per_s(times.protocol_s);
+    const double echo_per_s = median_per_s(times.echo_s);
     const nlohmann::ordered_json out = {
         {"exchanges", exchanges},
         {"protocol_per_s", protocol_per_s},

@@ -1,0 +1,208 @@
+#include "plant.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "input_error.h"
+#include "plant_file.h"
+#include "sine_segment.h"
+#include "viscous.h"
+
+namespace {
+
+using quiesce::ActuatorFault;
+using quiesce::Excitation;
+using quiesce::Matrices;
+using quiesce::Plant;
+using quiesce::PlantModel;
+using quiesce::PlantTruth;
+
+constexpr double kTwoPi = 6.28318530717958647692;
+
+Excitation sine(const PlantModel &model, double freq_Hz) {
+    Excitation excitation(model.shaker);
+    excitation.append(std::make_unique<quiesce::SineSegment>(freq_Hz), 1e5);
+    return excitation;
+}
+
+/// Two masses whose damping couples the modes, with a viscous damper of 0.5 + 2 I N s/m.
+Matrices coupled_matrices() {
+    Matrices out;
+    out.mass_kg = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 1.0).finished();
+    out.stiffness_N_m = (Eigen::Matrix2d() << 3000.0, -1000.0, -1000.0, 1500.0).finished();
+    out.damping_N_s_m = (Eigen::Matrix2d() << 6.0, -1.0, -1.0, 1.0).finished();
+    out.force = Eigen::Vector2d(1.0, 0.0);
+    out.damper = Eigen::Vector2d(-1.0, 1.0);
+    out.sensor = Eigen::Vector2d(0.0, 1.0);
+    return out;
+}
+
+PlantModel coupled_plant() {
+    PlantModel model = quiesce::load_plant("sim_hil/plants/squeeze_2012.toml");
+    model.structure = quiesce::structure_from_matrices(coupled_matrices(), 2);
+    model.damper = std::make_shared<quiesce::Viscous>(quiesce::ViscousParams{0.5, 2.0, 1.0});
+    model.shaker = {1.0, 10.0, 0.0, 1.0};
+    return model;
+}
+
+/// Amplitude at the sensor for 1 N, from the complex equations of motion.
+double closed_form_amplitude_m(double freq_Hz, double damper_N_s_m) {
+    const Matrices m = coupled_matrices();
+    const double omega = kTwoPi * freq_Hz;
+    const Eigen::MatrixXcd dynamic =
+        (m.stiffness_N_m - omega * omega * m.mass_kg).cast<std::complex<double>>() +
+        std::complex<double>(0.0, omega) *
+            (m.damping_N_s_m + damper_N_s_m * m.damper * m.damper.transpose());
+    const Eigen::VectorXcd motion =
+        dynamic.partialPivLu().solve(m.force.cast<std::complex<double>>());
+    return std::abs(m.sensor.cast<std::complex<double>>().dot(motion));
+}
+
+double simulated_amplitude_m(const PlantModel &model, double freq_Hz, double current_A) {
+    const Excitation excitation = sine(model, freq_Hz);
+    Plant plant(model, excitation, 1000);
+    double high_m = 0.0;
+    for (int tick = 0; tick < 40000; ++tick) {
+        plant.command(current_A, ActuatorFault::none);
+        for (const PlantTruth &step : plant.advance()) {
+            high_m = tick < 38000 ? 0.0 : std::max(high_m, step.displacement_m);
+        }
+    }
+    return high_m;
+}
+
+TEST(Plant, steady_state_is_the_closed_form_of_a_linear_plant) {
+    const PlantModel model = coupled_plant();
+    ASSERT_FALSE(model.structure.is_proportional);
+    const double current_A = quiesce::CurrentDriver(model.driver).output_A(1.5);
+    for (const double freq_Hz : {3.0, 5.2, 7.1}) {
+        const double expected = closed_form_amplitude_m(freq_Hz, 0.5 + 2.0 * current_A);
+        EXPECT_NEAR(simulated_amplitude_m(model, freq_Hz, current_A) / expected, 1.0, 5e-4)
+            << freq_Hz << " Hz";
+    }
+}
+
+TEST(Plant, integration_error_falls_with_the_fourth_power_of_the_step) {
+    const auto end_of_run_m = [](double step_s) {
+        PlantModel model = coupled_plant();
+        model.max_step_s = step_s;
+        const Excitation excitation = sine(model, 6.0);
+        Plant plant(model, excitation, 100);
+        for (int tick = 0; tick < 50; ++tick) {
+            plant.advance();
+        }
+        return plant.truth().displacement_m;
+    };
+    const double exact_m = end_of_run_m(1e-4);
+    const double coarse = std::abs(end_of_run_m(0.005) - exact_m);
+    const double fine = std::abs(end_of_run_m(0.0025) - exact_m);
+    EXPECT_NEAR(std::log2(coarse / fine), 4.0, 0.4);
+}
+
+TEST(Plant, stays_at_rest_without_drive) {
+    PlantModel model = coupled_plant();
+    model.shaker.drive_V = 0.0;
+    const Excitation excitation = sine(model, 10.0);
+    Plant plant(model, excitation, 1000);
+    for (int tick = 0; tick < 100; ++tick) {
+        plant.advance();
+    }
+    EXPECT_EQ(plant.truth().displacement_m, 0.0);
+    EXPECT_EQ(plant.truth().accel_m_s2, 0.0);
+    EXPECT_EQ(plant.tick(), 100);
+}
+
+TEST(Plant, acceleration_is_the_second_derivative_of_displacement) {
+    const PlantModel model = quiesce::load_plant("sim_hil/plants/squeeze_2012.toml");
+    const Excitation excitation = sine(model, 10.0);
+    Plant plant(model, excitation, 1000);
+    std::vector<PlantTruth> steps;
+    for (int tick = 0; tick < 1000; ++tick) {
+        const std::vector<PlantTruth> &last = plant.advance();
+        steps.insert(steps.end(), last.begin(), last.end());
+    }
+    const double dt_s = plant.step_s();
+    for (std::size_t i = 1500; i < 1600; ++i) {
+        const double second = (steps[i + 1].displacement_m - 2.0 * steps[i].displacement_m +
+                               steps[i - 1].displacement_m) /
+                              (dt_s * dt_s);
+        ASSERT_NEAR(second, steps[i].accel_m_s2, 0.01 * 0.6);
+    }
+}
+
+TEST(Plant, coil_follows_the_driver_with_its_lag) {
+    const PlantModel model = quiesce::load_plant("sim_hil/plants/squeeze_2012.toml");
+    const Excitation excitation = sine(model, 10.0);
+    Plant plant(model, excitation, 1000);
+    for (int tick = 0; tick < 5; ++tick) {
+        plant.command(5.0, ActuatorFault::none);
+        plant.advance();
+    }
+    EXPECT_NEAR(plant.truth().coil_A, 5.0 * (1.0 - std::exp(-1.0)), 1e-9);
+}
+
+TEST(Plant, open_coil_carries_no_current_and_stuck_driver_keeps_it) {
+    const PlantModel model = quiesce::load_plant("sim_hil/plants/squeeze_2012.toml");
+    const Excitation excitation = sine(model, 10.0);
+    Plant plant(model, excitation, 1000);
+    for (int tick = 0; tick < 200; ++tick) {
+        plant.command(tick < 100 ? 4.0 : 0.0,
+                      tick < 100 ? ActuatorFault::none : ActuatorFault::driver_stuck);
+        plant.advance();
+    }
+    EXPECT_NEAR(plant.truth().coil_A, 4.0, 1e-3);
+    plant.command(4.0, ActuatorFault::coil_open);
+    EXPECT_EQ(plant.truth().coil_A, 0.0);
+    plant.advance();
+    EXPECT_EQ(plant.truth().coil_A, 0.0);
+}
+
+TEST(Plant, stops_where_the_plates_touch) {
+    PlantModel model = quiesce::load_plant("sim_hil/plants/squeeze_2012.toml");
+    model.shaker.drive_V = 5.0;
+    const Excitation excitation = sine(model, 11.5);
+    Plant plant(model, excitation, 1000);
+    try {
+        for (int tick = 0; tick < 5000; ++tick) {
+            plant.advance();
+        }
+        FAIL() << "7 mm in a gap of 2 mm";
+    } catch (const quiesce::InputError &error) {
+        EXPECT_NE(std::string(error.what()).find("reduce shaker.drive_V"), std::string::npos)
+            << error.what();
+    }
+}
+
+TEST(Plant, stops_when_the_integration_diverges) {
+    PlantModel model = coupled_plant();
+    model.structure = quiesce::structure_from_modes({{1500.0, 0.01, 1.0, 0.0, 1.0}});
+    model.max_step_s = 1e-3;
+    EXPECT_GT(model.max_step_s, quiesce::longest_safe_step_s(model));
+    const Excitation excitation = sine(model, 10.0);
+    Plant plant(model, excitation, 1000);
+    EXPECT_THROW(
+        {
+            for (int tick = 0; tick < 2000; ++tick) {
+                plant.advance();
+            }
+        },
+        quiesce::InputError);
+}
+
+TEST(Plant, steps_divide_the_tick) {
+    PlantModel model = coupled_plant();
+    model.max_step_s = 500e-6;
+    EXPECT_EQ(quiesce::steps_per_tick(model, 1e-3), 2);
+    EXPECT_EQ(quiesce::steps_per_tick(model, 250e-6), 1);
+    model.max_step_s = 300e-6;
+    EXPECT_EQ(quiesce::steps_per_tick(model, 1e-3), 4);
+    model.max_step_s = 20e-6;
+    EXPECT_EQ(quiesce::steps_per_tick(model, 1e-3), 50);
+}
+
+} // namespace
