@@ -4,7 +4,10 @@
 
 _Static_assert(SPECTRUM_POINTS == COSINE_POINTS, "one table entry a sample of the window");
 
-enum { READ_SHIFT = 28, TWIDDLE_BITS = 22, QUARTER = SPECTRUM_POINTS / 4 };
+enum {
+    QUARTER = SPECTRUM_POINTS / 4,
+    SAMPLE_LIMIT = 1 << 29, // um/s2; the filters may overshoot, the bins must not overflow
+};
 
 void spectrum_init(spectrum_t *self, uint32_t tick_rate_Hz) {
     *self = (spectrum_t){.next_bin = SPECTRUM_BINS};
@@ -48,41 +51,55 @@ static bool decimate_all(spectrum_t *self, int32_t *value) {
     return true;
 }
 
+static spectrum_turn_t turn_at(uint32_t angle) {
+    return (spectrum_turn_t){
+        .cos_q31 = cosine_q25[angle % SPECTRUM_POINTS] * 64,
+        .sin_q31 = cosine_q25[(angle - QUARTER) % SPECTRUM_POINTS] * 64,
+    };
+}
+
 static void start_round(spectrum_t *self, int32_t sample) {
     self->newest = (self->newest + 1u) % SPECTRUM_POINTS;
+    self->window_turn = turn_at(self->newest + 1u);
     self->difference = sample - self->sample[self->newest];
     self->sample[self->newest] = sample;
     self->next_bin = 0;
 }
 
+// The high word of a bin is its amplitude in um/s2: window length and table format add up to 32
+// bits.
+static int32_t high_word(int64_t value) {
+    return (int32_t)(value >> 32);
+}
+
 static void slide_bin(spectrum_t *self, uint32_t k) {
     const uint32_t angle = (k * self->newest) % SPECTRUM_POINTS;
-    const int64_t difference = self->difference;
-    self->bin[k].re += difference * cosine_q22[angle];
-    self->bin[k].im -= difference * cosine_q22[(angle - QUARTER) % SPECTRUM_POINTS];
+    spectrum_bin_t *bin = &self->bin[k];
+    bin->re += (int64_t)self->difference * cosine_q25[angle];
+    bin->im -= (int64_t)self->difference * cosine_q25[(angle - QUARTER) % SPECTRUM_POINTS];
 }
 
 // Power of bin k under the Hann window, whose first sample is the oldest one in the ring: the two
-// neighbours enter with half weight, turned by the angle of that sample.
+// neighbours enter with half weight (the Q31 product's high word), turned by that sample's angle.
 static uint64_t windowed_power(const spectrum_t *self, uint32_t k) {
-    const uint32_t oldest = (self->newest + 1u) % SPECTRUM_POINTS;
-    const int64_t c = cosine_q22[oldest];
-    const int64_t s = cosine_q22[(oldest - QUARTER) % SPECTRUM_POINTS];
-    const int64_t low_re = self->bin[k - 1].re >> READ_SHIFT;
-    const int64_t low_im = self->bin[k - 1].im >> READ_SHIFT;
-    const int64_t high_re = self->bin[k + 1].re >> READ_SHIFT;
-    const int64_t high_im = self->bin[k + 1].im >> READ_SHIFT;
-    const int64_t sum_re = (low_re + high_re) * c + (low_im - high_im) * s;
-    const int64_t sum_im = (low_im + high_im) * c - (low_re - high_re) * s;
-    const int64_t re = (self->bin[k].re >> READ_SHIFT) - (sum_re >> (TWIDDLE_BITS + 1));
-    const int64_t im = (self->bin[k].im >> READ_SHIFT) - (sum_im >> (TWIDDLE_BITS + 1));
-    return (uint64_t)(re * re) + (uint64_t)(im * im);
+    const spectrum_turn_t turn = self->window_turn;
+    const int32_t low_re = high_word(self->bin[k - 1].re);
+    const int32_t low_im = high_word(self->bin[k - 1].im);
+    const int32_t high_re = high_word(self->bin[k + 1].re);
+    const int32_t high_im = high_word(self->bin[k + 1].im);
+    const int32_t side_re = high_word((int64_t)(low_re + high_re) * turn.cos_q31 +
+                                      (int64_t)(low_im - high_im) * turn.sin_q31);
+    const int32_t side_im = high_word((int64_t)(low_im + high_im) * turn.cos_q31 +
+                                      (int64_t)(high_re - low_re) * turn.sin_q31);
+    const int32_t re = high_word(self->bin[k].re) - side_re;
+    const int32_t im = high_word(self->bin[k].im) - side_im;
+    return (uint64_t)((int64_t)re * re) + (uint64_t)((int64_t)im * im);
 }
 
 spectrum_span_t spectrum_step(spectrum_t *self, int32_t accel_um_s2) {
     int32_t sample = accel_um_s2;
     if (decimate_all(self, &sample)) {
-        start_round(self, sample);
+        start_round(self, clamp_i32(sample, -SAMPLE_LIMIT, SAMPLE_LIMIT));
     }
     if (self->next_bin == SPECTRUM_BINS) {
         return (spectrum_span_t){0, 0, false};

@@ -6,12 +6,12 @@
 /// coefficients), not to the samples. The bins are worked off in slices, one a tick, so that no
 /// tick has a spike.
 ///
-/// Scaling: samples um/s2 in 32 bit; twiddles Q22; bins 64 bit, at most 256 x 5 x 10^8 x 2^22 <
-/// 2^60. Reading takes bin >> 28, which counts half um/s2 of amplitude; power = (2 amplitude)^2, 64
-/// bit. Decimator: 11 taps Q16, stop band -62 dB, pass band (0 .. 50 Hz) flat to 0.007 dB, group
-/// delay 5 samples of each stage's input: 15 ms at 1 kHz. Bounded; about 60 instructions a bin.
-/// Source of the sliding form: K. Duda, IEEE Signal Processing Magazine 27(6), 2010 (equations
-/// only).
+/// Scaling: samples um/s2, limited to 2^29; table Q25; bins 64 bit, at most 2^8 x 2^29 x 2^25 =
+/// 2^62. A tone of amplitude A makes |bin| = A x 2^7 x 2^25, so that the high word reads A in um/s2
+/// (floor); power = A^2, 64 bit. Decimator: 11 taps Q16, stop band -62 dB, pass band (0 .. 50 Hz)
+/// flat to 0.007 dB, group delay 5 samples of each stage's input: 15 ms at 1 kHz. Bounded; about 55
+/// instructions a bin. Source of the sliding form: K. Duda, IEEE Signal Processing Magazine 27(6),
+/// 2010 (equations only).
 #ifndef SPECTRUM_H
 #define SPECTRUM_H
 
@@ -34,13 +34,20 @@ typedef struct {
     int64_t im;
 } spectrum_bin_t;
 
+/// Angle of the window's first sample.
+typedef struct {
+    int32_t cos_q31;
+    int32_t sin_q31;
+} spectrum_turn_t;
+
 typedef struct {
     int32_t sample[SPECTRUM_POINTS]; ///< ring at 250 Hz
     spectrum_bin_t bin[SPECTRUM_BINS];
-    uint64_t power[SPECTRUM_BINS]; ///< (2 x amplitude in um/s2)^2 under the window; 1 .. 52 used
+    uint64_t power[SPECTRUM_BINS]; ///< amplitude squared under the window, (um/s2)^2; 1 .. 52 used
     spectrum_stage_t stage[SPECTRUM_MAX_STAGES];
     uint32_t stages;
-    uint32_t newest;     ///< ring index of the newest sample
+    uint32_t newest; ///< ring index of the newest sample
+    spectrum_turn_t window_turn;
     int32_t difference;  ///< newest minus the sample that it replaced
     uint32_t next_bin;   ///< first bin of the next slice; SPECTRUM_BINS: the round is finished
     uint32_t slice_bins; ///< bins a tick

@@ -7,10 +7,10 @@ enum {
 };
 
 void tracker_init(tracker_t *self, const tracker_cfg_t *cfg) {
-    const uint64_t twice_min = 2u * (uint64_t)cfg->min_accel_um_s2;
+    const uint64_t min_um_s2 = (uint32_t)cfg->min_accel_um_s2;
     *self = (tracker_t){
         .cfg = *cfg,
-        .min_power = twice_min * twice_min,
+        .min_power = min_um_s2 * min_um_s2,
         .snr_log2_q8 = (uint32_t)cfg->snr_dB * DB_TO_LOG2_Q8,
         .age_ticks = UINT32_MAX,
     };
@@ -66,7 +66,7 @@ static tracker_peak_t interpolate(const tracker_t *self, const uint64_t *power, 
     // The main lobe falls to 0.849 half a bin from its middle, nearly as 1 - 0.61 d^2.
     const int32_t droop_q15 = (offset_q15 * offset_q15 >> 15) * 39 / 64;
     const int32_t gain_q15 = 32768 + droop_q15 + (droop_q15 * droop_q15 >> 15);
-    const int64_t amp_um_s2 = ((int64_t)sqrt_fast_u64(power[k]) * gain_q15) >> 16;
+    const int64_t amp_um_s2 = ((int64_t)sqrt_fast_u64(power[k]) * gain_q15) >> 15;
     return (tracker_peak_t){
         .freq_uHz = (int32_t)((int64_t)bin_q15 * self->cfg.rate_uHz >> shift),
         .amp_um_s2 = (int32_t)clamp_i64(amp_um_s2, 0, INT32_MAX),

@@ -11,11 +11,12 @@ from pathlib import Path
 
 TARGET = Path(__file__).resolve().parents[2] / "firmware/sense/cosine_table.c"
 POINTS = 256
-FRACTION_BITS = 22
+FRACTION_BITS = 25
 
 
 def table() -> str:
-    values = [round(math.cos(2 * math.pi * i / POINTS) * 2**FRACTION_BITS) for i in range(POINTS)]
+    one = 2**FRACTION_BITS - 1  # so that a shift by 6 still fits 32 bits
+    values = [round(math.cos(2 * math.pi * i / POINTS) * one) for i in range(POINTS)]
     rows = "\n".join(
         "    " + ", ".join(f"{v}" for v in values[i : i + 8]) + "," for i in range(0, POINTS, 8)
     )
@@ -23,7 +24,7 @@ def table() -> str:
 // clang-format off
 #include "cosine_table.h"
 
-const int32_t cosine_q22[COSINE_POINTS] = {{
+const int32_t cosine_q25[COSINE_POINTS] = {{
 {rows}
 }};
 """
