@@ -1,0 +1,172 @@
+/// The executable as a user meets it: exit codes, one line on stderr, JSON on stdout.
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "firmware.h"
+
+namespace {
+
+struct Outcome {
+    int exit_code;
+    std::string output; ///< stdout and stderr together
+};
+
+Outcome bench(const std::string &words) {
+    const std::string command = std::string(QUIESCE_BENCH) + " " + words + " 2>&1";
+    std::FILE *pipe = ::popen(command.c_str(), "r");
+    Outcome out{-1, ""};
+    char buffer[4096];
+    for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) {
+        out.output.append(buffer, n);
+    }
+    out.exit_code = WEXITSTATUS(::pclose(pipe));
+    return out;
+}
+
+const std::string kSine = "--scenario sim_hil/scenarios/sine_20Hz.toml ";
+
+struct BadCall {
+    const char *name;
+    const char *words;
+    const char *message;
+};
+
+void PrintTo(const BadCall &call, std::ostream *out) {
+    *out << call.name;
+}
+
+class BadCalls : public testing::TestWithParam<BadCall> {};
+
+TEST_P(BadCalls, exit_with_2_and_one_line) {
+    const Outcome outcome = bench(GetParam().words);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.output.rfind("quiesce_bench: ", 0), 0u) << outcome.output;
+    EXPECT_EQ(outcome.output.find('\n'), outcome.output.size() - 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(GetParam().message), std::string::npos) << outcome.output;
+}
+
+const BadCall kBadCalls[] = {
+    {"no_command", "", "no command given"},
+    {"unknown_command", "fly", "unknown command fly"},
+    {"no_scenario", "run --law off", "--scenario is missing"},
+    {"no_law", "run --scenario sim_hil/scenarios/sine_5Hz.toml", "--law is missing"},
+    {"unknown_law", "run --scenario sim_hil/scenarios/sine_5Hz.toml --law magic", "--law magic"},
+    {"missing_scenario", "run --scenario no.toml --law off", "no.toml"},
+    {"missing_plant", "run --scenario sim_hil/scenarios/sine_5Hz.toml --law off --plant no.toml",
+     "no.toml"},
+    {"unknown_parameter", "run --scenario sim_hil/scenarios/sine_5Hz.toml --law off --set warp=9",
+     "warp"},
+    {"refused_parameter",
+     "run --scenario sim_hil/scenarios/sine_5Hz.toml --law off --set tick_rate_Hz=999",
+     "tick_rate_Hz"},
+    {"unknown_target", "run --scenario sim_hil/scenarios/sine_5Hz.toml --law off --target moon",
+     "unknown target"},
+    {"bad_seed", "run --scenario sim_hil/scenarios/sine_5Hz.toml --law off --seed x", "--seed x"},
+    {"plant_is_a_scenario", "plant-check sim_hil/scenarios/sine_5Hz.toml", "schema: expected"},
+    {"no_file", "scenario-check", "expected exactly one FILE"},
+    {"replay_without_counts", "replay --trace t", "--counts is missing"},
+    {"replay_missing_counts", "replay --counts no.bin --trace t", "no.bin"},
+    {"unwritable_trace",
+     "run --scenario sim_hil/scenarios/sine_5Hz.toml --law off --trace no/such/file", "--trace"},
+};
+INSTANTIATE_TEST_SUITE_P(CommandLine, BadCalls, testing::ValuesIn(kBadCalls),
+                         [](const auto &test) { return std::string(test.param.name); });
+
+TEST(CommandLine, run_prints_one_json_object) {
+    const Outcome outcome = bench("run " + kSine + "--law constant --set constant_current_mA=5000");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    const nlohmann::json out = nlohmann::json::parse(outcome.output);
+    for (const char *key : {"scenario",
+                            "law",
+                            "target",
+                            "freq_hz",
+                            "freq2_hz",
+                            "amp_um",
+                            "accel_rms_mm_s2",
+                            "amp2_um",
+                            "accel_rms2_mm_s2",
+                            "mean_current_A",
+                            "rms_disp_um",
+                            "settle_s",
+                            "instr_median",
+                            "instr_worst",
+                            "faults",
+                            "seed",
+                            "noise_mg",
+                            "drive_V",
+                            "ticks",
+                            "wall_s",
+                            "realtime_factor",
+                            "distinct_commands",
+                            "telemetry_crc32"}) {
+        EXPECT_TRUE(out.contains(key)) << key;
+    }
+    EXPECT_EQ(out["law"], "constant");
+    EXPECT_EQ(out["freq_hz"], 20.0);
+    EXPECT_TRUE(out["settle_s"].is_null());
+    EXPECT_TRUE(out["instr_median"].is_null());
+    EXPECT_EQ(out["ticks"], 8000);
+    EXPECT_NEAR(out["amp_um"].get<double>(), 10.71, 0.05);
+    EXPECT_NEAR(out["mean_current_A"].get<double>(), 5.0, 1e-6);
+}
+
+TEST(CommandLine, step_has_two_phases_and_a_settling_time) {
+    const Outcome outcome = bench("run --scenario sim_hil/scenarios/step_10_20Hz.toml --law off");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    const nlohmann::json out = nlohmann::json::parse(outcome.output);
+    EXPECT_EQ(out["freq_hz"], 10.0);
+    EXPECT_EQ(out["freq2_hz"], 20.0);
+    EXPECT_NEAR(out["settle_s"].get<double>(), 0.59, 0.01);
+}
+
+TEST(CommandLine, files_and_parameters_are_listed) {
+    EXPECT_EQ(bench("plant-check sim_hil/plants/frame_3dof.toml").exit_code, 0);
+    EXPECT_EQ(bench("scenario-check sim_hil/scenarios/trace_equality.toml").exit_code, 0);
+    EXPECT_EQ(bench("--help").exit_code, 0);
+    const Outcome outcome = bench("params");
+    ASSERT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(nlohmann::json::parse(outcome.output).size(), QUIESCE_PARAM_COUNT);
+}
+
+TEST(CommandLine, replay_refuses_half_a_count) {
+    const std::string file =
+        (std::filesystem::temp_directory_path() / ("quiesce_odd_" + std::to_string(::getpid())))
+            .string();
+    std::ofstream(file, std::ios::binary) << "12345";
+    const Outcome outcome = bench("replay --counts " + file + " --trace " + file + ".trace");
+    std::filesystem::remove(file);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.output.find("32-bit little-endian"), std::string::npos) << outcome.output;
+    EXPECT_FALSE(std::filesystem::exists(file + ".trace"));
+}
+
+TEST(CommandLine, replay_of_recorded_counts_writes_a_trace) {
+    const std::string base =
+        (std::filesystem::temp_directory_path() / ("quiesce_replay_" + std::to_string(::getpid())))
+            .string();
+    const char counts[8] = {1, 0, 0, 0, 2, 0, 0, 0};
+    std::ofstream(base + ".bin", std::ios::binary).write(counts, sizeof counts);
+    const Outcome outcome =
+        bench("replay --counts " + base + ".bin --trace " + base + ".trace --law fuzzy");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_EQ(nlohmann::json::parse(outcome.output)["ticks"], 2);
+    std::ifstream trace(base + ".trace", std::ios::binary);
+    std::string head;
+    std::getline(trace, head);
+    const nlohmann::json columns = nlohmann::json::parse(head);
+    EXPECT_EQ(columns["rows"], 2);
+    EXPECT_EQ(columns["columns"][1], "accel_counts");
+    std::filesystem::remove(base + ".bin");
+    std::filesystem::remove(base + ".trace");
+}
+
+} // namespace

@@ -1,0 +1,65 @@
+#include "fault_injector.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using quiesce::ActuatorFault;
+using quiesce::FaultInjector;
+using quiesce::FaultKind;
+
+constexpr std::int32_t kFullScale = 2047;
+
+lockstep_stimulus_t applied(FaultInjector &injector, double time_s, std::int32_t counts) {
+    lockstep_stimulus_t stimulus = {counts, LOCKSTEP_FRESH | LOCKSTEP_ENABLE, 0};
+    injector.apply(time_s, stimulus);
+    return stimulus;
+}
+
+lockstep_stimulus_t during(FaultKind kind) {
+    FaultInjector injector({{kind, 1.0, 0.5}}, kFullScale);
+    applied(injector, 0.999, 11);
+    return applied(injector, 1.0, 12);
+}
+
+TEST(FaultInjector, each_kind_shows_in_the_stimulus) {
+    EXPECT_EQ(during(FaultKind::dropout).flags, LOCKSTEP_ENABLE);
+    EXPECT_EQ(during(FaultKind::stuck).accel_counts, 11);
+    EXPECT_EQ(during(FaultKind::saturate).accel_counts, kFullScale);
+    EXPECT_GT(during(FaultKind::range).accel_counts, kFullScale);
+    EXPECT_NE(during(FaultKind::estop).flags & LOCKSTEP_ESTOP, 0u);
+    EXPECT_NE(during(FaultKind::fault_reset).flags & LOCKSTEP_FAULT_RESET, 0u);
+    EXPECT_EQ(during(FaultKind::disable).flags, LOCKSTEP_FRESH);
+    EXPECT_EQ(during(FaultKind::coil_open).flags, LOCKSTEP_FRESH | LOCKSTEP_ENABLE);
+}
+
+TEST(FaultInjector, is_present_from_its_start_until_its_end) {
+    FaultInjector injector({{FaultKind::dropout, 0.003, 0.002}}, kFullScale);
+    int lost = 0;
+    for (int tick = 0; tick < 10; ++tick) {
+        const double time_s = static_cast<double>(tick) / 1000.0;
+        const bool is_lost = (applied(injector, time_s, tick).flags & LOCKSTEP_FRESH) == 0;
+        EXPECT_EQ(is_lost, tick == 3 || tick == 4) << "tick " << tick;
+        lost += is_lost ? 1 : 0;
+    }
+    EXPECT_EQ(lost, 2);
+}
+
+TEST(FaultInjector, stuck_sample_stays_for_the_whole_fault) {
+    FaultInjector injector({{FaultKind::stuck, 1.0, 1.0}}, kFullScale);
+    applied(injector, 0.9, 5);
+    EXPECT_EQ(applied(injector, 1.1, 6).accel_counts, 5);
+    EXPECT_EQ(applied(injector, 1.9, 7).accel_counts, 5);
+    EXPECT_EQ(applied(injector, 2.1, 8).accel_counts, 8);
+}
+
+TEST(FaultInjector, actuator_faults_reach_the_actuator) {
+    const FaultInjector injector(
+        {{FaultKind::driver_stuck, 1.0, 2.0}, {FaultKind::coil_open, 2.0, 2.0}}, kFullScale);
+    EXPECT_EQ(injector.actuator(0.5), ActuatorFault::none);
+    EXPECT_EQ(injector.actuator(1.5), ActuatorFault::driver_stuck);
+    EXPECT_EQ(injector.actuator(2.5), ActuatorFault::coil_open);
+    EXPECT_EQ(injector.actuator(4.5), ActuatorFault::none);
+}
+
+} // namespace
