@@ -125,7 +125,7 @@ std::string TomlTable::text(const std::string &key) {
 std::string TomlTable::choice(const std::string &key, const std::vector<std::string> &choices) {
     const std::string expected = "expected one of: " + joined(choices);
     const toml::node &node = require(key, expected);
-    const std::string value = node.value<std::string>().value_or("");
+    std::string value = node.value<std::string>().value_or("");
     if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
         fail(key, expected + "; found " + shown(node));
     }

@@ -1,4 +1,4 @@
-/// White Gaussian noise that is the same on every machine for the same seed.
+/// White Gaussian noise that is the same for the same seed, whatever the C++ library.
 #ifndef QUIESCE_NOISE_H
 #define QUIESCE_NOISE_H
 

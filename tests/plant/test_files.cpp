@@ -244,6 +244,9 @@ TEST(ScenarioFile, reads_what_it_says) {
 TEST(ScenarioFile, every_shipped_scenario_and_its_plant_load) {
     int count = 0;
     for (const auto &entry : std::filesystem::directory_iterator("sim_hil/scenarios")) {
+        if (read(entry.path().string()).find("\"quiesce-scenario\"") == std::string::npos) {
+            continue; // tables of reference figures live beside the scenarios
+        }
         const quiesce::Scenario scenario = quiesce::load_scenario(entry.path().string());
         EXPECT_EQ(scenario.name, entry.path().stem().string());
         EXPECT_FALSE(quiesce::load_plant(scenario.plant_file).name.empty());
