@@ -41,15 +41,6 @@ uint32_t sqrt_fast_u64(uint64_t value) {
     return isqrt_u32((uint32_t)(value >> down)) << (down / 2u);
 }
 
-uint32_t log2_q8_u64(uint64_t value) {
-    if (value == 0) {
-        return 0;
-    }
-    const uint32_t zeros = leading_zeros_u64(value);
-    const uint32_t fraction = (uint32_t)((value << zeros) >> 55) & 0xFFu;
-    return ((63u - zeros) << 8) | fraction;
-}
-
 scale_t scale_from_ratio(uint32_t numerator, uint32_t denominator) {
     uint32_t mantissa = numerator / denominator;
     uint64_t rest = numerator % denominator;

@@ -55,7 +55,20 @@ uint32_t isqrt_u32(uint32_t value);
 uint32_t sqrt_fast_u64(uint64_t value);
 
 /// log2(value) in Q8, value >= 1; 0 for value 0. Linear between powers of two: at most 0.086 low.
-uint32_t log2_q8_u64(uint64_t value);
+/// Works on the leading 32 bits, which hold the fraction whatever the value.
+static inline uint32_t log2_q8_u64(uint64_t value) {
+    const uint32_t high = (uint32_t)(value >> 32);
+    const uint32_t lead = high != 0 ? high : (uint32_t)value;
+    if (lead == 0) {
+        return 0;
+    }
+    const uint32_t zeros = (uint32_t)__builtin_clz(lead);
+    // Eight bits after the leading one; from the low word where the high one is too short.
+    const uint32_t bits = zeros > 23u && high != 0
+                              ? (uint32_t)(value >> (55u - zeros) & 0x1FFu) << 23
+                              : lead << zeros;
+    return ((high != 0 ? 63u : 31u) - zeros) << 8 | ((bits >> 23) & 0xFFu);
+}
 
 /// A positive factor as mantissa x 2^-shift, so that one multiplication applies it at full
 /// precision.

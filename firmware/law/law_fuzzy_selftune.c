@@ -15,6 +15,13 @@ static int32_t direction(const quiesce_params_t *params, const law_in_t *in) {
     return params->selftune_polarity * sign_i64(in->accel_um_s2) * sign_i64(in->velocity_um_s_q32);
 }
 
+// rate x 1000 / tick rate, floor, without leaving 32 bits.
+static int32_t step_uA(const quiesce_params_t *params) {
+    const int32_t whole = params->selftune_rate_mA_s / params->tick_rate_Hz;
+    const int32_t rest = params->selftune_rate_mA_s % params->tick_rate_Hz;
+    return whole * 1000 + rest * 1000 / params->tick_rate_Hz;
+}
+
 static int64_t leak_uA(const quiesce_params_t *params, int64_t excess_uA) {
     if (params->selftune_leak_ms == 0) {
         return 0;
@@ -28,8 +35,8 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
         state->current_uA = base_uA;
         return in->base_mA;
     }
-    const int64_t rate_uA = (int64_t)params->selftune_rate_mA_s * 1000 / params->tick_rate_Hz;
-    const int64_t current_uA = state->current_uA + rate_uA * direction(params, in) -
+    const int64_t current_uA = state->current_uA +
+                               (int64_t)step_uA(params) * direction(params, in) -
                                leak_uA(params, (int64_t)state->current_uA - base_uA);
     state->current_uA = (int32_t)clamp_i64(current_uA, 0, params->max_current_mA * INT64_C(1000));
     return state->current_uA / 1000;

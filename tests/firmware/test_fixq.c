@@ -34,6 +34,12 @@ static void test_log2_at_powers_of_two_and_between(void) {
     for (uint32_t bit = 0; bit < 64; bit++) {
         TEST_ASSERT_EQUAL_UINT32(bit << 8, log2_q8_u64(UINT64_C(1) << bit));
     }
+    // The eight bits after the leading one, wherever it stands.
+    for (uint32_t bit = 0; bit < 64; bit++) {
+        const uint64_t value = UINT64_C(0xB5C3A1D2F4E60817) >> bit;
+        const uint32_t fraction = (uint32_t)((value << bit) >> 55) & 0xFFu;
+        TEST_ASSERT_EQUAL_UINT32((63u - bit) << 8 | fraction, log2_q8_u64(value));
+    }
     TEST_ASSERT_EQUAL_UINT32((1u << 8) | 128u, log2_q8_u64(3));
     TEST_ASSERT_EQUAL_UINT32(0, log2_q8_u64(0));
     TEST_ASSERT_EQUAL_UINT32((63u << 8) | 255u, log2_q8_u64(UINT64_MAX));
