@@ -1,0 +1,211 @@
+"""`quiesce hil`: the published scenarios in closed loop, on the host and on the image in QEMU."""
+
+import argparse
+import json
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+from quiesce import laws, scenarios
+from quiesce.atomic import output_files
+from quiesce.bench_exe import Bench, target_options
+from quiesce.errors import EXIT_FAILED
+from quiesce.hil_metrics import Result, make_rows, metrics_json
+from quiesce.hil_page import make_page
+from quiesce.hil_runs import (
+    ConstantSearch,
+    Plan,
+    Run,
+    Runner,
+    compare_traces,
+    measure_speed,
+    measure_uart,
+)
+from quiesce.hil_table import comparison_table, summary
+from quiesce.paths import build_folder, shown
+from quiesce.reference import load_reference
+from quiesce.rule_surface import rule_surface
+
+STEADY = ("sine_5Hz", "sine_10Hz", "sine_15Hz", "sine_20Hz")
+STEP = "step_10_20Hz"
+ON_TARGET = ("sine_5Hz", STEP)
+QUICK = ("sine_5Hz", STEP)
+SPEED_LAW = "fuzzy"
+TRACE_LAW = "fuzzy_selftune_printed"
+TRACE_SEEDS = 5
+QUICK_TRACE_SEEDS = 2
+UART_EXCHANGES = 3000
+
+EPILOG = f"""examples:
+  quiesce hil                                  everything: table, report, metrics
+  quiesce hil --quick                          5 Hz and the step, two seeds, no UART: under a minute
+  quiesce hil --scenario step_10_20Hz --law fuzzy --law fuzzy_selftune_printed
+  quiesce hil --scenario my_scenario.toml --target host
+  quiesce hil --target host --json | python3 -m json.tool
+
+scenarios: {", ".join((*STEADY, STEP))} (and any .toml file)
+laws:      {", ".join(laws.names())}
+
+Without --scenario, 5 Hz and the step run on the image, too. Open loop always runs: reductions are
+against it. Written to build/report/hil: index.html, metrics.json, details.json. Exit code 1 where
+the image does not answer bit for bit like the host.
+"""
+
+
+def noise_mg(text: str) -> float:
+    value = float(text)
+    if not 0.0 <= value <= 1e4:
+        raise ValueError
+    return value
+
+
+def seed(text: str) -> int:
+    value = int(text)
+    if not 0 <= value < 2**62:
+        raise ValueError
+    return value
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    parser = commands.add_parser(
+        "hil",
+        help="the published scenarios in closed loop; table and report",
+        description="Run the controller in closed loop with the simulated structure, on this "
+        "machine and as the cross-compiled image in QEMU; print published against ours against "
+        "the best attainable, and write a report.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    repeatable: dict[str, Any] = {"action": "append", "default": []}
+    parser.add_argument(
+        "--scenario", metavar="NAME", help="name or .toml file, repeatable (all)", **repeatable
+    )
+    parser.add_argument("--law", metavar="NAME", help="law, repeatable (all)", **repeatable)
+    parser.add_argument(
+        "--target", choices=["host", "mps2", "all"], default="all",
+        help="this machine, the image in QEMU, or both (%(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--set", metavar="NAME=VALUE", help="parameter for every law, repeatable", **repeatable
+    )
+    parser.add_argument("--seed", type=seed, metavar="N", help="of the sensor noise (scenario's)")
+    parser.add_argument(
+        "--noise-mg", type=noise_mg, metavar="X", help="sensor noise, RMS (scenario's: 0.5)"
+    )
+    parser.add_argument("--quick", action="store_true", help="a shorter run, see above")
+    parser.add_argument("--json", action="store_true", help="print metrics.json, not the table")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder of the report (build/report/hil)"
+    )
+    parser.set_defaults(run=run)
+
+
+def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
+    chosen = [laws.find(name) for name in dict.fromkeys(args.law)] or list(laws.LAWS)
+    if all(law.name != laws.OPEN_LOOP for law in chosen):
+        chosen.insert(0, laws.find(laws.OPEN_LOOP))
+    default = QUICK if args.quick else (*STEADY, STEP)
+    if args.target == "mps2":
+        default = ON_TARGET
+    names = list(dict.fromkeys(args.scenario)) or list(default)
+    loaded = [scenarios.load(bench, name) for name in names]
+    options = [] if args.seed is None else ["--seed", str(args.seed)]
+    options += [] if args.noise_mg is None else ["--noise-mg", str(args.noise_mg)]
+    return Plan(
+        scenarios=loaded,
+        target_scenarios=[s.name for s in loaded] if args.scenario else ON_TARGET,
+        laws=chosen,
+        targets=["host", "mps2"] if args.target == "all" else [args.target],
+        is_quick=args.quick,
+        settings=args.set,
+        options=options,
+    )
+
+
+def say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run]) -> Result:
+    """What must run alone, after the closed-loop runs; then everything put together."""
+    reference = load_reference()
+    rows, beside = make_rows(runs, reference)
+    on_image = "mps2" in plan.targets
+    equal = uart = None
+    if on_image:
+        first_seed = 1 if args.seed is None else args.seed
+        count = QUICK_TRACE_SEEDS if plan.is_quick else TRACE_SEEDS
+        say(f"comparing every word of every reply, image against host, {count} seeds")
+        equal = compare_traces(
+            bench,
+            scenarios.load(bench, scenarios.TRACE_EQUALITY),
+            laws.find(TRACE_LAW),
+            range(first_seed, first_seed + count),
+        )
+    say("measuring speed, nothing else running")
+    step, law = scenarios.load(bench, STEP), laws.find(SPEED_LAW)
+    speed = measure_speed(bench, step, law, plan.targets, plan.is_quick)
+    if on_image and not plan.is_quick:
+        say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
+        uart = measure_uart(bench, UART_EXCHANGES)
+    return Result(rows, beside, reference.published, equal, speed, uart)
+
+
+def details_json(result: Result, searches: list[ConstantSearch], runs: list[Run]) -> dict[str, Any]:
+    """What metrics.json has no place for."""
+    return {
+        "constant_search": [
+            {
+                "scenario": search.scenario.name,
+                "current_mA": search.current_mA,
+                "amp_um": [figures["amp_um"] for figures in search.figures],
+                "accel_rms_mm_s2": [figures["accel_rms_mm_s2"] for figures in search.figures],
+                "rms_disp_um": [figures["rms_disp_um"] for figures in search.figures],
+                "best_mA": search.best_mA,
+            }
+            for search in searches
+        ],
+        "trace_equal": result.trace_equal,
+        "uart": result.uart,
+        "runs": [{**run.figures, "law": run.case.law.name} for run in runs],
+    }
+
+
+def rerun_command(args: argparse.Namespace) -> str:
+    words = ["./tools/hil"]
+    for option in ("scenario", "law", "set"):
+        words += [word for value in getattr(args, option) for word in (f"--{option}", value)]
+    if args.target != "all":
+        words += ["--target", args.target]
+    if args.seed is not None:
+        words += ["--seed", str(args.seed)]
+    if args.noise_mg is not None:
+        words += ["--noise-mg", f"{args.noise_mg:g}"]
+    return shlex.join(words + (["--quick"] if args.quick else []))
+
+
+def run(args: argparse.Namespace) -> int:
+    bench = Bench()
+    for target in {"host": [], "mps2": ["mps2", "mps2-uart"]}.get(args.target, ["mps2"]):
+        target_options(target)
+    plan = make_plan(args, bench)
+    runs, searches = Runner(bench, plan).run_all()
+    result = measure(args, bench, plan, runs)
+    metrics = metrics_json(result)
+
+    out = args.out or build_folder() / "report/hil"
+    say("drawing the report")
+    page = make_page(result, runs, searches, rule_surface(bench), rerun_command(args))
+    details = details_json(result, searches, runs)
+    with output_files(out) as staging:
+        (staging / "index.html").write_text(page, encoding="utf-8")
+        (staging / "metrics.json").write_text(json.dumps(metrics, indent=1) + "\n")
+        (staging / "details.json").write_text(json.dumps(details, indent=1) + "\n")
+    if args.json:
+        print(json.dumps(metrics, indent=1))
+    else:
+        print(f"\n{comparison_table(result)}\n\n{summary(result)}\n")
+        print(f"report: {shown(out / 'index.html')}\nmetrics: {shown(out / 'metrics.json')}")
+    is_equal = result.trace_equal is None or result.trace_equal["mismatches"] == 0
+    return 0 if is_equal else EXIT_FAILED

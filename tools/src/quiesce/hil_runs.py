@@ -1,0 +1,199 @@
+"""The closed-loop runs behind `quiesce hil`: which ones, and their results from the bench."""
+
+import tempfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+from quiesce.bench_exe import Bench, echo_image, image, setting_options, target_options
+from quiesce.laws import CONSTANT_BEST, OPEN_LOOP, Law
+from quiesce.params import effective_params
+from quiesce.progress import Progress
+from quiesce.scenarios import Scenario
+from quiesce.trace import Trace, read_trace
+
+WORKERS = 2
+CONSTANT_STEP_mA = 500
+QUICK_CONSTANT_STEP_mA = 2500
+TRACE_COLUMNS = [
+    "t_s", "x5_um", "a5_mm_s2", "coil_A", "freq_uHz", "freq_is_valid", "rms_um_s2",
+    "current_cmd_mA",
+]  # fmt: skip
+
+Done = TypeVar("Done")
+
+
+@dataclass(frozen=True)
+class Case:
+    scenario: Scenario
+    law: Law
+    target: str
+
+
+@dataclass(frozen=True)
+class Run:
+    case: Case
+    figures: dict[str, Any]  # the bench's own
+    trace: Trace
+
+
+@dataclass(frozen=True)
+class ConstantSearch:
+    """Figures over a grid of constant currents, and the best of them.
+
+    Best: smallest displacement, as amplitude in a steady scenario and as RMS after a step.
+    """
+
+    scenario: Scenario
+    current_mA: list[int]
+    figures: list[dict[str, Any]]
+
+    def displacement_um(self, index: int) -> float:
+        return self.figures[index]["rms_disp_um" if self.scenario.is_step else "amp_um"]
+
+    @property
+    def best_mA(self) -> int:
+        return self.current_mA[min(range(len(self.current_mA)), key=self.displacement_um)]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What the user asked for."""
+
+    scenarios: Sequence[Scenario]
+    target_scenarios: Sequence[str]  # names of those that run on the image
+    laws: Sequence[Law]
+    targets: Sequence[str]
+    is_quick: bool
+    settings: Sequence[str] = ()
+    options: Sequence[str] = field(default_factory=list)  # seed, noise: passed to every run
+
+    @property
+    def constant_step_mA(self) -> int:
+        return QUICK_CONSTANT_STEP_mA if self.is_quick else CONSTANT_STEP_mA
+
+    def laws_on(self, target: str) -> list[Law]:
+        """The quick plan runs on the image what tells most: the fuzzy law, and what it needs."""
+        if target == "host" or not self.is_quick or self.targets == ["mps2"]:
+            return list(self.laws)
+        return [law for law in self.laws if law.name in (OPEN_LOOP, "fuzzy")]
+
+    def cases(self) -> list[Case]:
+        return [
+            Case(scenario, law, target)
+            for scenario in self.scenarios
+            for target in self.targets
+            if target == "host" or scenario.name in self.target_scenarios
+            for law in self.laws_on(target)
+        ]
+
+    def searches(self) -> list[Scenario]:
+        if all(law.name != CONSTANT_BEST for law in self.laws):
+            return []
+        return [s for s in self.scenarios if any(case.scenario is s for case in self.cases())]
+
+
+class Runner:
+    """Runs a plan on the bench, two runs at a time."""
+
+    def __init__(self, bench: Bench, plan: Plan) -> None:
+        self._bench = bench
+        self._plan = plan
+        # Refuses bad settings before anything runs.
+        self._params = effective_params(bench, plan.settings)
+        self._target_options = {t: target_options(t) for t in plan.targets}
+
+    def run_all(self) -> tuple[list[Run], list[ConstantSearch]]:
+        cases, search_in = self._plan.cases(), self._plan.searches()
+        progress = Progress(len(cases) + len(search_in))
+        searches = self._map(lambda scenario: self._search(scenario, progress), search_in)
+        best_mA = {search.scenario.name: search.best_mA for search in searches}
+        runs = self._map(lambda case: self._run(case, best_mA, progress), cases)
+        return runs, searches
+
+    def _map(self, work: Callable[[Any], Done], items: Sequence[Any]) -> list[Done]:
+        pool = ThreadPoolExecutor(WORKERS)
+        try:
+            return [future.result() for future in [pool.submit(work, item) for item in items]]
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            self._bench.stop()
+            raise
+        finally:
+            pool.shutdown()
+
+    def _options(self, scenario: Scenario, law: Law, settings: Sequence[str]) -> list[str]:
+        return [
+            "--scenario", str(scenario.file), "--law", law.bench_law,
+            *setting_options([*self._plan.settings, *law.settings, *settings]),
+            *self._plan.options,
+        ]  # fmt: skip
+
+    def _search(self, scenario: Scenario, progress: Progress) -> ConstantSearch:
+        law = next(law for law in self._plan.laws if law.name == CONSTANT_BEST)
+        top_mA = self._params["max_current_mA"]
+        grid_mA = [*range(0, top_mA, self._plan.constant_step_mA), top_mA]
+        figures = [
+            self._bench.json("run", *self._options(scenario, law, [f"constant_current_mA={mA}"]))
+            for mA in grid_mA
+        ]
+        search = ConstantSearch(scenario, grid_mA, figures)
+        progress.done(
+            f"{scenario.name}: {len(grid_mA)} constant currents, best {search.best_mA / 1000:g} A"
+        )
+        return search
+
+    def _run(self, case: Case, best_mA: dict[str, int], progress: Progress) -> Run:
+        settings = []
+        if case.law.name == CONSTANT_BEST:
+            settings = [f"constant_current_mA={best_mA[case.scenario.name]}"]
+        options = self._options(case.scenario, case.law, settings)
+        with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
+            file = Path(folder) / "trace"
+            options += [*self._target_options[case.target], "--trace", str(file)]
+            figures = self._bench.json("run", *options)
+            trace = read_trace(file, TRACE_COLUMNS)
+        progress.done(f"{case.scenario.name} {case.law.name} {case.target}: {headline(figures)}")
+        return Run(case, figures, trace)
+
+
+def headline(figures: dict[str, Any]) -> str:
+    text = f"amplitude {figures['amp_um']:.1f} um"
+    if figures["amp2_um"] is not None:
+        text += f", then {figures['amp2_um']:.1f} um"
+    if figures["instr_median"] is not None:
+        text += (
+            f", {figures['instr_median']} instructions a tick, at most {figures['instr_worst']}"
+        )
+    return text
+
+
+def measure_speed(
+    bench: Bench, scenario: Scenario, law: Law, targets: Sequence[str], is_quick: bool
+) -> dict[str, float | None]:
+    """Real-time factor of the closed loop, nothing else running here: the best of some repeats."""
+    repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 10}
+    factors: dict[str, float | None] = {"host": None, "mps2": None}
+    for target in targets:
+        options = ["--scenario", str(scenario.file), "--law", law.bench_law]
+        options += ["--repeat", str(repeats[target]), *target_options(target)]
+        factors[target] = bench.json("run", *options)["realtime_factor"]
+    return factors
+
+
+def compare_traces(
+    bench: Bench, scenario: Scenario, law: Law, seeds: Sequence[int]
+) -> dict[str, Any]:
+    """Every word of every reply, image against host."""
+    options = ["--scenario", str(scenario.file), "--law", law.bench_law]
+    options += [*setting_options(law.settings), "--seeds", ",".join(map(str, seeds))]
+    return bench.json("compare", *options, *target_options("mps2"))
+
+
+def measure_uart(bench: Bench, exchanges: int) -> dict[str, Any]:
+    return bench.json(
+        "uart-rate", "--image", str(image("mps2-uart")), "--echo-image", str(echo_image()),
+        "--exchanges", str(exchanges),
+    )  # fmt: skip

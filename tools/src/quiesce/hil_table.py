@@ -1,0 +1,169 @@
+"""The table that `quiesce hil` prints: published, ours, independent simulation, bound."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import groupby
+
+from quiesce import laws
+from quiesce.hil_metrics import Beside, Result, Row
+from quiesce.reference import Published
+
+HEAD_1 = (
+    f"{'':25}{'displacement amplitude, reduction %':^42}{'RMS acceleration, red. %':^30}"
+    f"{'mean':>5}{'settle':>7}"
+)
+HEAD_2 = (
+    f"{'law':21}{'on':4}{'publ.':>6}{'ours':>6}{'diff':>6}{'sim.':>6}{'diff':>6}{'bound':>6}"
+    f"{'diff':>6}{'ours':>6}{'sim.':>6}{'diff':>6}{'bound':>6}{'diff':>6}{'A':>5}{'s':>7}"
+)
+NOTES = (
+    "publ.: measured by the paper on the real structure. sim.: an independent simulation of this "
+    "plant.\n"
+    "bound: the best that any current waveform does on this plant (best found, +-0.5). diff: ours "
+    "less the\n"
+    "figure before it; for a range, less its nearer end. on: 'both' where host and image agree to "
+    "every digit."
+)
+
+
+def number(value: float | None, digits: int = 1, width: int = 6) -> str:
+    return f"{'-' if value is None else f'{value:.{digits}f}':>{width}}"
+
+
+def difference(ours: float | None, other: float | None) -> float | None:
+    return None if ours is None or other is None else ours - other
+
+
+def published_text(published: Published | None) -> str:
+    if published is None:
+        return "-"
+    if published.low_pct == published.high_pct:
+        return f"{published.low_pct:.1f}"
+    return f"{published.low_pct:g}-{published.high_pct:g}"
+
+
+def published_difference(ours: float | None, published: Published | None) -> float | None:
+    """Distance from the published figure, or from the nearer end of a range; 0 inside it."""
+    if ours is None or published is None:
+        return None
+    return ours - min(max(ours, published.low_pct), published.high_pct)
+
+
+def table_line(row: Row, beside: Beside) -> str:
+    amp, accel = row.amp_reduction_pct, row.accel_rms_reduction_pct
+    sim_amp = beside.simulated.get("amp_reduction_pct")
+    sim_accel = beside.simulated.get("accel_rms_reduction_pct")
+    cells = [
+        f"{laws.find(row.law).label:21}{row.target:4}",
+        f"{published_text(beside.published):>6}",
+        number(amp),
+        number(published_difference(amp, beside.published)),
+        number(sim_amp),
+        number(difference(amp, sim_amp)),
+        number(row.bound_amp_pct),
+        number(difference(amp, row.bound_amp_pct)),
+        number(accel),
+        number(sim_accel),
+        number(difference(accel, sim_accel)),
+        number(row.bound_accel_rms_pct),
+        number(difference(accel, row.bound_accel_rms_pct)),
+        number(row.mean_current_A, 2, 5),
+        number(row.settle_s, 3, 7),
+    ]
+    return "".join(cells)
+
+
+def figures_of(row: Row) -> Row:
+    """The row without what only an emulated target has."""
+    return replace(row, target="", instr_median=None, instr_worst=None)
+
+
+def merge_targets(result: Result) -> list[tuple[Row, Beside]]:
+    """Rows with host and image merged where they agree to every digit."""
+    merged: list[tuple[Row, Beside]] = []
+    for row, beside in zip(result.rows, result.beside, strict=True):
+        for i, (other, _) in enumerate(merged):
+            if figures_of(other) == figures_of(row):
+                merged[i] = (replace(other, target="both"), beside)
+                break
+        else:
+            merged.append((row, beside))
+    return merged
+
+
+def groups(result: Result) -> Iterator[tuple[str, list[tuple[Row, Beside]]]]:
+    """Rows by scenario and frequency, each with its heading."""
+    pairs = merge_targets(result)
+    order = {key: i for i, key in enumerate(dict.fromkeys(group_key(row) for row, _ in pairs))}
+    pairs.sort(key=lambda pair: order[group_key(pair[0])])
+    for (scenario, freq_hz), members in groupby(pairs, key=lambda pair: group_key(pair[0])):
+        yield f"{scenario}, {freq_hz:g} Hz", list(members)
+
+
+def group_key(row: Row) -> tuple[str, float]:
+    return row.scenario, row.freq_hz
+
+
+def comparison_table(result: Result) -> str:
+    lines = [HEAD_1.rstrip(), HEAD_2]
+    for heading, members in groups(result):
+        lines += ["-" * len(HEAD_2), heading]
+        lines += [
+            table_line(row, beside) for row, beside in members if row.law != laws.OPEN_LOOP
+        ]
+    return "\n".join([*lines, "-" * len(HEAD_2), NOTES])
+
+
+def trace_line(result: Result) -> str:
+    equal = result.trace_equal
+    if equal is None:
+        return "trace equality: not run (host only)"
+    if equal["mismatches"] == 0:
+        verdict = "every word of every reply is the same"
+    else:
+        first = equal["first_mismatch"]
+        verdict = (
+            f"FAILED, {equal['mismatches']} mismatches, first: seed {first['seed']}, tick "
+            f"{first['tick']}, {first['field']}"
+        )
+    return (
+        f"trace equality, {' and '.join(equal['targets'])}: {verdict} "
+        f"({equal['ticks']} ticks, {len(equal['seeds'])} seeds,\n"
+        f"  {equal['distinct_commands']} distinct commands, a frequency step, faults "
+        f"{', '.join(map(str, equal['faults_seen'])) or 'none'} and recovery)"
+    )
+
+
+def speed_lines(result: Result) -> list[str]:
+    factors = [
+        f"{name} {factor:.0f}x"
+        for name, factor in result.realtime_factor.items()
+        if factor is not None
+    ]
+    lines = [f"closed loop against real time: {', '.join(factors)}"]
+    if result.uart:
+        uart = result.uart
+        lines.append(
+            f"over the image's UART: {uart['realtime_factor']:.2f}x, "
+            f"{uart['protocol_per_s']:.0f} exchanges/s = {uart['ratio']:.2f} of a raw echo of the "
+            "same bytes"
+        )
+    return lines
+
+
+def instruction_lines(result: Result) -> list[str]:
+    counted = {(row.scenario, row.law): row for row in result.rows if row.instr_median is not None}
+    if not counted:
+        return []
+    lines = ["instructions a tick of the image (Cortex-M4), median / worst:"]
+    for scenario, rows in groupby(counted.values(), key=lambda row: row.scenario):
+        figures = [f"{row.law} {row.instr_median} / {row.instr_worst}" for row in rows]
+        lines += [
+            f"  {scenario if i == 0 else '':13}{'   '.join(figures[i : i + 3])}"
+            for i in range(0, len(figures), 3)
+        ]
+    return lines
+
+
+def summary(result: Result) -> str:
+    return "\n".join([trace_line(result), *speed_lines(result), *instruction_lines(result)])
