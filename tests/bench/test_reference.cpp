@@ -56,6 +56,10 @@ struct Reference {
     double accel_reduction_pct;
 };
 
+void PrintTo(const Reference &reference, std::ostream *out) {
+    *out << reference.scenario;
+}
+
 class SteadySine : public testing::TestWithParam<Reference> {};
 
 TEST_P(SteadySine, open_loop_is_within_1_percent) {
