@@ -18,7 +18,7 @@ static uint32_t reject(lockstep_can_t *self) {
     return 0;
 }
 
-static uint32_t put_status(const lockstep_can_t *self, can_frame_t *out) {
+static void put_status(const lockstep_can_t *self, can_frame_t *out) {
     const struct quiesce_can_lockstep_status_t status = {
         .is_started = self->is_started,
         .param_is_refused = self->param_is_refused,
@@ -33,7 +33,6 @@ static uint32_t put_status(const lockstep_can_t *self, can_frame_t *out) {
         .length = QUIESCE_CAN_LOCKSTEP_STATUS_LENGTH,
     };
     (void)quiesce_can_lockstep_status_pack(out->data, &status, sizeof out->data);
-    return 1;
 }
 
 static void start(lockstep_can_t *self, const struct quiesce_can_lockstep_control_t *control) {
@@ -69,7 +68,8 @@ static uint32_t handle_control(lockstep_can_t *self, const can_frame_t *frame, c
     default:
         return reject(self);
     }
-    return put_status(self, out);
+    put_status(self, out);
+    return 1;
 }
 
 static uint32_t handle_param_write(lockstep_can_t *self, const can_frame_t *frame,
@@ -191,6 +191,10 @@ static const handler_t handlers[] = {
 void lockstep_can_init(lockstep_can_t *self) {
     memset(self, 0, sizeof *self);
     quiesce_params_default(&self->params);
+}
+
+void lockstep_can_greet(const lockstep_can_t *self, can_frame_t *out) {
+    put_status(self, out);
 }
 
 uint32_t lockstep_can_receive(lockstep_can_t *self, const can_frame_t *frame,

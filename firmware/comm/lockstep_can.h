@@ -40,6 +40,9 @@ typedef struct {
 /// Not started, every parameter at its default.
 void lockstep_can_init(lockstep_can_t *self);
 
+/// The LockstepStatus with which a target says, once, that it listens from now on.
+void lockstep_can_greet(const lockstep_can_t *self, can_frame_t *out);
+
 /// Takes one frame. Returns the number of frames written to out, in the order to send them.
 uint32_t lockstep_can_receive(lockstep_can_t *self, const can_frame_t *frame,
                               can_frame_t out[LOCKSTEP_CAN_MAX_REPLIES]);

@@ -31,6 +31,8 @@ int main(void) {
     uart_mps2_open(&uart, CMSDK_UART0, UART_BAUD);
     slcan_decoder_init(&decoder);
     lockstep_can_init(&server);
+    lockstep_can_greet(&server, &replies[0]);
+    send(&uart, &replies[0]);
     while (!server.is_stopped) {
         can_frame_t request;
         if (slcan_decode(&decoder, wait_for_byte(&uart), &request)) {

@@ -61,6 +61,7 @@ struct BlockTimes {
 /// Only one emulator runs at a time: an idle image polls its UART and would take a processor.
 BlockTimes run_blocks(QemuUartLink &link, QemuUart &echo, std::int64_t blocks) {
     BlockTimes times;
+    echo.await_greeting();
     run_echo(echo, kBlockExchanges); // both are warm before the clock runs
     echo.pause();
     for (std::int64_t block = 0; block < blocks; ++block) {

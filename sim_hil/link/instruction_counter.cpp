@@ -51,7 +51,8 @@ InstructionCounter::InstructionCounter(const QemuOptions &options) {
     argument << escape_commas(plugin)
              << ",begin=" << marker(options.image_path, "quiesce_count_begin")
              << ",end=" << marker(options.image_path, "quiesce_count_end")
-             << ",fd=" << report_.number();
+             << ",fd=" << report_.number()
+             << ",count=" << (options.count_each_instruction ? "instruction" : "block");
     plugin_argument_ = argument.str();
 }
 

@@ -11,6 +11,8 @@ struct QemuOptions {
     std::string image_path;
     /// Instruction counter; empty: the one beside this program; "none": do not count.
     std::string plugin_path;
+    /// Count each instruction by itself instead of whole blocks: slower, the check on the fast way.
+    bool count_each_instruction = false;
     /// Longest wait for one answer. Generous: a loaded machine must not look like a dead target.
     std::chrono::milliseconds answer_time = std::chrono::seconds(10);
 };

@@ -76,6 +76,13 @@ std::size_t QemuUart::receive(std::uint8_t *bytes, std::size_t capacity) {
     }
 }
 
+void QemuUart::await_greeting() {
+    std::uint8_t byte = 0;
+    while (byte != '\r') {
+        receive(&byte, 1);
+    }
+}
+
 std::optional<InstructionCounts> QemuUart::finish() {
     if (!process_.wait_for_end(options_.answer_time) || !process_.has_succeeded()) {
         throw InputError("image " + options_.image_path + ": did not end when told to");

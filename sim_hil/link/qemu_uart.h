@@ -22,6 +22,10 @@ class QemuUart {
     /// ended or nothing arrives within options.answer_time.
     std::size_t receive(std::uint8_t *bytes, std::size_t capacity);
 
+    /// Waits for the image's greeting, a line that ends with CR: what is sent before it listens may
+    /// be lost. Throws InputError as receive does.
+    void await_greeting();
+
     /// Waits for the image to end by itself. Throws InputError when it does not.
     std::optional<InstructionCounts> finish();
 

@@ -44,6 +44,10 @@ QemuUartLink::QemuUartLink(const QemuOptions &options, TelemetryRate telemetry)
 }
 
 bool QemuUartLink::start(const quiesce_params_t &params) {
+    if (!is_greeted_) {
+        uart_.await_greeting();
+        is_greeted_ = true;
+    }
     for (std::uint32_t index = 0; index < QUIESCE_PARAM_COUNT; ++index) {
         std::int32_t value = 0;
         quiesce_param_get(&params, index, &value);

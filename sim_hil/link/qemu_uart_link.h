@@ -57,6 +57,7 @@ class QemuUartLink final : public ControllerLink {
 
     QemuUart uart_;
     TelemetryRate telemetry_;
+    bool is_greeted_ = false;
     slcan_decoder_t decoder_{};
     std::array<std::uint8_t, 4096> input_{};
     std::size_t input_begin_ = 0;

@@ -90,6 +90,12 @@ static void test_start_accepts_the_defaults(void) {
     TEST_ASSERT_EQUAL_UINT8(QUIESCE_CAN_TELEMETRY_WORDS, status.telemetry_words);
 }
 
+static void test_greeting_says_that_nothing_is_started(void) {
+    lockstep_can_greet(&server, &replies[0]);
+    TEST_ASSERT_EQUAL_UINT8(0, get_status().is_started);
+    TEST_ASSERT_EQUAL_UINT8(QUIESCE_PARAM_COUNT, get_status().param_count);
+}
+
 static void test_replies_equal_the_server_called_directly(void) {
     static lockstep_t direct;
     quiesce_params_t params;
@@ -275,6 +281,7 @@ static void test_stop_ends_and_status_reports(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_start_accepts_the_defaults);
+    RUN_TEST(test_greeting_says_that_nothing_is_started);
     RUN_TEST(test_replies_equal_the_server_called_directly);
     RUN_TEST(test_accel_counts_keep_their_sign_and_all_24_bits);
     RUN_TEST(test_wrong_sequence_is_counted_and_no_tick_runs);
