@@ -1,4 +1,5 @@
 /// fuzzy-surface: the controller's rule base over its two inputs, as JSON.
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -12,14 +13,14 @@ namespace quiesce {
 
 namespace {
 
-constexpr int kPoints = 101;
+constexpr std::size_t kPoints = 101;
 constexpr double kFreqLast_Hz = 25.0;
 constexpr double kRmsLast_m_s2 = 0.5;
 
 std::vector<double> axis(double last) {
-    std::vector<double> values;
-    for (int i = 0; i < kPoints; ++i) {
-        values.push_back(last * i / (kPoints - 1));
+    std::vector<double> values(kPoints);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+        values[i] = last * static_cast<double>(i) / (kPoints - 1);
     }
     return values;
 }
@@ -36,10 +37,10 @@ int cmd_fuzzy_surface(const std::vector<std::string> &words) {
     const std::vector<double> rms_m_s2 = axis(kRmsLast_m_s2);
     nlohmann::ordered_json current_A = nlohmann::ordered_json::array();
     for (const double f : freq_Hz) {
-        std::vector<double> row;
-        for (const double rms : rms_m_s2) {
-            row.push_back(quiesce_rules_current_mA(micro(f), micro(rms), nullptr) / 1000.0);
-        }
+        std::vector<double> row(rms_m_s2.size());
+        std::transform(rms_m_s2.begin(), rms_m_s2.end(), row.begin(), [f](double rms) {
+            return quiesce_rules_current_mA(micro(f), micro(rms), nullptr) / 1000.0;
+        });
         current_A.push_back(row);
     }
     const nlohmann::ordered_json out = {
