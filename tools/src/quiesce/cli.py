@@ -5,7 +5,7 @@ import os
 import sys
 from typing import NoReturn
 
-from quiesce import __version__, cmd_hil, cmd_params, cmd_plant, cmd_replay
+from quiesce import __version__, cmd_hil, cmd_params, cmd_plant, cmd_record, cmd_replay
 from quiesce.errors import (
     EXIT_BAD_INPUT,
     EXIT_FAILED,
@@ -15,7 +15,7 @@ from quiesce.errors import (
     one_line,
 )
 
-COMMANDS = (cmd_hil, cmd_replay, cmd_plant, cmd_params)
+COMMANDS = (cmd_hil, cmd_replay, cmd_record, cmd_plant, cmd_params)
 
 EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report
@@ -39,9 +39,9 @@ class Parser(argparse.ArgumentParser):
 def make_parser() -> argparse.ArgumentParser:
     parser = Parser(
         prog="quiesce",
-        description="Vibration control with magnetorheological dampers: run the controller "
-        "against a simulated structure, on this machine and as a Cortex-M image, or over "
-        "a recording.",
+        description="Vibration control with magnetorheological dampers: run the controller\n"
+        "against a simulated structure, on this machine and as a Cortex-M image, or over a\n"
+        "recording.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,

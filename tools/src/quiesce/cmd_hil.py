@@ -11,7 +11,7 @@ from quiesce import laws, scenarios
 from quiesce.atomic import output_files
 from quiesce.bench_exe import Bench, target_options
 from quiesce.errors import EXIT_FAILED
-from quiesce.hil_metrics import Result, make_rows, metrics_json
+from quiesce.hil_metrics import Result, differing_cases, make_rows, metrics_json
 from quiesce.hil_page import make_page
 from quiesce.hil_runs import (
     ConstantSearch,
@@ -32,7 +32,7 @@ STEP = "step_10_20Hz"
 ON_TARGET = ("sine_5Hz", STEP)
 QUICK = ("sine_5Hz", STEP)
 SPEED_LAW = "fuzzy"
-TRACE_LAW = "fuzzy_selftune_printed"
+TRACE_LAW = "fuzzy"
 TRACE_SEEDS = 5
 QUICK_TRACE_SEEDS = 2
 UART_EXCHANGES = 3000
@@ -71,9 +71,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "hil",
         help="the published scenarios in closed loop; table and report",
-        description="Run the controller in closed loop with the simulated structure, on this "
-        "machine and as the cross-compiled image in QEMU; print published against ours against "
-        "the best attainable, and write a report.",
+        description="Run the controller in closed loop with the simulated structure, on this\n"
+        "machine and as the cross-compiled image in QEMU; print published against ours against the\n"
+        "best attainable, and write a report.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -149,7 +149,7 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
     if on_image and not plan.is_quick:
         say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
         uart = measure_uart(bench, UART_EXCHANGES)
-    return Result(rows, beside, reference.published, equal, speed, uart)
+    return Result(rows, beside, reference.published, equal, differing_cases(runs), speed, uart)
 
 
 def details_json(result: Result, searches: list[ConstantSearch], runs: list[Run]) -> dict[str, Any]:
@@ -167,9 +167,14 @@ def details_json(result: Result, searches: list[ConstantSearch], runs: list[Run]
             for search in searches
         ],
         "trace_equal": result.trace_equal,
+        "telemetry_differs": result.differing,
         "uart": result.uart,
         "runs": [{**run.figures, "law": run.case.law.name} for run in runs],
     }
+
+
+def write_json(file: Path, content: dict[str, Any]) -> None:
+    file.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
 def rerun_command(args: argparse.Namespace) -> str:
@@ -189,23 +194,20 @@ def run(args: argparse.Namespace) -> int:
     bench = Bench()
     for target in {"host": [], "mps2": ["mps2", "mps2-uart"]}.get(args.target, ["mps2"]):
         target_options(target)
-    plan = make_plan(args, bench)
-    runs, searches = Runner(bench, plan).run_all()
-    result = measure(args, bench, plan, runs)
-    metrics = metrics_json(result)
-
+    runner = Runner(bench, make_plan(args, bench))
     out = args.out or build_folder() / "report/hil"
-    say("drawing the report")
-    page = make_page(result, runs, searches, rule_surface(bench), rerun_command(args))
-    details = details_json(result, searches, runs)
+    # Opened before the work, so that a folder that cannot be written is known at once.
     with output_files(out) as staging:
+        runs, searches = runner.run_all()
+        result = measure(args, bench, runner.plan, runs)
+        say("drawing the report")
+        page = make_page(result, runs, searches, rule_surface(bench), rerun_command(args))
         (staging / "index.html").write_text(page, encoding="utf-8")
-        (staging / "metrics.json").write_text(json.dumps(metrics, indent=1) + "\n")
-        (staging / "details.json").write_text(json.dumps(details, indent=1) + "\n")
+        write_json(staging / "metrics.json", metrics_json(result))
+        write_json(staging / "details.json", details_json(result, searches, runs))
     if args.json:
-        print(json.dumps(metrics, indent=1))
+        print(json.dumps(metrics_json(result), indent=1))
     else:
         print(f"\n{comparison_table(result)}\n\n{summary(result)}\n")
         print(f"report: {shown(out / 'index.html')}\nmetrics: {shown(out / 'metrics.json')}")
-    is_equal = result.trace_equal is None or result.trace_equal["mismatches"] == 0
-    return 0 if is_equal else EXIT_FAILED
+    return 0 if result.is_equal else EXIT_FAILED

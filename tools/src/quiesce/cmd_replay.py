@@ -12,10 +12,10 @@ from quiesce.bench_exe import Bench
 from quiesce.errors import UsageError
 from quiesce.paths import build_folder, shown
 from quiesce.recording import M_S2_PER_UNIT, Recording, read_recording
-from quiesce.reference_peak import WINDOW_s, Agreement, compare, reference_freq_Hz
+from quiesce.reference_peak import Agreement, WINDOW_s, compare, reference_freq_Hz
 from quiesce.replay import Replayed, replay, summarize, write_csv
 from quiesce.replay_plot import plot_replay
-from quiesce.resample import METHOD
+from quiesce.resample import METHOD, is_same_rate
 
 EPILOG = """examples:
   quiesce replay sim_hil/recordings/step_10_20Hz.csv --column accel_m_s2 --unit m_s2
@@ -25,8 +25,9 @@ EPILOG = """examples:
 The file has one header line, a column of time in seconds and columns of acceleration. It is
 resampled to the control rate (tick_rate_Hz), turned into counts of the sensor that the parameters
 describe, and run through the controller with its output enabled. Written: replay.csv (telemetry
-under its C names) and replay.png. A reference column is judged against the firmware's frequency at
-each of its updates (every 4 ms); both latencies are taken out.
+under its C names) and replay.png. With a reference column, the firmware's frequency at each of its
+updates (every 4 ms) is compared with the reference's own peak (2 s Hann window); the latencies of
+both are taken out.
 """
 
 
@@ -41,7 +42,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "replay",
         help="a recorded acceleration through the firmware",
-        description="Run the firmware's chain over a recorded acceleration: frequency, RMS and "
+        description="Run the firmware's chain over a recorded acceleration: frequency, RMS and\n"
         "current against time, with a plot.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -55,7 +56,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--target", choices=["host", "mps2"], default="host", help="(%(default)s)")
     parser.add_argument(
-        "--every", type=positive_int, default=10, metavar="N",
+        "--every",
+        type=positive_int,
+        default=10,
+        metavar="N",
         help="ticks from one row of replay.csv to the next (%(default)s)",
     )
     parser.add_argument(
@@ -71,11 +75,15 @@ def add_reference_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--from-s", type=float, metavar="T", help="count updates from this time on (start)"
     )
+    group.add_argument("--to-s", type=float, metavar="T", help="and up to this time (end)")
     group.add_argument(
         "--tolerance-hz", type=float, default=0.12, metavar="F", help="(%(default)s)"
     )
     group.add_argument(
-        "--reference-delay-s", type=float, default=0.0, metavar="T",
+        "--reference-delay-s",
+        type=float,
+        default=0.0,
+        metavar="T",
         help="the reference channel shows an event T later than --column (%(default)s)",
     )
 
@@ -103,7 +111,8 @@ def judge(
     step = replayed.updates
     time_s = replayed.time_s[step]
     from_s = float(replayed.time_s[0]) if args.from_s is None else args.from_s
-    counted = time_s >= from_s
+    to_s = float(replayed.time_s[-1]) if args.to_s is None else args.to_s
+    counted = (time_s >= from_s) & (time_s <= to_s)
     agreement = compare(
         (time_s - replayed.latency_s)[counted],
         (replayed.trace["freq_uHz"][step] * 1e-6)[counted],
@@ -111,11 +120,12 @@ def judge(
         *reference,
         tolerance_Hz=args.tolerance_hz,
         from_s=from_s,
+        to_s=to_s,
     )
     if agreement.updates == 0:
         raise UsageError(
-            f"--from-s {from_s:g}: no update to compare from there on; the recording spans "
-            f"{replayed.time_s[0]:g} .. {replayed.time_s[-1]:g} s"
+            f"--from-s {from_s:g} --to-s {to_s:g}: no update to compare there; the recording "
+            f"spans {replayed.time_s[0]:g} .. {replayed.time_s[-1]:g} s"
         )
     return agreement
 
@@ -123,11 +133,13 @@ def judge(
 def agreement_figures(agreement: Agreement) -> dict[str, Any]:
     return {
         "from_s": agreement.from_s,
+        "to_s": agreement.to_s,
         "tolerance_Hz": agreement.tolerance_Hz,
         "updates": agreement.updates,
+        "valid_updates": agreement.valid,
+        "valid_pct": round(agreement.valid_pct, 3),
         "within_pct": round(agreement.within_pct, 3),
-        "invalid_updates": agreement.invalid,
-        "worst_valid_error_Hz": round(agreement.worst_Hz, 4),
+        "worst_error_Hz": round(agreement.worst_Hz, 4),
     }
 
 
@@ -136,7 +148,10 @@ def print_summary(args: argparse.Namespace, figures: dict[str, Any]) -> None:
         f"recording  {shown(args.file)}, {args.column} in {args.unit}: {figures['rows']} rows at "
         f"{figures['rate_Hz']:.6g} Hz, {figures['duration_s']:.1f} s"
     )
-    print(f"resampled  to {figures['tick_rate_Hz']} Hz: {METHOD}")
+    if is_same_rate(figures["rows"], figures["rate_Hz"], figures["tick_rate_Hz"]):
+        print("resampled  no: recorded at the control rate")
+    else:
+        print(f"resampled  to {figures['tick_rate_Hz']} Hz: {METHOD}")
     if figures["median_freq_Hz"] is None:
         print("frequency  never valid: no steady peak that stands out")
     else:
@@ -154,9 +169,10 @@ def print_summary(args: argparse.Namespace, figures: dict[str, Any]) -> None:
     if figures["reference"]:
         ref = figures["reference"]
         print(
-            f"reference  {args.reference_column}: {ref['within_pct']:.2f} % of {ref['updates']} "
-            f"updates from {ref['from_s']:g} s on are valid and within {ref['tolerance_Hz']:g} Hz "
-            f"({ref['invalid_updates']} not valid, worst valid one {ref['worst_valid_error_Hz']:.3f} Hz off)"
+            f"reference  {args.reference_column}, {ref['from_s']:g} .. {ref['to_s']:g} s: "
+            f"{ref['within_pct']:.2f} % of {ref['valid_updates']} valid updates within "
+            f"{ref['tolerance_Hz']:g} Hz, worst {ref['worst_error_Hz']:.3f} Hz;\n"
+            f"           valid were {ref['valid_pct']:.2f} % of {ref['updates']} updates"
         )
     print(f"written    {', '.join(figures['outputs'])}")
 

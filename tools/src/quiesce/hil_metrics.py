@@ -38,11 +38,21 @@ class Row:
 
 
 @dataclass(frozen=True)
+class OpenLoop:
+    """What a row's reductions are against, ours and in the independent simulation."""
+
+    amp_um: float
+    accel_rms_mm_s2: float
+    simulated: dict[str, float]
+
+
+@dataclass(frozen=True)
 class Beside:
     """What stands beside a row: None or empty where there is nothing."""
 
     published: Published | None
     simulated: dict[str, float]
+    open_loop: OpenLoop
 
 
 @dataclass(frozen=True)
@@ -53,8 +63,14 @@ class Result:
     beside: list[Beside]  # of each row
     published: Sequence[Published]
     trace_equal: dict[str, Any] | None
+    differing: list[str]  # cases whose telemetry differs between host and image
     realtime_factor: dict[str, float | None]
     uart: dict[str, Any] | None
+
+    @property
+    def is_equal(self) -> bool:
+        """Host and image answered bit for bit the same wherever both ran."""
+        return not self.differing and not (self.trace_equal and self.trace_equal["mismatches"])
 
 
 def reduction_pct(value: float | None, open_loop: float | None) -> float | None:
@@ -101,9 +117,7 @@ def make_row(run: Run, open_loop: Run, reference: Reference | None, window: int)
 
 def make_rows(runs: Sequence[Run], reference: Reference) -> tuple[list[Row], list[Beside]]:
     """Rows of all runs. Each target is measured against its own open loop."""
-    base = {
-        (r.case.scenario.name, r.case.target): r for r in runs if r.case.law.name == OPEN_LOOP
-    }
+    base = {(r.case.scenario.name, r.case.target): r for r in runs if r.case.law.name == OPEN_LOOP}
     rows, beside = [], []
     for run in runs:
         scenario = run.case.scenario
@@ -112,18 +126,36 @@ def make_rows(runs: Sequence[Run], reference: Reference) -> tuple[list[Row], lis
             open_loop = base[scenario.name, run.case.target]
             row = make_row(run, open_loop, reference if known else None, window)
             rows.append(row)
-            beside.append(find_beside(row, reference) if known else Beside(None, {}))
+            beside.append(find_beside(row, open_loop, reference if known else None, window))
     return rows, beside
 
 
-def find_beside(row: Row, reference: Reference) -> Beside:
+def find_beside(row: Row, open_loop: Run, reference: Reference | None, window: int) -> Beside:
+    number = "" if window == 0 else "2"
+    base = OpenLoop(
+        open_loop.figures[f"amp{number}_um"],
+        open_loop.figures[f"accel_rms{number}_mm_s2"],
+        reference.simulated_for(row.scenario, OPEN_LOOP, row.freq_hz) if reference else {},
+    )
+    if reference is None:
+        return Beside(None, {}, base)
     # What was published for self-tuning stands beside both signs: the paper's figures and its
     # printed table do not agree on the sign.
     published_law = row.law.replace("_reversed", "_printed")
     return Beside(
         reference.published_for(row.scenario, published_law, row.freq_hz),
         reference.simulated_for(row.scenario, row.law, row.freq_hz),
+        base,
     )
+
+
+def differing_cases(runs: Sequence[Run]) -> list[str]:
+    """Cases whose telemetry is not the same, bit for bit, on every target that ran them."""
+    checksums: dict[str, set[int]] = {}
+    for run in runs:
+        name = f"{run.case.scenario.name} {run.case.law.name}"
+        checksums.setdefault(name, set()).add(run.figures["telemetry_crc32"])
+    return [name for name, found in checksums.items() if len(found) > 1]
 
 
 def published_json(cases: Sequence[Published]) -> list[dict[str, Any]]:

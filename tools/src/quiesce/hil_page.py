@@ -30,7 +30,7 @@ CSS = """
 * { box-sizing: border-box; }
 body { font: 15px/1.5 system-ui, "Segoe UI", Roboto, sans-serif; color: #1f2933; margin: 0;
        background: #f4f6f8; }
-main { max-width: 1120px; margin: 0 auto; padding: 28px 24px 60px; background: #fff; }
+main { max-width: 1180px; margin: 0 auto; padding: 28px 24px 60px; background: #fff; }
 h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 19px; margin: 40px 0 8px; }
 p { max-width: 76ch; margin: 8px 0; } .lead { color: #52606d; }
 .cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(190px, 1fr)); gap: 12px;
@@ -40,14 +40,16 @@ p { max-width: 76ch; margin: 8px 0; } .lead { color: #52606d; }
 .card.bad { border-color: #c0392b; background: #fdf1ef; }
 .card span { color: #52606d; font-size: 13px; }
 .wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums; width: 100%; }
-th, td { padding: 3px 7px; text-align: right; white-space: nowrap; }
+table { border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums;
+        width: 100%; }
+th, td { padding: 3px 5px; text-align: right; white-space: nowrap; }
 th { font-weight: 600; color: #52606d; border-bottom: 1px solid #b8c2cc; vertical-align: bottom; }
 th.group { text-align: center; border-bottom: 1px solid #d9dfe5; }
 td:first-child, th:first-child, td.left { text-align: left; }
 tr.head td { background: #eef2f5; font-weight: 600; padding-top: 6px; }
-td.ours { font-weight: 650; } td.diff { color: #7b8794; } td.sep, th.sep { border-left: 1px solid #d9dfe5; }
-img { display: block; max-width: 100%; height: auto; margin: 10px 0; }
+td.ours { font-weight: 650; } td.diff { color: #7b8794; }
+td.sep, th.sep { border-left: 1px solid #d9dfe5; }
+img { display: block; width: 100%; height: auto; margin: 10px 0; }
 pre { background: #f4f6f8; border: 1px solid #e1e6ea; border-radius: 6px; padding: 10px 12px;
       overflow-x: auto; font-size: 13px; }
 """
@@ -58,7 +60,13 @@ def text(value: float | None, digits: int = 1) -> str:
 
 
 def signed(value: float | None) -> str:
-    return "" if value is None else f"{value:+.1f}".replace("-", "\u2212")
+    if value is None:
+        return ""
+    return "0.0" if round(value, 1) == 0 else f"{value:+.1f}".replace("-", "\u2212")
+
+
+def in_symbols(heading: str) -> str:
+    return heading.replace(" um", " µm").replace("mm/s2", "mm/s²")
 
 
 def image(svg: str, alt: str) -> str:
@@ -70,7 +78,8 @@ def image(svg: str, alt: str) -> str:
 
 def card(figure: str, caption: str, is_bad: bool = False) -> str:
     kind = "card bad" if is_bad else "card"
-    return f'<div class="{kind}"><b>{html.escape(figure)}</b><span>{html.escape(caption)}</span></div>'
+    text = f"<b>{html.escape(figure)}</b><span>{html.escape(caption)}</span>"
+    return f'<div class="{kind}">{text}</div>'
 
 
 def cards(result: Result) -> str:
@@ -85,18 +94,19 @@ def cards(result: Result) -> str:
                 is_bad=equal["mismatches"] > 0,
             )
         )
-    names = {"host": "closed loop on this machine", "mps2": "with the Cortex-M image in QEMU"}
+    names = {"host": "real time: closed loop here", "mps2": "real time: the image in QEMU"}
     for target, factor in result.realtime_factor.items():
         if factor is not None:
-            parts.append(card(f"{factor:.0f} × real time", names[target]))
+            parts.append(card(f"{factor:.0f} ×", names[target]))
     worst = [row.instr_worst for row in result.rows if row.instr_worst is not None]
     if worst:
         parts.append(card(f"{max(worst):,}", "instructions in the worst tick of all runs"))
     if result.uart:
         parts.append(
             card(
-                f"{result.uart['ratio']:.2f} of an echo",
-                f"lock-step over the UART: {result.uart['protocol_per_s']:.0f} exchanges/s, "
+                f"{result.uart['ratio']:.2f}",
+                "of a raw echo's rate over the UART: "
+                f"{result.uart['protocol_per_s']:.0f} exchanges/s, "
                 f"{result.uart['realtime_factor']:.2f} × real time",
             )
         )
@@ -143,11 +153,11 @@ def table(result: Result) -> str:
     )
     body = []
     for heading, members in groups(result):
-        body.append(f'<tr class="head"><td colspan="17">{html.escape(heading)}</td></tr>')
+        heading = html.escape(in_symbols(heading))
+        body.append(f'<tr class="head"><td colspan="17">{heading}</td></tr>')
         body += [table_row(r, b) for r, b in members if r.law != laws.OPEN_LOOP]
-    return (
-        f'<div class="wide"><table><thead>{head}</thead><tbody>{"".join(body)}</tbody></table></div>'
-    )
+    rows = f"<thead>{head}</thead><tbody>{''.join(body)}</tbody>"
+    return f'<div class="wide"><table>{rows}</table></div>'
 
 
 def section(title: str, note: str, picture: str) -> str:
@@ -222,10 +232,10 @@ same excitation; negative is worse than doing nothing. Sensor noise {first.noise
 <h2>Comparison</h2>
 {table(result)}
 <p><b>Published</b>: measured by the paper on the real structure. <b>Simulated</b>: an independent
-simulation of this plant. <b>Bound</b>: the best that any current waveform does on this plant (best
-found, ±0.5). Each <b>diff</b> is ours less the figure before it; for a published range, less its
-nearer end. <b>On</b>: “both” where host and image agree to every digit. The reversed sign of
-self-tuning stands beside the same published figure: the paper's printed table has the sign that
+simulation of this plant, sine cases without sensor noise. <b>Bound</b>: the best that any current
+waveform does on this plant (best found, ±0.5). Each <b>diff</b> is ours less the figure before it;
+for a published range, less its nearer end. <b>On</b>: “both” where host and image agree to every
+digit. The reversed sign of self-tuning stands beside the same published figure: the paper's printed table has the sign that
 makes 5 Hz worse on this plant.</p>
 {figures(result, runs, searches, surface)}
 {f"<h2>Instructions of the image</h2><pre>{html.escape(counts)}</pre>" if counts else ""}

@@ -14,28 +14,37 @@ from quiesce.rule_surface import RuleSurface, visited_cells
 PERIODS_SHOWN = 3
 STEP_BEFORE_s, STEP_AFTER_s = 0.4, 1.4
 SPECTRUM_TOP_Hz = 60.0
-# Of equal curves the first covers the others.
-DRAW_ORDER = (
-    "constant_best",
-    "fuzzy_selftune_printed",
-    "fuzzy_selftune_reversed",
-    "fuzzy",
-    "open_loop",
-)
+# Drawn in this order, ever thinner, so that of equal curves all stay visible.
+LINE_WIDTHS = {
+    "constant_best": 3.2,
+    "fuzzy_selftune_reversed": 2.2,
+    "open_loop": 1.6,
+    "fuzzy_selftune_printed": 1.2,
+    "fuzzy": 1.1,
+}
 CELL_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 
 def one_run_a_law(runs: Sequence[Run], scenario: str) -> dict[str, Run]:
-    """Runs of a scenario by law, on the host where there is a choice; in drawing order."""
+    """Runs of a scenario by law, on the host where there is a choice."""
     found: dict[str, Run] = {}
     for run in sorted(runs, key=lambda run: run.case.target != "host"):
         if run.case.scenario.name == scenario:
             found.setdefault(run.case.law.name, run)
-    return {name: found[name] for name in reversed(DRAW_ORDER) if name in found}
+    return {name: found[name] for name in laws.names() if name in found}
 
 
 def label(law: str) -> str:
     return laws.find(law).label
+
+
+def line_style(law: str) -> dict[str, Any]:
+    return {
+        "color": COLORS[law],
+        "label": label(law),
+        "linewidth": LINE_WIDTHS[law],
+        "zorder": 2.0 + 0.1 * list(LINE_WIDTHS).index(law),
+    }
 
 
 def scenario_names(runs: Sequence[Run], is_step: bool) -> list[str]:
@@ -54,7 +63,7 @@ def plot_reductions(result: Result) -> str:
     rows = [(r, b) for r, b in rows if r.law != laws.OPEN_LOOP and r.amp_reduction_pct is not None]
     if not rows:
         return ""
-    figure, axes = pyplot().subplots(1, 2, figsize=(10, 3.6))
+    figure, axes = pyplot().subplots(1, 2, figsize=(11, 3.6))
     titles = ("displacement amplitude", "RMS acceleration")
     for axis, title, key in zip(axes, titles, ("amp", "accel_rms"), strict=True):
         draw_reductions(axis, rows, f"{key}_reduction_pct", f"bound_{key}_pct")
@@ -104,21 +113,22 @@ def plot_steady(runs: Sequence[Run]) -> str:
     names = scenario_names(runs, is_step=False)
     if not names:
         return ""
-    figure, axes = pyplot().subplots(
-        3, len(names), figsize=(10, 5.2), squeeze=False, sharex="col"
+    figure, axes = pyplot().subplots(3, len(names), figsize=(11, 5.2), squeeze=False, sharex="col")
+    columns = (
+        ("x5_um", 1.0, "displacement (µm)"),
+        ("a5_mm_s2", 1e-3, "acceleration (m/s²)"),
+        ("coil_A", 1.0, "coil current (A)"),
     )
-    columns = (("x5_um", 1.0), ("a5_mm_s2", 1e-3), ("coil_A", 1.0))
     for column, name in zip(axes.T, names, strict=True):
         for law, run in one_run_a_law(runs, name).items():
             span_s = PERIODS_SHOWN / run.figures["freq_hz"]
             time_s = run.trace["t_s"] - run.trace["t_s"][-1]
             last = time_s > -span_s
-            for axis, (key, scale) in zip(column, columns, strict=True):
-                axis.plot(time_s[last], scale * run.trace[key][last], color=COLORS[law],
-                          label=label(law), linewidth=1.3, zorder=3 - DRAW_ORDER.index(law) / 10)  # fmt: skip
+            for axis, (key, scale, _) in zip(column, columns, strict=True):
+                axis.plot(time_s[last], scale * run.trace[key][last], **line_style(law))
         column[0].set_title(name)
         column[2].set_xlabel("time before the end (s)")
-    for axis, text in zip(axes[:, 0], ("displacement (µm)", "acceleration (m/s²)", "coil current (A)"), strict=True):  # fmt: skip
+    for axis, (_, _, text) in zip(axes[:, 0], columns, strict=True):
         axis.set_ylabel(text)
     figure.align_ylabels(axes[:, 0])
     figure_legend(figure, axes[0, 0])
@@ -128,24 +138,23 @@ def plot_steady(runs: Sequence[Run]) -> str:
 def plot_step(runs: Sequence[Run], name: str) -> str:
     """Displacement, current and estimated frequency around the step."""
     chosen = one_run_a_law(runs, name)
-    figure, axes = pyplot().subplots(
-        3, 1, figsize=(10, 6), sharex=True, height_ratios=[3, 2, 2]
-    )
+    figure, axes = pyplot().subplots(3, 1, figsize=(11, 6), sharex=True, height_ratios=[3, 2, 2])
     for law, run in chosen.items():
         step_s = run.case.scenario.transient_s or 0.0
         time_s = run.trace["t_s"] - step_s
         near = (time_s > -STEP_BEFORE_s) & (time_s < STEP_AFTER_s)
-        style = {"color": COLORS[law], "linewidth": 1.2, "zorder": 3 - DRAW_ORDER.index(law) / 10}
-        axes[0].plot(time_s[near], run.trace["x5_um"][near], label=label(law), **style)
+        style = line_style(law)
+        axes[0].plot(time_s[near], run.trace["x5_um"][near], **style)
         axes[1].plot(time_s[near], run.trace["coil_A"][near], **style)
         freq_Hz = np.where(run.trace["freq_is_valid"] > 0, run.trace["freq_uHz"] * 1e-6, np.nan)
-        axes[2].plot(time_s[near], freq_Hz[near], **style)
+        axes[2].plot(time_s[near], freq_Hz[near], **{**style, "label": None})
     figures = next(iter(chosen.values())).figures
     true_Hz = [figures["freq_hz"], figures["freq_hz"], figures["freq2_hz"], figures["freq2_hz"]]
     axes[2].plot([-STEP_BEFORE_s, 0, 0, STEP_AFTER_s], true_Hz, color="black", linewidth=0.9,
                  linestyle="--", label="excitation")  # fmt: skip
     axes[2].legend(loc="lower right")
-    for axis, text in zip(axes, ("displacement (µm)", "coil current (A)", "frequency (Hz),\nwhere valid"), strict=True):  # fmt: skip
+    texts = ("displacement (µm)", "coil current (A)", "frequency (Hz),\nwhere valid")
+    for axis, text in zip(axes, texts, strict=True):
         axis.set_ylabel(text)
         axis.axvline(0.0, color="#777777", linewidth=0.8)
     axes[2].set_xlabel("time after the step (s)")
@@ -160,19 +169,16 @@ def plot_spectra(runs: Sequence[Run]) -> str:
     names = scenario_names(runs, is_step=False)
     if not names:
         return ""
-    figure, axes = pyplot().subplots(
-        1, len(names), figsize=(10, 3.0), squeeze=False, sharey=True
-    )
+    figure, axes = pyplot().subplots(1, len(names), figsize=(11, 3.0), squeeze=False, sharey=True)
     for axis, name in zip(axes[0], names, strict=True):
         for law, run in one_run_a_law(runs, name).items():
             windows_s = run.case.scenario.windows_s or ((0.0, run.trace["t_s"][-1]),)
             freq_Hz, amp_mm_s2 = amplitude_spectrum(run.trace, *windows_s[-1])
             shown = (freq_Hz > 0.5) & (freq_Hz <= SPECTRUM_TOP_Hz)
-            axis.semilogy(freq_Hz[shown], np.maximum(amp_mm_s2[shown], 1e-3), color=COLORS[law],
-                          label=label(law), linewidth=1.2, zorder=3 - DRAW_ORDER.index(law) / 10)  # fmt: skip
+            axis.semilogy(freq_Hz[shown], np.maximum(amp_mm_s2[shown], 1e-3), **line_style(law))
         axis.set_title(name)
         axis.set_xlabel("frequency (Hz)")
-        axis.set_ylim(bottom=0.05)
+    axes[0, 0].set_ylim(0.05, 1000.0)
     axes[0, 0].set_ylabel("acceleration (mm/s²)")
     figure_legend(figure, axes[0, 0])
     return svg_of(figure)
@@ -180,7 +186,7 @@ def plot_spectra(runs: Sequence[Run]) -> str:
 
 def plot_surface(surface: RuleSurface, runs: Sequence[Run]) -> str:
     """The rule surface with the cells that the fuzzy law visited, by scenario."""
-    figure, axis = pyplot().subplots(figsize=(7.2, 4.2))
+    figure, axis = pyplot().subplots(figsize=(11, 4.4))
     mesh = axis.pcolormesh(
         surface.freq_Hz, surface.rms_m_s2, surface.current_A, cmap="YlGnBu", shading="nearest",
         rasterized=True,
@@ -206,7 +212,7 @@ def plot_searches(searches: Sequence[ConstantSearch]) -> str:
     steady = [search for search in searches if not search.scenario.is_step]
     if not steady:
         return ""
-    figure, axes = pyplot().subplots(1, 2, figsize=(10, 3.0), sharex=True)
+    figure, axes = pyplot().subplots(1, 2, figsize=(11, 3.0), sharex=True)
     for search in steady:
         current_A = [mA / 1000.0 for mA in search.current_mA]
         for axis, key in zip(axes, ("amp_um", "accel_rms_mm_s2"), strict=True):

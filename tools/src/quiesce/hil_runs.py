@@ -100,13 +100,13 @@ class Runner:
 
     def __init__(self, bench: Bench, plan: Plan) -> None:
         self._bench = bench
-        self._plan = plan
+        self.plan = plan
         # Refuses bad settings before anything runs.
         self._params = effective_params(bench, plan.settings)
         self._target_options = {t: target_options(t) for t in plan.targets}
 
     def run_all(self) -> tuple[list[Run], list[ConstantSearch]]:
-        cases, search_in = self._plan.cases(), self._plan.searches()
+        cases, search_in = self.plan.cases(), self.plan.searches()
         progress = Progress(len(cases) + len(search_in))
         searches = self._map(lambda scenario: self._search(scenario, progress), search_in)
         best_mA = {search.scenario.name: search.best_mA for search in searches}
@@ -127,14 +127,14 @@ class Runner:
     def _options(self, scenario: Scenario, law: Law, settings: Sequence[str]) -> list[str]:
         return [
             "--scenario", str(scenario.file), "--law", law.bench_law,
-            *setting_options([*self._plan.settings, *law.settings, *settings]),
-            *self._plan.options,
+            *setting_options([*self.plan.settings, *law.settings, *settings]),
+            *self.plan.options,
         ]  # fmt: skip
 
     def _search(self, scenario: Scenario, progress: Progress) -> ConstantSearch:
-        law = next(law for law in self._plan.laws if law.name == CONSTANT_BEST)
+        law = next(law for law in self.plan.laws if law.name == CONSTANT_BEST)
         top_mA = self._params["max_current_mA"]
-        grid_mA = [*range(0, top_mA, self._plan.constant_step_mA), top_mA]
+        grid_mA = [*range(0, top_mA, self.plan.constant_step_mA), top_mA]
         figures = [
             self._bench.json("run", *self._options(scenario, law, [f"constant_current_mA={mA}"]))
             for mA in grid_mA
@@ -164,9 +164,7 @@ def headline(figures: dict[str, Any]) -> str:
     if figures["amp2_um"] is not None:
         text += f", then {figures['amp2_um']:.1f} um"
     if figures["instr_median"] is not None:
-        text += (
-            f", {figures['instr_median']} instructions a tick, at most {figures['instr_worst']}"
-        )
+        text += f", {figures['instr_median']} instructions a tick, at most {figures['instr_worst']}"
     return text
 
 

@@ -5,29 +5,31 @@ from dataclasses import replace
 from itertools import groupby
 
 from quiesce import laws
-from quiesce.hil_metrics import Beside, Result, Row
+from quiesce.hil_metrics import Beside, OpenLoop, Result, Row
 from quiesce.reference import Published
 
 HEAD_1 = (
-    f"{'':25}{'displacement amplitude, reduction %':^42}{'RMS acceleration, red. %':^30}"
+    f"{'':26}{'displacement amplitude, reduction %':^42}{'RMS acceleration, red. %':^30}"
     f"{'mean':>5}{'settle':>7}"
 )
 HEAD_2 = (
-    f"{'law':21}{'on':4}{'publ.':>6}{'ours':>6}{'diff':>6}{'sim.':>6}{'diff':>6}{'bound':>6}"
+    f"{'law':22}{'on':4}{'publ.':>6}{'ours':>6}{'diff':>6}{'sim.':>6}{'diff':>6}{'bound':>6}"
     f"{'diff':>6}{'ours':>6}{'sim.':>6}{'diff':>6}{'bound':>6}{'diff':>6}{'A':>5}{'s':>7}"
 )
 NOTES = (
     "publ.: measured by the paper on the real structure. sim.: an independent simulation of this "
-    "plant.\n"
-    "bound: the best that any current waveform does on this plant (best found, +-0.5). diff: ours "
-    "less the\n"
-    "figure before it; for a range, less its nearer end. on: 'both' where host and image agree to "
-    "every digit."
+    "plant,\n"
+    "sine cases without sensor noise. bound: the best that any current waveform does (best found, "
+    "+-0.5).\n"
+    "diff: ours less the figure before it; for a range, less its nearer end. on: 'both' where host "
+    "and image\n"
+    "agree to every digit."
 )
 
 
 def number(value: float | None, digits: int = 1, width: int = 6) -> str:
-    return f"{'-' if value is None else f'{value:.{digits}f}':>{width}}"
+    # + 0.0: no minus sign on a value that rounds to zero.
+    return f"{'-' if value is None else f'{round(value, digits) + 0.0:.{digits}f}':>{width}}"
 
 
 def difference(ours: float | None, other: float | None) -> float | None:
@@ -54,7 +56,7 @@ def table_line(row: Row, beside: Beside) -> str:
     sim_amp = beside.simulated.get("amp_reduction_pct")
     sim_accel = beside.simulated.get("accel_rms_reduction_pct")
     cells = [
-        f"{laws.find(row.law).label:21}{row.target:4}",
+        f"{laws.find(row.law).label:22}{row.target:4}",
         f"{published_text(beside.published):>6}",
         number(amp),
         number(published_difference(amp, beside.published)),
@@ -97,7 +99,16 @@ def groups(result: Result) -> Iterator[tuple[str, list[tuple[Row, Beside]]]]:
     order = {key: i for i, key in enumerate(dict.fromkeys(group_key(row) for row, _ in pairs))}
     pairs.sort(key=lambda pair: order[group_key(pair[0])])
     for (scenario, freq_hz), members in groupby(pairs, key=lambda pair: group_key(pair[0])):
-        yield f"{scenario}, {freq_hz:g} Hz", list(members)
+        group = list(members)
+        base = group[0][1].open_loop
+        yield f"{scenario}, {freq_hz:g} Hz: {open_loop_text(base)}", group
+
+
+def open_loop_text(base: OpenLoop) -> str:
+    sim_amp_um, sim_accel_mm_s2 = (base.simulated.get(k) for k in ("amp_um", "accel_rms_mm_s2"))
+    amp = f"{base.amp_um:.1f} um" + (f" (sim. {sim_amp_um})" if sim_amp_um else "")
+    accel = f"{base.accel_rms_mm_s2:.1f} mm/s2"
+    return f"open loop {amp}, {accel}" + (f" (sim. {sim_accel_mm_s2})" if sim_accel_mm_s2 else "")
 
 
 def group_key(row: Row) -> tuple[str, float]:
@@ -108,9 +119,7 @@ def comparison_table(result: Result) -> str:
     lines = [HEAD_1.rstrip(), HEAD_2]
     for heading, members in groups(result):
         lines += ["-" * len(HEAD_2), heading]
-        lines += [
-            table_line(row, beside) for row, beside in members if row.law != laws.OPEN_LOOP
-        ]
+        lines += [table_line(row, beside) for row, beside in members if row.law != laws.OPEN_LOOP]
     return "\n".join([*lines, "-" * len(HEAD_2), NOTES])
 
 
@@ -132,6 +141,12 @@ def trace_line(result: Result) -> str:
         f"  {equal['distinct_commands']} distinct commands, a frequency step, faults "
         f"{', '.join(map(str, equal['faults_seen'])) or 'none'} and recovery)"
     )
+
+
+def differing_line(result: Result) -> str:
+    if result.differing:
+        return f"FAILED, telemetry differs between host and image: {', '.join(result.differing)}"
+    return "telemetry checksums of all runs above: the same on host and image"
 
 
 def speed_lines(result: Result) -> list[str]:
@@ -166,4 +181,7 @@ def instruction_lines(result: Result) -> list[str]:
 
 
 def summary(result: Result) -> str:
-    return "\n".join([trace_line(result), *speed_lines(result), *instruction_lines(result)])
+    lines = [trace_line(result)]
+    if result.trace_equal is not None:
+        lines.append(differing_line(result))
+    return "\n".join(lines + speed_lines(result) + instruction_lines(result))

@@ -18,7 +18,7 @@ class Law:
 
 LAWS = (
     Law(OPEN_LOOP, "open loop, 0 A", "off"),
-    Law(CONSTANT_BEST, "best constant current", "constant"),
+    Law(CONSTANT_BEST, "best constant", "constant"),
     Law("fuzzy", "fuzzy", "fuzzy"),
     Law(
         "fuzzy_selftune_printed",
@@ -33,7 +33,7 @@ LAWS = (
     ),
     Law(
         "fuzzy_selftune_reversed",
-        "same, reversed sign",
+        "reversed self-tuning",
         "fuzzy_selftune",
         (
             "selftune_rate_mA_s=500000",

@@ -16,6 +16,12 @@ def allowed(param: dict[str, Any]) -> str:
     return f"{param['min']} .. {param['max']}"
 
 
+def expected(param: dict[str, Any]) -> str:
+    if param["labels"] or param["choices"]:
+        return f"one of {allowed(param)}"
+    return f"an integer in {allowed(param)} {param['unit']}".removesuffix(" -")
+
+
 def default(param: dict[str, Any]) -> str:
     return param["labels"][param["default"]] if param["labels"] else str(param["default"])
 
@@ -27,13 +33,12 @@ def parse_value(param: dict[str, Any], text: str) -> int:
         value = labels.index(text) if text in labels else int(text)
     except ValueError:
         value = None
-    if value is None or not param["min"] <= value <= param["max"] or (
-        param["choices"] and value not in param["choices"]
+    if (
+        value is None
+        or not param["min"] <= value <= param["max"]
+        or (param["choices"] and value not in param["choices"])
     ):
-        raise UsageError(
-            f"--set {param['name']}={text}: {param['name']} ({param['unit']}) is one integer of "
-            f"{allowed(param)}"
-        )
+        raise UsageError(f"--set {param['name']}={text}: {param['name']} is {expected(param)}")
     return value
 
 

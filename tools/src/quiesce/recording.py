@@ -45,9 +45,7 @@ def read_recording(file: Path, columns: list[str], unit: str, time_column: str) 
     return Recording(
         start_s=float(time_s[0]),
         rate_Hz=float(1.0 / period_s),
-        accel_m_s2={
-            name: table[:, 1 + i] * M_S2_PER_UNIT[unit] for i, name in enumerate(columns)
-        },
+        accel_m_s2={name: table[:, 1 + i] * M_S2_PER_UNIT[unit] for i, name in enumerate(columns)},
         jitter=check_uniform(file, time_column, lines, time_s, period_s),
     )
 
@@ -95,9 +93,8 @@ def parse_rows(
                 f"{shown(file)} line {line}: {len(row)} cells, too few for column "
                 f"'{names[indices.index(max(indices))]}'"
             )
-        yield line, [
-            parse_number(file, line, name, row[i]) for name, i in zip(names, indices, strict=True)
-        ]
+        cells = zip(names, (row[i] for i in indices), strict=True)
+        yield line, [parse_number(file, line, name, text) for name, text in cells]
 
 
 def parse_number(file: Path, line: int, name: str, text: str) -> float:

@@ -21,9 +21,7 @@ def peak_freq_Hz(power: np.ndarray, bin_Hz: float) -> np.ndarray:
     high = min(power.shape[1] - 2, int(BAND_Hz[1] / bin_Hz))
     top = low + np.argmax(power[:, low : high + 1], axis=1)
     rows = np.arange(len(power))
-    left, middle, right = (
-        np.log(np.maximum(power[rows, top + d], 1e-300)) for d in (-1, 0, 1)
-    )
+    left, middle, right = (np.log(np.maximum(power[rows, top + d], 1e-300)) for d in (-1, 0, 1))
     curve = left - 2.0 * middle + right
     shift = np.where(curve < 0.0, 0.5 * (left - right) / np.where(curve < 0.0, curve, 1.0), 0.0)
     return (top + np.clip(shift, -0.5, 0.5)) * bin_Hz
@@ -52,15 +50,20 @@ class Agreement:
     """How often the firmware's frequency agrees with the reference's."""
 
     updates: int
-    within: int
-    invalid: int
-    worst_Hz: float
+    valid: int
+    within: int  # of the valid ones
+    worst_Hz: float  # of the valid ones
     from_s: float
+    to_s: float
     tolerance_Hz: float
 
     @property
+    def valid_pct(self) -> float:
+        return 100.0 * self.valid / self.updates
+
+    @property
     def within_pct(self) -> float:
-        return 100.0 * self.within / self.updates if self.updates else float("nan")
+        return 100.0 * self.within / self.valid if self.valid else 0.0
 
 
 def compare(
@@ -71,20 +74,22 @@ def compare(
     reference_Hz: np.ndarray,
     tolerance_Hz: float,
     from_s: float,
+    to_s: float,
 ) -> Agreement:
     """Compares updates with the reference at the instant that each describes.
 
     described_s: the instant that an update describes (its time less its latency). Updates outside
-    the reference's span do not count; an invalid one counts as not within.
+    the reference's span do not count.
     """
     inside = (described_s >= reference_s[0]) & (described_s <= reference_s[-1])
     error_Hz = np.abs(freq_Hz - np.interp(described_s, reference_s, reference_Hz))[inside]
     valid = is_valid[inside].astype(bool)
     return Agreement(
         updates=int(inside.sum()),
+        valid=int(valid.sum()),
         within=int((valid & (error_Hz <= tolerance_Hz)).sum()),
-        invalid=int((~valid).sum()),
-        worst_Hz=float(error_Hz[valid].max()) if valid.any() else float("nan"),
+        worst_Hz=float(error_Hz[valid].max()) if valid.any() else 0.0,
         from_s=from_s,
+        to_s=to_s,
         tolerance_Hz=tolerance_Hz,
     )

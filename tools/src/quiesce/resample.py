@@ -12,9 +12,10 @@ from scipy.signal import kaiser_beta
 
 PASS = 0.8
 ATTENUATION_dB = 90.0
+# As shown to the user, on two lines.
 METHOD = (
-    f"Kaiser-windowed sinc, linear phase, no delay, pass band to {PASS:g} of the lower Nyquist "
-    f"frequency, {ATTENUATION_dB:g} dB beyond it"
+    f"Kaiser-windowed sinc, linear phase, no delay,\n           pass band to {PASS:g} of the lower "
+    f"Nyquist frequency, {ATTENUATION_dB:g} dB beyond it"
 )
 _CHUNK = 1 << 14
 
@@ -46,9 +47,14 @@ def extend_odd(values: np.ndarray, count: int) -> np.ndarray:
     )
 
 
+def is_same_rate(count: int, rate_Hz: float, new_rate_Hz: float) -> bool:
+    """Rates so close that over all samples they part by less than 1/1000 of a sample."""
+    return abs(new_rate_Hz / rate_Hz - 1.0) * count < 1e-3
+
+
 def resample(values: np.ndarray, rate_Hz: float, new_rate_Hz: float) -> np.ndarray:
     """Samples at n / new_rate_Hz from samples at n / rate_Hz, over the same duration."""
-    if new_rate_Hz == rate_Hz:
+    if is_same_rate(len(values), rate_Hz, new_rate_Hz):
         return values.copy()
     shrink = min(1.0, new_rate_Hz / rate_Hz)
     reach = int(np.ceil(half_taps() / shrink))
