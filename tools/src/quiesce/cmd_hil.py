@@ -72,8 +72,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "hil",
         help="the published scenarios in closed loop; table and report",
         description="Run the controller in closed loop with the simulated structure, on this\n"
-        "machine and as the cross-compiled image in QEMU; print published against ours against the\n"
-        "best attainable, and write a report.",
+        "machine and as the cross-compiled image in QEMU; print published against ours\n"
+        "against the best attainable, and write a report.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

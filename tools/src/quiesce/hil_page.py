@@ -235,8 +235,8 @@ same excitation; negative is worse than doing nothing. Sensor noise {first.noise
 simulation of this plant, sine cases without sensor noise. <b>Bound</b>: the best that any current
 waveform does on this plant (best found, ±0.5). Each <b>diff</b> is ours less the figure before it;
 for a published range, less its nearer end. <b>On</b>: “both” where host and image agree to every
-digit. The reversed sign of self-tuning stands beside the same published figure: the paper's printed table has the sign that
-makes 5 Hz worse on this plant.</p>
+digit. The reversed sign of self-tuning stands beside the same published figure: the paper's printed
+table has the sign that makes 5 Hz worse on this plant.</p>
 {figures(result, runs, searches, surface)}
 {f"<h2>Instructions of the image</h2><pre>{html.escape(counts)}</pre>" if counts else ""}
 <h2>Run it again</h2>
