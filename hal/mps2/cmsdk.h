@@ -29,6 +29,8 @@ typedef struct {
 } cmsdk_timer_t;
 
 #define CMSDK_TIMER0 ((cmsdk_timer_t *)0x40000000u)
+#define CMSDK_TIMER1 ((cmsdk_timer_t *)0x40001000u)
 #define CMSDK_TIMER_CONTROL_ENABLE 1u
+#define CMSDK_TIMER_CONTROL_INTERRUPT 8u
 
 #endif

@@ -1,9 +1,9 @@
 #include "qemu_shm_link.h"
 
 #include <cerrno>
-#include <sched.h>
 #include <sys/mman.h>
 #include <system_error>
+#include <thread>
 
 #include "input_error.h"
 
@@ -11,10 +11,9 @@ namespace quiesce {
 
 namespace {
 
-/// Spins before the processor is given away: about one answer's time on an idle machine.
-constexpr int kSpinsBeforeYield = 4096;
-/// Yields between two looks at the process and the clock.
-constexpr int kYieldsBetweenChecks = 64;
+/// Spins before the processor is given away: longer than an answer takes on an idle machine.
+constexpr int kSpinsBeforeNap = 2048;
+constexpr std::chrono::microseconds kNap(50);
 
 std::vector<std::string> qemu_arguments(const SharedMailbox &mailbox,
                                         const InstructionCounter &counter) {
@@ -94,36 +93,32 @@ void QemuShmLink::request(std::uint32_t operation) {
     wait_for_reply(sequence);
 }
 
+bool QemuShmLink::has_replied(std::uint32_t sequence) const {
+    return __atomic_load_n(&mailbox_->reply_seq, __ATOMIC_ACQUIRE) == sequence;
+}
+
 void QemuShmLink::wait_for_reply(std::uint32_t sequence) {
-    const auto has_replied = [&] {
-        return __atomic_load_n(&mailbox_->reply_seq, __ATOMIC_ACQUIRE) == sequence;
-    };
-    for (int spin = 0; spin < kSpinsBeforeYield; ++spin) {
-        if (has_replied()) {
+    for (int spin = 0; spin < kSpinsBeforeNap; ++spin) {
+        if (has_replied(sequence)) {
             return;
         }
         relax();
     }
     const auto deadline = std::chrono::steady_clock::now() + options_.answer_time;
-    for (;;) {
-        for (int yield = 0; yield < kYieldsBetweenChecks; ++yield) {
-            if (has_replied()) {
-                return;
-            }
-            sched_yield();
+    while (!has_replied(sequence)) {
+        const bool is_running = process_.is_running();
+        if (has_replied(sequence)) {
+            return; // the last thing that the image did
         }
-        check_alive(deadline);
-    }
-}
-
-void QemuShmLink::check_alive(std::chrono::steady_clock::time_point deadline) {
-    if (!process_.is_running()) {
-        throw InputError("image " + options_.image_path + ": " + process_.describe_end());
-    }
-    if (std::chrono::steady_clock::now() > deadline) {
-        throw InputError("image " + options_.image_path + ": no answer within " +
-                         std::to_string(options_.answer_time.count()) +
-                         " ms; is it the shared-RAM image (quiesce_mps2_shm)?");
+        if (!is_running) {
+            throw InputError("image " + options_.image_path + ": " + process_.describe_end());
+        }
+        if (std::chrono::steady_clock::now() > deadline) {
+            throw InputError("image " + options_.image_path + ": no answer within " +
+                             std::to_string(options_.answer_time.count()) +
+                             " ms; is it the shared-RAM image (quiesce_mps2_shm)?");
+        }
+        std::this_thread::sleep_for(kNap);
     }
 }
 

@@ -43,7 +43,7 @@ class QemuShmLink final : public ControllerLink {
   private:
     void request(std::uint32_t operation);
     void wait_for_reply(std::uint32_t sequence);
-    void check_alive(std::chrono::steady_clock::time_point deadline);
+    bool has_replied(std::uint32_t sequence) const;
     void check_layout() const;
 
     QemuOptions options_;

@@ -1,3 +1,4 @@
+#include "nap.h"
 #include "tick_mps2.h"
 #include "unity.h"
 
@@ -71,6 +72,17 @@ static void test_overrun_reports_every_tick(void) {
     TEST_ASSERT_EQUAL_UINT32(1, hal_tick_elapsed(&tick));
 }
 
+static void test_nap_sleeps_its_time(void) {
+    static const uint32_t naps_us[] = {50, 1000, 100000};
+    for (uint32_t i = 0; i < sizeof naps_us / sizeof naps_us[0]; i++) {
+        TEST_ASSERT_TRUE(hal_tick_start(&tick, 100000));
+        nap_us(naps_us[i]);
+        const uint32_t slept_us = 10u * hal_tick_elapsed(&tick);
+        TEST_ASSERT_GREATER_OR_EQUAL_UINT32(naps_us[i] - 10u, slept_us);
+        TEST_ASSERT_LESS_THAN_UINT32(naps_us[i] + naps_us[i] / 5u + 50u, slept_us);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_rates_that_the_clock_cannot_make_are_refused);
@@ -78,5 +90,6 @@ int main(void) {
     RUN_TEST(test_rate_is_right_over_many_ticks);
     RUN_TEST(test_polling_loses_no_tick);
     RUN_TEST(test_overrun_reports_every_tick);
+    RUN_TEST(test_nap_sleeps_its_time);
     return UNITY_END();
 }
