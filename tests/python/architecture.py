@@ -113,9 +113,7 @@ def allowed_headers(root: Path, source: Source) -> set[str]:
     if layer == "include":
         return PUBLIC
     if layer == "comm":
-        # The codec of the lock-step messages sees their structs.
-        messages = {"lockstep.h"} if source.stem == "lockstep_can" else set()
-        return comm | base | PUBLIC | messages
+        return comm | base | PUBLIC
     return set()
 
 
