@@ -1,36 +1,21 @@
 /// The executable as a user meets it: exit codes, one line on stderr, JSON on stdout.
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "bench_call.h"
 #include "firmware.h"
 
+using quiesce::bench;
+using quiesce::Outcome;
+
 namespace {
-
-struct Outcome {
-    int exit_code;
-    std::string output; ///< stdout and stderr together
-};
-
-Outcome bench(const std::string &words) {
-    const std::string command = std::string(QUIESCE_BENCH) + " " + words + " 2>&1";
-    std::FILE *pipe = ::popen(command.c_str(), "r");
-    Outcome out{-1, ""};
-    char buffer[4096];
-    for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) {
-        out.output.append(buffer, n);
-    }
-    out.exit_code = WEXITSTATUS(::pclose(pipe));
-    return out;
-}
 
 const std::string kSine = "--scenario sim_hil/scenarios/sine_20Hz.toml ";
 

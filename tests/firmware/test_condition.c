@@ -1,5 +1,5 @@
 #include "condition.h"
-#include "signal.h"
+#include "test_signal.h"
 #include "unity.h"
 
 static condition_t condition;

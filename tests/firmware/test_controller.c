@@ -1,6 +1,6 @@
 // The wired controller, through the lock-step server as every target runs it.
 #include "lockstep.h"
-#include "signal.h"
+#include "test_signal.h"
 #include "unity.h"
 
 static lockstep_t server;

@@ -1,5 +1,5 @@
 #include "fixq.h"
-#include "signal.h"
+#include "test_signal.h"
 #include "unity.h"
 
 void setUp(void) {}

@@ -1,5 +1,5 @@
 #include "motion.h"
-#include "signal.h"
+#include "test_signal.h"
 #include "unity.h"
 
 static motion_t motion;

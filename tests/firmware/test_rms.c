@@ -1,5 +1,5 @@
 #include "rms.h"
-#include "signal.h"
+#include "test_signal.h"
 #include "unity.h"
 
 static rms_t rms;

@@ -1,6 +1,6 @@
 // Spectrum and tracker together, wired as the controller wires them.
-#include "signal.h"
 #include "spectrum.h"
+#include "test_signal.h"
 #include "tracker.h"
 #include "unity.h"
 

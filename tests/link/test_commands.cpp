@@ -1,36 +1,17 @@
 /// compare and uart-rate as a user meets them.
-#include <cstdio>
-#include <sys/wait.h>
-
 #include <nlohmann/json.hpp>
 
+#include "bench_call.h"
 #include "images.h"
 
 namespace quiesce {
 namespace {
 
-struct Outcome {
-    int exit_code;
-    std::string output;
-};
-
-Outcome bench(const std::string &words, const std::string &environment = "") {
-    const std::string command = environment + " " QUIESCE_BENCH " " + words + " 2>&1";
-    std::FILE *pipe = popen(command.c_str(), "r");
-    Outcome out{-1, ""};
-    char buffer[4096];
-    for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) {
-        out.output.append(buffer, n);
-    }
-    out.exit_code = WEXITSTATUS(pclose(pipe));
-    return out;
-}
-
 const std::string kScenario = "--scenario sim_hil/scenarios/trace_equality.toml --law fuzzy ";
 
 TEST(compare, image_equals_the_host_bit_for_bit) {
-    const Outcome outcome =
-        bench("compare " + kScenario + "--seeds 1,2,3,4,5 --target mps2 --image " + kShmImage);
+    const Outcome outcome = bench("compare " + kScenario +
+                                  "--seeds 1,2,3,4,5 --target mps2 --image " + quoted(kShmImage));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
     const auto json = nlohmann::json::parse(outcome.output);
     EXPECT_EQ(json["mismatches"], 0) << outcome.output;
@@ -44,8 +25,8 @@ TEST(compare, image_equals_the_host_bit_for_bit) {
 }
 
 TEST(uart_rate, reports_both_rates) {
-    const Outcome outcome =
-        bench("uart-rate --exchanges 400 --image " + kUartImage + " --echo-image " + kEchoImage);
+    const Outcome outcome = bench("uart-rate --exchanges 400 --image " + quoted(kUartImage) +
+                                  " --echo-image " + quoted(kEchoImage));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
     const auto json = nlohmann::json::parse(outcome.output);
     EXPECT_EQ(json["exchanges"], 400);
@@ -81,21 +62,23 @@ const BadCall kBadCalls[] = {
     {"no_image", "run " + kScenario + "--target mps2", "needs --image ELF"},
     {"missing_image", "run " + kScenario + "--target mps2 --image no.elf", "image no.elf: cannot"},
     {"not_an_image", "run " + kScenario + "--target mps2 --image README.md", "is no 32-bit Arm"},
-    {"wrong_plugin", "run " + kScenario + "--target mps2 --plugin no.so --image " + kShmImage,
+    {"wrong_plugin",
+     "run " + kScenario + "--target mps2 --plugin no.so --image " + quoted(kShmImage),
      "plugin no.so: not found"},
-    {"qemu_missing", "run " + kScenario + "--target mps2 --image " + kShmImage,
+    {"qemu_missing", "run " + kScenario + "--target mps2 --image " + quoted(kShmImage),
      "qemu-system-arm not found: install it", "PATH=/nonexistent"},
-    {"no_seeds", "compare " + kScenario + "--target mps2 --image " + kShmImage,
+    {"no_seeds", "compare " + kScenario + "--target mps2 --image " + quoted(kShmImage),
      "--seeds is missing"},
-    {"bad_seeds", "compare " + kScenario + "--seeds 1,x --target mps2 --image " + kShmImage,
+    {"bad_seeds", "compare " + kScenario + "--seeds 1,x --target mps2 --image " + quoted(kShmImage),
      "--seeds 1,x: expected integers"},
     {"one_seed_option",
-     "compare " + kScenario + "--seed 1 --seeds 1 --target mps2 --image " + kShmImage,
+     "compare " + kScenario + "--seed 1 --seeds 1 --target mps2 --image " + quoted(kShmImage),
      "takes --seeds"},
     {"no_target", "compare " + kScenario + "--seeds 1", "--target is missing"},
-    {"no_echo_image", "uart-rate --image " + kUartImage, "--echo-image is missing"},
+    {"no_echo_image", "uart-rate --image " + quoted(kUartImage), "--echo-image is missing"},
     {"no_exchanges",
-     "uart-rate --exchanges 1 --image " + kUartImage + " --echo-image " + kEchoImage,
+     "uart-rate --exchanges 1 --image " + quoted(kUartImage) + " --echo-image " +
+         quoted(kEchoImage),
      "--exchanges 1: expected an integer in 200"},
 };
 

@@ -1,5 +1,6 @@
 """Bad input: one clear line that says what to do, exit code 2, nothing written."""
 
+import shlex
 import signal
 import subprocess
 import sys
@@ -197,7 +198,7 @@ def test_interrupt_ends_in_one_line_without_output(build: Path, tmp_path: Path) 
 
 
 def test_reader_that_goes_away_leaves_no_trace(build: Path, tmp_path: Path) -> None:
-    command = f"{sys.executable} -m quiesce params | true"
+    command = f"{shlex.quote(sys.executable)} -m quiesce params | true"
     result = subprocess.run(
         ["/bin/bash", "-c", command],
         cwd=tmp_path,

@@ -1,6 +1,6 @@
 // Integer test signals, the same bits on every target.
-#ifndef SIGNAL_H
-#define SIGNAL_H
+#ifndef TEST_SIGNAL_H
+#define TEST_SIGNAL_H
 
 #include <stdint.h>
 

@@ -1,4 +1,4 @@
-#include "signal.h"
+#include "test_signal.h"
 
 #include "cosine_table.h"
 
