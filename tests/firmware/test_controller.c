@@ -1,5 +1,8 @@
 // The wired controller, through the lock-step server as every target runs it.
 #include "lockstep.h"
+
+#include <stddef.h>
+
 #include "test_signal.h"
 #include "unity.h"
 
@@ -220,6 +223,57 @@ static void test_arbitrary_input_never_drives_the_command_out_of_range(void) {
     }
 }
 
+static void run_wildly(uint32_t ticks) {
+    uint32_t seed = 17;
+    for (uint32_t i = 0; i < ticks; i++) {
+        const lockstep_stimulus_t in = {
+            .accel_counts = signal_noise(&seed, 8388606),
+            .flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | LOCKSTEP_HAS_CURRENT,
+            .current_meas_mA = signal_noise(&seed, 20000),
+        };
+        lockstep_exchange(&server, &in, &reply);
+        TEST_ASSERT_TRUE(reply.current_cmd_mA >= 0);
+        TEST_ASSERT_TRUE(reply.current_cmd_mA <= params.max_current_mA);
+    }
+}
+
+// Whatever the check accepts must run: each parameter at its ends, at every tick rate and law.
+static void test_every_accepted_extreme_runs(void) {
+    static const int32_t rates_Hz[] = {500, 1000, 2000, 4000};
+    for (uint32_t i = 0; i < 2 * QUIESCE_PARAM_COUNT; i++) {
+        const quiesce_param_info_t *info = quiesce_param_info(i / 2);
+        for (uint32_t k = 0; k < 4; k++) {
+            quiesce_params_default(&params);
+            params.tick_rate_Hz = rates_Hz[k];
+            params.law = (int32_t)k;
+            params.current_check = (int32_t)(k % 2);
+            quiesce_param_set(&params, i / 2, i % 2 ? info->max : info->min);
+            if (quiesce_params_check(&params, NULL)) {
+                TEST_ASSERT_TRUE(lockstep_start(&server, &params));
+                run_wildly(700);
+            }
+        }
+    }
+}
+
+// All at once, as far as they do not contradict each other.
+static void test_all_parameters_at_their_ends_together_run(void) {
+    for (uint32_t end = 0; end < 2; end++) {
+        for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
+            const quiesce_param_info_t *info = quiesce_param_info(i);
+            quiesce_param_set(&params, i, end ? info->max : info->min);
+        }
+        params.constant_current_mA = 0;
+        params.law = QUIESCE_LAW_FUZZY_SELFTUNE;
+        params.current_check = QUIESCE_CURRENT_CHECK_ON;
+        params.sensor_recover_ticks = 1;
+        params.safe_current_mA = 0;
+        params.unlock_current_mA = 0;
+        TEST_ASSERT_TRUE(lockstep_start(&server, &params));
+        run_wildly(20000);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_chain_reaches_the_rule_bases_current);
@@ -233,5 +287,7 @@ int main(void) {
     RUN_TEST(test_lost_tick_is_a_clearing_fault);
     RUN_TEST(test_two_controllers_do_not_share_state);
     RUN_TEST(test_arbitrary_input_never_drives_the_command_out_of_range);
+    RUN_TEST(test_every_accepted_extreme_runs);
+    RUN_TEST(test_all_parameters_at_their_ends_together_run);
     return UNITY_END();
 }
