@@ -6,7 +6,7 @@ bool app_init(app_t *app, const quiesce_params_t *params, hal_accel_t *accel,
               hal_current_t *current) {
     *app = (app_t){.accel = accel, .current = current};
     const bool accepted = quiesce_init(&app->controller, params);
-    hal_current_write(current, accepted ? params->safe_current_mA : 0, accepted);
+    hal_current_write(current, quiesce_params_safe_current_mA(params), accepted);
     return accepted;
 }
 

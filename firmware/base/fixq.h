@@ -50,7 +50,7 @@ uint32_t isqrt_u64(uint64_t value);
 /// floor(sqrt(value)), exact. 16 steps.
 uint32_t isqrt_u32(uint32_t value);
 
-/// sqrt(value) with a relative error of at most 2^-15 (floor of the leading 32 bits' root).
+/// sqrt(value), low by at most 2^-15 of it plus 1 (floor of the leading 32 bits' root).
 /// Half the cost of isqrt_u64. value < 2^62.
 uint32_t sqrt_fast_u64(uint64_t value);
 

@@ -61,6 +61,13 @@ static bool is_faulted(quiesce_state_t state) {
     return state == QUIESCE_STATE_SAFE || state == QUIESCE_STATE_FAULT;
 }
 
+// An emergency stop switches the driver off even where another latched fault already holds FAULT;
+// only refused parameters, which no acknowledgement may clear, keep their place.
+static bool is_stop_on_top(const supervisor_t *self, const supervisor_in_t *in) {
+    return in->latched_fault == QUIESCE_FAULT_ESTOP && self->fault != QUIESCE_FAULT_ESTOP &&
+           self->fault != QUIESCE_FAULT_PARAMETER;
+}
+
 bool supervisor_step(supervisor_t *self, const supervisor_in_t *in) {
     const bool is_edge = in->fault_reset && !self->last_fault_reset;
     self->last_fault_reset = in->fault_reset;
@@ -69,7 +76,7 @@ bool supervisor_step(supervisor_t *self, const supervisor_in_t *in) {
     const quiesce_state_t state = (quiesce_state_t)next[self->state][event];
     if (!is_faulted(state)) {
         self->fault = QUIESCE_FAULT_NONE;
-    } else if (state != self->state) {
+    } else if (state != self->state || is_stop_on_top(self, in)) {
         self->fault = event == EVENT_LATCHED_FAULT ? in->latched_fault : in->clearing_fault;
         self->fault_count = increment_sat_u32(self->fault_count);
     }

@@ -61,7 +61,7 @@ typedef struct {
 typedef struct {
     uint32_t tick;
     uint32_t state;            ///< quiesce_state_t
-    uint32_t fault;            ///< quiesce_fault_t, the one that holds the state
+    uint32_t fault;            ///< quiesce_fault_t that led to SAFE or FAULT, else NONE
     uint32_t fault_count;      ///< faults entered since init, saturating
     uint32_t bad_sample_count; ///< samples refused since init, saturating
     int32_t accel_um_s2;       ///< conditioned acceleration, DC removed
@@ -93,12 +93,16 @@ typedef struct {
 
 /// Starts the controller from rest with a copy of the parameters.
 /// Returns false iff quiesce_params_check refuses them; the controller is then in FAULT with
-/// QUIESCE_FAULT_PARAMETER and commands min(max(safe_current_mA, 0), max_current_mA), or 0 where
-/// these are themselves out of range. Call it before the first step.
+/// QUIESCE_FAULT_PARAMETER and commands quiesce_params_safe_current_mA. Call it before the first
+/// step.
 bool quiesce_init(quiesce_t *self, const quiesce_params_t *params);
 
 /// One control tick. Bounded; safe in an interrupt. Writes all of *out.
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
+
+/// The current that these parameters make safe, even where they are refused as a whole:
+/// safe_current_mA, or 0 where it or max_current_mA is outside its own range or they contradict.
+int32_t quiesce_params_safe_current_mA(const quiesce_params_t *params);
 
 /// The rule base alone, for drawing and checking it: current in mA at a frequency and an RMS
 /// acceleration. *rules_fired (may be NULL) receives a bit per rule, row-major (frequency rows).

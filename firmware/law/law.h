@@ -17,7 +17,7 @@ typedef struct {
 
 /// State of any law: caller-owned, cleared by reset.
 typedef struct {
-    int32_t current_uA;
+    int64_t current_mA_q20;
 } law_state_t;
 
 /// Request in mA, 0 .. params->max_current_mA + whatever the guard will clip.

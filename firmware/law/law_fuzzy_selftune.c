@@ -15,31 +15,32 @@ static int32_t direction(const quiesce_params_t *params, const law_in_t *in) {
     return params->selftune_polarity * sign_i64(in->accel_um_s2) * sign_i64(in->velocity_um_s_q32);
 }
 
-// rate x 1000 / tick rate, floor, without leaving 32 bits.
-static int32_t step_uA(const quiesce_params_t *params) {
-    const int32_t whole = params->selftune_rate_mA_s / params->tick_rate_Hz;
-    const int32_t rest = params->selftune_rate_mA_s % params->tick_rate_Hz;
-    return whole * 1000 + rest * 1000 / params->tick_rate_Hz;
+// rate / tick rate in Q20, floor; rest < 4000, so that its product fits 32 bits.
+static int64_t step_q20(const quiesce_params_t *params) {
+    const uint32_t rate = (uint32_t)params->selftune_rate_mA_s;
+    const uint32_t ticks = (uint32_t)params->tick_rate_Hz;
+    return ((int64_t)(rate / ticks) << 20) + ((rate % ticks) << 20) / ticks;
 }
 
-static int64_t leak_uA(const quiesce_params_t *params, int64_t excess_uA) {
+// Backward Euler: any time constant is stable, the shortest ones included.
+static int64_t leak_q20(const quiesce_params_t *params, int64_t excess_q20) {
     if (params->selftune_leak_ms == 0) {
         return 0;
     }
-    return excess_uA * 1000 / ((int64_t)params->selftune_leak_ms * params->tick_rate_Hz);
+    const int64_t lag_milliticks = (int64_t)params->selftune_leak_ms * params->tick_rate_Hz;
+    return excess_q20 * 1000 / (1000 + lag_milliticks);
 }
 
 static int32_t step(law_state_t *state, const quiesce_params_t *params, const law_in_t *in) {
-    const int32_t base_uA = in->base_mA * 1000;
+    const int64_t base_q20 = (int64_t)in->base_mA << 20;
     if (!is_tuning(params, in)) {
-        state->current_uA = base_uA;
+        state->current_mA_q20 = base_q20;
         return in->base_mA;
     }
-    const int64_t current_uA = state->current_uA +
-                               (int64_t)step_uA(params) * direction(params, in) -
-                               leak_uA(params, (int64_t)state->current_uA - base_uA);
-    state->current_uA = (int32_t)clamp_i64(current_uA, 0, params->max_current_mA * INT64_C(1000));
-    return state->current_uA / 1000;
+    const int64_t driven_q20 = state->current_mA_q20 + step_q20(params) * direction(params, in);
+    const int64_t current_q20 = driven_q20 - leak_q20(params, driven_q20 - base_q20);
+    state->current_mA_q20 = clamp_i64(current_q20, 0, (int64_t)params->max_current_mA << 20);
+    return (int32_t)(state->current_mA_q20 >> 20);
 }
 
 const law_t law_fuzzy_selftune = {"fuzzy_selftune", step};

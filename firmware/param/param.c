@@ -1,5 +1,5 @@
 // Defaults, checks and access by index of the parameters.
-#include "quiesce_params.h"
+#include "quiesce.h"
 
 #include <stddef.h>
 
@@ -60,14 +60,26 @@ static bool refuse(quiesce_param_error_t *error, size_t offset, const char *reas
     return false;
 }
 
+static bool is_in_range(const quiesce_params_t *params, size_t offset) {
+    const uint32_t index = (uint32_t)(offset / sizeof(int32_t));
+    const int32_t value = value_of(params, index);
+    return value >= param_table[index].min && value <= param_table[index].max;
+}
+
+int32_t quiesce_params_safe_current_mA(const quiesce_params_t *params) {
+    const bool is_usable = is_in_range(params, offsetof(quiesce_params_t, safe_current_mA)) &&
+                           is_in_range(params, offsetof(quiesce_params_t, max_current_mA)) &&
+                           params->safe_current_mA <= params->max_current_mA;
+    return is_usable ? params->safe_current_mA : 0;
+}
+
 static bool check_each(const quiesce_params_t *params, quiesce_param_error_t *error) {
     for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
         const quiesce_param_info_t *info = &param_table[i];
-        const int32_t value = value_of(params, i);
-        if (value < info->min || value > info->max) {
+        if (!is_in_range(params, i * sizeof(int32_t))) {
             return refuse(error, i * sizeof(int32_t), "out of range");
         }
-        if (!is_choice(info, value)) {
+        if (!is_choice(info, value_of(params, i))) {
             return refuse(error, i * sizeof(int32_t), "not one of the allowed values");
         }
     }
@@ -88,6 +100,11 @@ static bool check_together(const quiesce_params_t *params, quiesce_param_error_t
     }
     if (params->unlock_current_mA > params->max_current_mA) {
         return refuse(error, offsetof(quiesce_params_t, unlock_current_mA), "above max_current_mA");
+    }
+    if (params->current_check == QUIESCE_CURRENT_CHECK_ON &&
+        params->current_error_mA > params->max_current_mA / 2) {
+        return refuse(error, offsetof(quiesce_params_t, current_error_mA),
+                      "above half of max_current_mA, an open coil would go unseen");
     }
     return true;
 }

@@ -8,7 +8,7 @@ void condition_init(condition_t *self, const condition_cfg_t *cfg) {
         .scale = scale_from_ratio((uint32_t)cfg->scale_nm_s2, 1000u),
         // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.
         .dc_gain_q32 = omega_q32 - ((omega_q32 * omega_q32) / one_q32),
-        .mean_samples = 1,
+        .last_counts = INT32_MIN, // no ADC reports it
     };
 }
 
@@ -16,50 +16,73 @@ static condition_flag_t classify(condition_t *self, int32_t counts, bool is_fres
     if (!is_fresh) {
         return CONDITION_LOST;
     }
-    self->same_ticks = counts == self->last_counts ? increment_sat_u32(self->same_ticks) : 0;
+    self->same_samples = counts == self->last_counts ? increment_sat_u32(self->same_samples) : 1u;
     self->last_counts = counts;
-    const int32_t magnitude = abs_i32(counts);
-    if (magnitude > self->cfg.full_scale_counts) {
+    const int32_t full_scale = self->cfg.full_scale_counts;
+    // Two's complement reaches one count further below zero.
+    if (counts > full_scale || counts < -full_scale - 1) {
         return CONDITION_RANGE;
     }
-    if (magnitude == self->cfg.full_scale_counts) {
+    if (counts == full_scale || counts <= -full_scale) {
         return CONDITION_SATURATED;
     }
-    if (self->cfg.stuck_ticks != 0 && self->same_ticks >= self->cfg.stuck_ticks) {
+    if (self->cfg.stuck_ticks != 0 && self->same_samples >= self->cfg.stuck_ticks) {
         return CONDITION_STUCK;
     }
     return CONDITION_GOOD;
 }
 
 static int32_t scaled_um_s2(const condition_t *self, int32_t counts) {
-    // Both are at most 2^23 in magnitude here.
+    // Both are at most 2^23 in magnitude here, their difference 2^24.
     const int32_t offset_free = (counts - self->cfg.offset_counts) * self->cfg.polarity;
     return scale_apply(self->scale, offset_free, CONDITION_LIMIT_um_s2);
 }
 
-static int32_t without_dc(condition_t *self, int32_t value_um_s2) {
-    const int32_t dc_um_s2 = (int32_t)(self->dc_q32 >> 32);
-    const int32_t rest_um_s2 = value_um_s2 - dc_um_s2;
+static void take_good_sample(condition_t *self, int32_t counts) {
+    self->held_um_s2 = scaled_um_s2(self, counts);
+    self->bad_ticks = 0;
+    self->good_ticks = increment_sat_u32(self->good_ticks);
+    if (!self->has_dc) {
+        self->has_dc = true;
+        self->dc_q32 = (int64_t)self->held_um_s2 * (INT64_C(1) << 32);
+        self->mean_samples = 1;
+    }
+}
+
+static void follow_dc(condition_t *self, int32_t rest_um_s2) {
     // Until the plain mean of all samples so far would be slower, the mean is the better start: a
     // record that begins in full swing must not ring through the DC removal.
     const int64_t mean_gain_q32 = UINT32_MAX / self->mean_samples;
     const bool is_start = mean_gain_q32 > self->dc_gain_q32;
     self->mean_samples += is_start ? 1u : 0u;
     self->dc_q32 += rest_um_s2 * (is_start ? mean_gain_q32 : self->dc_gain_q32);
+}
+
+// The held sample without its DC part; 0 while there is none to trust.
+static int32_t without_dc(condition_t *self, condition_flag_t flag) {
+    if (!self->has_dc) {
+        return 0;
+    }
+    const int32_t rest_um_s2 = self->held_um_s2 - (int32_t)(self->dc_q32 >> 32);
+    if (flag == CONDITION_GOOD) {
+        follow_dc(self, rest_um_s2);
+    }
     return clamp_i32(rest_um_s2, -CONDITION_LIMIT_um_s2, CONDITION_LIMIT_um_s2);
 }
 
 void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_out_t *out) {
     out->flag = classify(self, counts, is_fresh);
     if (out->flag == CONDITION_GOOD) {
-        self->held_um_s2 = scaled_um_s2(self, counts);
-        self->bad_ticks = 0;
-        self->good_ticks = increment_sat_u32(self->good_ticks);
+        take_good_sample(self, counts);
     } else {
         self->bad_ticks = increment_sat_u32(self->bad_ticks);
         self->good_ticks = 0;
     }
-    out->accel_um_s2 = without_dc(self, self->held_um_s2);
     out->is_fault = out->flag == CONDITION_STUCK || self->bad_ticks > self->cfg.max_age_ticks;
+    if (out->is_fault) {
+        // The sensor may come back with another offset: the DC part is learnt anew.
+        self->has_dc = false;
+    }
+    out->accel_um_s2 = without_dc(self, out->flag);
     out->good_ticks = self->good_ticks;
 }

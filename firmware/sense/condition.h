@@ -1,7 +1,9 @@
 /// Conditioning of the accelerometer: plausibility, scale, polarity, removal of the DC part.
 ///
 /// A bad sample never reaches the windows: the last good one is held, and the fault is reported
-/// once the bad run is longer than max_age_ticks. Bounded, about 60 instructions a tick.
+/// once the bad run is longer than max_age_ticks; from then on the output is 0 and the DC part is
+/// learnt anew. (A stuck sensor is seen only after stuck_ticks samples; those have been passed on.)
+/// Bounded, about 60 instructions a tick.
 #ifndef CONDITION_H
 #define CONDITION_H
 
@@ -35,16 +37,17 @@ typedef struct {
     scale_t scale;         ///< um/s2 per count
     int64_t dc_q32;        ///< um/s2 in Q32
     int64_t dc_gain_q32;   ///< share of the error taken over each tick
+    bool has_dc;           ///< dc_q32 has been learnt since init or the last fault
     uint32_t mean_samples; ///< samples that the starting mean holds, plus one
     int32_t held_um_s2;    ///< last good sample, before DC removal
     int32_t last_counts;
-    uint32_t same_ticks; ///< identical samples in a row
-    uint32_t bad_ticks;  ///< bad samples in a row
-    uint32_t good_ticks; ///< good samples in a row, saturating
+    uint32_t same_samples; ///< identical samples in a row, the first one included
+    uint32_t bad_ticks;    ///< bad samples in a row
+    uint32_t good_ticks;   ///< good samples in a row, saturating
 } condition_t;
 
 typedef struct {
-    int32_t accel_um_s2;   ///< DC removed; at most +-CONDITION_LIMIT_um_s2
+    int32_t accel_um_s2;   ///< DC removed; 0 while there is a fault; saturated to the limit
     condition_flag_t flag; ///< of this tick's sample
     bool is_fault;         ///< the bad run is older than max_age_ticks (stuck: at once)
     uint32_t good_ticks;   ///< good samples in a row, saturating

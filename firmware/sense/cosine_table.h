@@ -1,5 +1,5 @@
-/// One period of the cosine for the sliding DFT: cosine_q25[i] = cos(2 pi i / 256) in Q22, rounded
-/// to nearest. sin(2 pi i / 256) = cosine_q25[(i - 64) & 255].
+/// One period of the cosine for the sliding DFT: cosine_q25[i] = cos(2 pi i / 256) x (2^25 - 1),
+/// rounded to nearest. sin(2 pi i / 256) = cosine_q25[(i - 64) & 255].
 #ifndef COSINE_TABLE_H
 #define COSINE_TABLE_H
 

@@ -9,6 +9,10 @@ void motion_init(motion_t *self, uint32_t tick_rate_Hz, int32_t cutoff_mHz) {
     };
 }
 
+void motion_reset(motion_t *self) {
+    self->velocity_um_s_q32 = 0;
+}
+
 int64_t motion_step(motion_t *self, int32_t accel_um_s2) {
     const int64_t gain = accel_um_s2 * self->step_q32;
     const int64_t loss = motion_velocity_um_s(self->velocity_um_s_q32) * self->leak_q32;

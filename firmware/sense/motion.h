@@ -18,6 +18,9 @@ typedef struct {
 /// tick_rate_Hz: 500 .. 4000; cutoff_mHz: 50 .. 5000.
 void motion_init(motion_t *self, uint32_t tick_rate_Hz, int32_t cutoff_mHz);
 
+/// Back to rest.
+void motion_reset(motion_t *self);
+
 /// One sample, |accel_um_s2| <= 5 x 10^8. Returns the velocity in um/s, Q32 (its sign is good to a
 /// fraction of a um/s).
 int64_t motion_step(motion_t *self, int32_t accel_um_s2);

@@ -13,6 +13,15 @@ void rms_init(rms_t *self, uint32_t tick_rate_Hz, uint32_t window_ms) {
     }
 }
 
+void rms_reset(rms_t *self) {
+    self->total = 0;
+    self->open_sum = 0;
+    self->next = 0;
+    self->filled = 0;
+    self->open_ticks = 0;
+    self->rms_um_s2 = 0;
+}
+
 static int32_t root_of_mean(const rms_t *self) {
     // total = 5/2^5 of the sum of the blocks' mean squares.
     const uint64_t mean = self->total / (self->filled * SMALLEST_BLOCK_TICKS);
@@ -21,10 +30,12 @@ static int32_t root_of_mean(const rms_t *self) {
 
 static void close_block(rms_t *self) {
     const uint64_t closed = self->open_sum >> self->shift;
-    self->total += closed - self->block[self->next];
+    // A slot that the window has not filled since the last reset holds nothing to take away.
+    const bool is_full = self->filled == self->window_blocks;
+    self->total += closed - (is_full ? self->block[self->next] : 0u);
     self->block[self->next] = closed;
     self->next = self->next + 1u == self->window_blocks ? 0 : self->next + 1u;
-    self->filled += self->filled < self->window_blocks ? 1u : 0u;
+    self->filled += is_full ? 0u : 1u;
     self->open_sum = 0;
     self->open_ticks = 0;
     self->rms_um_s2 = root_of_mean(self);

@@ -28,6 +28,9 @@ typedef struct {
 /// tick_rate_Hz: 500, 1000, 2000 or 4000. window_ms: 100 .. 4000, rounded down to 10 ms.
 void rms_init(rms_t *self, uint32_t tick_rate_Hz, uint32_t window_ms);
 
+/// Forgets all samples; the RMS is 0 until the next block is full.
+void rms_reset(rms_t *self);
+
 /// One sample, |accel_um_s2| <= 5 x 10^8. Returns the RMS over the window, um/s2 (shorter while it
 /// fills).
 int32_t rms_step(rms_t *self, int32_t accel_um_s2);

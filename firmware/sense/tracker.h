@@ -8,8 +8,8 @@
 ///
 /// Valid: a counted peak inside the band, a window full of good samples, and STEADY_ROUNDS rounds
 /// in a row (32 ms) within 1/32 of each other. Estimates describe the middle of the window: they
-/// lag by half of 1.024 s plus the decimator's delay (0.527 s at 1 kHz). Formats: powers (2 x
-/// um/s2)^2 in 64 bit; frequency 1 uHz, resolved to about 40 uHz by the 16-bit roots. Bounded;
+/// lag by half of 1.024 s plus the decimator's delay (0.527 s at 1 kHz). Formats: powers
+/// (um/s2)^2 in 64 bit; frequency 1 uHz, resolved to about 40 uHz by the 16-bit roots. Bounded;
 /// about 30 instructions a bin and 1500 at the end of a round.
 #ifndef TRACKER_H
 #define TRACKER_H

@@ -15,8 +15,8 @@
 #include "supervisor.h"
 #include "tracker.h"
 
-// Lives in the caller's opaque words; may_alias keeps that legal.
-typedef struct __attribute__((may_alias)) {
+// Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
+typedef struct {
     quiesce_params_t params;
     condition_t condition;
     rms_t rms;
@@ -68,7 +68,7 @@ static void init_output(controller_t *self, const quiesce_params_t *p, bool is_a
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
     guard_init(&self->guard, &(guard_cfg_t){
                                  .max_mA = p->max_current_mA,
-                                 .safe_mA = p->safe_current_mA,
+                                 .safe_mA = quiesce_params_safe_current_mA(p),
                                  .slew_mA_s = p->slew_mA_s,
                                  .tick_rate_Hz = rate_Hz,
                              });
@@ -126,20 +126,20 @@ static bool is_tick_lost(controller_t *self, uint32_t tick) {
     return is_lost;
 }
 
-static void track(controller_t *self, const condition_out_t *sample) {
+static void track(controller_t *self, const condition_out_t *sample, bool has_gap) {
     const spectrum_span_t span = spectrum_step(&self->spectrum, sample->accel_um_s2);
     tracker_read(&self->tracker, self->spectrum.power, span.first, span.end);
     if (span.is_round_end) {
         tracker_end_round(&self->tracker, self->spectrum.power);
     }
-    tracker_tick(&self->tracker, !sample->is_fault);
+    tracker_tick(&self->tracker, !sample->is_fault && !has_gap);
 }
 
-static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample) {
+static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample,
+                      bool has_gap) {
     const current_verdict_t verdict = current_monitor_step(
         &self->monitor, self->last_command_mA, in->current_meas_mA, in->current_is_measured);
-    const quiesce_fault_t lost =
-        is_tick_lost(self, in->tick) ? QUIESCE_FAULT_TICK_LOST : QUIESCE_FAULT_NONE;
+    const quiesce_fault_t lost = has_gap ? QUIESCE_FAULT_TICK_LOST : QUIESCE_FAULT_NONE;
     const quiesce_fault_t sensor = sensor_fault(sample);
     const supervisor_in_t events = {
         .clearing_fault = sensor != QUIESCE_FAULT_NONE ? sensor : lost,
@@ -188,8 +188,14 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     if (sample.flag != CONDITION_GOOD) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
+    if (sample.is_fault) {
+        // What was taken in before the fault was seen must not outlive it.
+        rms_reset(&c->rms);
+        motion_reset(&c->motion);
+    }
+    const bool has_gap = is_tick_lost(c, in->tick);
     const int32_t rms_um_s2 = rms_step(&c->rms, sample.accel_um_s2);
-    track(c, &sample);
+    track(c, &sample, has_gap);
     const int64_t velocity_um_s_q32 = motion_step(&c->motion, sample.accel_um_s2);
 
     const fuzzy_out_t fuzzy =
@@ -197,11 +203,12 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     const law_in_t law_in = law_input(c, &sample, velocity_um_s_q32, fuzzy.current_mA);
     const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
 
-    supervise(c, in, &sample);
+    supervise(c, in, &sample, has_gap);
     out->current_cmd_mA =
         guard_step(&c->guard, request_mA, supervisor_allows_output(&c->supervisor));
     out->driver_enable = supervisor_allows_driver(&c->supervisor);
-    c->last_command_mA = out->current_cmd_mA;
+    // A driver that is switched off is expected to carry nothing.
+    c->last_command_mA = out->driver_enable ? out->current_cmd_mA : 0;
 
     report(c, t);
     t->tick = in->tick;

@@ -82,7 +82,8 @@ static void test_dropout_holds_the_last_sample_then_faults_after_the_age_limit(v
         condition_step(&condition, 999999, false, &out);
         TEST_ASSERT_EQUAL(CONDITION_LOST, out.flag);
         TEST_ASSERT_EQUAL(i > config.max_age_ticks, out.is_fault);
-        TEST_ASSERT_INT32_WITHIN(300000, 7129707, out.accel_um_s2); // held, DC creeps towards it
+        // Held without moving the DC part; nothing once it is a fault.
+        TEST_ASSERT_INT32_WITHIN(30000, out.is_fault ? 0 : 7129707, out.accel_um_s2);
         TEST_ASSERT_EQUAL_UINT32(0, out.good_ticks);
     }
     step(1);
@@ -97,6 +98,10 @@ static void test_saturated_and_out_of_range_samples_are_told_apart(void) {
     TEST_ASSERT_EQUAL(CONDITION_SATURATED, out.flag);
     step(-8388607);
     TEST_ASSERT_EQUAL(CONDITION_SATURATED, out.flag);
+    step(-8388608); // the negative rail of two's complement
+    TEST_ASSERT_EQUAL(CONDITION_SATURATED, out.flag);
+    step(-8388609);
+    TEST_ASSERT_EQUAL(CONDITION_RANGE, out.flag);
     step(8388608);
     TEST_ASSERT_EQUAL(CONDITION_RANGE, out.flag);
     step(INT32_MIN);
@@ -107,7 +112,7 @@ static void test_saturated_and_out_of_range_samples_are_told_apart(void) {
 static void test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off(void) {
     for (uint32_t i = 0; i <= 60; i++) {
         step(777);
-        TEST_ASSERT_EQUAL(i >= config.stuck_ticks, out.is_fault);
+        TEST_ASSERT_EQUAL(i + 1 >= config.stuck_ticks, out.is_fault);
     }
     condition_cfg_t unchecked = config;
     unchecked.stuck_ticks = 0;
@@ -116,6 +121,27 @@ static void test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off(void) {
         step(777);
         TEST_ASSERT_FALSE(out.is_fault);
     }
+}
+
+static void test_offset_is_learnt_anew_after_a_fault(void) {
+    step_good(2000);
+    for (uint32_t i = 0; i < 5000; i++) {
+        step(4000000); // stuck far off
+    }
+    TEST_ASSERT_TRUE(out.is_fault);
+    for (uint32_t i = 0; i < 300; i++) {
+        step(i % 2 ? 170100 : 169900); // back, with 1 g on it
+        TEST_ASSERT_INT32_WITHIN(20000, 0, out.accel_um_s2);
+    }
+}
+
+static void test_silent_start_passes_nothing_on(void) {
+    for (uint32_t i = 0; i < 500; i++) {
+        condition_step(&condition, 0, false, &out);
+        TEST_ASSERT_EQUAL_INT32(0, out.accel_um_s2);
+    }
+    step(170000);
+    TEST_ASSERT_EQUAL_INT32(0, out.accel_um_s2);
 }
 
 int main(void) {
@@ -127,5 +153,7 @@ int main(void) {
     RUN_TEST(test_dropout_holds_the_last_sample_then_faults_after_the_age_limit);
     RUN_TEST(test_saturated_and_out_of_range_samples_are_told_apart);
     RUN_TEST(test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off);
+    RUN_TEST(test_offset_is_learnt_anew_after_a_fault);
+    RUN_TEST(test_silent_start_passes_nothing_on);
     return UNITY_END();
 }

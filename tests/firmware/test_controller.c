@@ -179,6 +179,49 @@ static void test_current_check_tells_its_faults_apart(void) {
     assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_CURRENT_LOST);
 }
 
+// The driver is off after an emergency stop: no current may then not count as a new fault.
+static void test_emergency_stop_can_be_acknowledged_with_the_current_check_on(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    params.current_check = QUIESCE_CURRENT_CHECK_ON;
+    params.safe_current_mA = 2000;
+    start();
+    run_coil(100, true, 2000);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | LOCKSTEP_HAS_CURRENT | LOCKSTEP_ESTOP;
+    for (uint32_t i = 0; i < 300; i++) {
+        tick(signal_noise(&noise_seed, 147), 0);
+    }
+    assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_ESTOP);
+    flags = LOCKSTEP_FRESH | LOCKSTEP_HAS_CURRENT | LOCKSTEP_FAULT_RESET;
+    tick(signal_noise(&noise_seed, 147), 0);
+    assert_state(QUIESCE_STATE_INIT, QUIESCE_FAULT_NONE);
+}
+
+static void test_lost_tick_invalidates_the_frequency_for_a_window(void) {
+    params.law = QUIESCE_LAW_FUZZY;
+    start();
+    vibrate(10000, 1500);
+    TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.freq_is_valid);
+    server.app.tick += 50;
+    vibrate(10000, 1000);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.telemetry.freq_is_valid);
+    vibrate(10000, 100);
+    TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.freq_is_valid);
+}
+
+static void test_rms_is_right_soon_after_a_stuck_sensor(void) {
+    params.law = QUIESCE_LAW_FUZZY;
+    start();
+    vibrate(10000, 1500);
+    for (uint32_t i = 0; i < 5000; i++) {
+        tick(4000000, 0);
+    }
+    assert_state(QUIESCE_STATE_SAFE, QUIESCE_FAULT_SENSOR_STUCK);
+    vibrate(10000, 520);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    TEST_ASSERT_INT32_WITHIN(10000, 212000, reply.telemetry.rms_um_s2);
+}
+
 static void test_lost_tick_is_a_clearing_fault(void) {
     params.law = QUIESCE_LAW_CONSTANT;
     start();
@@ -265,8 +308,9 @@ static void test_all_parameters_at_their_ends_together_run(void) {
         }
         params.constant_current_mA = 0;
         params.law = QUIESCE_LAW_FUZZY_SELFTUNE;
-        params.current_check = QUIESCE_CURRENT_CHECK_ON;
+        params.current_check = (int32_t)end; // the smallest limits leave it nothing to see
         params.sensor_recover_ticks = 1;
+        params.current_error_mA = 10;
         params.safe_current_mA = 0;
         params.unlock_current_mA = 0;
         TEST_ASSERT_TRUE(lockstep_start(&server, &params));
@@ -284,6 +328,9 @@ int main(void) {
     RUN_TEST(test_emergency_stop_latches_within_its_tick);
     RUN_TEST(test_disable_takes_the_current_away_and_enable_returns_it);
     RUN_TEST(test_current_check_tells_its_faults_apart);
+    RUN_TEST(test_emergency_stop_can_be_acknowledged_with_the_current_check_on);
+    RUN_TEST(test_lost_tick_invalidates_the_frequency_for_a_window);
+    RUN_TEST(test_rms_is_right_soon_after_a_stuck_sensor);
     RUN_TEST(test_lost_tick_is_a_clearing_fault);
     RUN_TEST(test_two_controllers_do_not_share_state);
     RUN_TEST(test_arbitrary_input_never_drives_the_command_out_of_range);

@@ -147,6 +147,23 @@ static void test_latched_fault_outranks_a_clearing_one_and_interrupts_safe(void)
     TEST_ASSERT_EQUAL_UINT32(2, supervisor.fault_count);
 }
 
+static void test_emergency_stop_switches_off_on_top_of_any_latched_fault(void) {
+    static const quiesce_fault_t faults[] = {QUIESCE_FAULT_DRIVER_NOT_FOLLOWING,
+                                             QUIESCE_FAULT_COIL_OPEN, QUIESCE_FAULT_CURRENT_LOST};
+    for (uint32_t i = 0; i < 3; i++) {
+        supervisor_init(&supervisor, QUIESCE_FAULT_NONE);
+        drive(NONE, faults[i], true, true, false);
+        TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor));
+        drive(NONE, QUIESCE_FAULT_ESTOP, true, true, false);
+        TEST_ASSERT_EQUAL(QUIESCE_FAULT_ESTOP, supervisor.fault);
+        TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
+    }
+    supervisor_init(&supervisor, QUIESCE_FAULT_PARAMETER);
+    drive(NONE, QUIESCE_FAULT_ESTOP, true, true, false);
+    TEST_ASSERT_EQUAL(QUIESCE_FAULT_PARAMETER, supervisor.fault);
+    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
+}
+
 static void test_refused_parameters_never_leave_fault(void) {
     supervisor_init(&supervisor, QUIESCE_FAULT_PARAMETER);
     for (uint32_t i = 0; i < 20; i++) {
@@ -169,6 +186,7 @@ int main(void) {
     RUN_TEST(test_clearing_fault_returns_by_itself);
     RUN_TEST(test_latched_fault_needs_an_edge_with_the_cause_gone);
     RUN_TEST(test_latched_fault_outranks_a_clearing_one_and_interrupts_safe);
+    RUN_TEST(test_emergency_stop_switches_off_on_top_of_any_latched_fault);
     RUN_TEST(test_refused_parameters_never_leave_fault);
     return UNITY_END();
 }

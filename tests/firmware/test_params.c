@@ -1,4 +1,4 @@
-#include "quiesce_params.h"
+#include "quiesce.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -59,6 +59,24 @@ static void test_contradictions_are_named(void) {
     }
 }
 
+static void test_current_check_must_be_able_to_see_an_open_coil(void) {
+    params.current_error_mA = params.max_current_mA / 2 + 1;
+    TEST_ASSERT_TRUE(quiesce_params_check(&params, NULL));
+    params.current_check = QUIESCE_CURRENT_CHECK_ON;
+    TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+    TEST_ASSERT_EQUAL_STRING("current_error_mA", error.name);
+}
+
+static void test_safe_current_of_a_refused_set(void) {
+    params.law = 99;
+    params.safe_current_mA = 700;
+    TEST_ASSERT_EQUAL_INT32(700, quiesce_params_safe_current_mA(&params));
+    params.safe_current_mA = params.max_current_mA + 1;
+    TEST_ASSERT_EQUAL_INT32(0, quiesce_params_safe_current_mA(&params));
+    params.safe_current_mA = params.max_current_mA = 2000000000;
+    TEST_ASSERT_EQUAL_INT32(0, quiesce_params_safe_current_mA(&params));
+}
+
 static void test_access_by_index(void) {
     int32_t value = -1;
     TEST_ASSERT_TRUE(quiesce_param_get(&params, 0, &value));
@@ -74,6 +92,8 @@ int main(void) {
     RUN_TEST(test_each_value_outside_its_range_is_named);
     RUN_TEST(test_values_between_the_choices_are_refused);
     RUN_TEST(test_contradictions_are_named);
+    RUN_TEST(test_current_check_must_be_able_to_see_an_open_coil);
+    RUN_TEST(test_safe_current_of_a_refused_set);
     RUN_TEST(test_access_by_index);
     return UNITY_END();
 }

@@ -60,6 +60,13 @@ static void test_total_never_drifts_from_a_fresh_sum(void) {
     TEST_ASSERT_TRUE(fresh == rms.total);
 }
 
+static void test_reset_forgets_everything(void) {
+    rms_init(&rms, 1000, 500);
+    feed_sine(400000000, 3000, 1000);
+    rms_reset(&rms);
+    TEST_ASSERT_INT32_WITHIN(1000, 707110, feed_sine(1000000, 700, 1000));
+}
+
 static void test_before_the_first_block_it_is_zero(void) {
     rms_init(&rms, 1000, 500);
     for (uint32_t i = 0; i < 9; i++) {
@@ -74,6 +81,7 @@ int main(void) {
     RUN_TEST(test_full_scale_does_not_overflow_in_the_longest_window);
     RUN_TEST(test_window_forgets_exactly);
     RUN_TEST(test_total_never_drifts_from_a_fresh_sum);
+    RUN_TEST(test_reset_forgets_everything);
     RUN_TEST(test_before_the_first_block_it_is_zero);
     return UNITY_END();
 }

@@ -131,7 +131,8 @@ is refused by name and nothing starts.
 |---|---|---|---|---|---|
 {rows}
 Values that must also agree with each other: `band_low_mHz` < `band_high_mHz`;
-`constant_current_mA`, `safe_current_mA` and `unlock_current_mA` <= `max_current_mA`;
+`constant_current_mA`, `safe_current_mA` and `unlock_current_mA` <= `max_current_mA`; with
+`current_check` on, `current_error_mA` <= `max_current_mA` / 2;
 `selftune_polarity` is -1 or +1, never 0.
 """
 
