@@ -51,10 +51,11 @@ typedef struct {
     bool fault_reset;         ///< operator acknowledges a latched fault (acts on its rising edge)
 } quiesce_in_t;
 
-/// One spectral peak.
+/// One sinusoidal component of the acceleration: amp x cos(phase).
 typedef struct {
     int32_t freq_uHz;
-    int32_t amp_um_s2; ///< acceleration amplitude (peak, not RMS)
+    int32_t amp_um_s2;  ///< acceleration amplitude (peak, not RMS)
+    int32_t phase_mdeg; ///< at this tick, -180000 .. 179999
 } quiesce_peak_t;
 
 /// Everything that a tick leaves behind to look at; 32-bit words only, the same layout everywhere.
@@ -67,10 +68,16 @@ typedef struct {
     int32_t accel_um_s2;       ///< conditioned acceleration, DC removed
     int32_t velocity_um_s;     ///< leaky integral of it
     int32_t rms_um_s2;         ///< windowed RMS of it
-    uint32_t freq_is_valid;    ///< 1: freq_uHz can be trusted now
-    uint32_t freq_age_ticks;   ///< since freq_uHz was last valid, saturating
-    int32_t freq_uHz;          ///< dominant frequency (largest displacement), last valid value
-    int32_t freq_amp_um_s2;    ///< its acceleration amplitude
+    uint32_t freq_is_valid;    ///< 1: the dominant component can be trusted now
+    uint32_t freq_age_ticks;   ///< since it was last valid, saturating
+    int32_t freq_uHz;          ///< dominant component, last valid: its frequency
+    int32_t freq_amp_um_s2;    ///< acceleration amplitude
+    int32_t freq_phase_mdeg;   ///< phase at this tick, -180000 .. 179999: accel = amp x cos(phase)
+    int32_t freq_sigma_uHz;    ///< standard deviation expected of freq_uHz
+    uint32_t freq_window_ms;   ///< length of the window that it was estimated from
+    int32_t displacement_nm;   ///< now; dominant component and its third harmonic
+    int32_t displacement_amp_nm;         ///< half peak-to-peak of that over a cycle
+    int32_t velocity_rms_um_s;           ///< of the whole band, from the last spectrum
     quiesce_peak_t peaks[QUIESCE_PEAKS]; ///< 0 Hz where there are fewer
     uint32_t rules_fired;                ///< bit per fuzzy rule, row-major (frequency rows)
     int32_t current_fuzzy_mA;            ///< the rule base's own output
@@ -86,7 +93,7 @@ typedef struct {
 } quiesce_out_t;
 
 /// Controller state, owned by the caller; contents are private. Copying it copies the controller.
-#define QUIESCE_STATE_BYTES 8192
+#define QUIESCE_STATE_BYTES 12288
 typedef struct {
     uint64_t opaque[QUIESCE_STATE_BYTES / 8];
 } quiesce_t;

@@ -1,28 +1,20 @@
-// The one file that knows the order of the chain.
+// The one file that knows the order of the chain; signal_chain.c wires its sensing half.
 #include "quiesce.h"
 
 #include <stddef.h>
 
-#include "condition.h"
 #include "current_monitor.h"
 #include "fuzzy.h"
 #include "guard.h"
 #include "law.h"
-#include "motion.h"
-#include "rms.h"
-#include "spectrum.h"
+#include "signal_chain.h"
 #include "squeeze_rules.h"
 #include "supervisor.h"
-#include "tracker.h"
 
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
 typedef struct {
     quiesce_params_t params;
-    condition_t condition;
-    rms_t rms;
-    spectrum_t spectrum;
-    tracker_t tracker;
-    motion_t motion;
+    signal_chain_t signal;
     const law_t *law;
     law_state_t law_state;
     supervisor_t supervisor;
@@ -37,32 +29,6 @@ typedef struct {
 _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
 _Static_assert(QUIESCE_PEAKS == TRACKER_PEAKS, "telemetry holds the tracker's peaks");
-
-static void init_sense(controller_t *self, const quiesce_params_t *p) {
-    const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
-    condition_init(&self->condition, &(condition_cfg_t){
-                                         .tick_rate_Hz = rate_Hz,
-                                         .scale_nm_s2 = p->accel_scale_nm_s2,
-                                         .offset_counts = p->accel_offset_counts,
-                                         .polarity = p->accel_polarity,
-                                         .full_scale_counts = p->accel_full_scale_counts,
-                                         .max_age_ticks = (uint32_t)p->sensor_max_age_ticks,
-                                         .stuck_ticks = (uint32_t)p->sensor_stuck_ticks,
-                                         .dc_cutoff_mHz = p->dc_cutoff_mHz,
-                                     });
-    rms_init(&self->rms, rate_Hz, (uint32_t)p->rms_window_ms);
-    spectrum_init(&self->spectrum, rate_Hz);
-    tracker_init(&self->tracker, &(tracker_cfg_t){
-                                     .band_low_mHz = p->band_low_mHz,
-                                     .band_high_mHz = p->band_high_mHz,
-                                     .min_accel_um_s2 = p->track_min_accel_um_s2,
-                                     .snr_dB = p->track_snr_dB,
-                                     .rate_uHz = SPECTRUM_RATE_Hz * 1000000u,
-                                     .points_log2 = SPECTRUM_POINTS_LOG2,
-                                     .window_rounds = SPECTRUM_POINTS,
-                                 });
-    motion_init(&self->motion, rate_Hz, p->velocity_cutoff_mHz);
-}
 
 static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
@@ -92,7 +58,7 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
         // The chain still runs, on defaults; the supervisor lets nothing of it out.
         quiesce_params_default(&c->params);
     }
-    init_sense(c, &c->params);
+    signal_chain_init(&c->signal, &c->params);
     c->law = law_find(c->params.law);
     init_output(c, params, is_accepted);
     return is_accepted;
@@ -126,15 +92,6 @@ static bool is_tick_lost(controller_t *self, uint32_t tick) {
     return is_lost;
 }
 
-static void track(controller_t *self, const condition_out_t *sample, bool has_gap) {
-    const spectrum_span_t span = spectrum_step(&self->spectrum, sample->accel_um_s2);
-    tracker_read(&self->tracker, self->spectrum.power, span.first, span.end);
-    if (span.is_round_end) {
-        tracker_end_round(&self->tracker, self->spectrum.power);
-    }
-    tracker_tick(&self->tracker, !sample->is_fault && !has_gap);
-}
-
 static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample,
                       bool has_gap) {
     const current_verdict_t verdict = current_monitor_step(
@@ -153,19 +110,20 @@ static void supervise(controller_t *self, const quiesce_in_t *in, const conditio
     }
 }
 
-static law_in_t law_input(const controller_t *self, const condition_out_t *sample,
-                          int64_t velocity_um_s_q32, int32_t fuzzy_mA) {
+static law_in_t law_input(const controller_t *self, const signal_chain_out_t *signal,
+                          int32_t fuzzy_mA) {
     return (law_in_t){
-        .velocity_um_s_q32 = velocity_um_s_q32,
-        .accel_um_s2 = sample->accel_um_s2,
-        .freq_uHz = self->tracker.dominant.freq_uHz,
-        .freq_is_valid = self->tracker.is_valid,
-        .base_mA = self->tracker.is_valid ? fuzzy_mA : self->params.unlock_current_mA,
+        .velocity_um_s_q32 = signal->velocity_um_s_q32,
+        .accel_um_s2 = signal->sample.accel_um_s2,
+        .freq_uHz = self->signal.tracker.dominant.freq_uHz,
+        .freq_is_valid = self->signal.tracker.is_valid,
+        .base_mA = self->signal.tracker.is_valid ? fuzzy_mA : self->params.unlock_current_mA,
     };
 }
 
 static void report(const controller_t *self, quiesce_telemetry_t *t) {
-    const tracker_t *tracker = &self->tracker;
+    const tracker_t *tracker = &self->signal.tracker;
+    *t = (quiesce_telemetry_t){0};
     t->state = (uint32_t)self->supervisor.state;
     t->fault = (uint32_t)self->supervisor.fault;
     t->fault_count = self->supervisor.fault_count;
@@ -175,7 +133,7 @@ static void report(const controller_t *self, quiesce_telemetry_t *t) {
     t->freq_uHz = tracker->dominant.freq_uHz;
     t->freq_amp_um_s2 = tracker->dominant.amp_um_s2;
     for (uint32_t i = 0; i < QUIESCE_PEAKS; i++) {
-        t->peaks[i] = (quiesce_peak_t){tracker->peak[i].freq_uHz, tracker->peak[i].amp_um_s2};
+        t->peaks[i] = (quiesce_peak_t){tracker->peak[i].freq_uHz, tracker->peak[i].amp_um_s2, 0};
     }
 }
 
@@ -183,27 +141,23 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     controller_t *c = (controller_t *)(void *)self->opaque;
     quiesce_telemetry_t *t = &out->telemetry;
 
-    condition_out_t sample;
-    condition_step(&c->condition, in->accel_counts, in->accel_is_fresh, &sample);
-    if (sample.flag != CONDITION_GOOD) {
+    const signal_chain_in_t signal_in = {
+        .accel_counts = in->accel_counts,
+        .is_fresh = in->accel_is_fresh,
+        .has_gap = is_tick_lost(c, in->tick),
+    };
+    signal_chain_out_t signal;
+    signal_chain_step(&c->signal, &signal_in, &signal);
+    if (signal.sample.flag != CONDITION_GOOD) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
-    if (sample.is_fault) {
-        // What was taken in before the fault was seen must not outlive it.
-        rms_reset(&c->rms);
-        motion_reset(&c->motion);
-    }
-    const bool has_gap = is_tick_lost(c, in->tick);
-    const int32_t rms_um_s2 = rms_step(&c->rms, sample.accel_um_s2);
-    track(c, &sample, has_gap);
-    const int64_t velocity_um_s_q32 = motion_step(&c->motion, sample.accel_um_s2);
 
     const fuzzy_out_t fuzzy =
-        fuzzy_evaluate(&squeeze_rules, c->tracker.dominant.freq_uHz, rms_um_s2);
-    const law_in_t law_in = law_input(c, &sample, velocity_um_s_q32, fuzzy.current_mA);
+        fuzzy_evaluate(&squeeze_rules, c->signal.tracker.dominant.freq_uHz, signal.rms_um_s2);
+    const law_in_t law_in = law_input(c, &signal, fuzzy.current_mA);
     const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
 
-    supervise(c, in, &sample, has_gap);
+    supervise(c, in, &signal.sample, signal_in.has_gap);
     out->current_cmd_mA =
         guard_step(&c->guard, request_mA, supervisor_allows_output(&c->supervisor));
     out->driver_enable = supervisor_allows_driver(&c->supervisor);
@@ -212,9 +166,9 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
 
     report(c, t);
     t->tick = in->tick;
-    t->accel_um_s2 = sample.accel_um_s2;
-    t->velocity_um_s = motion_velocity_um_s(velocity_um_s_q32);
-    t->rms_um_s2 = rms_um_s2;
+    t->accel_um_s2 = signal.sample.accel_um_s2;
+    t->velocity_um_s = motion_velocity_um_s(signal.velocity_um_s_q32);
+    t->rms_um_s2 = signal.rms_um_s2;
     t->rules_fired = fuzzy.rules_fired;
     t->current_fuzzy_mA = fuzzy.current_mA;
     t->current_law_mA = request_mA;

@@ -105,7 +105,7 @@ def allowed_headers(root: Path, source: Source) -> set[str]:
     if layer in BLOCK_FOLDERS:
         return own | base | PUBLIC | shared_headers(source.stem)
     if layer == "src":
-        return own | base | blocks | PUBLIC
+        return headers_in(root, "firmware/src") | base | blocks | PUBLIC
     if layer == "app":
         return own | PUBLIC | interface
     if layer == "param":

@@ -19,7 +19,7 @@ def struct_words(name: str) -> list[tuple[str, bool]]:
     for kind, field in WORD.findall(body):
         if kind == "quiesce_peak_t":
             words += [(f"peak{i}_{part}", True)
-                      for i in range(3) for part in ("freq_uHz", "amp_um_s2")]
+                      for i in range(3) for part in ("freq_uHz", "amp_um_s2", "phase_mdeg")]
         else:
             words.append((field, kind == "int32_t"))
     return words
@@ -58,7 +58,7 @@ def test_every_message_and_signal_is_described():
 def test_units_match_the_names():
     for message in DATABASE.messages:
         for signal in message.signals:
-            suffix = re.search(r"_(uHz|um_s2|um_s|mA|ticks|counts)$", signal.name)
+            suffix = re.search(r"_(uHz|um_s2|um_s|mA|mdeg|nm|ms|ticks|counts)$", signal.name)
             unit = {"um_s2": "um/s2", "um_s": "um/s", "ticks": "tick", "counts": "count"}
             expected = suffix and unit.get(suffix[1], suffix[1])
             assert signal.unit == expected, signal.name
