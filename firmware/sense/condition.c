@@ -84,5 +84,6 @@ void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_
         self->has_dc = false;
     }
     out->accel_um_s2 = without_dc(self, out->flag);
+    out->raw_um_s2 = self->held_um_s2;
     out->good_ticks = self->good_ticks;
 }

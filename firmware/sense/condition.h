@@ -48,6 +48,7 @@ typedef struct {
 
 typedef struct {
     int32_t accel_um_s2;   ///< DC removed; 0 while there is a fault; saturated to the limit
+    int32_t raw_um_s2;     ///< before DC removal: the newest good sample, 0 until there was one
     condition_flag_t flag; ///< of this tick's sample
     bool is_fault;         ///< the bad run is older than max_age_ticks (stuck: at once)
     uint32_t good_ticks;   ///< good samples in a row, saturating

@@ -135,6 +135,26 @@ static void test_offset_is_learnt_anew_after_a_fault(void) {
     }
 }
 
+static void test_raw_keeps_the_dc_part_holds_and_saturates(void) {
+    condition_step(&condition, 5000, false, &out);
+    TEST_ASSERT_EQUAL_INT32(0, out.raw_um_s2); // nothing measured yet
+    step(170000);
+    TEST_ASSERT_EQUAL_INT32(9817670, out.raw_um_s2); // 170000 x 57751 nm/s2
+    for (uint32_t i = 0; i < 20; i++) {
+        condition_step(&condition, 5000, i % 2 == 1, &out);
+        TEST_ASSERT_EQUAL_INT32(i == 0 ? 9817670 : 288755, out.raw_um_s2);
+    }
+    step(8388607); // full scale: a bad sample
+    TEST_ASSERT_EQUAL_INT32(288755, out.raw_um_s2);
+
+    condition_cfg_t inverted = config;
+    inverted.polarity = -1;
+    inverted.scale_nm_s2 = 1000000000;
+    condition_init(&condition, &inverted);
+    step(8388606);
+    TEST_ASSERT_EQUAL_INT32(-CONDITION_LIMIT_um_s2, out.raw_um_s2);
+}
+
 static void test_silent_start_passes_nothing_on(void) {
     for (uint32_t i = 0; i < 500; i++) {
         condition_step(&condition, 0, false, &out);
@@ -154,6 +174,7 @@ int main(void) {
     RUN_TEST(test_saturated_and_out_of_range_samples_are_told_apart);
     RUN_TEST(test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off);
     RUN_TEST(test_offset_is_learnt_anew_after_a_fault);
+    RUN_TEST(test_raw_keeps_the_dc_part_holds_and_saturates);
     RUN_TEST(test_silent_start_passes_nothing_on);
     return UNITY_END();
 }
