@@ -80,10 +80,12 @@ def test_checker_sees_the_sources() -> None:
     sources = read_sources(ROOT, "firmware", "hal", "sim_hil")
     assert len(sources) > 80
     controller = next(s for s in sources if s.path == "firmware/src/controller.c")
-    assert len(controller.quoted) > 8
+    assert {"quiesce.h", "signal_chain.h", "supervisor.h"} <= set(controller.quoted)
     graph = call_graph(ROOT)
     step = graph["firmware/src/controller.c", "quiesce_step"]
-    assert {"rms_step", "guard_step", "track", "supervise"} <= {name for _, name in step}
+    assert {"signal_chain_step", "guard_step", "supervise"} <= {name for _, name in step}
+    chain = graph["firmware/src/signal_chain.c", "signal_chain_step"]
+    assert {"condition_step", "rms_step"} <= {name for _, name in chain}
     assert len(graph) > 100
 
 
