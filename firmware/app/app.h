@@ -18,6 +18,7 @@ typedef struct {
     quiesce_out_t out; ///< of the last tick: command and telemetry
     hal_accel_t *accel;
     hal_current_t *current;
+    hal_axis_t axis;
     uint32_t tick;
 } app_t;
 

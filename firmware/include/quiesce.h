@@ -33,9 +33,10 @@ typedef enum {
     QUIESCE_FAULT_SENSOR_RANGE = 5,         ///< samples beyond full scale for sensor_max_age_ticks
     QUIESCE_FAULT_DRIVER_NOT_FOLLOWING = 6, ///< measured current off the command (latched)
     QUIESCE_FAULT_COIL_OPEN = 7,            ///< no current although commanded (latched)
-    QUIESCE_FAULT_CURRENT_LOST = 8, ///< current_check is on, no measurement arrives (latched)
-    QUIESCE_FAULT_TICK_LOST = 9,    ///< the tick number jumped
-    QUIESCE_FAULT_ESTOP = 10,       ///< emergency stop (latched)
+    QUIESCE_FAULT_CURRENT_LOST = 8,  ///< current_check is on, no measurement arrives (latched)
+    QUIESCE_FAULT_TICK_LOST = 9,     ///< the tick number jumped
+    QUIESCE_FAULT_ESTOP = 10,        ///< emergency stop (latched)
+    QUIESCE_FAULT_SENSOR_QUIET = 11, ///< less noise than sensor_min_noise_counts over a second
     QUIESCE_FAULT_COUNT
 } quiesce_fault_t;
 

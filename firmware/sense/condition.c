@@ -9,7 +9,30 @@ void condition_init(condition_t *self, const condition_cfg_t *cfg) {
         // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.
         .dc_gain_q32 = omega_q32 - ((omega_q32 * omega_q32) / one_q32),
         .last_counts = INT32_MIN, // no ADC reports it
+        .noise = {.limit = 2u * cfg->min_noise_counts, .window_samples = cfg->tick_rate_Hz},
     };
+}
+
+// One plausible sample: |counts| <= 2^23, so that no difference overflows. The first two are
+// measured against 0; the bound of a single sample's weight keeps them harmless.
+static bool is_quiet(condition_noise_t *self, int32_t counts) {
+    if (self->limit == 0) {
+        return false;
+    }
+    const int32_t difference = counts - self->last_counts;
+    const uint32_t bend = (uint32_t)abs_i32(difference - self->last_difference);
+    self->last_counts = counts;
+    self->last_difference = difference;
+    self->activity += bend < 4u * self->limit ? bend : 4u * self->limit;
+    self->samples++;
+    const bool is_lively = self->activity >= self->limit * self->window_samples;
+    const bool is_window_end = self->samples == self->window_samples;
+    self->is_quiet = !is_lively && (self->is_quiet || is_window_end);
+    if (is_window_end) {
+        self->activity = 0;
+        self->samples = 0;
+    }
+    return self->is_quiet;
 }
 
 static condition_flag_t classify(condition_t *self, int32_t counts, bool is_fresh) {
@@ -29,7 +52,7 @@ static condition_flag_t classify(condition_t *self, int32_t counts, bool is_fres
     if (self->cfg.stuck_ticks != 0 && self->same_samples >= self->cfg.stuck_ticks) {
         return CONDITION_STUCK;
     }
-    return CONDITION_GOOD;
+    return is_quiet(&self->noise, counts) ? CONDITION_QUIET : CONDITION_GOOD;
 }
 
 static int32_t scaled_um_s2(const condition_t *self, int32_t counts) {
@@ -78,7 +101,8 @@ void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_
         self->bad_ticks = increment_sat_u32(self->bad_ticks);
         self->good_ticks = 0;
     }
-    out->is_fault = out->flag == CONDITION_STUCK || self->bad_ticks > self->cfg.max_age_ticks;
+    const bool is_dead = out->flag == CONDITION_STUCK || out->flag == CONDITION_QUIET;
+    out->is_fault = is_dead || self->bad_ticks > self->cfg.max_age_ticks;
     if (out->is_fault) {
         // The sensor may come back with another offset: the DC part is learnt anew.
         self->has_dc = false;

@@ -2,8 +2,15 @@
 ///
 /// A bad sample never reaches the windows: the last good one is held, and the fault is reported
 /// once the bad run is longer than max_age_ticks; from then on the output is 0 and the DC part is
-/// learnt anew. (A stuck sensor is seen only after stuck_ticks samples; those have been passed on.)
-/// Bounded, about 60 instructions a tick.
+/// learnt anew. (A stuck or quiet sensor is seen only in hindsight; its samples have been passed
+/// on.)
+///
+/// Quiet: a live sensor shows noise. The activity of a second of plausible samples is the mean of
+/// |x[n] - 2 x[n-1] + x[n-2]|, for white noise 1.95 times its RMS and for a vibration far below the
+/// tick rate next to nothing. Less than twice min_noise_counts is a fault at the end of that
+/// second; it ends as soon as a later second has gathered enough. A single sample counts at most
+/// four times the limit, so that glitches do not pass for noise.
+/// Bounded, about 75 instructions a tick.
 #ifndef CONDITION_H
 #define CONDITION_H
 
@@ -19,6 +26,7 @@ typedef enum {
     CONDITION_SATURATED = 2, ///< at the ADC's full scale
     CONDITION_STUCK = 3,     ///< the same count for stuck_ticks
     CONDITION_RANGE = 4,     ///< beyond the ADC's full scale
+    CONDITION_QUIET = 5,     ///< less noise than the sensor has
 } condition_flag_t;
 
 typedef struct {
@@ -29,8 +37,20 @@ typedef struct {
     int32_t full_scale_counts; ///< > 0
     uint32_t max_age_ticks;    ///< longest hold
     uint32_t stuck_ticks;      ///< 0: no check
+    uint32_t min_noise_counts; ///< RMS of white noise, at most 65535; 0: no check
     int32_t dc_cutoff_mHz;     ///< 10 .. 1000
 } condition_cfg_t;
+
+/// How lively the samples are.
+typedef struct {
+    uint32_t limit;          ///< least mean of the second differences, counts; 0: no check
+    uint32_t window_samples; ///< a second of them
+    int32_t last_counts;     ///< newest plausible sample
+    int32_t last_difference; ///< newest minus the one before
+    uint32_t activity;       ///< sum of the second differences, each at most 4 x limit
+    uint32_t samples;        ///< in that sum
+    bool is_quiet;
+} condition_noise_t;
 
 typedef struct {
     condition_cfg_t cfg;
@@ -42,15 +62,16 @@ typedef struct {
     int32_t held_um_s2;    ///< last good sample, before DC removal
     int32_t last_counts;
     uint32_t same_samples; ///< identical samples in a row, the first one included
-    uint32_t bad_ticks;    ///< bad samples in a row
-    uint32_t good_ticks;   ///< good samples in a row, saturating
+    condition_noise_t noise;
+    uint32_t bad_ticks;  ///< bad samples in a row
+    uint32_t good_ticks; ///< good samples in a row, saturating
 } condition_t;
 
 typedef struct {
     int32_t accel_um_s2;   ///< DC removed; 0 while there is a fault; saturated to the limit
     int32_t raw_um_s2;     ///< before DC removal: the newest good sample, 0 until there was one
     condition_flag_t flag; ///< of this tick's sample
-    bool is_fault;         ///< the bad run is older than max_age_ticks (stuck: at once)
+    bool is_fault;         ///< the bad run is older than max_age_ticks (stuck, quiet: at once)
     uint32_t good_ticks;   ///< good samples in a row, saturating
 } condition_out_t;
 

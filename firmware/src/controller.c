@@ -71,6 +71,7 @@ static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
         [CONDITION_SATURATED] = QUIESCE_FAULT_SENSOR_SATURATED,
         [CONDITION_STUCK] = QUIESCE_FAULT_SENSOR_STUCK,
         [CONDITION_RANGE] = QUIESCE_FAULT_SENSOR_RANGE,
+        [CONDITION_QUIET] = QUIESCE_FAULT_SENSOR_QUIET,
     };
     return sample->is_fault ? (quiesce_fault_t)fault_of[sample->flag] : QUIESCE_FAULT_NONE;
 }

@@ -10,6 +10,7 @@ void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
                                          .full_scale_counts = p->accel_full_scale_counts,
                                          .max_age_ticks = (uint32_t)p->sensor_max_age_ticks,
                                          .stuck_ticks = (uint32_t)p->sensor_stuck_ticks,
+                                         .min_noise_counts = (uint32_t)p->sensor_min_noise_counts,
                                          .dc_cutoff_mHz = p->dc_cutoff_mHz,
                                      });
     rms_init(&self->rms, rate_Hz, (uint32_t)p->rms_window_ms);

@@ -1,7 +1,8 @@
 #include "hal_sim.h"
 
-bool hal_accel_read(hal_accel_t *accel, int32_t *counts) {
+bool hal_accel_read(hal_accel_t *accel, hal_axis_t axis, int32_t *counts) {
     const bool is_fresh = accel->is_fresh;
+    accel->axis = axis;
     if (is_fresh) {
         *counts = accel->counts;
     }

@@ -9,6 +9,7 @@
 struct hal_accel {
     int32_t counts;
     bool is_fresh;
+    hal_axis_t axis; ///< that was read last
 };
 
 struct hal_current {

@@ -123,6 +123,74 @@ static void test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off(void) {
     }
 }
 
+static void start_with_noise_check(uint32_t min_noise_counts, uint32_t rate_Hz) {
+    condition_cfg_t checked = config;
+    checked.min_noise_counts = min_noise_counts;
+    checked.tick_rate_Hz = rate_Hz;
+    condition_init(&condition, &checked);
+}
+
+// A 10 Hz vibration in uniform noise of RMS span / sqrt(3); returns the ticks that were faults.
+static uint32_t step_noisy(int32_t span, uint32_t ticks) {
+    static uint32_t seed = 5;
+    uint32_t faults = 0;
+    for (uint32_t i = 0; i < ticks; i++) {
+        step(signal_sine(20000, 10000, i, 4000) + 170000 + signal_noise(&seed, span));
+        faults += out.is_fault ? 1u : 0u;
+    }
+    return faults;
+}
+
+static void test_noise_is_judged_by_its_rms_at_every_rate(void) {
+    static const uint32_t rates_Hz[] = {500, 1000, 2000, 4000};
+    for (uint32_t i = 0; i < 4; i++) {
+        start_with_noise_check(85, rates_Hz[i]);
+        // RMS 104 passes, RMS 69 is a fault from the end of the first second on.
+        TEST_ASSERT_EQUAL_UINT32(0, step_noisy(180, 5 * rates_Hz[i]));
+        start_with_noise_check(85, rates_Hz[i]);
+        TEST_ASSERT_EQUAL_UINT32(4 * rates_Hz[i] + 1, step_noisy(120, 5 * rates_Hz[i]));
+    }
+}
+
+// What a dead analog path leaves: a few neighbouring values, never 50 times the same.
+static void test_a_few_repeating_values_are_quiet_until_the_noise_is_back(void) {
+    start_with_noise_check(20, 1000);
+    TEST_ASSERT_EQUAL_UINT32(0, step_noisy(147, 3000));
+    uint32_t first_fault = 0;
+    for (uint32_t i = 1; i <= 3000; i++) {
+        step(i % 40 < 20 ? 700 : 701);
+        TEST_ASSERT_NOT_EQUAL(CONDITION_STUCK, out.flag);
+        first_fault = first_fault == 0 && out.is_fault ? i : first_fault;
+    }
+    TEST_ASSERT_EQUAL_UINT32(1000, first_fault);
+    TEST_ASSERT_EQUAL(CONDITION_QUIET, out.flag);
+    TEST_ASSERT_EQUAL_INT32(0, out.accel_um_s2);
+    TEST_ASSERT_EQUAL_UINT32(0, out.good_ticks);
+    TEST_ASSERT_UINT32_WITHIN(60, 300, step_noisy(147, 900)); // each counts 2 to 4 limits
+    TEST_ASSERT_FALSE(out.is_fault);
+    TEST_ASSERT_EQUAL_UINT32(0, step_noisy(147, 5000));
+}
+
+static void test_glitches_do_not_pass_for_noise(void) {
+    start_with_noise_check(20, 1000);
+    for (uint32_t i = 1; i <= 4000; i++) {
+        step(i % 20 == 0 ? 1000000 : i % 2 ? 700 : 701);
+    }
+    TEST_ASSERT_EQUAL(CONDITION_QUIET, out.flag);
+}
+
+static void test_noise_check_is_off_at_0_and_bounded_at_its_largest(void) {
+    for (uint32_t i = 0; i < 5000; i++) {
+        step(i % 2 ? 700 : 701);
+        TEST_ASSERT_EQUAL(CONDITION_GOOD, out.flag);
+    }
+    start_with_noise_check(65535, 4000);
+    for (uint32_t i = 0; i < 20000; i++) {
+        step(i % 2 ? 8388606 : -8388606);
+        TEST_ASSERT_EQUAL(CONDITION_GOOD, out.flag);
+    }
+}
+
 static void test_offset_is_learnt_anew_after_a_fault(void) {
     step_good(2000);
     for (uint32_t i = 0; i < 5000; i++) {
@@ -173,6 +241,10 @@ int main(void) {
     RUN_TEST(test_dropout_holds_the_last_sample_then_faults_after_the_age_limit);
     RUN_TEST(test_saturated_and_out_of_range_samples_are_told_apart);
     RUN_TEST(test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off);
+    RUN_TEST(test_noise_is_judged_by_its_rms_at_every_rate);
+    RUN_TEST(test_a_few_repeating_values_are_quiet_until_the_noise_is_back);
+    RUN_TEST(test_glitches_do_not_pass_for_noise);
+    RUN_TEST(test_noise_check_is_off_at_0_and_bounded_at_its_largest);
     RUN_TEST(test_offset_is_learnt_anew_after_a_fault);
     RUN_TEST(test_raw_keeps_the_dc_part_holds_and_saturates);
     RUN_TEST(test_silent_start_passes_nothing_on);

@@ -112,6 +112,36 @@ static void test_sensor_faults_lead_to_safe_and_back(void) {
     bad_samples(QUIESCE_FAULT_SENSOR_STUCK, 4711, true, 252);
 }
 
+static void test_quiet_sensor_leads_to_safe_and_back(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    params.sensor_min_noise_counts = 20;
+    start();
+    vibrate(10000, 3000);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    for (uint32_t i = 0; i < 2000; i++) {
+        tick(i / 10 % 2 ? 300 : 301, 0);
+    }
+    assert_state(QUIESCE_STATE_SAFE, QUIESCE_FAULT_SENSOR_QUIET);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.telemetry.freq_is_valid);
+    vibrate(10000, 250); // the noise check has not yet seen enough
+    assert_state(QUIESCE_STATE_SAFE, QUIESCE_FAULT_SENSOR_QUIET);
+    vibrate(10000, 1000);
+    assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+}
+
+static void test_the_axis_that_the_parameter_names_is_read(void) {
+    for (int32_t axis = QUIESCE_ACCEL_AXIS_X; axis <= QUIESCE_ACCEL_AXIS_Z; axis++) {
+        params.accel_axis = axis;
+        start();
+        vibrate(10000, 1);
+        TEST_ASSERT_EQUAL_INT32(axis, server.accel.axis);
+    }
+    params.accel_axis = 3;
+    TEST_ASSERT_FALSE(lockstep_start(&server, &params));
+    vibrate(10000, 1);
+    TEST_ASSERT_EQUAL_INT32(HAL_AXIS_Z, server.accel.axis);
+}
+
 static void test_short_dropout_is_bridged(void) {
     params.law = QUIESCE_LAW_CONSTANT;
     start();
@@ -324,6 +354,8 @@ int main(void) {
     RUN_TEST(test_unlock_current_is_not_the_safe_current);
     RUN_TEST(test_refused_parameter_latches_and_keeps_the_safe_current);
     RUN_TEST(test_sensor_faults_lead_to_safe_and_back);
+    RUN_TEST(test_quiet_sensor_leads_to_safe_and_back);
+    RUN_TEST(test_the_axis_that_the_parameter_names_is_read);
     RUN_TEST(test_short_dropout_is_bridged);
     RUN_TEST(test_emergency_stop_latches_within_its_tick);
     RUN_TEST(test_disable_takes_the_current_away_and_enable_returns_it);
