@@ -1,0 +1,40 @@
+"""The images that only benchmarks run, built where they are missing."""
+
+import os
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+from quiesce.bench_exe import ending, require_file
+from quiesce.errors import EXIT_BAD_INPUT, BenchFailure, UsageError
+from quiesce.paths import build_folder, root
+
+
+def built_image(name: str) -> Path:
+    """build/mps2/bench/NAME.elf, up to date. With QUIESCE_BUILD set: as it is there.
+
+    UsageError where it cannot be had: the network, a tool.
+    """
+    if not os.environ.get("QUIESCE_BUILD"):
+        build()
+    return require_file(build_folder() / f"mps2/bench/{name}.elf", "the image")
+
+
+@cache
+def build() -> None:
+    """Fetches the peers' sources and builds; once a process. Its progress goes to stderr."""
+    process = subprocess.Popen(
+        [root() / "tools/bench_images"], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stderr is not None
+    last = ""
+    for line in process.stderr:
+        # One behind: the last line of a failure is told as the error.
+        print(last, end="", file=sys.stderr, flush=True)
+        last = line
+    if process.wait() == EXIT_BAD_INPUT:
+        raise UsageError(last)
+    if process.returncode != 0:
+        raise BenchFailure(f"tools/bench_images ended with {ending(process.returncode)}: {last}")
+    print(last, end="", file=sys.stderr, flush=True)
