@@ -5,7 +5,7 @@ import os
 import sys
 from typing import NoReturn
 
-from quiesce import __version__, cmd_hil, cmd_params, cmd_plant, cmd_record, cmd_replay
+from quiesce import __version__, cmd_chain, cmd_hil, cmd_params, cmd_plant, cmd_record, cmd_replay
 from quiesce.errors import (
     EXIT_BAD_INPUT,
     EXIT_FAILED,
@@ -15,7 +15,7 @@ from quiesce.errors import (
     one_line,
 )
 
-COMMANDS = (cmd_hil, cmd_replay, cmd_record, cmd_plant, cmd_params)
+COMMANDS = (cmd_hil, cmd_replay, cmd_record, cmd_plant, cmd_params, cmd_chain)
 
 EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report

@@ -1,0 +1,64 @@
+"""The stated magnitude and phase of the conditioning are those of the firmware."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from quiesce.bench_exe import Bench
+from quiesce.chain_response import (
+    TICK_RATES_Hz,
+    dc_removal,
+    decibels,
+    degrees,
+    measure_dc_removal,
+)
+
+
+@pytest.fixture
+def bench(build: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
+    monkeypatch.setenv("QUIESCE_BUILD", str(build))
+    return Bench()
+
+
+def difference(bench: Bench, freq_Hz: float, cutoff_mHz: int, rate_Hz: int) -> tuple[float, float]:
+    """Measured against computed: dB, degree."""
+    measured = measure_dc_removal(bench, freq_Hz, cutoff_mHz, rate_Hz)
+    ratio = np.array(measured / dc_removal(np.array(freq_Hz), cutoff_mHz, rate_Hz))
+    return float(decibels(np.abs(ratio))), float(degrees(ratio))
+
+
+@pytest.mark.parametrize("rate_Hz", TICK_RATES_Hz)
+@pytest.mark.parametrize("cutoff_mHz", [50, 200, 1000])
+def test_dc_removal_is_as_computed(bench: Bench, cutoff_mHz: int, rate_Hz: int) -> None:
+    for freq_Hz in (0.1, 0.7, 4.0, 45.0, 125.0):
+        gain_dB, phase_deg = difference(bench, freq_Hz, cutoff_mHz, rate_Hz)
+        assert abs(gain_dB) < 0.001 and abs(phase_deg) < 0.01, f"at {freq_Hz} Hz"
+
+
+def test_a_corner_that_is_off_by_a_percent_would_be_seen(bench: Bench) -> None:
+    measured = measure_dc_removal(bench, 0.2, 202, 1000)
+    ratio = measured / complex(dc_removal(np.array(0.2), 200, 1000))
+    assert abs(float(decibels(abs(ratio)))) > 0.03
+
+
+def test_documented_table_is_what_the_command_writes(quiesce, tmp_path: Path) -> None:
+    result = quiesce("chain", "--out", "out")
+    assert result.returncode == 0, result.stderr
+    table = (tmp_path / "out/conditioning.md").read_text()
+    assert table in result.stdout
+    assert table in (ROOT / "docs/signal_chain.md").read_text()
+    assert (tmp_path / "out/conditioning.svg").read_text().count("<path") > 20
+
+
+def test_chain_follows_the_corner(quiesce, tmp_path: Path) -> None:
+    assert quiesce("chain", "--out", "out", "--set", "dc_cutoff_mHz=1000").returncode == 0
+    row = next(r for r in (tmp_path / "out/conditioning.md").read_text().splitlines()
+               if r.startswith("| 1 |"))
+    gain_dB, phase_deg = map(float, row.split("|")[2].split("/"))
+    assert gain_dB == pytest.approx(-3.0, abs=0.05)
+    assert phase_deg == pytest.approx(45.0, abs=0.3)
+
+
+def test_chain_refuses_a_corner_out_of_range(refused) -> None:
+    assert "dc_cutoff_mHz" in refused("chain", "--set", "dc_cutoff_mHz=5", "--out", "out")
