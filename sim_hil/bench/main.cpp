@@ -21,7 +21,9 @@ const Entry kCommands[] = {
     {"fuzzy-surface", "", quiesce::cmd_fuzzy_surface},
     {"params", "", quiesce::cmd_params},
     {"plant-check", "FILE", quiesce::cmd_plant_check},
-    {"replay", "--counts FILE --trace FILE [--law NAME] [--set NAME=VALUE]... [--target T]",
+    {"replay",
+     "--counts FILE --trace FILE [--law NAME] [--set NAME=VALUE]... [--target T] "
+     "[--record-ticks N] [--from-tick N] [--every N] [--columns NAME,NAME...]",
      quiesce::cmd_replay},
     {"run",
      "--scenario FILE --law NAME [--plant FILE] [--set NAME=VALUE]... [--target T] [--image ELF] "

@@ -17,12 +17,16 @@ std::vector<std::string> with_telemetry_columns(std::vector<std::string> names) 
     return names;
 }
 
+double telemetry_value(const quiesce_telemetry_t &telemetry, std::size_t index) {
+    const std::uint32_t word = word_of(telemetry, index);
+    return telemetry_fields()[index].is_signed
+               ? static_cast<double>(static_cast<std::int32_t>(word))
+               : static_cast<double>(word);
+}
+
 void Trace::put_telemetry(const quiesce_telemetry_t &telemetry) {
-    const std::vector<WordField> &fields = telemetry_fields();
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-        const std::uint32_t word = word_of(telemetry, i);
-        put(fields[i].is_signed ? static_cast<double>(static_cast<std::int32_t>(word))
-                                : static_cast<double>(word));
+    for (std::size_t i = 0; i < telemetry_fields().size(); ++i) {
+        put(telemetry_value(telemetry, i));
     }
 }
 

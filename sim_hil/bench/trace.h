@@ -28,6 +28,9 @@ class Trace {
     std::vector<double> values_;
 };
 
+/// Telemetry field number index (< telemetry_fields().size()) as a number.
+double telemetry_value(const quiesce_telemetry_t &telemetry, std::size_t index);
+
 /// names followed by every telemetry field's name.
 std::vector<std::string> with_telemetry_columns(std::vector<std::string> names);
 

@@ -134,6 +134,123 @@ TEST(CommandLine, replay_refuses_half_a_count) {
     EXPECT_FALSE(std::filesystem::exists(file + ".trace"));
 }
 
+/// A file of counts that goes with the object.
+class CountsFile {
+  public:
+    explicit CountsFile(const std::vector<std::int32_t> &counts)
+        : name_((std::filesystem::temp_directory_path() /
+                 ("quiesce_counts_" + std::to_string(::getpid())))
+                    .string()) {
+        std::ofstream(name_, std::ios::binary)
+            .write(reinterpret_cast<const char *>(counts.data()),
+                   static_cast<std::streamsize>(counts.size() * sizeof counts[0]));
+    }
+    ~CountsFile() {
+        std::filesystem::remove(name_);
+        std::filesystem::remove(trace_name());
+    }
+    CountsFile(const CountsFile &) = delete;
+    CountsFile &operator=(const CountsFile &) = delete;
+
+    std::string trace_name() const { return name_ + ".trace"; }
+
+    Outcome replay(const std::string &options) const {
+        return bench("replay --counts " + name_ + " --trace " + trace_name() + " " + options);
+    }
+
+    /// Values of the trace, row by row.
+    std::vector<double> values() const {
+        std::ifstream in(trace_name(), std::ios::binary);
+        std::string head;
+        std::getline(in, head);
+        const nlohmann::json parsed = nlohmann::json::parse(head);
+        std::vector<double> values(parsed["rows"].get<std::size_t>() * parsed["columns"].size());
+        in.read(reinterpret_cast<char *>(values.data()),
+                static_cast<std::streamsize>(values.size() * sizeof(double)));
+        EXPECT_TRUE(in.good());
+        return values;
+    }
+
+  private:
+    std::string name_;
+};
+
+/// A record whose counts differ from tick to tick.
+std::vector<std::int32_t> lively(std::size_t ticks, std::int32_t step) {
+    std::vector<std::int32_t> counts(ticks);
+    for (std::size_t i = 0; i < ticks; ++i) {
+        counts[i] = static_cast<std::int32_t>(i % 97) * step + static_cast<std::int32_t>(i);
+    }
+    return counts;
+}
+
+TEST(CommandLine, replay_starts_afresh_at_each_record) {
+    const std::vector<std::int32_t> first = lively(300, 40);
+    const std::vector<std::int32_t> second = lively(300, 900);
+    std::vector<std::int32_t> both = first;
+    both.insert(both.end(), second.begin(), second.end());
+    const std::string columns = "--columns tick,accel_um_s2,rms_um_s2 ";
+    std::vector<double> together;
+    std::vector<double> alone;
+    {
+        const CountsFile file(both);
+        const Outcome outcome = file.replay(columns + "--record-ticks 300");
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+        EXPECT_EQ(nlohmann::json::parse(outcome.output)["records"], 2);
+        together = file.values();
+    }
+    for (const std::vector<std::int32_t> &record : {first, second}) {
+        const CountsFile file(record);
+        ASSERT_EQ(file.replay(columns).exit_code, 0);
+        const std::vector<double> values = file.values();
+        alone.insert(alone.end(), values.begin(), values.end());
+    }
+    EXPECT_EQ(together.size(), 600u * 3u);
+    EXPECT_EQ(together, alone);
+}
+
+TEST(CommandLine, replay_writes_the_chosen_ticks_of_each_record) {
+    const CountsFile file(lively(20, 7));
+    const std::string options = "--record-ticks 10 --from-tick 4 --every 3 --columns t_s,tick";
+    ASSERT_EQ(file.replay(options).exit_code, 0);
+    const std::vector<double> values = file.values();
+    const std::vector<double> expected = {0.004, 5, 0.007, 8, 0.004, 5, 0.007, 8};
+    EXPECT_EQ(values, expected);
+}
+
+TEST(CommandLine, replay_takes_the_least_count_for_a_missing_sample) {
+    std::vector<std::int32_t> counts = lively(50, 7);
+    counts[20] = counts[21] = INT32_MIN;
+    const CountsFile file(counts);
+    ASSERT_EQ(file.replay("--columns flags,bad_sample_count").exit_code, 0);
+    const std::vector<double> values = file.values();
+    const double missing = LOCKSTEP_ENABLE;
+    const double fresh = LOCKSTEP_ENABLE | LOCKSTEP_FRESH;
+    EXPECT_EQ(values[2 * 19], fresh);
+    EXPECT_EQ(values[2 * 20], missing);
+    EXPECT_EQ(values[2 * 21], missing);
+    EXPECT_EQ(values[2 * 22], fresh);
+    EXPECT_EQ(values.back(), 2.0);
+}
+
+TEST(CommandLine, replay_refuses_records_and_columns_that_do_not_fit) {
+    const CountsFile file(lively(20, 7));
+    const std::pair<const char *, const char *> calls[] = {
+        {"--record-ticks 7", "20 counts are not a whole number of records"},
+        {"--record-ticks 0", "--record-ticks 0"},
+        {"--record-ticks 10 --from-tick 10", "--from-tick 10"},
+        {"--every 21", "--every 21"},
+        {"--columns tick,warp", "no column 'warp'"},
+        {"--columns ''", "--columns"},
+    };
+    for (const auto &[options, message] : calls) {
+        const Outcome outcome = file.replay(options);
+        EXPECT_EQ(outcome.exit_code, 2) << options;
+        EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+        EXPECT_FALSE(std::filesystem::exists(file.trace_name())) << options;
+    }
+}
+
 TEST(CommandLine, replay_of_recorded_counts_writes_a_trace) {
     const std::string base =
         (std::filesystem::temp_directory_path() / ("quiesce_replay_" + std::to_string(::getpid())))
