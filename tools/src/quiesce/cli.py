@@ -5,7 +5,16 @@ import os
 import sys
 from typing import NoReturn
 
-from quiesce import __version__, cmd_chain, cmd_hil, cmd_params, cmd_plant, cmd_record, cmd_replay
+from quiesce import (
+    __version__,
+    cmd_bench,
+    cmd_chain,
+    cmd_hil,
+    cmd_params,
+    cmd_plant,
+    cmd_record,
+    cmd_replay,
+)
 from quiesce.errors import (
     EXIT_BAD_INPUT,
     EXIT_FAILED,
@@ -15,13 +24,14 @@ from quiesce.errors import (
     one_line,
 )
 
-COMMANDS = (cmd_hil, cmd_replay, cmd_record, cmd_plant, cmd_params, cmd_chain)
+COMMANDS = (cmd_hil, cmd_replay, cmd_record, cmd_plant, cmd_params, cmd_chain, cmd_bench)
 
 EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report
   quiesce replay FILE.csv --column acc --unit g a recorded acceleration through the firmware
   quiesce plant check my_plant.toml             is my own plant file right?
   quiesce params                                every parameter of the controller
+  quiesce bench signal --check                  the sensing chain's figures and goals
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,
 2 bad input or a missing tool (one line says which and what to do), 130 interrupted.
