@@ -12,6 +12,7 @@ namespace quiesce {
 using Command = int (*)(const std::vector<std::string> &words);
 
 int cmd_compare(const std::vector<std::string> &words);
+int cmd_count(const std::vector<std::string> &words);
 int cmd_fuzzy_surface(const std::vector<std::string> &words);
 int cmd_params(const std::vector<std::string> &words);
 int cmd_plant_check(const std::vector<std::string> &words);

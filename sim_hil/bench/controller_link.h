@@ -12,8 +12,10 @@ namespace quiesce {
 
 /// Instructions that the target executed for each control tick, exactly counted.
 struct InstructionCounts {
+    std::uint64_t ticks;
     std::uint64_t median;
     std::uint64_t worst;
+    std::uint64_t total; ///< of all ticks
 };
 
 /// One stimulus in, one control tick, one reply out. Not thread-safe.

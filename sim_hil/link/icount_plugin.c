@@ -1,9 +1,12 @@
 /// QEMU TCG plugin: instructions executed between two addresses, counted exactly for every pass.
 ///
 /// Arguments: begin=ADDRESS end=ADDRESS (the image's quiesce_count_begin and quiesce_count_end),
-/// fd=NUMBER of an inherited descriptor, count=block|instruction.
-/// When QEMU ends it writes "passes N median M worst W", then one line "COUNT PASSES" for each
-/// count that occurred, ascending. The median of an even number of passes is the lower one.
+/// fd=NUMBER of an inherited descriptor, count=block|instruction, profile=off|on.
+/// When QEMU ends it writes "passes N median M worst W total T", then one line "COUNT PASSES" for
+/// each count that occurred, ascending. The median of an even number of passes is the lower one.
+/// profile=on (slower, with count=block) adds lines "at ADDRESS N": N instructions ran, between the
+/// markers, in a translation block that begins at ADDRESS (which may have several such lines). They
+/// sum to T where a call stands between the markers, so that the end marker begins a block.
 ///
 /// count=block (default) adds a whole translation block when it is entered and corrects for the
 /// marker's place in its block; exact as long as no exception leaves a block early, and an image
@@ -34,6 +37,8 @@ typedef void (*at_exit_t)(qemu_plugin_id_t id, void *user);
 void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id, tb_translated_t callback);
 void qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *block, int operation,
                                               void *counter, uint64_t value);
+void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *block, executed_t callback,
+                                          int flags, void *user);
 void qemu_plugin_register_vcpu_insn_exec_inline(struct qemu_plugin_insn *instruction, int operation,
                                                 void *counter, uint64_t value);
 void qemu_plugin_register_vcpu_insn_exec_cb(struct qemu_plugin_insn *instruction,
@@ -51,6 +56,14 @@ EXPORT int qemu_plugin_install(qemu_plugin_id_t id, const struct qemu_info *info
 /// One bin a count; a pass beyond the last is reported as worst only.
 #define BINS (1u << 20)
 
+/// One translation of a block, for the profile.
+typedef struct site {
+    struct site *next;
+    uint64_t address;
+    uint64_t instructions; ///< in the block
+    uint64_t executed;     ///< between the markers
+} site_t;
+
 /// One per QEMU process: its callbacks carry no state of ours.
 static struct {
     uint64_t begin_address;
@@ -62,6 +75,10 @@ static struct {
     bool is_open; ///< between begin and end
     uint64_t passes;
     uint64_t worst;
+    uint64_t total;
+    bool has_profile;
+    uint64_t executed_at_begin; ///< rest of the begin marker's block, all passes
+    site_t *sites;
     uint32_t bins[BINS];
 } counter;
 
@@ -69,6 +86,7 @@ static struct {
 static void at_begin(unsigned int cpu, void *user) {
     (void)cpu;
     counter.at_begin = counter.executed - (uintptr_t)user;
+    counter.executed_at_begin += (uintptr_t)user;
     counter.is_open = true;
 }
 
@@ -80,10 +98,34 @@ static void at_end(unsigned int cpu, void *user) {
     const uint64_t count = counter.executed - (uintptr_t)user - counter.at_begin;
     counter.is_open = false;
     counter.passes++;
+    counter.total += count;
     counter.bins[count < BINS ? count : BINS - 1u]++;
     if (count > counter.worst) {
         counter.worst = count;
     }
+}
+
+static void at_block(unsigned int cpu, void *user) {
+    site_t *site = user;
+    (void)cpu;
+    if (counter.is_open) {
+        site->executed += site->instructions;
+    }
+}
+
+static void profile(struct qemu_plugin_tb *block, size_t instructions) {
+    const uint64_t address = qemu_plugin_insn_vaddr(qemu_plugin_tb_get_insn(block, 0));
+    if (address == counter.end_address) {
+        return; // runs after the markers
+    }
+    site_t *site = malloc(sizeof *site);
+    if (site == NULL) {
+        fprintf(stderr, "icount plugin: out of memory\n");
+        abort();
+    }
+    *site = (site_t){counter.sites, address, instructions, 0};
+    counter.sites = site;
+    qemu_plugin_register_vcpu_tb_exec_cb(block, at_block, QEMU_PLUGIN_CB_NO_REGS, site);
 }
 
 static void mark(struct qemu_plugin_insn *instruction, uint64_t instructions_ahead) {
@@ -103,6 +145,9 @@ static void block_translated(qemu_plugin_id_t id, struct qemu_plugin_tb *block) 
     if (counter.by_block) {
         qemu_plugin_register_vcpu_tb_exec_inline(block, QEMU_PLUGIN_INLINE_ADD_U64,
                                                  &counter.executed, count);
+    }
+    if (counter.has_profile) {
+        profile(block, count);
     }
     for (size_t i = 0; i < count; i++) {
         struct qemu_plugin_insn *instruction = qemu_plugin_tb_get_insn(block, i);
@@ -125,15 +170,29 @@ static uint64_t median(void) {
     return BINS;
 }
 
+static void report_profile(void) {
+    fprintf(counter.out, "at %" PRIu64 " %" PRIu64 "\n", counter.begin_address,
+            counter.executed_at_begin);
+    for (const site_t *site = counter.sites; site != NULL; site = site->next) {
+        if (site->executed != 0) {
+            fprintf(counter.out, "at %" PRIu64 " %" PRIu64 "\n", site->address, site->executed);
+        }
+    }
+}
+
 static void report(qemu_plugin_id_t id, void *user) {
     (void)id;
     (void)user;
-    fprintf(counter.out, "passes %" PRIu64 " median %" PRIu64 " worst %" PRIu64 "\n",
-            counter.passes, counter.passes == 0 ? 0 : median(), counter.worst);
+    fprintf(counter.out,
+            "passes %" PRIu64 " median %" PRIu64 " worst %" PRIu64 " total %" PRIu64 "\n",
+            counter.passes, counter.passes == 0 ? 0 : median(), counter.worst, counter.total);
     for (uint32_t count = 0; count < BINS; count++) {
         if (counter.bins[count] != 0) {
             fprintf(counter.out, "%" PRIu32 " %" PRIu32 "\n", count, counter.bins[count]);
         }
+    }
+    if (counter.has_profile) {
+        report_profile();
     }
     fclose(counter.out);
 }
@@ -152,6 +211,8 @@ static void take_argument(const char *argument) {
         counter.out = fdopen((int)strtol(equals + 1, NULL, 0), "w");
     } else if (strncmp(argument, "count", length) == 0) {
         counter.by_block = strcmp(equals + 1, "instruction") != 0;
+    } else if (strncmp(argument, "profile", length) == 0) {
+        counter.has_profile = strcmp(equals + 1, "on") == 0;
     }
 }
 

@@ -52,7 +52,8 @@ InstructionCounter::InstructionCounter(const QemuOptions &options) {
              << ",begin=" << marker(options.image_path, "quiesce_count_begin")
              << ",end=" << marker(options.image_path, "quiesce_count_end")
              << ",fd=" << report_.number()
-             << ",count=" << (options.count_each_instruction ? "instruction" : "block");
+             << ",count=" << (options.count_each_instruction ? "instruction" : "block")
+             << ",profile=" << (options.has_profile ? "on" : "off");
     plugin_argument_ = argument.str();
 }
 
@@ -72,14 +73,29 @@ std::vector<int> InstructionCounter::inherited() const {
 
 std::optional<InstructionCounts> InstructionCounter::read() const {
     std::istringstream report(read_memory_file(report_));
-    std::string passes_word, median_word, worst_word;
-    std::uint64_t passes = 0;
+    std::string word;
     InstructionCounts counts{};
-    report >> passes_word >> passes >> median_word >> counts.median >> worst_word >> counts.worst;
-    if (!report || passes == 0) {
+    report >> word >> counts.ticks >> word >> counts.median >> word >> counts.worst >> word >>
+        counts.total;
+    if (!report || counts.ticks == 0) {
         return std::nullopt;
     }
     return counts;
+}
+
+std::map<std::uint32_t, std::uint64_t> InstructionCounter::read_profile() const {
+    std::istringstream report(read_memory_file(report_));
+    std::map<std::uint32_t, std::uint64_t> out;
+    for (std::string line; std::getline(report, line);) {
+        std::istringstream words(line);
+        std::string at;
+        std::uint32_t address = 0;
+        std::uint64_t count = 0;
+        if (words >> at >> address >> count && at == "at") {
+            out[address] += count;
+        }
+    }
+    return out;
 }
 
 } // namespace quiesce

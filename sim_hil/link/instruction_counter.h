@@ -2,6 +2,8 @@
 #ifndef QUIESCE_INSTRUCTION_COUNTER_H
 #define QUIESCE_INSTRUCTION_COUNTER_H
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +27,10 @@ class InstructionCounter {
     /// Counts of all control ticks, once QEMU has ended. Nothing iff counting is off or no tick
     /// ran.
     std::optional<InstructionCounts> read() const;
+
+    /// The same instructions by the address where their block begins, once QEMU has ended. Empty
+    /// without QemuOptions::has_profile.
+    std::map<std::uint32_t, std::uint64_t> read_profile() const;
 
   private:
     std::string plugin_argument_; ///< empty: counting is off

@@ -156,7 +156,11 @@ std::string QemuProcess::describe_end() const {
     const std::string how = WIFSIGNALED(status_)
                                 ? "was killed by signal " + std::to_string(WTERMSIG(status_))
                                 : "ended with code " + std::to_string(WEXITSTATUS(status_));
-    return std::string(kProgram) + " " + how + ": " + last_line(read_memory_file(output_));
+    return std::string(kProgram) + " " + how + ": " + last_line(output());
+}
+
+std::string QemuProcess::output() const {
+    return read_memory_file(output_);
 }
 
 void QemuProcess::pause() {

@@ -36,6 +36,9 @@ class QemuProcess {
     /// How it ended and the last line that it or the image printed: one line. Only after the end.
     std::string describe_end() const;
 
+    /// Everything that QEMU and the image have printed so far.
+    std::string output() const;
+
     /// Halts and resumes the whole emulator, so that an idle image takes no processor time.
     void pause();
     void resume();

@@ -1,0 +1,66 @@
+/// count: an image that runs by itself to its end, its instructions counted between its markers.
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "arguments.h"
+#include "commands.h"
+#include "image_run.h"
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+/// A million ticks take a minute or two; a loaded machine must not look like a dead image.
+constexpr std::chrono::minutes kLongestRun(60);
+
+std::vector<std::uint32_t> words_from(const Arguments &arguments) {
+    std::vector<std::uint32_t> out;
+    for (const std::string &text : arguments.all("word")) {
+        const auto value = parse_integer(text);
+        if (!value || *value < 0 || *value > UINT32_MAX) {
+            throw InputError("--word " + text + ": expected an integer in 0..4294967295");
+        }
+        out.push_back(static_cast<std::uint32_t>(*value));
+    }
+    return out;
+}
+
+bool profile_from(const Arguments &arguments) {
+    const std::string text = arguments.text("profile").value_or("off");
+    if (text != "on" && text != "off") {
+        throw InputError("--profile " + text + ": expected on or off");
+    }
+    return text == "on";
+}
+
+} // namespace
+
+int cmd_count(const std::vector<std::string> &words) {
+    const Arguments arguments("count", words, {"image", "word", "profile", "plugin"});
+    arguments.require_no_positional();
+    QemuOptions options;
+    options.image_path = arguments.required("image");
+    options.plugin_path = arguments.text("plugin").value_or("");
+    options.has_profile = profile_from(arguments);
+    options.answer_time = kLongestRun;
+    const ImageRun run = run_image(options, words_from(arguments));
+    nlohmann::ordered_json out = {
+        {"passes", run.counts.ticks},
+        {"worst", run.counts.worst},
+        {"median", run.counts.median},
+        {"mean", static_cast<double>(run.counts.total) / static_cast<double>(run.counts.ticks)},
+        {"printed", run.printed}};
+    if (options.has_profile) {
+        nlohmann::ordered_json profile = nlohmann::ordered_json::object();
+        for (const auto &[address, count] : run.profile) {
+            profile[std::to_string(address)] = count;
+        }
+        out["profile"] = profile;
+    }
+    std::cout << out.dump() << '\n';
+    return 0;
+}
+
+} // namespace quiesce
