@@ -75,6 +75,12 @@ const BadCall kBadCalls[] = {
      "compare " + kScenario + "--seed 1 --seeds 1 --target mps2 --image " + quoted(kShmImage),
      "takes --seeds"},
     {"no_target", "compare " + kScenario + "--seeds 1", "--target is missing"},
+    {"count_word", "count --word x --image " + quoted(kShmImage), "--word x: expected an integer"},
+    {"count_negative_word", "count --word -1 --image " + quoted(kShmImage),
+     "--word -1: expected an integer in 0..4294967295"},
+    {"count_profile", "count --profile yes --image " + quoted(kShmImage),
+     "--profile yes: expected on or off"},
+    {"count_unmarked", "count --image " + quoted(kEchoImage), "has no symbol quiesce_count_begin"},
     {"no_echo_image", "uart-rate --image " + quoted(kUartImage), "--echo-image is missing"},
     {"no_exchanges",
      "uart-rate --exchanges 1 --image " + quoted(kUartImage) + " --echo-image " +

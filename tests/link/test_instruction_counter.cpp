@@ -20,6 +20,8 @@ TEST(instruction_counter, repeats_exactly) {
     const InstructionCounts second = counts_of(options_for(kShmImage), 2000);
     EXPECT_EQ(first.median, second.median);
     EXPECT_EQ(first.worst, second.worst);
+    EXPECT_EQ(first.total, second.total);
+    EXPECT_EQ(first.ticks, 2000u);
     EXPECT_GT(first.median, 100u);
 }
 
