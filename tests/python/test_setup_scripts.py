@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+SCRIPTS = ("bench_images", "hil", "quiesce", "setup", "test")
 COMMON = (
     "awk bash cat chmod cp cut dirname env flock grep mkdir mktemp mv nproc readlink rm "
     "sha256sum tail tar touch"
@@ -29,7 +30,7 @@ class Clone:
         self.bin = folder / "bin"
         self.bin.mkdir()
         shutil.copytree(ROOT / "tools/lib", self.root / "tools/lib")
-        for name in ("setup", "test", "hil", "quiesce", "packages.txt", "requirements.txt"):
+        for name in (*SCRIPTS, "packages.txt", "requirements.txt"):
             shutil.copy(ROOT / "tools" / name, self.root / "tools" / name)
         for name in COMMON:
             (self.bin / name).symlink_to(shutil.which(name))
@@ -90,6 +91,7 @@ def assert_one_line(result: subprocess.CompletedProcess[str], *words: str) -> No
     [
         ("setup", ["everything"], ["everything", "run, test or python"]),
         ("setup", ["run", "test"], ["one argument"]),
+        ("bench_images", ["cmsis_cost", "all"], ["all", "signal_cost"]),
         ("test", ["--fast"], ["--fast", "--help"]),
         ("test", ["--only", "units"], ["units", "sanitize"]),
         ("test", ["--only"], ["--only", "sanitize"]),
@@ -100,7 +102,7 @@ def test_unknown_argument_is_refused(clone: Clone, name, arguments, words) -> No
     assert not (clone.root / "build").exists()
 
 
-@pytest.mark.parametrize("name", ["setup", "test"])
+@pytest.mark.parametrize("name", ["bench_images", "setup", "test"])
 def test_help_needs_nothing_installed(clone: Clone, name) -> None:
     result = clone.script(name, "--help")
     assert result.returncode == 0
@@ -251,6 +253,47 @@ def test_changed_unity_file_is_noticed(clone: Clone) -> None:
     assert clone.function("common unity", check).stdout == ""
 
 
+# CMSIS-DSP
+
+
+def test_wrong_cmsis_archive_is_refused_and_leaves_nothing(clone: Clone, tmp_path: Path) -> None:
+    archive = tmp_path / "cmsisdsp-1.10.3.tar.gz"
+    archive.write_bytes(b"not the archive")
+    result = clone.function("common cmsis", "cmsis_setup", QUIESCE_CMSIS_ARCHIVE=str(archive))
+    assert result.returncode == 2
+    assert "refused: its sha256 is" in result.stderr.splitlines()[-1]
+    assert list((clone.root / "build/deps").iterdir()) == []
+
+
+def test_missing_cmsis_archive_is_named(clone: Clone) -> None:
+    result = clone.function("common cmsis", "cmsis_setup", QUIESCE_CMSIS_ARCHIVE="/none.tar.gz")
+    assert result.returncode == 2
+    assert "cannot read /none.tar.gz" in result.stderr.splitlines()[-1]
+
+
+def test_without_network_says_how_else_to_get_the_archive(clone: Clone) -> None:
+    (clone.root / ".venv/bin").mkdir(parents=True)
+    python = clone.fake("python", "echo 'ERROR: no network'; exit 1")
+    (clone.root / ".venv/bin/python").symlink_to(python)
+    result = clone.function("common python cmsis", "cmsis_setup")
+    assert result.returncode == 2
+    last = result.stderr.splitlines()[-1]
+    assert "could not fetch cmsisdsp-1.10.3.tar.gz: ERROR: no network" in last
+    assert "QUIESCE_CMSIS_ARCHIVE=" in last
+    assert len(clone.calls("python")) == 3
+    assert list((clone.root / "build/deps").iterdir()) == []
+
+
+def test_interrupted_cmsis_set_up_starts_again(clone: Clone) -> None:
+    folder = clone.root / "build/deps/cmsisdsp"
+    folder.mkdir(parents=True)
+    check = 'cmsis_is_complete build/deps/cmsisdsp && echo complete; echo "$CMSIS_SHA256"'
+    checksum = clone.function("common cmsis", check).stdout
+    assert len(checksum) == 65
+    (folder / ".complete").write_text(checksum)
+    assert clone.function("common cmsis", check).stdout == f"complete\n{checksum}"
+
+
 # Two at once, results
 
 
@@ -296,10 +339,10 @@ def tree(clone: Clone) -> Clone:
     shutil.copytree(ROOT / "tools/check", clone.root / "tools/check")
     for name in (".clang-format", ".clang-tidy", "ruff.toml"):
         shutil.copy(ROOT / name, clone.root)
-    for folder in ("firmware", "hal/mps2", "sim_hil", "tests", "tools/gen", ".ci"):
+    for folder in ("bench/mps2", "firmware", "hal/mps2", "sim_hil", "tests", "tools/gen", ".ci"):
         (clone.root / folder).mkdir(parents=True)
     clean = "int clean(int a);\n\nint clean(int a) {\n    return a + 1;\n}\n"
-    for name in ("firmware/clean.c", "hal/mps2/clean.c", "sim_hil/clean.cpp"):
+    for name in ("bench/mps2/clean.c", "firmware/clean.c", "hal/mps2/clean.c", "sim_hil/clean.cpp"):
         (clone.root / name).write_text(clean)
     (clone.root / ".venv").symlink_to(ROOT / ".venv")
     return clone

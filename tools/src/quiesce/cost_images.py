@@ -17,15 +17,18 @@ def built_image(name: str) -> Path:
     UsageError where it cannot be had: the network, a tool.
     """
     if not os.environ.get("QUIESCE_BUILD"):
-        build()
+        build(name)
     return require_file(build_folder() / f"mps2/bench/{name}.elf", "the image")
 
 
 @cache
-def build() -> None:
-    """Fetches the peers' sources and builds; once a process. Its progress goes to stderr."""
+def build(name: str) -> None:
+    """Builds it, and fetches its sources where it is a peer. Its progress goes to stderr."""
     process = subprocess.Popen(
-        [root() / "tools/bench_images"], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        [root() / "tools/bench_images", name],
+        stdin=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     assert process.stderr is not None
     last = ""

@@ -7,18 +7,20 @@ magnitudes of its bins, RMS; in q15 and in q31.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from quiesce.bench_exe import Bench, require_emulator
+from quiesce.bench_report import Figure
 from quiesce.cost_images import built_image
+from quiesce.errors import UsageError, one_line
 from quiesce.link_map import by_source, read_sections
+from quiesce.table import format_table
 
 DEFAULT_RATE_HZ = 1000
 OTHER_RATES_HZ = (500, 2000, 4000)
 DEFAULT_TICKS = 1_000_000
-OTHER_TICKS = 200_000
 PROFILE_TICKS = 100_000
 RMS_WINDOW_MS = 4000
 
@@ -28,6 +30,8 @@ PEER_POINTS = 1024
 # Both in the order of their numbers in the image.
 PEER_FORMATS = ("q15", "q31")
 PEER_PARTS = ("fft", "magnitude", "rms")
+
+COST_RUNS = 1 + len(OTHER_RATES_HZ) + 2
 
 RATIO_GOAL = 25
 WORST_OVER_MEDIAN_GOAL = 2
@@ -85,82 +89,95 @@ class PeerCost:
 
 
 @dataclass(frozen=True)
-class CostFigure:
-    name: str
-    value: float
-    unit: str
-    goal: float | None  # None: reported only
-    better: str  # "lower" or "higher"
-
-    @property
-    def is_ok(self) -> bool | None:
-        """Whether the goal is met; None where there is none."""
-        if self.goal is None:
-            return None
-        return self.value <= self.goal if self.better == "lower" else self.value >= self.goal
-
-
-@dataclass(frozen=True)
 class SignalCost:
     ticks: tuple[TickCost, ...]  # one a tick rate; the default rate first
-    peers: tuple[PeerCost, ...]  # q15, q31
+    peers: tuple[PeerCost, ...]  # q15, q31; none where the peer cannot be had
     modules: dict[str, float]  # mean instructions a tick by source file, the costliest first
+    absent: tuple[str, ...] = ()  # why there is no peer, one line
 
     @property
     def default(self) -> TickCost:
         return self.ticks[0]
 
-    def peer(self, number_format: str) -> PeerCost:
-        return next(p for p in self.peers if p.number_format == number_format)
-
-    def figures(self) -> list[CostFigure]:
+    def figures(self) -> list[Figure]:
         """The figures of `quiesce bench signal`, in the order of its table."""
         mine = self.default
-        worst_goal = WORST_OVER_MEDIAN_GOAL * mine.median_instr
-        figures = [
-            CostFigure("tick_worst_instr", mine.worst_instr, "instr", worst_goal, "lower"),
-            CostFigure("tick_median_instr", mine.median_instr, "instr", None, "lower"),
-            CostFigure("tick_mean_instr", mine.mean_instr, "instr", MEAN_GOAL_INSTR, "lower"),
+        peaks = {peer.number_format: peer.peak_instr for peer in self.peers}
+        return [
+            Figure(
+                "tick_worst_instr",
+                mine.worst_instr,
+                "instr",
+                WORST_OVER_MEDIAN_GOAL * mine.median_instr,
+                "lower",
+            ),
+            Figure("tick_median_instr", mine.median_instr, "instr", None, "lower"),
+            Figure("tick_mean_instr", mine.mean_instr, "instr", MEAN_GOAL_INSTR, "lower"),
+            *(
+                Figure(f"cmsis_{form}_peak_instr", peaks.get(form), "instr", None, "lower")
+                for form in PEER_FORMATS
+            ),
+            *(
+                Figure(
+                    f"peak_ratio_{form}",
+                    peaks[form] / mine.worst_instr if form in peaks else None,
+                    "1",
+                    RATIO_GOAL,
+                    "higher",
+                )
+                for form in PEER_FORMATS
+            ),
+            Figure("ram_bytes", mine.ram_bytes, "byte", RAM_GOAL_BYTES, "lower"),
         ]
-        for peer in self.peers:
-            name = f"cmsis_{peer.number_format}_peak_instr"
-            figures.append(CostFigure(name, peer.peak_instr, "instr", None, "lower"))
-        for peer in self.peers:
-            ratio = peer.peak_instr / mine.worst_instr
-            name = f"peak_ratio_{peer.number_format}"
-            figures.append(CostFigure(name, ratio, "1", RATIO_GOAL, "higher"))
-        figures.append(CostFigure("ram_bytes", mine.ram_bytes, "byte", RAM_GOAL_BYTES, "lower"))
-        return figures
+
+    def context(self) -> dict[str, Any]:
+        """Everything, as values of JSON."""
+        return {
+            "ticks": [asdict(tick) for tick in self.ticks],
+            "peers": [
+                {
+                    **asdict(peer),
+                    "peak_instr": peer.peak_instr,
+                    "mean_instr": peer.mean_instr(self.default.tick_rate_Hz),
+                }
+                for peer in self.peers
+            ],
+            "modules_mean_instr": self.modules,
+            "rms_window_ms": RMS_WINDOW_MS,
+        }
 
 
 def measure_cost(
+    bench: Bench | None = None,
     ticks: int = DEFAULT_TICKS,
-    other_ticks: int = OTHER_TICKS,
     profile_ticks: int = PROFILE_TICKS,
     done: Callable[[str], None] = lambda text: None,
 ) -> SignalCost:
-    """Runs the images and counts; the first call fetches and builds the peer.
+    """Runs the images and counts; the first call builds them and fetches the peer.
 
-    ticks: at the default rate; other_ticks: at each of the other rates; profile_ticks: for the
-    share of each source file. done: called with a line after each run. UsageError where a tool,
-    the network or an image is missing.
+    ticks: at each rate; profile_ticks: for the share of each source file. done: called with a line
+    after each of COST_RUNS runs. UsageError where the emulator or the chain's image is missing;
+    where only the peer is (no network), the result has none and says why.
     """
     require_emulator()
-    bench = Bench()
+    bench = bench or Bench()
     chain = built_image("signal_cost")
-    peer_image = built_image("cmsis_cost")
     costs = []
     for rate_Hz in (DEFAULT_RATE_HZ, *OTHER_RATES_HZ):
-        count = ticks if rate_Hz == DEFAULT_RATE_HZ else other_ticks
-        costs.append(measure_ticks(bench, chain, rate_Hz, count))
-        done(f"signal chain: {count} ticks at {rate_Hz} Hz")
+        costs.append(measure_ticks(bench, chain, rate_Hz, ticks))
+        done(f"cost of the signal chain: {ticks} ticks at {rate_Hz} Hz")
     modules = measure_modules(bench, chain, profile_ticks)
-    done(f"signal chain: share of each source file, {profile_ticks} ticks")
-    peers = []
-    for number_format in PEER_FORMATS:
-        peers.append(measure_peer(bench, peer_image, number_format))
-        done(f"peer: CMSIS-DSP, {number_format}")
-    return SignalCost(ticks=tuple(costs), peers=tuple(peers), modules=modules)
+    done(f"cost of each source file: {profile_ticks} ticks")
+    absent: tuple[str, ...] = ()
+    peers: tuple[PeerCost, ...] = ()
+    try:
+        image = built_image("cmsis_cost")
+    except UsageError as error:
+        absent = (f"peer CMSIS-DSP: {one_line(error)}",)
+    else:
+        peers = tuple(measure_peer(bench, image, form) for form in PEER_FORMATS)
+    done("cost of the peer, CMSIS-DSP")
+    return SignalCost(tuple(costs), peers, modules, absent)
 
 
 def count(bench: Bench, image: Path, *words: int, profile: bool = False) -> dict[str, Any]:
@@ -222,9 +239,8 @@ def markdown(head: list[str], rows: list[list[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def cost_table_markdown(cost: SignalCost) -> str:
-    """The section "Cost" of docs/signal_chain.md: three tables."""
-    rows = [
+def tick_rows(cost: SignalCost) -> list[list[str]]:
+    return [
         [
             f"{tick.tick_rate_Hz} Hz",
             f"{tick.ticks:,}",
@@ -236,36 +252,50 @@ def cost_table_markdown(cost: SignalCost) -> str:
         ]
         for tick in cost.ticks
     ]
-    ours = markdown(
-        ["tick rate", "ticks", "worst", "median", "mean", "RAM, bytes", "stack, bytes"], rows
-    )
-    worst = cost.default.worst_instr
+
+
+def peer_rows(cost: SignalCost) -> list[list[str]]:
+    return [
+        [
+            peer.number_format,
+            f"{peer.fft_instr:,}",
+            f"{peer.magnitude_instr:,}",
+            f"{peer.rms_instr:,}",
+            f"{peer.peak_instr:,}",
+            f"{peer.peak_instr / cost.default.worst_instr:.1f}",
+            f"{peer.mean_instr(cost.default.tick_rate_Hz):,.0f}",
+        ]
+        for peer in cost.peers
+    ]
+
+
+Table = tuple[list[str], list[list[str]]]
+
+
+def tables(cost: SignalCost) -> list[Table]:
+    """Heads and rows: tick rates, peers (where there are any), source files."""
     rate_Hz = cost.default.tick_rate_Hz
-    peers = markdown(
-        [
-            f"CMSIS-DSP, {PEER_POINTS} points in one tick",
-            "FFT",
-            "magnitudes",
-            "RMS",
-            "peak tick",
-            "over our worst tick",
-            f"mean a tick ({PEER_UPDATES_HZ} batches a second)",
-        ],
-        [
-            [
-                peer.number_format,
-                f"{peer.fft_instr:,}",
-                f"{peer.magnitude_instr:,}",
-                f"{peer.rms_instr:,}",
-                f"{peer.peak_instr:,}",
-                f"{peer.peak_instr / worst:.1f}",
-                f"{peer.mean_instr(rate_Hz):,.0f}",
-            ]
-            for peer in cost.peers
-        ],
-    )
-    modules = markdown(
-        [f"source file, {rate_Hz} Hz", "mean a tick"],
-        [[source, f"{mean:,.1f}"] for source, mean in cost.modules.items()],
-    )
-    return f"{ours}\n\n{peers}\n\n{modules}\n"
+    ticks = ["tick rate", "ticks", "worst", "median", "mean", "RAM, bytes", "stack, bytes"]
+    peers = [
+        f"CMSIS-DSP, {PEER_POINTS} points",
+        "FFT",
+        "magnitudes",
+        "RMS",
+        "peak tick",
+        "over our worst",
+        f"mean a tick at {PEER_UPDATES_HZ} a second",
+    ]
+    sources = [f"source file, {rate_Hz} Hz", "mean a tick"]
+    source_rows = [[source, f"{mean:,.1f}"] for source, mean in cost.modules.items()]
+    found = [(ticks, tick_rows(cost)), (peers, peer_rows(cost)), (sources, source_rows)]
+    return [(head, rows) for head, rows in found if rows]
+
+
+def cost_tables(cost: SignalCost) -> list[str]:
+    """For the terminal."""
+    return [format_table(head, rows) for head, rows in tables(cost)]
+
+
+def cost_table_markdown(cost: SignalCost) -> str:
+    """The same for the section "Cost" of docs/signal_chain.md."""
+    return "\n\n".join(markdown(head, rows) for head, rows in tables(cost)) + "\n"
