@@ -1,78 +1,32 @@
 """`quiesce bench signal`: what the sensing chain knows about the vibration, against theory."""
 
 import argparse
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from functools import partial
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from quiesce import signal_accuracy, signal_plant, signal_response, signal_truth
-from quiesce.bench_exe import Bench
+from quiesce import signal_accuracy, signal_cost, signal_response
 from quiesce.bench_report import Figure, Report
-from quiesce.progress import Progress
-from quiesce.signal_accuracy import Group, measure_accuracy, phase_excess_deg, worst_ratio
-from quiesce.signal_plant import StickSlip, measure_stick_slip
+from quiesce.errors import UsageError
+from quiesce.paths import shown
+from quiesce.signal_accuracy import phase_excess_deg, worst_ratio
+from quiesce.signal_cost import SignalCost, measure_cost
+from quiesce.signal_plots import plot_accuracy, plot_steps, plot_truth
+from quiesce.signal_recorded import SOURCES, SWEEP, find_folder, sweep_within_pct
 from quiesce.signal_records import Rig, Tally, make_rig
-from quiesce.signal_response import (
-    Dropouts,
-    Steady,
-    Step,
-    measure_dropouts,
-    measure_steady,
-    measure_step,
-)
-from quiesce.signal_truth import Answers, measure_answers
+from quiesce.signal_suite import FULL, QUICK, Results, measure_all
+from quiesce.signal_tables import tables
 
 NAME = "signal"
-HELP = "the sensing chain: accuracy, speed of response, validity, robustness, cost"
+HELP = "the sensing chain: accuracy, response, validity, robustness, cost"
 DESCRIPTION = """Measure the sensing chain as shipped: accuracy against the Cramer-Rao bound,
-response to steps, validity, the rule of the dominant frequency, stick-slip."""
+response to steps, validity, the rule of the dominant frequency, stick-slip, recordings, and the
+instructions of a tick beside a batch pipeline on CMSIS-DSP."""
 
-WORKERS = 2
-
-
-@dataclass(frozen=True)
-class Budget:
-    """Trials of each kind."""
-
-    accuracy: int
-    steps: int
-    steady: int
-    dropouts: int
-    truth: int
-    stick_slip: int
-
-
-FULL = Budget(accuracy=500, steps=200, steady=200, dropouts=200, truth=200, stick_slip=5)
-QUICK = Budget(accuracy=60, steps=50, steady=40, dropouts=40, truth=50, stick_slip=1)
-
-
-@dataclass(frozen=True)
-class Results:
-    accuracy: list[Group]
-    steps: list[Step]
-    steady: list[Steady]
-    dropouts: Dropouts
-    truth: list[Answers]
-    stick_slip: list[StickSlip]
-
-    def tallies(self) -> dict[str, Tally]:
-        """Of all synthetic and plant ticks, by part."""
-        parts = {
-            "accuracy": self.accuracy,
-            "steps": self.steps,
-            "steady": self.steady,
-            "dropouts": [self.dropouts],
-            "truth table": self.truth,
-            "stick-slip": self.stick_slip,
-        }
-        tallies = {name: Tally() for name in parts}
-        for name, results in parts.items():
-            for result in results:
-                tallies[name].join(result.tally)
-        return tallies
+# Ticks whose instructions are counted: at 1 kHz, at each other rate, for the share of each file.
+QUICK_COST_TICKS = (50_000, 10_000, 10_000)
 
 
 def seed_number(text: str) -> int:
@@ -87,121 +41,100 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter, repeatable"
     )
-
-
-def run_all(bench: Bench, tasks: Sequence[tuple[str, Callable[[], Any]]]) -> list[Any]:
-    """Results in order; WORKERS at a time."""
-    progress = Progress(len(tasks))
-
-    def work(name: str, task: Callable[[], Any]) -> Any:
-        result = task()
-        progress.done(name)
-        return result
-
-    pool = ThreadPoolExecutor(WORKERS)
-    try:
-        return [future.result() for future in [pool.submit(work, *task) for task in tasks]]
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        bench.stop()
-        raise
-    finally:
-        pool.shutdown()
-
-
-def synthetic(rig: Rig, seed: int, budget: Budget) -> Results:
-    parts: dict[str, list[tuple[str, Callable[[], Any]]]] = {
-        "accuracy": [
-            (
-                f"accuracy at {snr_dB} dB, {name}",
-                partial(measure_accuracy, rig, seed, budget.accuracy, snr_dB, name),
-            )
-            for snr_dB in signal_accuracy.SNRS_dB
-            for name in signal_accuracy.GROUPS
-        ],
-        "steps": [
-            (
-                f"steps {step[0]:g} -> {step[1]:g} Hz",
-                partial(measure_step, rig, seed, budget.steps, *step),
-            )
-            for step in signal_response.STEPS_Hz
-        ],
-        "steady": [
-            (
-                f"steady tones at {snr_dB} dB",
-                partial(measure_steady, rig, seed, budget.steady, snr_dB),
-            )
-            for snr_dB in signal_response.STEADY_SNRS_dB
-        ],
-        "dropouts": [("dropouts", partial(measure_dropouts, rig, seed, budget.dropouts))],
-        "truth": [
-            (f"truth table: {kind}", partial(measure_answers, rig, seed, budget.truth, kind))
-            for kind in signal_truth.KINDS
-        ],
-        "stick_slip": [
-            (
-                f"stick-slip at {freq_Hz:g} Hz",
-                partial(measure_stick_slip, rig, seed, budget.stick_slip, freq_Hz),
-            )
-            for freq_Hz in signal_plant.STICK_Hz
-        ],
-    }
-    results = iter(run_all(rig.bench, [task for tasks in parts.values() for task in tasks]))
-    found = {name: [next(results) for _ in tasks] for name, tasks in parts.items()}
-    return Results(**{**found, "dropouts": found["dropouts"][0]})
+    parser.add_argument(
+        "--data",
+        type=Path,
+        metavar="DIR",
+        help="folder of the recordings (../shared/data/vibration beside the project)",
+    )
+    parser.add_argument(
+        "--no-cost", action="store_true", help="do not count instructions (no emulator)"
+    )
 
 
 def mean(values: Sequence[float]) -> float:
-    return sum(values) / len(values)
+    return float(sum(values) / len(values))
 
 
-def figures_of(rig: Rig, results: Results) -> list[Figure]:
-    total = Tally()
-    for tally in results.tallies().values():
-        total.join(tally)
-    steps = {step.name: step for step in results.steps}
-    rms_error = max(r.rms_error for r in [*results.steps, *results.steady])
-    answers = [float(answer.is_correct.mean()) for answer in results.truth]
-    accuracy = results.accuracy
+def accuracy_figures(results: Results) -> list[Figure]:
+    groups = results.accuracy
     gated, high = signal_accuracy.GATED_SNRS_dB, [signal_accuracy.HIGH_SNR_dB]
-    recovery_s = float(results.dropouts.recovery_s.max())
-    recovery_goal_s = rig.longest_window_ms * 1e-3 + signal_response.RECOVERY_MARGIN_s
+    rms_error = max(r.rms_error for r in [*results.steps, *results.steady])
     return [
-        Figure("freq_rmse_over_crlb_max", worst_ratio(accuracy, gated), "1", 1.5, "lower"),
-        Figure("freq_rmse_over_crlb_60dB", worst_ratio(accuracy, high), "1", 2.0, "lower"),
-        Figure("phase_excess_deg", phase_excess_deg(accuracy), "deg", 0.5, "lower"),
+        Figure("freq_rmse_over_crlb_max", worst_ratio(groups, gated), "1", 1.5, "lower"),
+        Figure("freq_rmse_over_crlb_60dB", worst_ratio(groups, high), "1", 2.0, "lower"),
+        Figure("phase_excess_deg", phase_excess_deg(groups), "deg", 0.5, "lower"),
         Figure("rms_error_pct", 100.0 * rms_error, "%", 0.5, "lower"),
-        Figure("settle_10_20_s", float(steps["10_20"].settle_s.max()), "s", 0.25, "lower"),
-        Figure("settle_5_10_s", float(steps["5_10"].settle_s.max()), "s", 0.25, "lower"),
-        Figure("settle_20_5_s", float(steps["20_5"].settle_s.max()), "s", 0.45, "lower"),
-        Figure(
-            "invalid_after_step_ms",
-            1e3 * max(float(step.invalid_after_s.max()) for step in results.steps),
-            "ms",
-            30.0,
-            "lower",
-        ),
-        Figure(
-            "valid_steady_pct",
-            100.0 * mean([float(s.valid_share.mean()) for s in results.steady]),
-            "%",
-            99.5,
-            "higher",
-        ),
-        Figure("valid_but_wrong_pct", total.wrong_pct, "%", 0.1, "lower"),
-        Figure("dropout_recovery_s", recovery_s, "s", recovery_goal_s, "lower"),
-        Figure("two_tone_correct_pct", 100.0 * mean(answers), "%", 100.0, "higher"),
-        Figure(
-            "stickslip_fundamental_pct",
-            100.0 * mean([s.right_share for s in results.stick_slip]),
-            "%",
-            100.0,
-            "higher",
-        ),
     ]
 
 
-def context_of(rig: Rig, args: argparse.Namespace, results: Results) -> dict[str, Any]:
+def response_figures(results: Results) -> list[Figure]:
+    goals_s = {"10_20": 0.25, "5_10": 0.25, "20_5": 0.45}
+    worst_s = {step.name: float(step.settle_s.max()) for step in results.steps}
+    invalid_ms = 1e3 * max(float(step.invalid_after_s.max()) for step in results.steps)
+    return [
+        *(
+            Figure(f"settle_{name}_s", worst_s[name], "s", goal_s, "lower")
+            for name, goal_s in goals_s.items()
+        ),
+        Figure("invalid_after_step_ms", invalid_ms, "ms", 30.0, "lower"),
+    ]
+
+
+def trust_figures(rig: Rig, results: Results) -> list[Figure]:
+    total = Tally()
+    for tally in results.tallies().values():
+        total.join(tally)
+    steady_pct = 100.0 * mean([s.valid_share.mean() for s in results.steady])
+    recovery_s = max(float(d.recovery_s.max()) for d in results.dropouts)
+    recovery_goal_s = rig.longest_window_ms * 1e-3 + signal_response.RECOVERY_MARGIN_s
+    correct_pct = 100.0 * mean([a.is_correct.mean() for a in results.truth])
+    stick_pct = 100.0 * mean([s.right_share for s in results.stick_slip])
+    sweep_pct = sweep_within_pct(results.recorded)
+    return [
+        Figure("valid_steady_pct", steady_pct, "%", 99.5, "higher"),
+        Figure("valid_but_wrong_pct", total.wrong_pct, "%", 0.1, "lower"),
+        Figure("dropout_recovery_s", recovery_s, "s", recovery_goal_s, "lower"),
+        Figure("two_tone_correct_pct", correct_pct, "%", 100.0, "higher"),
+        Figure("stickslip_fundamental_pct", stick_pct, "%", 100.0, "higher"),
+        Figure("sweep_within_0p12Hz_pct", sweep_pct, "%", 99.0, "higher"),
+    ]
+
+
+def say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def count_cost(args: argparse.Namespace) -> tuple[SignalCost | None, str]:
+    """The instruction counts, or why there are none."""
+    if args.no_cost:
+        return None, "instruction counts: left out with --no-cost"
+    try:
+        return measure_cost(*QUICK_COST_TICKS if args.quick else (), done=say), ""
+    except UsageError as error:
+        return None, f"instruction counts: {error}"
+
+
+def cost_figures(cost: SignalCost | None) -> list[Figure]:
+    if cost is not None:
+        return [Figure(**asdict(figure)) for figure in cost.figures()]
+    peers = signal_cost.PEER_FORMATS
+    return [
+        Figure("tick_worst_instr", None, "instr", None, "lower"),
+        Figure("tick_median_instr", None, "instr", None, "lower"),
+        Figure("tick_mean_instr", None, "instr", signal_cost.MEAN_GOAL_INSTR, "lower"),
+        *(Figure(f"cmsis_{peer}_peak_instr", None, "instr", None, "lower") for peer in peers),
+        *(
+            Figure(f"peak_ratio_{peer}", None, "1", signal_cost.RATIO_GOAL, "higher")
+            for peer in peers
+        ),
+        Figure("ram_bytes", None, "byte", signal_cost.RAM_GOAL_BYTES, "lower"),
+    ]
+
+
+def context_of(
+    rig: Rig, args: argparse.Namespace, results: Results, cost: SignalCost | None
+) -> dict[str, Any]:
     return {
         "seed": args.seed,
         "quick": args.quick,
@@ -210,17 +143,40 @@ def context_of(rig: Rig, args: argparse.Namespace, results: Results) -> dict[str
         "accuracy": [signal_accuracy.row(group) for group in results.accuracy],
         "steps": [step.row() for step in results.steps],
         "steady": [steady.row() for steady in results.steady],
-        "dropouts": results.dropouts.row(),
+        "dropouts": [dropouts.row() for dropouts in results.dropouts],
         "truth_table": [answers.row() for answers in results.truth],
         "stick_slip": [stick.row() for stick in results.stick_slip],
-        "valid_but_wrong": {
-            name: {"ticks": tally.ticks, "valid": tally.valid, "wrong": tally.wrong}
-            for name, tally in results.tallies().items()
-        },
+        "plant_steps": results.plant_steps,
+        "stress": results.stress,
+        "recordings": [row for row in results.recorded if row is not None],
+        "valid_but_wrong": {name: asdict(tally) for name, tally in results.tallies().items()},
+        "cost": asdict(cost) if cost is not None else None,
     }
 
 
+def absent_recordings(folder: Path, results: Results) -> list[str]:
+    return [
+        f"{shown(folder / source.file)}: not on this machine"
+        + ("; sweep_within_0p12Hz_pct is not judged" if source is SWEEP else "")
+        for source, row in zip(SOURCES, results.recorded, strict=True)
+        if row is None
+    ]
+
+
 def measure(args: argparse.Namespace, folder: Path) -> Report:
+    data = find_folder(args.data)
     rig = make_rig(args.set)
-    results = synthetic(rig, args.seed, QUICK if args.quick else FULL)
-    return Report(NAME, figures_of(rig, results), context_of(rig, args, results))
+    results = measure_all(rig, args.seed, QUICK if args.quick else FULL, data)
+    cost, no_cost = count_cost(args)
+    plot_accuracy(folder, results.accuracy)
+    plot_steps(folder, results.steps)
+    plot_truth(folder, results.truth)
+    context = context_of(rig, args, results, cost)
+    figures = [
+        *accuracy_figures(results),
+        *response_figures(results),
+        *trust_figures(rig, results),
+        *cost_figures(cost),
+    ]
+    absent = [*absent_recordings(data, results), *([no_cost] if no_cost else [])]
+    return Report(NAME, figures, context, tables(context), absent)

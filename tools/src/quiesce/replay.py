@@ -54,11 +54,16 @@ class Replayed:
 
 def frequency_latency_s(tick_rate_Hz: int) -> float:
     """By how much the frequency lags: half the window, and the half-band stages before it."""
+    return SPECTRUM_WINDOW_s / 2.0 + decimation_delay_s(tick_rate_Hz)
+
+
+def decimation_delay_s(tick_rate_Hz: int) -> float:
+    """Of the half-band stages between the ticks and SPECTRUM_RATE_Hz."""
     rate_Hz, delay_s = tick_rate_Hz, 0.0
     while rate_Hz > SPECTRUM_RATE_Hz:
         delay_s += STAGE_DELAY_SAMPLES / rate_Hz
         rate_Hz //= 2
-    return SPECTRUM_WINDOW_s / 2.0 + delay_s
+    return delay_s
 
 
 def sensor_counts(accel_m_s2: np.ndarray, params: dict[str, int]) -> np.ndarray:

@@ -10,7 +10,9 @@ import numpy as np
 
 from quiesce.bench_exe import setting_options
 from quiesce.paths import root
+from quiesce.signal_offline import trailing_Hz
 from quiesce.signal_records import Rig, Tally
+from quiesce.signal_response import SETTLED_SHARE, ticks_until_lasting
 from quiesce.trace import Trace, read_trace
 
 PLANT = "sim_hil/plants/squeeze_2012.toml"
@@ -19,6 +21,9 @@ STICK_Hz = (4.0, 5.0, 6.0)
 STICK_CURRENT_mA = 5000
 STICK_s, STEADY_FROM_s = 8.0, 4.0
 TOLERANCE = 0.02
+STEP_CURRENTS_mA = (0, 5000)
+STEP_SEGMENT_s = 4.0
+OFFLINE_EVERY_s = 0.005
 COLUMNS = ["t_s", "accel_counts", "freq_is_valid", "freq_uHz", "freq_window_ms"]
 
 
@@ -88,3 +93,44 @@ def measure_stick_slip(rig: Rig, seed: int, runs: int, freq_Hz: float) -> StickS
         held_right_share=float(is_right.mean()),
         tally=tally,
     )
+
+
+def measure_plant_step(
+    rig: Rig, seed: int, from_Hz: float, to_Hz: float, current_mA: int
+) -> dict[str, Any]:
+    """Step of the drive's frequency: the chain beside least squares over windows of equal length.
+
+    The offline estimate is of one tone, at every OFFLINE_EVERY_s, over as many samples as the chain
+    reports. Free decay of the structure is part of what both see.
+    """
+    rate_Hz = rig.rate_Hz
+    trace = run_plant(rig, [from_Hz, to_Hz], STEP_SEGMENT_s, current_mA, seed)
+    start = rig.ticks(STEP_SEGMENT_s)
+    told_Hz = trace["freq_uHz"] * 1e-6
+    is_valid = trace["freq_is_valid"] > 0
+    ends = np.arange(start, len(told_Hz), rig.ticks(OFFLINE_EVERY_s))
+    lengths = np.rint(trace["freq_window_ms"][ends] * 1e-3 * rate_Hz).astype(int)
+    offline_Hz = trailing_Hz(trace["accel_counts"], ends, lengths, rate_Hz, tones=1)
+    compared = is_valid[ends] & np.isfinite(offline_Hz)
+    apart_Hz = (told_Hz[ends] - offline_Hz)[compared]
+    return {
+        "step": f"{from_Hz:g} -> {to_Hz:g} Hz",
+        "current_A": current_mA * 1e-3,
+        "settle_s": lasting_s(told_Hz[start:], to_Hz, 1.0 / rate_Hz),
+        "offline_settle_s": lasting_s(offline_Hz, to_Hz, OFFLINE_EVERY_s),
+        "invalid_after_ms": first_ms(~is_valid[start:], rate_Hz),
+        "valid_pct": 100.0 * float(is_valid[start:].mean()),
+        "rms_apart_Hz": float(np.sqrt(np.mean(np.square(apart_Hz)))) if compared.any() else None,
+    }
+
+
+def lasting_s(freq_Hz: np.ndarray, target_Hz: float, period_s: float) -> float | None:
+    """Time from which the frequency stays within 5 %; None where it ends elsewhere."""
+    is_near = np.abs(freq_Hz / target_Hz - 1.0) <= SETTLED_SHARE
+    if not is_near[-1]:
+        return None
+    return float(ticks_until_lasting(is_near[None, :], np.zeros(1, dtype=int))[0]) * period_s
+
+
+def first_ms(is_it: np.ndarray, rate_Hz: int) -> float | None:
+    return 1e3 * float(np.argmax(is_it)) / rate_Hz if is_it.any() else None
