@@ -3,4 +3,5 @@ execute_process(COMMAND ${CMAKE_COMMAND} --preset mps2 -S ${SOURCE} -B ${BUILD}
                         -DUNITY_DIR=${UNITY_DIR}
                 WORKING_DIRECTORY ${SOURCE} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD} --target quiesce_mps2_shm
-                        quiesce_mps2_uart uart_echo count_probe COMMAND_ERROR_IS_FATAL ANY)
+                        quiesce_mps2_uart uart_echo count_probe same_bits
+                COMMAND_ERROR_IS_FATAL ANY)
