@@ -15,7 +15,7 @@ from quiesce.signal_accuracy import phase_excess_deg, worst_ratio
 from quiesce.signal_cost import SignalCost, measure_cost
 from quiesce.signal_plots import plot_accuracy, plot_steps, plot_truth
 from quiesce.signal_recorded import SOURCES, SWEEP, find_folder, sweep_within_pct
-from quiesce.signal_records import Rig, Tally, make_rig
+from quiesce.signal_records import NOTICE_s, Rig, Tally, make_rig
 from quiesce.signal_suite import FULL, QUICK, Results, measure_all
 from quiesce.signal_tables import tables
 
@@ -77,7 +77,7 @@ def response_figures(results: Results) -> list[Figure]:
             Figure(f"settle_{name}_s", worst_s[name], "s", goal_s, "lower")
             for name, goal_s in goals_s.items()
         ),
-        Figure("invalid_after_step_ms", invalid_ms, "ms", 30.0, "lower"),
+        Figure("invalid_after_step_ms", invalid_ms, "ms", 1e3 * NOTICE_s, "lower"),
     ]
 
 

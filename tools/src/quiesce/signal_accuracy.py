@@ -20,6 +20,7 @@ from quiesce.signal_records import (
     noise_rms,
     random_phase,
     switched,
+    tally_switched,
     tone,
     with_noise,
 )
@@ -174,10 +175,7 @@ def measure_group(
     )
     noise = noise_rms(AMPLITUDE_m_s2, snr_dB, rate_Hz)
     out = rig.run(with_noise(AMPLITUDE_m_s2 * clean, noise, rng), COLUMNS)
-    tally = Tally()
-    is_old = np.arange(ticks)[None, :] < step[:, None]
-    truth_Hz = np.where(is_old, before_Hz[:, None], freq_Hz[:, None])
-    tally.add(out["freq_uHz"], out["freq_is_valid"], truth_Hz)
+    tally = tally_switched(rig, out, before_Hz, freq_Hz, step)
 
     at = reading_tick(out["freq_window_ms"], rig.longest_window_ms, rig.ticks(READ_s))
     read = {name: values[np.arange(count), at].astype(float) for name, values in out.items()}

@@ -44,7 +44,7 @@ def plot_accuracy(folder: Path, groups: list[Group]) -> None:
     goal_deg = EXCESS_FACTOR * phase_bound + 0.5
     axes[2].semilogy(SNRS_dB, goal_deg, color=COLORS["muted"], label="goal")
     axes[0].set(title="Frequency", ylabel="RMS error (Hz)", xlabel="SNR (dB)")
-    axes[1].set(title="Frequency over its bound", ylabel="1", xlabel="SNR (dB)")
+    axes[1].set(title="Frequency over its bound", ylabel="RMS error / bound", xlabel="SNR (dB)")
     axes[2].set(title="Phase at the current tick", ylabel="RMS error (deg)", xlabel="SNR (dB)")
     for one in axes:
         one.legend()
@@ -77,23 +77,26 @@ def plot_steps(folder: Path, steps: list[Step]) -> None:
 
 
 def plot_truth(folder: Path, answers: list[Answers]) -> None:
-    """Every case: the frequency to be reported against the other one."""
-    figure, axes = pyplot().subplots(1, len(answers), figsize=(12, 3.8), squeeze=False)
+    """Every case: the frequency to be reported, and how much stronger the other component is."""
+    plt = pyplot()
+    figure, axes = plt.subplots(1, len(answers), figsize=(12, 3.8), squeeze=False)
     for one, answer in zip(axes[0], answers, strict=True):
-        freq_Hz, is_correct = answer.cases.freq_Hz, answer.is_correct
+        freq_Hz, amplitude, is_correct = (
+            answer.cases.freq_Hz[:, 0],
+            answer.cases.amplitude_m_s2,
+            answer.is_correct,
+        )
+        ratio = amplitude[:, 1] / amplitude[:, 0]
         for chosen, color, marker, label in (
             (is_correct, "main", "o", "right"),
             (~is_correct, "current", "x", "not right at every tick"),
         ):
-            one.loglog(
-                freq_Hz[chosen, 0],
-                freq_Hz[chosen, 1],
-                color=COLORS[color],
-                marker=marker,
-                markersize=4,
-                linestyle="",
-                label=f"{label}: {int(chosen.sum())}",
-            )
-        one.set(title=answer.kind, xlabel="to be reported (Hz)", ylabel="the other component (Hz)")
+            style = {"color": COLORS[color], "marker": marker, "markersize": 4, "linestyle": ""}
+            label = f"{label}: {int(chosen.sum())}"
+            one.loglog(freq_Hz[chosen], ratio[chosen], **style, label=label)
+        one.set(title=answer.kind, xlabel="to be reported (Hz)")
+        one.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"], minor=False)
+        one.xaxis.set_minor_formatter(plt.NullFormatter())
         one.legend()
+    axes[0, 0].set_ylabel("acceleration of the other over it")
     write(folder, "truth_table.svg", figure)

@@ -24,6 +24,8 @@ OFFSET_m_s2 = 9.80665
 # Signal-to-noise ratios are per sample at this rate; a faster tick has more noise in each sample.
 SNR_RATE_Hz = 1000
 WRONG_SHARE = 0.10
+# Goal of the time from a step to the first tick that is not valid.
+NOTICE_s = 0.030
 _CALL_TICKS = 1_500_000
 
 
@@ -141,20 +143,46 @@ class Tally:
     ticks: int = 0
     valid: int = 0
     wrong: int = 0
+    # Of those, the ones later after a change than the chain may take to notice it.
+    wrong_late: int = 0
 
-    def add(self, freq_uHz: np.ndarray, is_valid: np.ndarray, truth_Hz: np.ndarray) -> None:
-        """truth_Hz: of each tick, or broadcast to it."""
+    def add(
+        self,
+        freq_uHz: np.ndarray,
+        is_valid: np.ndarray,
+        truth_Hz: np.ndarray,
+        is_late: np.ndarray | bool = True,
+    ) -> None:
+        """truth_Hz and is_late: of each tick, or broadcast to it."""
         valid = is_valid > 0
-        off = np.abs(freq_uHz * 1e-6 - truth_Hz) > WRONG_SHARE * truth_Hz
+        wrong = valid & (np.abs(freq_uHz * 1e-6 - truth_Hz) > WRONG_SHARE * truth_Hz)
         self.ticks += valid.size
         self.valid += int(valid.sum())
-        self.wrong += int((valid & off).sum())
+        self.wrong += int(wrong.sum())
+        self.wrong_late += int((wrong & is_late).sum())
 
     def join(self, other: "Tally") -> None:
         self.ticks += other.ticks
         self.valid += other.valid
         self.wrong += other.wrong
+        self.wrong_late += other.wrong_late
 
     @property
     def wrong_pct(self) -> float:
         return 100.0 * self.wrong / self.ticks if self.ticks else 0.0
+
+
+def tally_switched(
+    rig: Rig,
+    out: dict[str, np.ndarray],
+    before_Hz: np.ndarray,
+    after_Hz: np.ndarray,
+    at_tick: np.ndarray,
+) -> Tally:
+    """Of records whose frequency changes at at_tick."""
+    since = np.arange(out["freq_uHz"].shape[1])[None, :] - at_tick[:, None]
+    truth_Hz = np.where(since < 0, before_Hz[:, None], after_Hz[:, None])
+    is_late = (since < 0) | (since > rig.ticks(NOTICE_s))
+    tally = Tally()
+    tally.add(out["freq_uHz"], out["freq_is_valid"], truth_Hz, is_late)
+    return tally

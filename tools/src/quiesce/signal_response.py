@@ -18,6 +18,7 @@ from quiesce.signal_records import (
     noise_rms,
     random_phase,
     switched,
+    tally_switched,
     tone,
     with_noise,
 )
@@ -150,9 +151,10 @@ def measure_step(rig: Rig, seed: int, trials: int, from_Hz: float, to_Hz: float)
     ticks = rig.ticks(BEFORE_s + AFTER_s) + SPREAD_TICKS
     step = rig.ticks(BEFORE_s) + rng.integers(0, SPREAD_TICKS, trials)
     phase = random_phase(rng, trials)
+    before_Hz, after_Hz = np.full(trials, from_Hz), np.full(trials, to_Hz)
     clean = switched(
-        tone(np.full(trials, from_Hz), phase, step, ticks, rate_Hz),
-        tone(np.full(trials, to_Hz), phase, step, ticks, rate_Hz),
+        tone(before_Hz, phase, step, ticks, rate_Hz),
+        tone(after_Hz, phase, step, ticks, rate_Hz),
         step,
     )
     noise = noise_rms(AMPLITUDE_m_s2, STEP_SNR_dB, rate_Hz)
@@ -160,9 +162,7 @@ def measure_step(rig: Rig, seed: int, trials: int, from_Hz: float, to_Hz: float)
     out = rig.run(accel_m_s2, COLUMNS)
     freq_Hz, is_valid = out["freq_uHz"] * 1e-6, out["freq_is_valid"] > 0
     is_near = np.abs(freq_Hz - to_Hz) <= SETTLED_SHARE * to_Hz
-    tally = Tally()
     is_old = np.arange(ticks)[None, :] < step[:, None]
-    tally.add(out["freq_uHz"], is_valid, np.where(is_old, from_Hz, to_Hz))
     shown = step[:, None] + np.arange(-rig.ticks(0.1), rig.ticks(1.2))[None, :]
     rows = np.arange(trials)
     return Step(
@@ -180,7 +180,7 @@ def measure_step(rig: Rig, seed: int, trials: int, from_Hz: float, to_Hz: float)
         },
         rate_Hz=rate_Hz,
         rms_error=rms_error(rig, accel_m_s2, out["rms_um_s2"]),
-        tally=tally,
+        tally=tally_switched(rig, out, before_Hz, after_Hz, step),
     )
 
 
