@@ -27,12 +27,12 @@ std::vector<std::uint32_t> words_from(const Arguments &arguments) {
     return out;
 }
 
-bool profile_from(const Arguments &arguments) {
+std::string profile_from(const Arguments &arguments) {
     const std::string text = arguments.text("profile").value_or("off");
-    if (text != "on" && text != "off") {
-        throw InputError("--profile " + text + ": expected on or off");
+    if (text != "all" && text != "off" && parse_integer(text).value_or(0) < 1) {
+        throw InputError("--profile " + text + ": expected off, all or the number of a pass");
     }
-    return text == "on";
+    return text;
 }
 
 } // namespace
@@ -43,16 +43,17 @@ int cmd_count(const std::vector<std::string> &words) {
     QemuOptions options;
     options.image_path = arguments.required("image");
     options.plugin_path = arguments.text("plugin").value_or("");
-    options.has_profile = profile_from(arguments);
+    options.profile = profile_from(arguments);
     options.answer_time = kLongestRun;
     const ImageRun run = run_image(options, words_from(arguments));
     nlohmann::ordered_json out = {
         {"passes", run.counts.ticks},
         {"worst", run.counts.worst},
+        {"worst_pass", run.counts.worst_tick},
         {"median", run.counts.median},
         {"mean", static_cast<double>(run.counts.total) / static_cast<double>(run.counts.ticks)},
         {"printed", run.printed}};
-    if (options.has_profile) {
+    if (options.profile != "off") {
         nlohmann::ordered_json profile = nlohmann::ordered_json::object();
         for (const auto &[address, count] : run.profile) {
             profile[std::to_string(address)] = count;

@@ -15,7 +15,8 @@ struct InstructionCounts {
     std::uint64_t ticks;
     std::uint64_t median;
     std::uint64_t worst;
-    std::uint64_t total; ///< of all ticks
+    std::uint64_t total;      ///< of all ticks
+    std::uint64_t worst_tick; ///< the first of the worst, from 1
 };
 
 /// One stimulus in, one control tick, one reply out. Not thread-safe.

@@ -18,7 +18,8 @@ const Entry kCommands[] = {
      "FILE] "
      "[--set NAME=VALUE]... [--noise-mg X] [--dt-us N]",
      quiesce::cmd_compare},
-    {"count", "--image ELF [--word N]... [--profile on|off] [--plugin SO]", quiesce::cmd_count},
+    {"count", "--image ELF [--word N]... [--profile off|all|PASS] [--plugin SO]",
+     quiesce::cmd_count},
     {"fuzzy-surface", "", quiesce::cmd_fuzzy_surface},
     {"params", "", quiesce::cmd_params},
     {"plant-check", "FILE", quiesce::cmd_plant_check},

@@ -1,12 +1,13 @@
 /// QEMU TCG plugin: instructions executed between two addresses, counted exactly for every pass.
 ///
 /// Arguments: begin=ADDRESS end=ADDRESS (the image's quiesce_count_begin and quiesce_count_end),
-/// fd=NUMBER of an inherited descriptor, count=block|instruction, profile=off|on.
-/// When QEMU ends it writes "passes N median M worst W total T", then one line "COUNT PASSES" for
-/// each count that occurred, ascending. The median of an even number of passes is the lower one.
-/// profile=on (slower, with count=block) adds lines "at ADDRESS N": N instructions ran, between the
-/// markers, in a translation block that begins at ADDRESS (which may have several such lines). They
-/// sum to T where a call stands between the markers, so that the end marker begins a block.
+/// fd=NUMBER of an inherited descriptor, count=block|instruction, profile=off|all|PASS.
+/// When QEMU ends it writes "passes N median M worst W total T worst_pass P" (the first of the
+/// worst, from 1), then one line "COUNT PASSES" for each count that occurred, ascending. The median
+/// of an even number of passes is the lower one. profile (slower, with count=block) adds, for all
+/// passes or the one of that number, lines "at ADDRESS N": N instructions ran, between the markers,
+/// in a translation block that begins at ADDRESS (which may have several such lines). They sum to
+/// the count where a call stands between the markers, so that the end marker begins a block.
 ///
 /// count=block (default) adds a whole translation block when it is entered and corrects for the
 /// marker's place in its block; exact as long as no exception leaves a block early, and an image
@@ -76,17 +77,23 @@ static struct {
     uint64_t passes;
     uint64_t worst;
     uint64_t total;
+    uint64_t worst_pass;
     bool has_profile;
-    uint64_t executed_at_begin; ///< rest of the begin marker's block, all passes
+    uint64_t profiled_pass;     ///< 0: all
+    uint64_t executed_at_begin; ///< rest of the begin marker's block, profiled passes
     site_t *sites;
     uint32_t bins[BINS];
 } counter;
+
+static bool is_profiled(void) {
+    return counter.profiled_pass == 0 || counter.profiled_pass == counter.passes + 1u;
+}
 
 /// user: instructions of the block from the marker on, already in `executed` and not yet run.
 static void at_begin(unsigned int cpu, void *user) {
     (void)cpu;
     counter.at_begin = counter.executed - (uintptr_t)user;
-    counter.executed_at_begin += (uintptr_t)user;
+    counter.executed_at_begin += is_profiled() ? (uintptr_t)user : 0u;
     counter.is_open = true;
 }
 
@@ -102,13 +109,14 @@ static void at_end(unsigned int cpu, void *user) {
     counter.bins[count < BINS ? count : BINS - 1u]++;
     if (count > counter.worst) {
         counter.worst = count;
+        counter.worst_pass = counter.passes;
     }
 }
 
 static void at_block(unsigned int cpu, void *user) {
     site_t *site = user;
     (void)cpu;
-    if (counter.is_open) {
+    if (counter.is_open && is_profiled()) {
         site->executed += site->instructions;
     }
 }
@@ -184,8 +192,10 @@ static void report(qemu_plugin_id_t id, void *user) {
     (void)id;
     (void)user;
     fprintf(counter.out,
-            "passes %" PRIu64 " median %" PRIu64 " worst %" PRIu64 " total %" PRIu64 "\n",
-            counter.passes, counter.passes == 0 ? 0 : median(), counter.worst, counter.total);
+            "passes %" PRIu64 " median %" PRIu64 " worst %" PRIu64 " total %" PRIu64
+            " worst_pass %" PRIu64 "\n",
+            counter.passes, counter.passes == 0 ? 0 : median(), counter.worst, counter.total,
+            counter.worst_pass);
     for (uint32_t count = 0; count < BINS; count++) {
         if (counter.bins[count] != 0) {
             fprintf(counter.out, "%" PRIu32 " %" PRIu32 "\n", count, counter.bins[count]);
@@ -212,7 +222,8 @@ static void take_argument(const char *argument) {
     } else if (strncmp(argument, "count", length) == 0) {
         counter.by_block = strcmp(equals + 1, "instruction") != 0;
     } else if (strncmp(argument, "profile", length) == 0) {
-        counter.has_profile = strcmp(equals + 1, "on") == 0;
+        counter.has_profile = strcmp(equals + 1, "off") != 0;
+        counter.profiled_pass = strtoull(equals + 1, NULL, 10); // 0 for "all"
     }
 }
 

@@ -53,7 +53,7 @@ InstructionCounter::InstructionCounter(const QemuOptions &options) {
              << ",end=" << marker(options.image_path, "quiesce_count_end")
              << ",fd=" << report_.number()
              << ",count=" << (options.count_each_instruction ? "instruction" : "block")
-             << ",profile=" << (options.has_profile ? "on" : "off");
+             << ",profile=" << options.profile;
     plugin_argument_ = argument.str();
 }
 
@@ -76,7 +76,7 @@ std::optional<InstructionCounts> InstructionCounter::read() const {
     std::string word;
     InstructionCounts counts{};
     report >> word >> counts.ticks >> word >> counts.median >> word >> counts.worst >> word >>
-        counts.total;
+        counts.total >> word >> counts.worst_tick;
     if (!report || counts.ticks == 0) {
         return std::nullopt;
     }

@@ -29,7 +29,7 @@ class InstructionCounter {
     std::optional<InstructionCounts> read() const;
 
     /// The same instructions by the address where their block begins, once QEMU has ended. Empty
-    /// without QemuOptions::has_profile.
+    /// where QemuOptions::profile is off.
     std::map<std::uint32_t, std::uint64_t> read_profile() const;
 
   private:

@@ -13,8 +13,9 @@ struct QemuOptions {
     std::string plugin_path;
     /// Count each instruction by itself instead of whole blocks: slower, the check on the fast way.
     bool count_each_instruction = false;
-    /// Count also where in the image the instructions are: slower.
-    bool has_profile = false;
+    /// Count also where in the image the instructions are, in all ticks ("all") or in one (its
+    /// number, from 1): slower.
+    std::string profile = "off";
     /// Longest wait for one answer. Generous: a loaded machine must not look like a dead target.
     std::chrono::milliseconds answer_time = std::chrono::seconds(10);
 };

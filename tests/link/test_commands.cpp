@@ -79,7 +79,7 @@ const BadCall kBadCalls[] = {
     {"count_negative_word", "count --word -1 --image " + quoted(kShmImage),
      "--word -1: expected an integer in 0..4294967295"},
     {"count_profile", "count --profile yes --image " + quoted(kShmImage),
-     "--profile yes: expected on or off"},
+     "--profile yes: expected off, all or the number of a pass"},
     {"count_unmarked", "count --image " + quoted(kEchoImage), "has no symbol quiesce_count_begin"},
     {"no_echo_image", "uart-rate --image " + quoted(kUartImage), "--echo-image is missing"},
     {"no_exchanges",

@@ -14,6 +14,21 @@ const std::string kCountProbe = QUIESCE_IMAGES "/../tests/mps2/count_probe.elf";
 constexpr std::uint64_t kCall = 2;
 constexpr std::uint64_t kDig = 5;
 
+QemuOptions profiled(const std::string &profile) {
+    QemuOptions options = options_for(kCountProbe);
+    options.profile = profile;
+    return options;
+}
+
+std::pair<std::uint64_t, std::uint64_t> sum_and_most(const ImageRun &run) {
+    std::pair<std::uint64_t, std::uint64_t> out{0, 0};
+    for (const auto &[address, count] : run.profile) {
+        out.first += count;
+        out.second = std::max(out.second, count);
+    }
+    return out;
+}
+
 TEST(image_run, counts_of_known_loops_are_exact) {
     const ImageRun run = run_image(options_for(kCountProbe), {9, 1000});
     EXPECT_EQ(run.counts.ticks, 10u);
@@ -33,19 +48,21 @@ TEST(image_run, whole_blocks_give_the_count_of_single_instructions) {
 }
 
 TEST(image_run, profile_sums_to_the_total) {
-    QemuOptions options = options_for(kCountProbe);
-    options.has_profile = true;
-    const ImageRun run = run_image(options, {4, 50});
-    std::uint64_t sum = 0;
-    std::uint64_t most = 0;
-    for (const auto &[address, count] : run.profile) {
-        sum += count;
-        most = std::max(most, count);
-    }
+    const ImageRun run = run_image(profiled("all"), {4, 50});
+    const auto [sum, most] = sum_and_most(run);
     EXPECT_EQ(sum, run.counts.total);
     EXPECT_EQ(run.counts.total, 4 * kCall + 2 * (4 * 50 + 6) + kDig);
     // Every turn of the loop begins the same block.
     EXPECT_EQ(most, 2u * (4 * 50 + 6));
+}
+
+TEST(image_run, profile_of_one_pass_sums_to_its_count) {
+    const ImageRun run = run_image(profiled("2"), {4, 50});
+    const auto [sum, most] = sum_and_most(run);
+    EXPECT_EQ(sum, kCall + 2 * 51);
+    EXPECT_EQ(most, 2u * 51);
+    EXPECT_EQ(run.counts.worst_tick, 4u);
+    EXPECT_EQ(sum_and_most(run_image(profiled("4"), {4, 50})).first, run.counts.worst);
 }
 
 TEST(image_run, stack_of_the_counted_call_is_its_own) {
@@ -67,11 +84,12 @@ TEST(image_run, image_that_does_not_end_is_named) {
 
 TEST(image_run, count_prints_what_it_found) {
     const Outcome outcome =
-        bench("count --image " + quoted(kCountProbe) + " --word 1 --word 20 --profile on");
+        bench("count --image " + quoted(kCountProbe) + " --word 1 --word 20 --profile all");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
     const auto json = nlohmann::json::parse(outcome.output);
     EXPECT_EQ(json["passes"], 2);
     EXPECT_EQ(json["worst"], 42);
+    EXPECT_EQ(json["worst_pass"], 1);
     EXPECT_EQ(json["median"], 5);
     EXPECT_EQ(json["mean"], 23.5);
     EXPECT_EQ(json["printed"]["dug_stack_bytes"], 64);

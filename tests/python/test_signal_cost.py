@@ -54,7 +54,7 @@ def test_stimulus_reaches_what_it_is_there_for(bench: Bench, chain: Path, rate_H
     assert coverage.differing_ticks == 0
     assert coverage.lock_losses >= 10
     assert coverage.three_peak_ticks > 0.05 * cost.ticks
-    assert 0.2 * cost.ticks < coverage.valid_ticks < 0.95 * cost.ticks
+    assert 0.1 * cost.ticks < coverage.valid_ticks < 0.95 * cost.ticks
     assert coverage.bad_samples > 0.03 * cost.ticks
 
 
@@ -64,6 +64,8 @@ def test_source_files_share_the_whole_mean(bench: Bench, chain: Path) -> None:
     assert sum(modules.values()) == pytest.approx(cost.mean_instr, abs=1e-6)
     assert {"condition", "rms", "signal_chain"} <= modules.keys()
     assert not {"unknown", "cost_stimulus", "test_signal", "controller"} & modules.keys()
+    worst = signal_cost.measure_worst_modules(bench, chain, cost.worst_tick)
+    assert sum(worst.values()) == cost.worst_instr
     assert list(modules.values()) == sorted(modules.values(), reverse=True)
 
 
@@ -126,7 +128,7 @@ def test_missing_image_says_what_to_do(tmp_path: Path, monkeypatch) -> None:
 
 # Figures and tables of given costs
 
-TICK = TickCost(1000, 1_000_000, 3000, 1500, 1499.5, 12288, 200, Coverage(1, 1, 1, 1, (2,), 0))
+TICK = TickCost(1000, 1_000_000, 3000, 70, 1500, 1499.5, 12288, 200, Coverage(1, 1, 1, 1, (2,), 0))
 COST = SignalCost(
     ticks=(TICK, replace(TICK, tick_rate_Hz=500, worst_instr=3500)),
     peers=(
@@ -134,6 +136,7 @@ COST = SignalCost(
         PeerCost("q31", 80000, 30000, 5000, 13, 13, 100, 100),
     ),
     modules={"spectrum": 1000.25, "rms": 22.0},
+    worst_modules={"spectrum": 2978, "rms": 22},
 )
 
 
@@ -199,7 +202,7 @@ def test_markdown_has_every_rate_peer_and_source_file() -> None:
     assert "| 1000 Hz | 1,000,000 | 3,000 | 1,500 | 1,500 | 12,288 | 200 |" in text
     assert "| 500 Hz | 1,000,000 | 3,500 |" in text
     assert "| q15 | 40,000 | 30,000 | 5,000 | 75,000 | 25.0 | 1,500 |" in text
-    assert "| rms | 22.0 |" in text
+    assert "| spectrum | 1,000.2 | 2,978 |" in text
     for table in text.strip().split("\n\n"):
         assert len({line.count("|") for line in table.splitlines()}) == 1
 

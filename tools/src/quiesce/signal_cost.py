@@ -58,6 +58,7 @@ class TickCost:
     tick_rate_Hz: int
     ticks: int
     worst_instr: int
+    worst_tick: int  # the first with that many, from 1
     median_instr: int
     mean_instr: float
     ram_bytes: int  # the chain's state
@@ -93,6 +94,7 @@ class SignalCost:
     ticks: tuple[TickCost, ...]  # one a tick rate; the default rate first
     peers: tuple[PeerCost, ...]  # q15, q31; none where the peer cannot be had
     modules: dict[str, float]  # mean instructions a tick by source file, the costliest first
+    worst_modules: dict[str, int]  # of the worst tick at the default rate
     absent: tuple[str, ...] = ()  # why there is no peer, one line
 
     @property
@@ -143,6 +145,7 @@ class SignalCost:
                 for peer in self.peers
             ],
             "modules_mean_instr": self.modules,
+            "modules_worst_instr": self.worst_modules,
             "rms_window_ms": RMS_WINDOW_MS,
         }
 
@@ -167,7 +170,8 @@ def measure_cost(
         costs.append(measure_ticks(bench, chain, rate_Hz, ticks))
         done(f"cost of the signal chain: {ticks} ticks at {rate_Hz} Hz")
     modules = measure_modules(bench, chain, profile_ticks)
-    done(f"cost of each source file: {profile_ticks} ticks")
+    worst_modules = measure_worst_modules(bench, chain, costs[0].worst_tick)
+    done(f"cost of each source file: {profile_ticks} ticks, and the worst")
     absent: tuple[str, ...] = ()
     peers: tuple[PeerCost, ...] = ()
     try:
@@ -177,15 +181,13 @@ def measure_cost(
     else:
         peers = tuple(measure_peer(bench, image, form) for form in PEER_FORMATS)
     done("cost of the peer, CMSIS-DSP")
-    return SignalCost(tuple(costs), peers, modules, absent)
+    return SignalCost(tuple(costs), peers, modules, worst_modules, absent)
 
 
-def count(bench: Bench, image: Path, *words: int, profile: bool = False) -> dict[str, Any]:
+def count(bench: Bench, image: Path, *words: int, profile: str = "off") -> dict[str, Any]:
     """Runs an image with these words to its end; what it counted and printed."""
     options = [text for word in words for text in ("--word", str(word))]
-    if profile:
-        options += ["--profile", "on"]
-    return bench.json("count", "--image", str(image), *options)
+    return bench.json("count", "--image", str(image), "--profile", profile, *options)
 
 
 def measure_ticks(bench: Bench, image: Path, tick_rate_Hz: int, ticks: int) -> TickCost:
@@ -195,6 +197,7 @@ def measure_ticks(bench: Bench, image: Path, tick_rate_Hz: int, ticks: int) -> T
         tick_rate_Hz=tick_rate_Hz,
         ticks=found["passes"],
         worst_instr=found["worst"],
+        worst_tick=found["worst_pass"],
         median_instr=found["median"],
         mean_instr=found["mean"],
         ram_bytes=printed["ram_bytes"],
@@ -210,11 +213,21 @@ def measure_ticks(bench: Bench, image: Path, tick_rate_Hz: int, ticks: int) -> T
     )
 
 
-def measure_modules(bench: Bench, image: Path, ticks: int) -> dict[str, float]:
-    found = count(bench, image, ticks, DEFAULT_RATE_HZ, RMS_WINDOW_MS, 0, profile=True)
+def profile(bench: Bench, image: Path, ticks: int, which: str) -> dict[str, int]:
+    """Instructions by source file, in all ticks or in the one of that number."""
+    found = count(bench, image, ticks, DEFAULT_RATE_HZ, RMS_WINDOW_MS, 0, profile=which)
     executed = {int(address): number for address, number in found["profile"].items()}
-    sums = by_source(read_sections(image.with_name(f"{image.name}.map")), executed)
-    return {source: number / found["passes"] for source, number in sums.items()}
+    return by_source(read_sections(image.with_name(f"{image.name}.map")), executed)
+
+
+def measure_modules(bench: Bench, image: Path, ticks: int) -> dict[str, float]:
+    sums = profile(bench, image, ticks, "all")
+    return {source: number / ticks for source, number in sums.items()}
+
+
+def measure_worst_modules(bench: Bench, image: Path, worst_tick: int) -> dict[str, int]:
+    """The run is the same up to that tick, which is its last."""
+    return profile(bench, image, worst_tick, str(worst_tick))
 
 
 def measure_peer(bench: Bench, image: Path, number_format: str) -> PeerCost:
@@ -285,8 +298,11 @@ def tables(cost: SignalCost) -> list[Table]:
         "over our worst",
         f"mean a tick at {PEER_UPDATES_HZ} a second",
     ]
-    sources = [f"source file, {rate_Hz} Hz", "mean a tick"]
-    source_rows = [[source, f"{mean:,.1f}"] for source, mean in cost.modules.items()]
+    sources = [f"source file, {rate_Hz} Hz", "mean a tick", "in the worst tick"]
+    source_rows = [
+        [source, f"{cost.modules.get(source, 0):,.1f}", f"{cost.worst_modules.get(source, 0):,}"]
+        for source in {**cost.modules, **cost.worst_modules}
+    ]
     found = [(ticks, tick_rows(cost)), (peers, peer_rows(cost)), (sources, source_rows)]
     return [(head, rows) for head, rows in found if rows]
 
