@@ -12,7 +12,7 @@ from quiesce.bench_report import Figure, Report
 from quiesce.errors import UsageError
 from quiesce.paths import shown
 from quiesce.signal_accuracy import phase_excess_deg, worst_ratio
-from quiesce.signal_cost import SignalCost, measure_cost
+from quiesce.signal_cost import SignalCost, cost_tables, measure_cost
 from quiesce.signal_plots import plot_accuracy, plot_steps, plot_truth
 from quiesce.signal_recorded import SOURCES, SWEEP, find_folder, sweep_within_pct
 from quiesce.signal_records import NOTICE_s, Rig, Tally, make_rig
@@ -25,8 +25,8 @@ DESCRIPTION = """Measure the sensing chain as shipped: accuracy against the Cram
 response to steps, validity, the rule of the dominant frequency, stick-slip, recordings, and the
 instructions of a tick beside a batch pipeline on CMSIS-DSP."""
 
-# Ticks whose instructions are counted: at 1 kHz, at each other rate, for the share of each file.
-QUICK_COST_TICKS = (50_000, 10_000, 10_000)
+# Ticks whose instructions are counted: at each rate, and for the share of each source file.
+QUICK_COST_TICKS = {"ticks": 20_000, "profile_ticks": 10_000}
 
 
 def seed_number(text: str) -> int:
@@ -105,19 +105,21 @@ def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def count_cost(args: argparse.Namespace) -> tuple[SignalCost | None, str]:
-    """The instruction counts, or why there are none."""
+def count_cost(rig: Rig, args: argparse.Namespace) -> tuple[SignalCost | None, Sequence[str]]:
+    """The instruction counts, and why some or all of them are missing."""
     if args.no_cost:
-        return None, "instruction counts: left out with --no-cost"
+        return None, ["instruction counts: left out with --no-cost"]
+    ticks = QUICK_COST_TICKS if args.quick else {}
     try:
-        return measure_cost(*QUICK_COST_TICKS if args.quick else (), done=say), ""
+        cost = measure_cost(rig.bench, **ticks, done=say)
     except UsageError as error:
-        return None, f"instruction counts: {error}"
+        return None, [f"instruction counts: {error}"]
+    return cost, cost.absent
 
 
 def cost_figures(cost: SignalCost | None) -> list[Figure]:
     if cost is not None:
-        return [Figure(**asdict(figure)) for figure in cost.figures()]
+        return cost.figures()
     peers = signal_cost.PEER_FORMATS
     return [
         Figure("tick_worst_instr", None, "instr", None, "lower"),
@@ -150,7 +152,7 @@ def context_of(
         "stress": results.stress,
         "recordings": [row for row in results.recorded if row is not None],
         "valid_but_wrong": {name: asdict(tally) for name, tally in results.tallies().items()},
-        "cost": asdict(cost) if cost is not None else None,
+        "cost": cost.context() if cost is not None else None,
     }
 
 
@@ -167,7 +169,7 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
     data = find_folder(args.data)
     rig = make_rig(args.set)
     results = measure_all(rig, args.seed, QUICK if args.quick else FULL, data)
-    cost, no_cost = count_cost(args)
+    cost, absent_cost = count_cost(rig, args)
     plot_accuracy(folder, results.accuracy)
     plot_steps(folder, results.steps)
     plot_truth(folder, results.truth)
@@ -178,5 +180,6 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
         *trust_figures(rig, results),
         *cost_figures(cost),
     ]
-    absent = [*absent_recordings(data, results), *([no_cost] if no_cost else [])]
-    return Report(NAME, figures, context, tables(context), absent)
+    shown_tables = [*tables(context), *(cost_tables(cost) if cost is not None else [])]
+    absent = [*absent_recordings(data, results), *absent_cost]
+    return Report(NAME, figures, context, shown_tables, absent)
