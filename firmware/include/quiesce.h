@@ -71,7 +71,7 @@ typedef struct {
     int32_t rms_um_s2;         ///< windowed RMS of it
     uint32_t freq_is_valid;    ///< 1: the dominant component can be trusted now
     uint32_t freq_age_ticks;   ///< since it was last valid, saturating
-    int32_t freq_uHz;          ///< dominant component, last valid: its frequency
+    int32_t freq_uHz;          ///< dominant component, last estimate: its frequency
     int32_t freq_amp_um_s2;    ///< acceleration amplitude
     int32_t freq_phase_mdeg;   ///< phase at this tick, -180000 .. 179999: accel = amp x cos(phase)
     int32_t freq_sigma_uHz;    ///< standard deviation expected of freq_uHz

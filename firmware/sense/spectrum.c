@@ -2,121 +2,136 @@
 
 #include "cosine_table.h"
 
-_Static_assert(SPECTRUM_POINTS == COSINE_POINTS, "one table entry a sample of the window");
+enum { QUARTER = COSINE_POINTS / 4 };
 
-enum {
-    QUARTER = SPECTRUM_POINTS / 4,
-    SAMPLE_LIMIT = 1 << 29, // um/s2; the filters may overshoot, the bins must not overflow
-};
+// First slot of each window's bins; the bins of a window reach one beyond its last power.
+static const uint8_t first_slot[SPECTRUM_LEVELS + 1] = {0, 8, 8 + 15, 8 + 15 + 28, SPECTRUM_BINS};
 
-void spectrum_init(spectrum_t *self, uint32_t tick_rate_Hz) {
-    *self = (spectrum_t){.next_bin = SPECTRUM_BINS};
-    for (uint32_t rate = tick_rate_Hz; rate > SPECTRUM_RATE_Hz; rate /= 2u) {
-        self->stages++;
-    }
-    const uint32_t slices = 1u << self->stages;
-    self->slice_bins = (SPECTRUM_BINS + slices - 1u) / slices;
+static uint32_t bins_of(uint32_t level) {
+    return (uint32_t)first_slot[level + 1u] - first_slot[level];
 }
 
-// Half-band low-pass: every other coefficient is zero, the rest symmetric about the middle one.
-static int32_t half_band(const int32_t line[SPECTRUM_TAPS - 1], int32_t newest) {
-    const int64_t outer = (int64_t)newest + line[9];
-    const int64_t inner = (int64_t)line[1] + line[7];
-    const int64_t centre = (int64_t)line[3] + line[5];
-    const int64_t sum_q16 = 636 * outer - 3808 * inner + 19556 * centre + 32768 * (int64_t)line[4];
-    return (int32_t)(sum_q16 >> 16);
+uint32_t spectrum_last_power(uint32_t level) {
+    return bins_of(level) - 1u;
 }
 
-// One stage of decimation by two. Returns true iff *value is an output sample.
-static bool decimate(spectrum_stage_t *stage, int32_t *value) {
-    const int32_t newest = *value;
-    stage->is_odd = !stage->is_odd;
-    const bool has_output = !stage->is_odd;
-    if (has_output) {
-        *value = half_band(stage->line, newest);
-    }
-    for (uint32_t i = SPECTRUM_TAPS - 2; i > 0; i--) {
-        stage->line[i] = stage->line[i - 1];
-    }
-    stage->line[0] = newest;
-    return has_output;
+int32_t spectrum_mean_um_s2(const spectrum_t *self, uint32_t level) {
+    return (int32_t)(self->sum[level] >> SPECTRUM_POINTS_LOG2(level));
 }
 
-static bool decimate_all(spectrum_t *self, int32_t *value) {
-    for (uint32_t i = 0; i < self->stages; i++) {
-        if (!decimate(&self->stage[i], value)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static spectrum_turn_t turn_at(uint32_t angle) {
-    return (spectrum_turn_t){
-        .cos_q31 = cosine_q25[angle % SPECTRUM_POINTS] * 64,
-        .sin_q31 = cosine_q25[(angle - QUARTER) % SPECTRUM_POINTS] * 64,
+void spectrum_init(spectrum_t *self, uint32_t slices) {
+    *self = (spectrum_t){
+        .slices = slices,
+        .next_slice = slices,
+        .power_level = SPECTRUM_LEVELS,
+        .wanted_level = SPECTRUM_LEVELS,
     };
 }
 
-static void start_round(spectrum_t *self, int32_t sample) {
-    self->newest = (self->newest + 1u) % SPECTRUM_POINTS;
-    self->window_turn = turn_at(self->newest + 1u);
-    self->difference = sample - self->sample[self->newest];
-    self->sample[self->newest] = sample;
-    self->next_bin = 0;
+void spectrum_want_powers(spectrum_t *self, uint32_t level, int32_t constant_um_s2) {
+    self->wanted_level = level;
+    self->constant_um_s2 = constant_um_s2;
 }
 
-// The high word of a bin is its amplitude in um/s2: window length and table format add up to 32
-// bits.
+bool spectrum_start_round(spectrum_t *self, int32_t accel_um_s2) {
+    const uint32_t newest = (self->newest + 1u) % SPECTRUM_RING;
+    for (uint32_t level = 0; level < SPECTRUM_LEVELS; level++) {
+        const uint32_t oldest = (newest - SPECTRUM_POINTS(level)) % SPECTRUM_RING;
+        self->difference[level] = accel_um_s2 - self->sample[oldest];
+        self->sum[level] += self->difference[level];
+    }
+    self->sample[newest] = accel_um_s2;
+    self->newest = newest;
+    self->next_slice = 0;
+    self->power_level = self->wanted_level;
+    self->wanted_level = SPECTRUM_LEVELS;
+    return self->power_level < SPECTRUM_LEVELS;
+}
+
+// Table entries that one sample index is worth at bin 1 of a window.
+static uint32_t stride_of(uint32_t level) {
+    return COSINE_POINTS >> SPECTRUM_POINTS_LOG2(level);
+}
+
+// Slides bins first .. end-1 (bin numbers, from 1) of one window.
+static void slide(spectrum_t *self, uint32_t level, uint32_t first, uint32_t end) {
+    const uint32_t step = self->newest * stride_of(level);
+    const int32_t gained = self->difference[level];
+    const int32_t lost = -gained;
+    spectrum_bin_t *bin = &self->bin[first_slot[level] + first - 1u];
+    uint32_t angle = first * step;
+    for (uint32_t k = first; k < end; k++) {
+        bin->re += (int64_t)gained * cosine_q25[angle % COSINE_POINTS];
+        bin->im += (int64_t)lost * cosine_q25[(angle - QUARTER) % COSINE_POINTS];
+        bin++;
+        angle += step;
+    }
+}
+
+// A bin as an amplitude in um/s2.
+typedef struct {
+    int32_t re;
+    int32_t im;
+} phasor_t;
+
+static phasor_t phasor(const spectrum_bin_t *bin, uint32_t level) {
+    const uint32_t shift = 24u + SPECTRUM_POINTS_LOG2(level);
+    return (phasor_t){(int32_t)(bin->re >> shift), (int32_t)(bin->im >> shift)};
+}
+
+// Bin 0, less the constant part that does not belong to the vibration.
+static phasor_t constant_phasor(const spectrum_t *self, uint32_t level) {
+    const int64_t rest = spectrum_mean_um_s2(self, level) - (int64_t)self->constant_um_s2;
+    return (phasor_t){(int32_t)clamp_i64(2 * rest, -(1 << 30), 1 << 30), 0};
+}
+
 static int32_t high_word(int64_t value) {
     return (int32_t)(value >> 32);
 }
 
-static void slide_bin(spectrum_t *self, uint32_t k) {
-    const uint32_t angle = (k * self->newest) % SPECTRUM_POINTS;
-    spectrum_bin_t *bin = &self->bin[k];
-    bin->re += (int64_t)self->difference * cosine_q25[angle];
-    bin->im -= (int64_t)self->difference * cosine_q25[(angle - QUARTER) % SPECTRUM_POINTS];
-}
-
-// Power of bin k under the Hann window, whose first sample is the oldest one in the ring: the two
+// Power of bin k under the Hann window, which starts at the window's oldest sample: the two
 // neighbours enter with half weight (the Q31 product's high word), turned by that sample's angle.
-static uint64_t windowed_power(const spectrum_t *self, uint32_t k) {
-    const spectrum_turn_t turn = self->window_turn;
-    const int32_t low_re = high_word(self->bin[k - 1].re);
-    const int32_t low_im = high_word(self->bin[k - 1].im);
-    const int32_t high_re = high_word(self->bin[k + 1].re);
-    const int32_t high_im = high_word(self->bin[k + 1].im);
-    const int32_t side_re = high_word((int64_t)(low_re + high_re) * turn.cos_q31 +
-                                      (int64_t)(low_im - high_im) * turn.sin_q31);
-    const int32_t side_im = high_word((int64_t)(low_im + high_im) * turn.cos_q31 +
-                                      (int64_t)(high_re - low_re) * turn.sin_q31);
-    const int32_t re = high_word(self->bin[k].re) - side_re;
-    const int32_t im = high_word(self->bin[k].im) - side_im;
+static uint64_t windowed_power(const spectrum_t *self, uint32_t level, uint32_t k) {
+    const uint32_t angle = (self->newest + 1u) * stride_of(level);
+    const int32_t cos_q31 = cosine_q25[angle % COSINE_POINTS] * 64;
+    const int32_t sin_q31 = cosine_q25[(angle - QUARTER) % COSINE_POINTS] * 64;
+    const spectrum_bin_t *bin = &self->bin[first_slot[level] + k - 1u];
+    const phasor_t low = k == 1u ? constant_phasor(self, level) : phasor(bin - 1, level);
+    const phasor_t mid = phasor(bin, level);
+    const phasor_t high = phasor(bin + 1, level);
+    const int32_t side_re =
+        high_word((int64_t)(low.re + high.re) * cos_q31 + (int64_t)(low.im - high.im) * sin_q31);
+    const int32_t side_im =
+        high_word((int64_t)(low.im + high.im) * cos_q31 + (int64_t)(high.re - low.re) * sin_q31);
+    const int32_t re = mid.re - side_re;
+    const int32_t im = mid.im - side_im;
     return (uint64_t)((int64_t)re * re) + (uint64_t)((int64_t)im * im);
 }
 
-spectrum_span_t spectrum_step(spectrum_t *self, int32_t accel_um_s2) {
-    int32_t sample = accel_um_s2;
-    if (decimate_all(self, &sample)) {
-        start_round(self, clamp_i32(sample, -SAMPLE_LIMIT, SAMPLE_LIMIT));
+// Powers of the bins whose upper neighbour lies in first .. end-1.
+static spectrum_span_t form_powers(spectrum_t *self, uint32_t level, uint32_t first, uint32_t end) {
+    const uint32_t from = first < 2u ? 1u : first - 1u;
+    const uint32_t to = end < 2u ? 1u : end - 1u;
+    for (uint32_t k = from; k < to; k++) {
+        self->power[k] = windowed_power(self, level, k);
     }
-    if (self->next_bin == SPECTRUM_BINS) {
-        return (spectrum_span_t){0, 0, false};
+    return (spectrum_span_t){from, to};
+}
+
+spectrum_span_t spectrum_slice(spectrum_t *self) {
+    spectrum_span_t span = {0, 0};
+    if (self->next_slice == self->slices) {
+        return span;
     }
-    const uint32_t first = self->next_bin;
-    const uint32_t left = SPECTRUM_BINS - first;
-    const uint32_t end = first + (left < self->slice_bins ? left : self->slice_bins);
-    for (uint32_t k = first; k < end; k++) {
-        slide_bin(self, k);
-        if (k >= 2) {
-            self->power[k - 1] = windowed_power(self, k - 1);
+    // An equal share of every window's bins.
+    for (uint32_t level = 0; level < SPECTRUM_LEVELS; level++) {
+        const uint32_t first = 1u + bins_of(level) * self->next_slice / self->slices;
+        const uint32_t end = 1u + bins_of(level) * (self->next_slice + 1u) / self->slices;
+        slide(self, level, first, end);
+        if (level == self->power_level) {
+            span = form_powers(self, level, first, end);
         }
     }
-    self->next_bin = end;
-    return (spectrum_span_t){
-        .first = first < 2u ? 1u : first - 1u,
-        .end = end - 1u,
-        .is_round_end = end == SPECTRUM_BINS,
-    };
+    self->next_slice++;
+    return span;
 }

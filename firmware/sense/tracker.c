@@ -1,10 +1,19 @@
 #include "tracker.h"
 
 enum {
-    LEAKAGE_RATIO = 20,   // amplitude, strongest peak over the weakest that counts
-    STEADY_FRACTION = 32, // of the frequency, largest change between steady rounds
-    DB_TO_LOG2_Q8 = 85,   // 256 / (10 log10(2)) for a power ratio in dB
+    LEAKAGE_RATIO = 20,       // amplitude, strongest peak over the weakest that counts
+    DB_TO_LOG2_Q8 = 85,       // 256 / (10 log10(2)) for a power ratio in dB
+    AGREE_FRACTION = 32,      // of the frequency, largest change between agreeing fits
+    SIGMA_FRACTION = 64,      // of the frequency, largest standard deviation
+    FLOOR_TO_LIMIT_Q8 = -150, // (0.83 + 1.17 - log2(6)) x 256
+    LONGEST = 3,              // index of the longest window
+    MISSED_FITS = 2,          // that end it
+    BAND_EDGE_uHz = 20000,    // noise of an estimate right at the edge
 };
+
+// Share of the energy that a fit must explain to be trusted, Q16: 98, 97 and 92 %, and 88 % in the
+// longest window; noise of that size would hide a change for too long.
+static const uint16_t least_explained_q16[] = {64300, 63600, 60300, 57700};
 
 void tracker_init(tracker_t *self, const tracker_cfg_t *cfg) {
     const uint64_t min_um_s2 = (uint32_t)cfg->min_accel_um_s2;
@@ -12,8 +21,22 @@ void tracker_init(tracker_t *self, const tracker_cfg_t *cfg) {
         .cfg = *cfg,
         .min_power = min_um_s2 * min_um_s2,
         .snr_log2_q8 = (uint32_t)cfg->snr_dB * DB_TO_LOG2_Q8,
-        .age_ticks = UINT32_MAX,
     };
+}
+
+void tracker_reset(tracker_t *self) {
+    self->tones = 0;
+    self->in_band = 0;
+    self->misses = 0;
+    self->is_valid = false;
+}
+
+void tracker_start_search(tracker_t *self, const tracker_window_t *window) {
+    self->window = *window;
+    self->log2_sum_q8 = 0;
+    self->candidates = 0;
+    self->height = 0;
+    self->is_rising = false;
 }
 
 // Keeps the strongest candidates in order; a weaker one than all of a full list is dropped.
@@ -36,106 +59,256 @@ static void insert_candidate(tracker_t *self, const uint64_t *power, uint32_t k)
 
 void tracker_read(tracker_t *self, const uint64_t *power, uint32_t first, uint32_t end) {
     for (uint32_t k = first; k < end; k++) {
-        if (k == TRACKER_FIRST_BIN) {
-            self->log2_sum_q8 = 0;
-            self->candidates = 0;
-        }
         self->log2_sum_q8 += log2_q8_u64(power[k]);
-        // The newest bin completes the neighbourhood of the one before it. The edges have none:
-        // bin 1 stands against bin 2 alone, and what peaks at bin 52 lies beyond the band.
-        const uint32_t centre = k - 1;
-        if (centre >= TRACKER_FIRST_BIN && power[centre] > power[k] &&
-            (centre == TRACKER_FIRST_BIN || power[centre] >= power[centre - 1])) {
-            insert_candidate(self, power, centre);
+        // Rising with the frequency, so that a drift's flank does not hide what stands on it. The
+        // newest bin completes the neighbourhood of the one before it; bin 1 stands against bin 2
+        // alone, and what peaks at the last one lies beyond the band.
+        const uint64_t height = (power[k] >> 12) * (k * k);
+        if (self->is_rising && height < self->height) {
+            insert_candidate(self, power, k - 1u);
         }
+        self->is_rising = height > self->height;
+        self->height = height;
     }
 }
 
-// Frequency and amplitude of the peak at bin k from it and its larger neighbour.
-static tracker_peak_t interpolate(const tracker_t *self, const uint64_t *power, uint32_t k) {
-    const bool is_above = k == TRACKER_FIRST_BIN || power[k + 1] > power[k - 1];
+// Frequency in bins, Q15, of the peak at bin k, from it and its larger neighbour.
+static int32_t interpolate_q15(const uint64_t *power, uint32_t k) {
+    const bool is_above = k == 1u || power[k + 1] > power[k - 1];
     const uint64_t side_power = is_above ? power[k + 1] : power[k - 1];
     // Both roots share one scale, so that their ratio keeps 16 bits whatever the level.
-    const uint32_t up = leading_zeros_u64(power[k]) & ~1u;
+    const uint32_t up = leading_zeros_u64(power[k] | side_power | 1u) & ~1u;
     const int32_t centre = (int32_t)isqrt_u32((uint32_t)((power[k] << up) >> 32));
     const int32_t side = (int32_t)isqrt_u32((uint32_t)((side_power << up) >> 32));
+    // Half the numerator and denominator: 31 bits.
     const int32_t offset_q15 =
-        clamp_i32((2 * side - centre) * 32768 / (side + centre), -8192, 16384);
-    const int32_t bin_q15 = (int32_t)(k << 15) + (is_above ? offset_q15 : -offset_q15);
-    const uint32_t shift = 15u + self->cfg.points_log2;
-    // The main lobe falls to 0.849 half a bin from its middle, nearly as 1 - 0.61 d^2.
-    const int32_t droop_q15 = (offset_q15 * offset_q15 >> 15) * 39 / 64;
-    const int32_t gain_q15 = 32768 + droop_q15 + (droop_q15 * droop_q15 >> 15);
-    const int64_t amp_um_s2 = ((int64_t)sqrt_fast_u64(power[k]) * gain_q15) >> 15;
-    return (tracker_peak_t){
-        .freq_uHz = (int32_t)((int64_t)bin_q15 * self->cfg.rate_uHz >> shift),
-        .amp_um_s2 = (int32_t)clamp_i64(amp_um_s2, 0, INT32_MAX),
-    };
-}
-
-static bool is_in_band(const tracker_t *self, int32_t freq_uHz) {
-    return freq_uHz >= self->cfg.band_low_mHz * 1000 && freq_uHz <= self->cfg.band_high_mHz * 1000;
+        clamp_i32((2 * side - centre) / 2 * 32768 / ((side + centre) / 2 + 1), -8192, 32768);
+    return (int32_t)(k << 15) + (is_above ? offset_q15 : -offset_q15);
 }
 
 static bool is_significant(const tracker_t *self, const uint64_t *power, uint32_t k) {
-    const uint32_t bins = TRACKER_LAST_BIN - TRACKER_FIRST_BIN + 1;
-    const uint32_t floor_log2_q8 = self->log2_sum_q8 / bins;
     const uint64_t strongest = power[self->candidate[0]];
-    return power[k] >= self->min_power && power[k] >= strongest / (LEAKAGE_RATIO * LEAKAGE_RATIO) &&
-           log2_q8_u64(power[k]) >= floor_log2_q8 + self->snr_log2_q8;
-}
-
-// Whether a displaces more than b: amplitude / frequency^2, compared without a division.
-static bool displaces_more(const tracker_peak_t *a, const tracker_peak_t *b) {
-    const uint64_t a_mHz = (uint32_t)a->freq_uHz / 1000u;
-    const uint64_t b_mHz = (uint32_t)b->freq_uHz / 1000u;
-    return (uint32_t)a->amp_um_s2 * (b_mHz * b_mHz) > (uint32_t)b->amp_um_s2 * (a_mHz * a_mHz);
-}
-
-// Fills the reported peaks; returns the dominant one, 0 Hz where nothing counts.
-static tracker_peak_t choose(tracker_t *self, const uint64_t *power) {
-    tracker_peak_t best = {0};
-    uint32_t reported = 0;
-    for (uint32_t i = 0; i < TRACKER_PEAKS; i++) {
-        self->peak[i] = (tracker_peak_t){0};
+    if (power[k] < self->min_power || power[k] < strongest / (LEAKAGE_RATIO * LEAKAGE_RATIO)) {
+        return false;
     }
+    const uint32_t floor_log2_q8 = self->log2_sum_q8 / self->window.last_power;
+    return !self->window.is_longest || log2_q8_u64(power[k]) >= floor_log2_q8 + self->snr_log2_q8;
+}
+
+// A bin in turns a sample, Q32, by points_log2.
+static uint32_t bin_turn(const tracker_t *self) {
+    return 1u << (32u - self->window.points_log2);
+}
+
+bool tracker_is_drift(const tracker_t *self, uint32_t turn) {
+    return turn < bin_turn(self) - bin_turn(self) / 8u;
+}
+
+bool tracker_is_missing_something(const tracker_t *self, int32_t residual_um_s2) {
+    // White noise of variance s^2 makes Hann powers of 6 s^2 / N on average; the mean of their
+    // logarithms lies 0.83 below the logarithm of that. 1.5 times the deviation is 1.17 more.
+    const uint64_t variance = (uint64_t)(uint32_t)residual_um_s2 * (uint32_t)residual_um_s2;
+    const int32_t floor_log2_q8 = (int32_t)(self->log2_sum_q8 / self->window.last_power);
+    const int32_t limit_q8 =
+        floor_log2_q8 + (int32_t)(self->window.points_log2 << 8) + FLOOR_TO_LIMIT_Q8;
+    return self->window.is_longest && (int32_t)log2_q8_u64(variance) > limit_q8;
+}
+
+// The last fit's frequency where it belongs to this candidate, else the candidate's own.
+static uint32_t start_turn(const tracker_t *self, int32_t bin_q15) {
+    const uint32_t turn = (uint32_t)bin_q15 << (17u - self->window.points_log2);
+    const uint32_t gate = bin_turn(self);
+    for (uint32_t i = 0; i < self->tones; i++) {
+        const uint32_t known = self->tone[i].turn;
+        if ((turn > known ? turn - known : known - turn) < gate) {
+            return known;
+        }
+    }
+    return turn;
+}
+
+static bool is_in_band(const tracker_t *self, int32_t freq_uHz) {
+    return freq_uHz >= self->cfg.band_low_mHz * 1000 - BAND_EDGE_uHz &&
+           freq_uHz <= self->cfg.band_high_mHz * 1000 + BAND_EDGE_uHz;
+}
+
+// Whether a, at frequency fa, displaces more than b at fb: amplitude / frequency^2, without a
+// division. Frequencies in any one unit up to 16 bits.
+static bool displaces_more(uint32_t amp_a, uint32_t fa, uint32_t amp_b, uint32_t fb) {
+    return (uint64_t)amp_a * (fb * fb) > (uint64_t)amp_b * (fa * fa);
+}
+
+typedef struct {
+    uint32_t turn;
+    uint32_t amp;
+} start_t;
+
+// Puts the one with the largest displacement first; the others keep their order.
+static void dominant_start_first(start_t *start, uint32_t count) {
+    if (count == 0) {
+        return;
+    }
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < count; i++) {
+        if (displaces_more(start[i].amp, start[i].turn >> 16, start[best].amp,
+                           start[best].turn >> 16)) {
+            best = i;
+        }
+    }
+    const start_t first = start[best];
+    for (; best > 0; best--) {
+        start[best] = start[best - 1];
+    }
+    start[0] = first;
+}
+
+static bool is_close(const start_t *start, uint32_t count, uint32_t turn, uint32_t gap) {
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t other = start[i].turn;
+        if ((turn > other ? turn - other : other - turn) < gap) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Components of the last fit stay in, even where the spectrum does not show a peak of their own.
+static uint32_t add_known(const tracker_t *self, start_t *start, uint32_t count) {
+    uint32_t all = count;
+    for (uint32_t i = 0; i < self->tones && all < TRACKER_CANDIDATES; i++) {
+        const tracker_tone_t *tone = &self->tone[i];
+        if (!is_close(start, all, tone->turn, bin_turn(self))) {
+            start[all] = (start_t){tone->turn, (uint32_t)tone->amp_um_s2};
+            all++;
+        }
+    }
+    return all;
+}
+
+uint32_t tracker_end_search(tracker_t *self, const uint64_t *power, uint32_t *turns,
+                            bool *has_drift) {
+    start_t start[TRACKER_CANDIDATES];
+    uint32_t count = 0;
+    *has_drift = false;
     for (uint32_t i = 0; i < self->candidates; i++) {
-        if (!is_significant(self, power, self->candidate[i])) {
+        const uint32_t k = self->candidate[i];
+        if (!is_significant(self, power, k)) {
             continue;
         }
-        const tracker_peak_t peak = interpolate(self, power, self->candidate[i]);
-        if (!is_in_band(self, peak.freq_uHz)) {
-            continue;
+        const int32_t bin_q15 = interpolate_q15(power, k);
+        const uint32_t turn = start_turn(self, bin_q15);
+        if (tracker_is_drift(self, turn)) {
+            *has_drift = self->window.is_longest;
+        } else if (!is_close(start, count, turn, bin_turn(self))) {
+            start[count] = (start_t){turn, sqrt_fast_u64(power[k])};
+            count++;
         }
-        if (reported < TRACKER_PEAKS) {
-            self->peak[reported] = peak;
-            reported++;
+    }
+    if (self->window.is_longest) {
+        count = add_known(self, start, count);
+        dominant_start_first(start, count);
+    }
+    // A window of n samples tells about log2(n) - 4 components apart.
+    const uint32_t most = self->window.points_log2 - 4u;
+    count = count < most ? count : most;
+    count = count < TRACKER_TONES ? count : TRACKER_TONES;
+    for (uint32_t i = 0; i < count; i++) {
+        turns[i] = start[i].turn;
+    }
+    return count;
+}
+
+static bool is_third_harmonic(const tracker_t *self, const tracker_tone_t *of,
+                              const tracker_tone_t *tone) {
+    const uint32_t third = 3u * of->turn;
+    const uint32_t gap = third > tone->turn ? third - tone->turn : tone->turn - third;
+    return gap < bin_turn(self) / 4u;
+}
+
+// Index of the dominant one among tones in the band; count > 0.
+static uint32_t dominant_of(const tracker_t *self, const tracker_tone_t *tone, uint32_t count) {
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < count; i++) {
+        if (displaces_more((uint32_t)tone[i].amp_um_s2, tone[i].turn >> 16,
+                           (uint32_t)tone[best].amp_um_s2, tone[best].turn >> 16)) {
+            best = i;
         }
-        if (best.freq_uHz == 0 || displaces_more(&peak, &best)) {
-            best = peak;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (is_third_harmonic(self, &tone[i], &tone[best])) {
+            return i;
         }
     }
     return best;
 }
 
-void tracker_end_round(tracker_t *self, const uint64_t *power) {
-    const tracker_peak_t best = choose(self, power);
-    const int32_t change_uHz = abs_i32(best.freq_uHz - self->round_freq_uHz);
-    const bool is_steady = best.freq_uHz != 0 && change_uHz <= best.freq_uHz / STEADY_FRACTION;
-    self->steady_rounds = is_steady ? increment_sat_u32(self->steady_rounds) : 0;
-    self->good_rounds = increment_sat_u32(self->good_rounds);
-    self->round_freq_uHz = best.freq_uHz;
-    self->is_valid = self->steady_rounds >= TRACKER_STEADY_ROUNDS &&
-                     self->good_rounds >= self->cfg.window_rounds;
-    if (self->is_valid) {
-        self->dominant = best;
+// Whether a fitted tone stands out of what the fit leaves: a bin's power over the noise's.
+static bool stands_out(const tracker_t *self, int32_t amp_um_s2, int32_t residual_um_s2) {
+    const uint64_t signal = ((uint64_t)(uint32_t)amp_um_s2 * (uint32_t)amp_um_s2) / 4u;
+    const uint64_t noise = (uint64_t)(uint32_t)residual_um_s2 * (uint32_t)residual_um_s2;
+    return log2_q8_u64(signal) + (self->window.points_log2 << 8) >=
+           log2_q8_u64(noise) + self->snr_log2_q8;
+}
+
+static void swap(tracker_tone_t *a, tracker_tone_t *b) {
+    const tracker_tone_t first = *a;
+    *a = *b;
+    *b = first;
+}
+
+// Keeps the fitted tones that stand out; those in the band first, the dominant one before all.
+static void keep(tracker_t *self, const tracker_tone_t *tones, uint32_t count,
+                 int32_t residual_um_s2) {
+    self->tones = 0;
+    self->in_band = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        tracker_tone_t *tone = &self->tone[self->tones];
+        if (!stands_out(self, tones[i].amp_um_s2, residual_um_s2)) {
+            continue;
+        }
+        *tone = tones[i];
+        tone->freq_uHz = tracker_freq_uHz(tone->turn);
+        self->tones++;
+        if (is_in_band(self, tone->freq_uHz)) {
+            tone->freq_uHz = clamp_i32(tone->freq_uHz, self->cfg.band_low_mHz * 1000,
+                                       self->cfg.band_high_mHz * 1000);
+            swap(tone, &self->tone[self->in_band]);
+            self->in_band++;
+        }
+    }
+    if (self->in_band > 0) {
+        swap(&self->tone[dominant_of(self, self->tone, self->in_band)], &self->tone[0]);
     }
 }
 
-void tracker_tick(tracker_t *self, bool is_input_good) {
-    if (!is_input_good) {
-        self->good_rounds = 0;
+static bool is_explained(const tracker_t *self, uint32_t explained_q16) {
+    const uint32_t level = self->window.is_longest ? LONGEST : self->window.points_log2 - 5u;
+    return explained_q16 >= least_explained_q16[level];
+}
+
+// Whether the fit holds; in a short window it must be trusted, too.
+static bool qualifies(const tracker_t *self, uint32_t explained_q16) {
+    if (self->in_band == 0) {
+        return false;
+    }
+    const tracker_tone_t *tone = &self->tone[0];
+    // A short window must hold 1.25 cycles, the longest one 7/8.
+    const uint32_t bin = bin_turn(self);
+    const uint32_t least = self->window.is_longest ? bin - bin / 8u : bin + bin / 4u;
+    return abs_i32(tone->shift_q29) <= TRACKER_CONVERGED_Q29 && tone->turn >= least &&
+           tone->sigma_turn <= tone->turn / SIGMA_FRACTION &&
+           (self->window.is_longest || is_explained(self, explained_q16));
+}
+
+bool tracker_decide(tracker_t *self, const tracker_tone_t *tones, uint32_t count,
+                    int32_t residual_um_s2, uint32_t explained_q16) {
+    keep(self, tones, count, residual_um_s2);
+    const bool is_good = qualifies(self, explained_q16);
+    self->misses = is_good ? 0 : increment_sat_u32(self->misses);
+    if (is_good) {
+        self->is_valid = is_explained(self, explained_q16);
+    } else if (self->misses >= MISSED_FITS) {
         self->is_valid = false;
     }
-    self->age_ticks = self->is_valid ? 0 : increment_sat_u32(self->age_ticks);
+    return is_good;
 }

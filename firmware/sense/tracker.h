@@ -1,68 +1,103 @@
-/// Dominant frequency from the sliding spectrum: which peaks are real, and which one matters.
+/// Which components of a spectrum are real, which one matters, and when it can be trusted.
 ///
-/// A peak counts when it stands snr above the noise floor (mean of the log powers), above 1/20 of
-/// the strongest peak (leakage) and above min_accel. Of these the one with the largest
-/// displacement, amplitude / frequency^2, is the dominant one: the third harmonic of a sticking
-/// damper can exceed its fundamental in acceleration, not in displacement. Frequency between bins
-/// from the two largest magnitudes of the Hann main lobe: d = (2r - 1)/(r + 1).
+/// search: a local maximum of the Hann powers times frequency^2 counts when it stands above
+/// min_accel and 1/20 of the strongest (leakage), and in the longest window also snr above the
+/// noise floor (mean of the log powers; the shorter windows have too few bins to know it). Start
+/// frequencies for the fit come from the two largest magnitudes of the main lobe, d = (2r - 1)/(r +
+/// 1), or from the last fit where that found the component already.
 ///
-/// Valid: a counted peak inside the band, a window full of good samples, and STEADY_ROUNDS rounds
-/// in a row (32 ms) within 1/32 of each other. Estimates describe the middle of the window: they
-/// lag by half of 1.024 s plus the decimator's delay (0.527 s at 1 kHz). Formats: powers
-/// (um/s2)^2 in 64 bit; frequency 1 uHz, resolved to about 40 uHz by the 16-bit roots. Bounded;
-/// about 30 instructions a bin and 1500 at the end of a round.
+/// decide: of the fitted components inside the band the one with the largest displacement,
+/// amplitude / frequency^2, is the dominant one, unless it is the third harmonic of another one: a
+/// sticking damper's. It is trusted when the fit has converged, expects a small error, spans enough
+/// cycles and, in a short window, leaves next to nothing unexplained (what a short window cannot
+/// resolve must not hide in it).
+///
+/// Formats: powers (um/s2)^2 in 64 bit; frequencies in turns a sample at 250 Hz, Q32 (58 nHz).
+/// Bounded: 20 instructions a power, about 600 for search's end and decide.
 #ifndef TRACKER_H
 #define TRACKER_H
 
 #include "fixq.h"
 
-#define TRACKER_PEAKS 3      ///< reported
-#define TRACKER_CANDIDATES 6 ///< kept while a round is read
-#define TRACKER_FIRST_BIN 1
-#define TRACKER_LAST_BIN 52
-#define TRACKER_STEADY_ROUNDS 8
+#define TRACKER_TONES 3 ///< fitted and reported
+/// A fit that moves a frequency no further has converged, radians over half a window: 0.04 bins, of
+/// which 10^-5 bins are left.
+#define TRACKER_CONVERGED_Q29 (1 << 26)
+#define TRACKER_CANDIDATES 6 ///< kept while a spectrum is read
 
 typedef struct {
     int32_t band_low_mHz;
     int32_t band_high_mHz;
     int32_t min_accel_um_s2;
     int32_t snr_dB;
-    uint32_t rate_uHz;      ///< sample rate of the window; bin k lies at k rate / 2^points_log2
-    uint32_t points_log2;   ///< samples of the window, as a power of two
-    uint32_t window_rounds; ///< rounds that fill the window
 } tracker_cfg_t;
 
+/// A window's length and how well a fit explains it.
 typedef struct {
-    int32_t freq_uHz;
+    uint32_t points_log2;
+    uint32_t last_power; ///< powers 1 .. last_power exist
+    bool is_longest;     ///< long enough for several components and a noise floor
+} tracker_window_t;
+
+/// A component as fitted, at the middle of its window.
+typedef struct {
+    uint32_t turn; ///< frequency, turns a sample Q32
+    uint32_t phase_turn;
+    uint32_t sigma_turn;
+    int32_t shift_q29; ///< how far the fit moved it, radians over half a window
     int32_t amp_um_s2;
-} tracker_peak_t;
+    int32_t freq_uHz;
+} tracker_tone_t;
 
 typedef struct {
     tracker_cfg_t cfg;
     uint64_t min_power;
     uint32_t snr_log2_q8;
-    uint32_t log2_sum_q8;                   ///< of the round being read
+    tracker_window_t window;
+    uint32_t log2_sum_q8;                   ///< of the powers read so far
     uint32_t candidate[TRACKER_CANDIDATES]; ///< bins of local maxima, strongest first
     uint32_t candidates;
-    uint32_t good_rounds;   ///< since the window last held a bad stretch, saturating
-    uint32_t steady_rounds; ///< rounds whose dominant frequency agreed with the one before
-    int32_t round_freq_uHz; ///< of the last round, 0 where it had none
+    uint64_t height; ///< of the newest power, rising weight
+    bool is_rising;
+    tracker_tone_t tone[TRACKER_TONES]; ///< of the last fit; in the band first, dominant one first
+    uint32_t tones;
+    uint32_t in_band; ///< of them
+    uint32_t misses;  ///< fits in a row that do not
     bool is_valid;
-    uint32_t age_ticks;
-    tracker_peak_t dominant;            ///< last valid one
-    tracker_peak_t peak[TRACKER_PEAKS]; ///< counted peaks of the last round, strongest first
 } tracker_t;
 
 void tracker_init(tracker_t *self, const tracker_cfg_t *cfg);
 
-/// Reads powers first .. end-1 (rising; a round starts at TRACKER_FIRST_BIN).
+/// Forgets everything: the vibration has changed or the sensor was lost.
+void tracker_reset(tracker_t *self);
+
+/// A new spectrum is about to be read.
+void tracker_start_search(tracker_t *self, const tracker_window_t *window);
+
+/// Reads powers first .. end-1 (rising from 1).
 void tracker_read(tracker_t *self, const uint64_t *power, uint32_t first, uint32_t end);
 
-/// Ends a round: all powers belong to one window. The previous slices must have been read.
-void tracker_end_round(tracker_t *self, const uint64_t *power);
+/// Start frequencies for the fit, dominant candidate first. *has_drift: something slower than the
+/// window can resolve is there. Returns their number, 0 .. TRACKER_TONES.
+uint32_t tracker_end_search(tracker_t *self, const uint64_t *power, uint32_t *turns,
+                            bool *has_drift);
 
-/// Every tick, after reading: ages the estimate. is_input_good = false: the sensor is lost; the
-/// estimate is invalid until the window has been filled anew.
-void tracker_tick(tracker_t *self, bool is_input_good);
+/// Whether a frequency is too low to be told from a drift in the window: below 7/8 of a cycle.
+bool tracker_is_drift(const tracker_t *self, uint32_t turn);
+
+/// Whether a fit of the longest window leaves 1.5 times what the spectrum's noise floor accounts
+/// for (standard deviations): something slow may hide below a component.
+bool tracker_is_missing_something(const tracker_t *self, int32_t residual_um_s2);
+
+/// Takes a fit over (tones as fitted, any order, count 0 .. TRACKER_TONES), what it leaves
+/// (standard deviation) and the share of the energy that it explains. Returns true iff self->tone
+/// qualifies for publishing.
+bool tracker_decide(tracker_t *self, const tracker_tone_t *tones, uint32_t count,
+                    int32_t residual_um_s2, uint32_t explained_q16);
+
+/// Frequency in uHz of turns a sample at 250 Hz, to nearest.
+static inline int32_t tracker_freq_uHz(uint32_t turn) {
+    return (int32_t)(((uint64_t)turn * 250000000u + (UINT64_C(1) << 31)) >> 32);
+}
 
 #endif

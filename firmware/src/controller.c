@@ -28,7 +28,7 @@ typedef struct {
 
 _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
-_Static_assert(QUIESCE_PEAKS == TRACKER_PEAKS, "telemetry holds the tracker's peaks");
+_Static_assert(QUIESCE_PEAKS == ESTIMATOR_TONES, "telemetry holds the estimator's components");
 
 static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
@@ -113,29 +113,48 @@ static void supervise(controller_t *self, const quiesce_in_t *in, const conditio
 
 static law_in_t law_input(const controller_t *self, const signal_chain_out_t *signal,
                           int32_t fuzzy_mA) {
+    const bool is_valid = estimator_is_valid(&self->signal.estimator);
     return (law_in_t){
         .velocity_um_s_q32 = signal->velocity_um_s_q32,
         .accel_um_s2 = signal->sample.accel_um_s2,
-        .freq_uHz = self->signal.tracker.dominant.freq_uHz,
-        .freq_is_valid = self->signal.tracker.is_valid,
-        .base_mA = self->signal.tracker.is_valid ? fuzzy_mA : self->params.unlock_current_mA,
+        .freq_uHz = self->signal.estimator.tone[0].freq_uHz,
+        .freq_is_valid = is_valid,
+        .base_mA = is_valid ? fuzzy_mA : self->params.unlock_current_mA,
     };
 }
 
+// Turns Q32 in thousandths of a degree, -180000 .. 179999.
+static int32_t phase_mdeg(uint32_t turn) {
+    return (int32_t)(((int64_t)(int32_t)turn * 360000) >> 32);
+}
+
+static void report_components(const signal_chain_t *signal, quiesce_telemetry_t *t) {
+    const estimator_t *estimator = &signal->estimator;
+    const bool is_valid = estimator_is_valid(estimator);
+    t->freq_is_valid = is_valid ? 1u : 0u;
+    t->freq_age_ticks = estimator->age_ticks;
+    t->freq_uHz = estimator->tone[0].freq_uHz;
+    t->freq_amp_um_s2 = estimator->tone[0].amp_um_s2;
+    t->freq_phase_mdeg = phase_mdeg(estimator_phase_turn(estimator, 0));
+    t->freq_sigma_uHz = estimator->sigma_uHz;
+    t->freq_window_ms = estimator->window_ms;
+    t->displacement_amp_nm = signal->displacement.half_peak_to_peak_nm;
+    t->velocity_rms_um_s = estimator->velocity.rms_um_s;
+    for (uint32_t i = 0; i < QUIESCE_PEAKS; i++) {
+        const estimator_tone_t *tone = &estimator->tone[i];
+        t->peaks[i] = estimator->predictor.is_armed && tone->freq_uHz != 0
+                          ? (quiesce_peak_t){tone->freq_uHz, tone->amp_um_s2,
+                                             phase_mdeg(estimator_phase_turn(estimator, i))}
+                          : (quiesce_peak_t){0};
+    }
+}
+
 static void report(const controller_t *self, quiesce_telemetry_t *t) {
-    const tracker_t *tracker = &self->signal.tracker;
-    *t = (quiesce_telemetry_t){0};
     t->state = (uint32_t)self->supervisor.state;
     t->fault = (uint32_t)self->supervisor.fault;
     t->fault_count = self->supervisor.fault_count;
     t->bad_sample_count = self->bad_sample_count;
-    t->freq_is_valid = tracker->is_valid ? 1u : 0u;
-    t->freq_age_ticks = tracker->age_ticks;
-    t->freq_uHz = tracker->dominant.freq_uHz;
-    t->freq_amp_um_s2 = tracker->dominant.amp_um_s2;
-    for (uint32_t i = 0; i < QUIESCE_PEAKS; i++) {
-        t->peaks[i] = (quiesce_peak_t){tracker->peak[i].freq_uHz, tracker->peak[i].amp_um_s2, 0};
-    }
+    report_components(&self->signal, t);
 }
 
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
@@ -154,7 +173,7 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     }
 
     const fuzzy_out_t fuzzy =
-        fuzzy_evaluate(&squeeze_rules, c->signal.tracker.dominant.freq_uHz, signal.rms_um_s2);
+        fuzzy_evaluate(&squeeze_rules, c->signal.estimator.tone[0].freq_uHz, signal.rms_um_s2);
     const law_in_t law_in = law_input(c, &signal, fuzzy.current_mA);
     const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
 
@@ -168,6 +187,7 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     report(c, t);
     t->tick = in->tick;
     t->accel_um_s2 = signal.sample.accel_um_s2;
+    t->displacement_nm = signal.displacement_nm;
     t->velocity_um_s = motion_velocity_um_s(signal.velocity_um_s_q32);
     t->rms_um_s2 = signal.rms_um_s2;
     t->rules_fired = fuzzy.rules_fired;

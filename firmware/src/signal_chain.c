@@ -1,5 +1,9 @@
 #include "signal_chain.h"
 
+enum {
+    HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
+};
+
 void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
     condition_init(&self->condition, &(condition_cfg_t){
@@ -14,26 +18,53 @@ void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
                                          .dc_cutoff_mHz = p->dc_cutoff_mHz,
                                      });
     rms_init(&self->rms, rate_Hz, (uint32_t)p->rms_window_ms);
-    spectrum_init(&self->spectrum, rate_Hz);
-    tracker_init(&self->tracker, &(tracker_cfg_t){
-                                     .band_low_mHz = p->band_low_mHz,
-                                     .band_high_mHz = p->band_high_mHz,
-                                     .min_accel_um_s2 = p->track_min_accel_um_s2,
-                                     .snr_dB = p->track_snr_dB,
-                                     .rate_uHz = SPECTRUM_RATE_Hz * 1000000u,
-                                     .points_log2 = SPECTRUM_POINTS_LOG2,
-                                     .window_rounds = SPECTRUM_POINTS,
-                                 });
+    estimator_init(&self->estimator, &(estimator_cfg_t){
+                                         .tick_rate_Hz = rate_Hz,
+                                         .longest_ms = (uint32_t)p->track_window_ms,
+                                         .hop_ms = (uint32_t)p->track_hop_ms,
+                                         .tracker =
+                                             {
+                                                 .band_low_mHz = p->band_low_mHz,
+                                                 .band_high_mHz = p->band_high_mHz,
+                                                 .min_accel_um_s2 = p->track_min_accel_um_s2,
+                                                 .snr_dB = p->track_snr_dB,
+                                             },
+                                     });
+    displacement_reset(&self->displacement);
     motion_init(&self->motion, rate_Hz, p->velocity_cutoff_mHz);
 }
 
-static void track(signal_chain_t *self, const condition_out_t *sample, bool has_gap) {
-    const spectrum_span_t span = spectrum_step(&self->spectrum, sample->accel_um_s2);
-    tracker_read(&self->tracker, self->spectrum.power, span.first, span.end);
-    if (span.is_round_end) {
-        tracker_end_round(&self->tracker, self->spectrum.power);
+// The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
+static uint32_t third_harmonic(const estimator_t *estimator) {
+    const int32_t third_uHz = 3 * estimator->tone[0].freq_uHz;
+    for (uint32_t i = 1; i < ESTIMATOR_TONES; i++) {
+        const int32_t freq_uHz = estimator->tone[i].freq_uHz;
+        if (freq_uHz != 0 && abs_i32(freq_uHz - third_uHz) <= HARMONIC_GAP_uHz) {
+            return i;
+        }
     }
-    tracker_tick(&self->tracker, !sample->is_fault && !has_gap);
+    return 0;
+}
+
+static void load_displacement(signal_chain_t *self) {
+    const estimator_t *estimator = &self->estimator;
+    const uint32_t third = third_harmonic(estimator);
+    const uint32_t phase =
+        estimator_phase_turn(estimator, third) - 3u * estimator_phase_turn(estimator, 0);
+    displacement_load(&self->displacement, estimator->tone[0].displacement_nm,
+                      third == 0 ? 0 : estimator->tone[third].displacement_nm, phase);
+}
+
+static int32_t follow(signal_chain_t *self, const condition_out_t *sample, bool has_gap) {
+    estimator_step(&self->estimator, &(estimator_in_t){
+                                         .accel_um_s2 = sample->raw_um_s2,
+                                         .is_good = sample->flag == CONDITION_GOOD,
+                                         .is_lost = sample->is_fault || has_gap,
+                                     });
+    if (self->estimator.has_published) {
+        load_displacement(self);
+    }
+    return displacement_step(&self->displacement, estimator_phase_turn(&self->estimator, 0));
 }
 
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal_chain_out_t *out) {
@@ -44,6 +75,6 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal
         motion_reset(&self->motion);
     }
     out->rms_um_s2 = rms_step(&self->rms, out->sample.accel_um_s2);
-    track(self, &out->sample, in->has_gap);
+    out->displacement_nm = follow(self, &out->sample, in->has_gap);
     out->velocity_um_s_q32 = motion_step(&self->motion, out->sample.accel_um_s2);
 }

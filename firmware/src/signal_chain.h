@@ -1,19 +1,19 @@
-/// The sensing half of the controller, wired: condition, rms, spectrum, tracker, motion.
+/// The sensing half of the controller, wired: condition, rms, estimator, displacement, motion.
 #ifndef SIGNAL_CHAIN_H
 #define SIGNAL_CHAIN_H
 
 #include "condition.h"
+#include "displacement.h"
+#include "estimator.h"
 #include "motion.h"
 #include "quiesce_params.h"
 #include "rms.h"
-#include "spectrum.h"
-#include "tracker.h"
 
 typedef struct {
     condition_t condition;
     rms_t rms;
-    spectrum_t spectrum;
-    tracker_t tracker;
+    estimator_t estimator;
+    displacement_t displacement;
     motion_t motion;
 } signal_chain_t;
 
@@ -27,12 +27,13 @@ typedef struct {
     condition_out_t sample;
     int32_t rms_um_s2;
     int64_t velocity_um_s_q32;
+    int32_t displacement_nm;
 } signal_chain_out_t;
 
 /// Starts from rest. The parameters have been checked.
 void signal_chain_init(signal_chain_t *self, const quiesce_params_t *params);
 
-/// One tick. What the tracker knows is read from self->tracker.
+/// One tick. What is known of the components is read from self->estimator.
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal_chain_out_t *out);
 
 #endif

@@ -1,0 +1,118 @@
+#include "predictor.h"
+
+#define DIFFERENCE_LIMIT (1 << 27)
+
+enum {
+    TOLERANCE_SHIFT = 9, // of amplitude^2: 4 % of the amplitude
+    NOISE_SHARE = 3,     // of the noise that each square is expected to exceed at most
+    TOLERANCE_SHARE = 2, // and of the tolerance
+    NOISE_ALARM = 24,
+    TOLERANCE_ALARM = 4,
+    OUTLIER = 8,      // of noise + tolerance: no square counts as more noise than this
+    OFFSET_SHIFT = 6, // the slow part: over 64 decimated samples (a quarter of a second)
+    NOISE_SHIFT = 9,  // the noise: over 512 of the shortest blocks (a second)
+    SCALE_SHIFT = 2,  // a block of the next scale is four of this one
+};
+
+void predictor_init(predictor_t *self, uint32_t stages) {
+    *self = (predictor_t){.stages = stages};
+}
+
+static uint32_t block_shift(const predictor_t *self, uint32_t scale) {
+    return self->stages - 1u + SCALE_SHIFT * scale;
+}
+
+static void arm(predictor_t *self, int32_t noise_um_s2) {
+    const int64_t noise = clamp_i32(noise_um_s2, 0, DIFFERENCE_LIMIT);
+    for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
+        self->watch[i] = (predictor_watch_t){
+            .left = 1u << block_shift(self, i),
+            .noise = (2 * noise * noise) >> (SCALE_SHIFT * i),
+        };
+    }
+    self->is_armed = true;
+}
+
+void predictor_load(predictor_t *self, const predictor_tone_t *tones, uint32_t count,
+                    const predictor_rest_t *rest) {
+    int64_t square = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const int32_t amp = clamp_i32(tones[i].amp_um_s2, 0, DIFFERENCE_LIMIT);
+        self->tone[i] = tones[i];
+        square += (int64_t)amp * amp;
+    }
+    self->tones = count;
+    const int64_t bend = clamp_i32(rest->bend_um_s2, 0, DIFFERENCE_LIMIT);
+    self->tolerance = (square >> TOLERANCE_SHIFT) + bend * bend;
+    self->drift_um_s2_q8 = rest->drift_um_s2_q8;
+    if (!self->is_armed || rest->bend_um_s2 != 0) {
+        self->offset_q12 = (int64_t)rest->mean_um_s2 * (1 << 12);
+    }
+    if (!self->is_armed) {
+        arm(self, rest->noise_um_s2);
+    }
+}
+
+void predictor_disarm(predictor_t *self) {
+    self->is_armed = false;
+}
+
+static int32_t run_on(predictor_t *self) {
+    int64_t sum_q25 = 0;
+    for (uint32_t i = 0; i < self->tones; i++) {
+        predictor_tone_t *tone = &self->tone[i];
+        tone->phase_turn += tone->step_turn;
+        sum_q25 += (int64_t)tone->amp_um_s2 * cos_linear_q25(tone->phase_turn);
+    }
+    const int64_t sum = sum_q25 >> 25;
+    return (int32_t)clamp_i64((self->offset_q12 >> 12) + sum, -INT32_MAX, INT32_MAX);
+}
+
+// Page's sum after one more block's average. Returns true iff it says: changed.
+static bool judge(predictor_watch_t *watch, int64_t average, int64_t tolerance,
+                  uint32_t settle_shift) {
+    const int64_t square = average * average;
+    watch->sum += square - NOISE_SHARE * watch->noise - TOLERANCE_SHARE * tolerance - 1;
+    watch->suspect_blocks++;
+    if (watch->sum <= 0) {
+        watch->sum = 0;
+        watch->suspect_blocks = 0;
+    }
+    const int64_t most = OUTLIER * (watch->noise + tolerance + 1);
+    watch->noise += ((square < most ? square : most) - watch->noise) >> settle_shift;
+    return watch->sum > NOISE_ALARM * watch->noise + TOLERANCE_ALARM * tolerance;
+}
+
+static bool watch(predictor_t *self, int32_t difference) {
+    bool has_changed = false;
+    for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
+        predictor_watch_t *at = &self->watch[i];
+        const uint32_t shift = block_shift(self, i);
+        at->open += difference;
+        at->left--;
+        if (at->left != 0) {
+            continue;
+        }
+        at->left = 1u << shift;
+        const int64_t average = at->open >> shift;
+        at->open = 0;
+        if (judge(at, average, self->tolerance, NOISE_SHIFT - SCALE_SHIFT * i) && !has_changed) {
+            has_changed = true;
+            // The block in which it began may still hold some of what was before.
+            self->suspect_ticks = (at->suspect_blocks - 1u) << shift;
+        }
+    }
+    return has_changed;
+}
+
+bool predictor_step(predictor_t *self, int32_t accel_um_s2, bool is_good) {
+    self->prediction_um_s2 = run_on(self);
+    if (!self->is_armed || !is_good) {
+        return false;
+    }
+    const int64_t error = (int64_t)accel_um_s2 - self->prediction_um_s2;
+    const int64_t difference = clamp_i64(error, -DIFFERENCE_LIMIT, DIFFERENCE_LIMIT);
+    self->offset_q12 += (int64_t)self->drift_um_s2_q8 * 16;
+    self->offset_q12 += (difference * (1 << 12)) >> (OFFSET_SHIFT + self->stages);
+    return watch(self, (int32_t)difference);
+}

@@ -1,0 +1,42 @@
+#include "velocity.h"
+
+#define RATE_mHz 250000u
+
+// power / k^2, floor, without a 64-bit division; power < 2^61.
+static uint64_t over_square(uint64_t power, uint32_t k) {
+    const uint32_t weight_q24 = (1u << 24) / (k * k);
+    return (power >> 24) * weight_q24 + (((power & 0xFFFFFFu) * weight_q24) >> 24);
+}
+
+void velocity_init(velocity_t *self, int32_t band_low_mHz, int32_t band_high_mHz) {
+    *self = (velocity_t){.band_low_mHz = band_low_mHz, .band_high_mHz = band_high_mHz};
+}
+
+void velocity_start(velocity_t *self, uint32_t points_log2) {
+    self->points_log2 = points_log2;
+    self->sum = 0;
+}
+
+static bool is_in_band(const velocity_t *self, uint32_t k) {
+    const int32_t freq_mHz = (int32_t)((k * RATE_mHz) >> self->points_log2);
+    // Half a bin of room: a tone at the edge of the band belongs to it.
+    const int32_t room_mHz = (int32_t)(RATE_mHz >> (self->points_log2 + 1u));
+    return freq_mHz + room_mHz >= self->band_low_mHz && freq_mHz - room_mHz <= self->band_high_mHz;
+}
+
+void velocity_read(velocity_t *self, const uint64_t *power, uint32_t first, uint32_t end) {
+    for (uint32_t k = first; k < end; k++) {
+        if (is_in_band(self, k)) {
+            self->sum += over_square(power[k], k);
+        }
+    }
+}
+
+void velocity_end(velocity_t *self) {
+    // v^2 = sum / 3 x (N / (2 pi 250))^2: of a tone's A^2 the Hann bins hold 1.5, its mean square
+    // is a half. 1 / (3 (2 pi 250)^2) = 297077 / 2^41.
+    const uint32_t up = 2u * self->points_log2;
+    const uint64_t square = self->sum >> 44 == 0 ? (self->sum * 297077u) >> (41u - up)
+                                                 : ((self->sum >> 19) * 297077u) >> (22u - up);
+    self->rms_um_s = (int32_t)sqrt_fast_u64(square);
+}

@@ -1,0 +1,356 @@
+#include "estimator.h"
+
+#include <stddef.h>
+
+enum {
+    PAIRS_A_SAMPLE = 96, // work of a job between two samples, in pairs of samples
+    MOST_FITS = 4,       // to one window
+    CALM_s = 2,          // without a contradiction, before a longer window is tried again
+    PURE_Q16 = 52429,    // 80 %: share of the energy that one component must explain
+};
+
+// Samples whose filters still remember what was before.
+static int32_t filter_memory(const estimator_t *self) {
+    const uint32_t ratio = 1u << self->stages;
+    return (int32_t)((2u * DECIMATE_DELAY(ratio) + ratio - 1u) >> self->stages);
+}
+
+void estimator_init(estimator_t *self, const estimator_cfg_t *cfg) {
+    *self = (estimator_t){.age_ticks = UINT32_MAX, .job_ticks = UINT32_MAX};
+    decimate_init(&self->decimate, cfg->tick_rate_Hz);
+    self->stages = self->decimate.stages;
+    spectrum_init(&self->spectrum, 1u << self->stages);
+    tracker_init(&self->tracker, &cfg->tracker);
+    velocity_init(&self->velocity, cfg->tracker.band_low_mHz, cfg->tracker.band_high_mHz);
+    predictor_init(&self->predictor, self->stages);
+    self->slice_pairs = PAIRS_A_SAMPLE >> self->stages;
+    self->hop_ticks = cfg->hop_ms * cfg->tick_rate_Hz / 1000u;
+    self->clean_samples = -filter_memory(self);
+    while (self->longest_level < SPECTRUM_LONGEST &&
+           SPECTRUM_POINTS(self->longest_level) * 1000u < cfg->longest_ms * SPECTRUM_RATE_Hz) {
+        self->longest_level++;
+    }
+    self->most_level = self->longest_level;
+    self->calm_enough_ticks = CALM_s * cfg->tick_rate_Hz;
+}
+
+static void forget(estimator_t *self) {
+    self->stage = ESTIMATOR_WAIT;
+    predictor_disarm(&self->predictor);
+    tracker_reset(&self->tracker);
+}
+
+// The windows start anew; the last `ticks` ticks already belong to the new vibration.
+static void restart(estimator_t *self, uint32_t ticks) {
+    const uint32_t longest = SPECTRUM_RING << self->stages;
+    const int32_t known = (int32_t)((ticks < longest ? ticks : longest) >> self->stages);
+    const int32_t clean = known - filter_memory(self);
+    self->clean_samples = clean < self->clean_samples ? clean : self->clean_samples;
+    self->most_level = self->longest_level;
+    forget(self);
+}
+
+// The samples contradict what was published. After the longest window: the vibration has changed.
+// After a shorter one, which is younger than the change before: it wanders, and a still shorter one
+// must do for a while; where none is left, it never was of one component.
+static void contradict(estimator_t *self) {
+    if (self->published_level == self->longest_level) {
+        restart(self, self->predictor.suspect_ticks);
+        return;
+    }
+    if (self->published_level > 0) {
+        self->most_level = self->published_level - 1u;
+    } else {
+        self->is_pure = false;
+    }
+    self->calm_ticks = 0;
+    forget(self);
+}
+
+// A vibration that has stopped wandering gets longer windows again, step by step.
+static void calm_down(estimator_t *self) {
+    self->calm_ticks++;
+    if (self->most_level < self->longest_level && self->calm_ticks >= self->calm_enough_ticks) {
+        self->most_level++;
+        self->calm_ticks = 0;
+    }
+}
+
+static bool choose_level(estimator_t *self) {
+    const uint32_t shortest = self->is_pure ? 0 : self->longest_level;
+    const uint32_t longest = self->is_pure ? self->most_level : self->longest_level;
+    for (uint32_t level = longest + 1u; level-- > shortest;) {
+        if (self->clean_samples >= (int32_t)SPECTRUM_POINTS(level)) {
+            self->level = level;
+            return true;
+        }
+    }
+    return false;
+}
+
+static void start_job(estimator_t *self) {
+    if (self->job_ticks < self->hop_ticks || !choose_level(self)) {
+        return;
+    }
+    const tone_fit_window_t window = {
+        .ring = self->spectrum.sample,
+        .ring_mask = SPECTRUM_RING - 1u,
+        .newest = self->spectrum.newest,
+        .points_log2 = SPECTRUM_POINTS_LOG2(self->level),
+        .mean_um_s2 = spectrum_mean_um_s2(&self->spectrum, self->level),
+    };
+    tone_fit_start(&self->fit, &window);
+    self->job_age_ticks = self->sample_age_ticks;
+    self->job_ticks = 0;
+    self->stage = ESTIMATOR_GATHER;
+}
+
+static void gather(estimator_t *self) {
+    if (tone_fit_step(&self->fit, self->slice_pairs)) {
+        // The window's own mean holds some of the vibration; the last fit knows better.
+        const int32_t constant_um_s2 = self->predictor.is_armed && !self->has_drift
+                                           ? self->fit.constant_um_s2
+                                           : spectrum_mean_um_s2(&self->spectrum, self->level);
+        spectrum_want_powers(&self->spectrum, self->level, constant_um_s2);
+        self->stage = ESTIMATOR_SEARCH;
+    }
+}
+
+static void choose(estimator_t *self) {
+    uint32_t turns[TRACKER_TONES];
+    const uint32_t count =
+        tracker_end_search(&self->tracker, self->spectrum.power, turns, &self->has_drift);
+    velocity_end(&self->velocity);
+    // A drift goes on until a fit finds none.
+    self->has_drift |= self->is_drifting && self->level == self->longest_level;
+    if (count == 0) {
+        (void)tracker_decide(&self->tracker, NULL, 0, 0, 0);
+        self->stage = ESTIMATOR_WAIT;
+        return;
+    }
+    tone_fit_set(&self->fit, turns, count, self->has_drift);
+    self->fits = 1;
+    self->stage = ESTIMATOR_FIT;
+}
+
+// Starts of one more fit to the same window: the last fit's frequencies without those that turned
+// out to be too slow for the window, which count as drift. Returns their number.
+static uint32_t next_starts(estimator_t *self, uint32_t *turns) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < self->fit.tones; i++) {
+        const uint32_t turn = self->fit.tone[i].turn;
+        if (tracker_is_drift(&self->tracker, turn)) {
+            self->has_drift = true;
+        } else {
+            turns[count] = turn;
+            count++;
+        }
+    }
+    return count;
+}
+
+// Whether the fit has moved a frequency so far that its linear model no longer holds there.
+static bool has_moved(const estimator_t *self) {
+    for (uint32_t i = 0; i < self->fit.tones; i++) {
+        if (abs_i32(self->fit.tone[i].shift_q29) > TRACKER_CONVERGED_Q29) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void fit(estimator_t *self) {
+    if (!tone_fit_step(&self->fit, self->slice_pairs)) {
+        return;
+    }
+    uint32_t turns[TRACKER_TONES];
+    const bool had_drift = self->has_drift;
+    const uint32_t count = next_starts(self, turns);
+    if (!had_drift && tracker_is_missing_something(&self->tracker, self->fit.residual_um_s2)) {
+        self->has_drift = true;
+    }
+    const bool is_to_refine = has_moved(self) || self->has_drift != had_drift;
+    if (count == 0 || !is_to_refine || self->fits == MOST_FITS) {
+        self->stage = ESTIMATOR_DECIDE;
+        return;
+    }
+    tone_fit_set(&self->fit, turns, count, self->has_drift);
+    self->fits++;
+}
+
+// What a component's phase gains from the middle of the window to this tick.
+static uint32_t turned(const estimator_t *self, uint32_t turn) {
+    const uint32_t ratio = 1u << self->stages;
+    const uint32_t half_ticks = 2u * (self->job_age_ticks + DECIMATE_DELAY(ratio)) +
+                                (SPECTRUM_POINTS(self->level) - 1u) * ratio;
+    return (uint32_t)(((uint64_t)turn * half_ticks) >> (self->stages + 1u));
+}
+
+// amplitude / (2 pi f)^2 in nm.
+static int32_t displacement_nm(int32_t amp_um_s2, int32_t freq_uHz) {
+    // 1000 / (4 pi^2) x 10^6 = 25330296 with the frequency in mHz.
+    const uint64_t freq_mHz = ((uint32_t)freq_uHz + 500u) / 1000u;
+    const uint64_t nm = (uint64_t)(uint32_t)amp_um_s2 * 25330296u / (freq_mHz * freq_mHz);
+    return (int32_t)(nm > INT32_MAX ? INT32_MAX : nm);
+}
+
+// The constant part, run on from the window's end to this tick.
+static predictor_rest_t rest_of(const estimator_t *self) {
+    const uint32_t half_ticks = SPECTRUM_POINTS(self->level) << self->stages >> 1u;
+    const int64_t drift_q8 = ((int64_t)self->fit.slope_um_s2 * 256) / half_ticks;
+    const int64_t ticks = self->job_age_ticks + DECIMATE_DELAY(1u << self->stages);
+    const int64_t mean = self->fit.end_um_s2 + ((drift_q8 * ticks) >> 8);
+    return (predictor_rest_t){
+        .mean_um_s2 = (int32_t)clamp_i64(mean, -INT32_MAX, INT32_MAX),
+        .drift_um_s2_q8 = (int32_t)clamp_i64(drift_q8, -INT32_MAX, INT32_MAX),
+        .bend_um_s2 = self->fit.bend_um_s2,
+        .noise_um_s2 = self->fit.residual_um_s2,
+    };
+}
+
+// What the longest window tells about the shorter ones and the next. One component, and what it
+// leaves unexplained is not a drift either: then it may only wander.
+static void judge_window(estimator_t *self) {
+    const tone_fit_t *fit = &self->fit;
+    const bool is_missing = tracker_is_missing_something(&self->tracker, fit->residual_um_s2);
+    self->is_drifting = self->has_drift && !is_missing && fit->bend_um_s2 > fit->residual_um_s2 / 8;
+    self->is_pure = self->tracker.tones == 1u && fit->explained_q16 >= PURE_Q16 &&
+                    self->has_drift == is_missing;
+}
+
+static void publish(estimator_t *self) {
+    const tracker_t *tracker = &self->tracker;
+    predictor_tone_t tones[ESTIMATOR_TONES] = {0};
+    for (uint32_t i = 0; i < ESTIMATOR_TONES; i++) {
+        self->tone[i] = (estimator_tone_t){0};
+    }
+    for (uint32_t i = 0; i < tracker->tones; i++) {
+        const tracker_tone_t *tone = &tracker->tone[i];
+        tones[i] = (predictor_tone_t){
+            .phase_turn = tone->phase_turn + turned(self, tone->turn),
+            .step_turn = tone->turn >> self->stages,
+            .amp_um_s2 = tone->amp_um_s2,
+        };
+        if (i < tracker->in_band) {
+            self->tone[i] = (estimator_tone_t){
+                .freq_uHz = tone->freq_uHz,
+                .amp_um_s2 = tone->amp_um_s2,
+                .displacement_nm = displacement_nm(tone->amp_um_s2, tone->freq_uHz),
+            };
+        }
+    }
+    const predictor_rest_t rest = rest_of(self);
+    predictor_load(&self->predictor, tones, tracker->tones, &rest);
+    self->published_level = self->level;
+    if (self->level == self->longest_level) {
+        judge_window(self);
+    }
+    self->sigma_uHz = tracker_freq_uHz(tracker->tone[0].sigma_turn);
+    self->window_ms = SPECTRUM_POINTS(self->level) * 1000u / SPECTRUM_RATE_Hz;
+    self->has_published = true;
+}
+
+static void decide(estimator_t *self) {
+    tracker_tone_t tones[TRACKER_TONES];
+    for (uint32_t i = 0; i < self->fit.tones; i++) {
+        const tone_t *tone = &self->fit.tone[i];
+        tones[i] = (tracker_tone_t){
+            .turn = tone->turn,
+            .phase_turn = tone->phase_turn,
+            .sigma_turn = tone->sigma_turn,
+            .shift_q29 = tone->shift_q29,
+            .amp_um_s2 = tone->amp_um_s2,
+        };
+    }
+    if (tracker_decide(&self->tracker, tones, self->fit.tones, self->fit.residual_um_s2,
+                       self->fit.explained_q16)) {
+        publish(self);
+    }
+    self->stage = ESTIMATOR_WAIT;
+}
+
+static void work(estimator_t *self) {
+    switch (self->stage) {
+    case ESTIMATOR_WAIT:
+        start_job(self);
+        break;
+    case ESTIMATOR_GATHER:
+        gather(self);
+        break;
+    case ESTIMATOR_CHOOSE:
+        choose(self);
+        break;
+    case ESTIMATOR_FIT:
+        fit(self);
+        break;
+    case ESTIMATOR_DECIDE:
+        decide(self);
+        break;
+    case ESTIMATOR_SEARCH: // starts with the next sample
+    case ESTIMATOR_READ:   // goes on with the spectrum's slices
+    default:
+        break;
+    }
+}
+
+static void start_search(estimator_t *self) {
+    const tracker_window_t window = {
+        .points_log2 = SPECTRUM_POINTS_LOG2(self->level),
+        .last_power = spectrum_last_power(self->level),
+        .is_longest = self->level == self->longest_level,
+    };
+    tracker_start_search(&self->tracker, &window);
+    velocity_start(&self->velocity, SPECTRUM_POINTS_LOG2(self->level));
+    self->stage = ESTIMATOR_READ;
+}
+
+static void take_sample(estimator_t *self, int32_t sample_um_s2) {
+    if (spectrum_start_round(&self->spectrum, sample_um_s2) && self->stage == ESTIMATOR_SEARCH) {
+        start_search(self);
+    }
+    self->clean_samples += self->clean_samples < INT32_MAX ? 1 : 0;
+    self->sample_age_ticks = 0;
+}
+
+static void slide(estimator_t *self) {
+    const spectrum_span_t span = spectrum_slice(&self->spectrum);
+    if (self->stage != ESTIMATOR_READ || span.first == span.end) {
+        return;
+    }
+    tracker_read(&self->tracker, self->spectrum.power, span.first, span.end);
+    velocity_read(&self->velocity, self->spectrum.power, span.first, span.end);
+    if (span.end > spectrum_last_power(self->level)) {
+        self->stage = ESTIMATOR_CHOOSE;
+    }
+}
+
+static void age(estimator_t *self) {
+    self->sample_age_ticks++;
+    self->job_age_ticks++;
+    self->job_ticks = increment_sat_u32(self->job_ticks);
+    self->has_published = false;
+}
+
+void estimator_step(estimator_t *self, const estimator_in_t *in) {
+    age(self);
+    if (predictor_step(&self->predictor, in->accel_um_s2, in->is_good)) {
+        contradict(self);
+    }
+    calm_down(self);
+    if (in->is_lost) {
+        restart(self, 0);
+    }
+    // A missing sample is best replaced by what was expected of it.
+    int32_t sample = in->is_good || !self->predictor.is_armed ? in->accel_um_s2
+                                                              : self->predictor.prediction_um_s2;
+    sample = clamp_i32(sample, -DECIMATE_LIMIT, DECIMATE_LIMIT);
+    const bool is_reading = self->stage == ESTIMATOR_SEARCH || self->stage == ESTIMATOR_READ;
+    if (decimate_step(&self->decimate, &sample)) {
+        take_sample(self, sample);
+    }
+    slide(self);
+    if (!is_reading) {
+        work(self);
+    }
+    self->age_ticks = estimator_is_valid(self) ? 0 : increment_sat_u32(self->age_ticks);
+}

@@ -1,0 +1,218 @@
+// What vibrates and how, estimated: the wired chain of decimate .. predictor.
+#include "estimator.h"
+#include "test_signal.h"
+#include "unity.h"
+
+static estimator_t estimator;
+static uint32_t rate_Hz;
+static uint32_t now; // ticks since the start; phases go on from one feed to the next
+static estimator_cfg_t cfg;
+
+static void start(uint32_t tick_rate_Hz) {
+    rate_Hz = tick_rate_Hz;
+    now = 0;
+    cfg = (estimator_cfg_t){
+        .tick_rate_Hz = rate_Hz,
+        .longest_ms = 1024,
+        .tracker = {.band_low_mHz = 1000,
+                    .band_high_mHz = 50000,
+                    .min_accel_um_s2 = 10000,
+                    .snr_dB = 15},
+    };
+    estimator_init(&estimator, &cfg);
+}
+
+void setUp(void) {
+    start(1000);
+}
+void tearDown(void) {}
+
+static void step(int32_t accel_um_s2) {
+    estimator_step(&estimator, &(estimator_in_t){.accel_um_s2 = accel_um_s2, .is_good = true});
+}
+
+static bool is_valid(void) {
+    return estimator_is_valid(&estimator);
+}
+
+typedef struct {
+    int32_t amp_um_s2;
+    uint32_t freq_mHz;
+} component_t;
+
+static void feed(const component_t *tones, uint32_t count, int32_t noise_um_s2, uint32_t ticks) {
+    uint32_t seed = 3;
+    for (uint32_t i = 0; i < ticks; i++, now++) {
+        int32_t sum = noise_um_s2 == 0 ? 0 : signal_noise(&seed, noise_um_s2);
+        for (uint32_t k = 0; k < count; k++) {
+            sum += signal_sine(tones[k].amp_um_s2, tones[k].freq_mHz, now, rate_Hz);
+        }
+        step(sum);
+    }
+}
+
+static void assert_dominant(uint32_t freq_mHz, int32_t tolerance_uHz) {
+    TEST_ASSERT_TRUE(is_valid());
+    TEST_ASSERT_INT32_WITHIN(tolerance_uHz, (int32_t)freq_mHz * 1000, estimator.tone[0].freq_uHz);
+}
+
+static void test_tone_across_the_band_at_every_rate(void) {
+    static const uint32_t rates[] = {500, 1000, 2000, 4000};
+    static const uint32_t freqs_mHz[] = {2200, 3700, 5000, 7321, 10000, 15000, 20000, 33300, 49000};
+    for (uint32_t r = 0; r < 4; r++) {
+        for (uint32_t f = 0; f < sizeof freqs_mHz / sizeof freqs_mHz[0]; f++) {
+            start(rates[r]);
+            feed(&(component_t){300000, freqs_mHz[f]}, 1, 0, 3 * rates[r] / 2);
+            assert_dominant(freqs_mHz[f], 100);
+            TEST_ASSERT_INT32_WITHIN(600, 300000, estimator.tone[0].amp_um_s2);
+        }
+    }
+}
+
+static void test_silence_and_small_vibration_are_never_valid(void) {
+    feed(NULL, 0, 0, 3000);
+    TEST_ASSERT_FALSE(is_valid());
+    start(1000);
+    feed(&(component_t){5000, 8000}, 1, 0, 3000);
+    TEST_ASSERT_FALSE(is_valid());
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, estimator.age_ticks);
+}
+
+static void test_noise_alone_is_not_a_frequency(void) {
+    uint32_t seed = 11;
+    for (uint32_t i = 0; i < 60000; i++) {
+        step(signal_noise(&seed, 2000000)); // peaks pass min_accel, not the noise floor
+        TEST_ASSERT_FALSE(is_valid());
+    }
+}
+
+static void test_needs_a_full_window_before_it_is_valid(void) {
+    feed(&(component_t){300000, 10000}, 1, 5000, 1050);
+    TEST_ASSERT_FALSE(is_valid());
+    feed(&(component_t){300000, 10000}, 1, 5000, 74);
+    TEST_ASSERT_TRUE(is_valid());
+    TEST_ASSERT_EQUAL_UINT32(0, estimator.age_ticks);
+}
+
+static void test_stronger_third_harmonic_does_not_win(void) {
+    feed((component_t[]){{50000, 5000}, {90000, 15000}}, 2, 8000, 2000);
+    assert_dominant(5000, 20000);
+    TEST_ASSERT_INT32_WITHIN(20000, 15000000, estimator.tone[1].freq_uHz);
+    TEST_ASSERT_EQUAL_INT32(0, estimator.tone[2].freq_uHz);
+}
+
+static void test_of_unrelated_tones_the_larger_displacement_wins(void) {
+    feed((component_t[]){{400000, 17300}, {400000, 31000}}, 2, 8000, 2000);
+    assert_dominant(17300, 10000);
+    start(1000);
+    feed((component_t[]){{100000, 17300}, {400000, 31000}}, 2, 8000, 2000);
+    assert_dominant(31000, 10000);
+}
+
+static void test_drift_below_the_band_is_ignored(void) {
+    feed((component_t[]){{300000, 300}, {200000, 12000}}, 2, 5000, 4000);
+    assert_dominant(12000, 10000);
+}
+
+static void test_band_limits_bind(void) {
+    estimator.tracker.cfg.band_low_mHz = 8000;
+    estimator.tracker.cfg.band_high_mHz = 18000;
+    feed((component_t[]){{300000, 5000}, {200000, 12000}}, 2, 5000, 2000);
+    assert_dominant(12000, 10000);
+    start(1000);
+    estimator.tracker.cfg.band_low_mHz = 8000;
+    estimator.tracker.cfg.band_high_mHz = 18000;
+    feed((component_t[]){{300000, 5000}, {200000, 25000}}, 2, 5000, 2000);
+    TEST_ASSERT_FALSE(is_valid());
+}
+
+static void test_frequency_step_is_seen_at_once_and_arrives_soon(void) {
+    feed(&(component_t){600000, 10000}, 1, 5000, 2000);
+    assert_dominant(10000, 5000);
+    feed(&(component_t){230000, 20000}, 1, 5000, 30);
+    TEST_ASSERT_FALSE(is_valid());
+    feed(&(component_t){230000, 20000}, 1, 5000, 170);
+    TEST_ASSERT_TRUE(is_valid()); // from a short window
+    TEST_ASSERT_EQUAL_UINT32(128, estimator.window_ms);
+    feed(&(component_t){230000, 20000}, 1, 5000, 1200);
+    assert_dominant(20000, 20000);
+}
+
+static void test_end_of_the_vibration_is_seen_at_once(void) {
+    feed(&(component_t){600000, 10000}, 1, 5000, 2000);
+    feed(NULL, 0, 5000, 20);
+    TEST_ASSERT_FALSE(is_valid());
+    feed(NULL, 0, 5000, 3000);
+    TEST_ASSERT_FALSE(is_valid());
+}
+
+static void test_lost_input_invalidates_at_once_and_until_a_window_is_new(void) {
+    const component_t tones[] = {{300000, 10000}, {200000, 17000}};
+    feed(tones, 2, 5000, 2000);
+    TEST_ASSERT_TRUE(is_valid());
+    estimator_step(&estimator, &(estimator_in_t){.is_lost = true});
+    TEST_ASSERT_FALSE(is_valid());
+    TEST_ASSERT_EQUAL_UINT32(1, estimator.age_ticks);
+    feed(tones, 2, 5000, 1050);
+    TEST_ASSERT_FALSE(is_valid());
+    feed(tones, 2, 5000, 100);
+    TEST_ASSERT_TRUE(is_valid());
+}
+
+// Phase of the dominant component: sin has it at -90 degrees when the sine is 0 and rising.
+static void test_phase_follows_at_every_tick(void) {
+    for (uint32_t i = 0; i < 3000; i++) {
+        step(signal_sine(300000, 12340, i, 1000));
+        if (i < 1200) {
+            continue;
+        }
+        const uint32_t turn = (uint32_t)(((uint64_t)i * 12340u << 32) / 1000000u) - (1u << 30);
+        const int32_t off = (int32_t)(estimator_phase_turn(&estimator, 0) - turn);
+        TEST_ASSERT_INT32_WITHIN(1200000, 0, off); // 0.1 degrees
+    }
+}
+
+static void test_missing_samples_are_bridged(void) {
+    for (uint32_t i = 0; i < 4000; i++) {
+        const bool is_good = i < 2000 || i % 50 >= 8; // 8 ms of every 50 are missing
+        estimator_step(&estimator,
+                       &(estimator_in_t){
+                           .accel_um_s2 = is_good ? signal_sine(300000, 9000, i, 1000) : 0,
+                           .is_good = is_good,
+                       });
+        if (i > 1500) {
+            TEST_ASSERT_TRUE(is_valid());
+            TEST_ASSERT_INT32_WITHIN(2000, 9000000, estimator.tone[0].freq_uHz);
+        }
+    }
+}
+
+static void test_hop_spaces_the_estimates(void) {
+    cfg.hop_ms = 200;
+    estimator_init(&estimator, &cfg);
+    uint32_t published = 0;
+    for (uint32_t i = 0; i < 4000; i++) {
+        step(signal_sine(300000, 9000, i, 1000));
+        published += estimator.has_published ? 1u : 0u;
+    }
+    TEST_ASSERT_UINT32_WITHIN(2, 15, published);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_tone_across_the_band_at_every_rate);
+    RUN_TEST(test_silence_and_small_vibration_are_never_valid);
+    RUN_TEST(test_noise_alone_is_not_a_frequency);
+    RUN_TEST(test_needs_a_full_window_before_it_is_valid);
+    RUN_TEST(test_stronger_third_harmonic_does_not_win);
+    RUN_TEST(test_of_unrelated_tones_the_larger_displacement_wins);
+    RUN_TEST(test_drift_below_the_band_is_ignored);
+    RUN_TEST(test_band_limits_bind);
+    RUN_TEST(test_frequency_step_is_seen_at_once_and_arrives_soon);
+    RUN_TEST(test_end_of_the_vibration_is_seen_at_once);
+    RUN_TEST(test_lost_input_invalidates_at_once_and_until_a_window_is_new);
+    RUN_TEST(test_phase_follows_at_every_tick);
+    RUN_TEST(test_missing_samples_are_bridged);
+    RUN_TEST(test_hop_spaces_the_estimates);
+    return UNITY_END();
+}
