@@ -116,6 +116,20 @@ def test_offline_estimate_names_the_larger_displacement(components, dominant) ->
     assert dominant_Hz(signal[None, :], 1000, tones=3)[0] == pytest.approx(dominant, abs=1e-3)
 
 
+@pytest.mark.parametrize("kind", list(signal_truth.KINDS))
+def test_truth_table_can_be_met_from_one_window(kind) -> None:
+    rng = generator(6, kind)
+    cases = signal_truth.KINDS[kind](rng, 60)
+    clean = sum(
+        cases.amplitude_m_s2[:, i, None]
+        * tone(cases.freq_Hz[:, i], rng.uniform(-np.pi, np.pi, 60), 0, 1024, 1000)
+        for i in range(2)
+    )
+    noise = noise_rms(cases.amplitude_m_s2[:, 0], signal_truth.SNR_dB, 1000)
+    told_Hz = dominant_Hz(with_noise(clean, noise, rng), 1000, tones=3)
+    assert np.abs(told_Hz / cases.freq_Hz[:, 0] - 1.0).max() <= signal_truth.TOLERANCE
+
+
 def test_trailing_estimate_uses_the_samples_before_its_end() -> None:
     first, second = (tone(np.array([f]), np.zeros(1), 0, 600, 1000)[0] for f in (10.0, 20.0))
     samples = np.concatenate([first, second])

@@ -3,8 +3,8 @@
 Nonlinear least squares on a rectangular window: up to TONES sinusoids and a constant, fitted
 jointly by Gauss-Newton steps. The next tone is searched in what the others leave, on a grid, with
 the exact projection on cosine, sine and constant (no asymptotics: few cycles are no special case).
-Among the tones with at least MIN_SHARE of the strongest one's acceleration, the one with the
-largest displacement is the dominant one.
+Among the tones that stand out of the residual, with at least MIN_SHARE of the strongest one's
+acceleration, the one with the largest displacement is the dominant one.
 """
 
 from functools import lru_cache
@@ -14,6 +14,10 @@ import numpy as np
 BAND_Hz = (1.0, 50.0)
 TONES = 3
 MIN_SHARE = 0.05
+# Least amplitude in standard deviations that white noise like the residual gives it.
+MIN_SIGMA = 6.0
+# A drift below the band is a tone like any other to the fit.
+FIT_Hz = (0.02, 60.0)
 GRID_PER_BIN = 6
 STEPS = 8
 MAX_MOVE_BINS = 0.3
@@ -68,7 +72,7 @@ def refine(
         residual = windows - np.einsum("bin,bi->bn", columns, weights)
         move = solve(np.concatenate([columns, slope], axis=1), residual)[:, 2 * tones + 1 :]
         move = np.clip(move, -MAX_MOVE_BINS, MAX_MOVE_BINS) / span_s
-        freqs_Hz = np.clip(freqs_Hz + move, 0.5 * BAND_Hz[0], 1.2 * BAND_Hz[1])
+        freqs_Hz = np.clip(freqs_Hz + move, *FIT_Hz)
     columns = regressors(freqs_Hz, time_s)
     weights = solve(columns, windows)
     amplitude = np.hypot(weights[:, 1 : tones + 1], weights[:, tones + 1 :])
@@ -85,9 +89,13 @@ def dominant_Hz(windows: np.ndarray, rate_Hz: int, tones: int) -> np.ndarray:
         added = np.concatenate([freqs_Hz, strongest_Hz(residual, rate_Hz)[:, None]], axis=1)
         freqs_Hz, amplitude, residual = refine(added, windows, time_s)
     is_in_band = (freqs_Hz >= BAND_Hz[0]) & (freqs_Hz <= BAND_Hz[1])
-    is_strong = amplitude >= MIN_SHARE * amplitude.max(axis=1, keepdims=True)
+    sigma = np.sqrt(2.0 / ticks) * residual.std(axis=1, keepdims=True)
+    strongest = np.where(is_in_band, amplitude, 0.0).max(axis=1, keepdims=True)
+    is_strong = (amplitude >= MIN_SHARE * strongest) & (amplitude >= MIN_SIGMA * sigma)
     displacement = np.where(is_in_band & is_strong, amplitude / np.square(freqs_Hz), -1.0)
-    return freqs_Hz[np.arange(len(windows)), np.argmax(displacement, axis=1)]
+    # Where none does, the first one found, the strongest.
+    best = np.where(displacement.max(axis=1) > 0.0, np.argmax(displacement, axis=1), 0)
+    return freqs_Hz[np.arange(len(windows)), best]
 
 
 def trailing_Hz(
