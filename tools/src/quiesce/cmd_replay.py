@@ -109,12 +109,12 @@ def judge(
     args: argparse.Namespace, replayed: Replayed, reference: tuple[np.ndarray, np.ndarray]
 ) -> Agreement:
     step = replayed.updates
-    time_s = replayed.time_s[step]
+    time_s, latency_s = replayed.time_s[step], replayed.latency_s[step]
     from_s = float(replayed.time_s[0]) if args.from_s is None else args.from_s
     to_s = float(replayed.time_s[-1]) if args.to_s is None else args.to_s
     counted = (time_s >= from_s) & (time_s <= to_s)
     agreement = compare(
-        (time_s - replayed.latency_s)[counted],
+        (time_s - latency_s)[counted],
         (replayed.trace["freq_uHz"][step] * 1e-6)[counted],
         (replayed.trace["freq_is_valid"][step] > 0)[counted],
         *reference,
@@ -159,7 +159,10 @@ def print_summary(args: argparse.Namespace, figures: dict[str, Any]) -> None:
             f"frequency  valid {figures['valid_pct']:.1f} % of the time, first at "
             f"{figures['first_valid_s']:.2f} s; median {figures['median_freq_Hz']:.3f} Hz"
         )
-    print(f"latency    the frequency describes the signal {figures['latency_s']:.3f} s earlier")
+        print(
+            f"latency    the frequency describes the signal {figures['latency_s']:.3f} s earlier "
+            "(median; half its window)"
+        )
     print(
         f"RMS        at most {figures['max_rms_m_s2']:.4g} m/s2; mean current command "
         f"{figures['mean_current_A']:.3f} A"

@@ -15,9 +15,8 @@ from quiesce.recording import Recording
 from quiesce.resample import resample
 from quiesce.trace import Trace, read_trace
 
-# The spectrum's window and decimator (firmware/sense/spectrum.h).
+# The decimator before the spectrum (firmware/sense/decimate.h).
 SPECTRUM_RATE_Hz = 250
-SPECTRUM_WINDOW_s = 1.024
 STAGE_DELAY_SAMPLES = 5
 
 # Telemetry that goes into replay.csv, under its C names.
@@ -26,6 +25,7 @@ CSV_COLUMNS = (
     "freq_is_valid",
     "freq_uHz",
     "freq_amp_um_s2",
+    "freq_window_ms",
     "rms_um_s2",
     "state",
     "fault",
@@ -43,8 +43,9 @@ class Replayed:
     summary: dict[str, Any]  # the bench's own
 
     @property
-    def latency_s(self) -> float:
-        return frequency_latency_s(self.tick_rate_Hz)
+    def latency_s(self) -> np.ndarray:
+        """Of the frequency, at each tick."""
+        return frequency_latency_s(self.trace["freq_window_ms"], self.tick_rate_Hz)
 
     @property
     def updates(self) -> slice:
@@ -52,18 +53,13 @@ class Replayed:
         return slice(None, None, self.tick_rate_Hz // SPECTRUM_RATE_Hz)
 
 
-def frequency_latency_s(tick_rate_Hz: int) -> float:
-    """By how much the frequency lags: half the window, and the half-band stages before it."""
-    return SPECTRUM_WINDOW_s / 2.0 + decimation_delay_s(tick_rate_Hz)
-
-
-def decimation_delay_s(tick_rate_Hz: int) -> float:
-    """Of the half-band stages between the ticks and SPECTRUM_RATE_Hz."""
+def frequency_latency_s(window_ms: np.ndarray, tick_rate_Hz: int) -> np.ndarray:
+    """By how much the frequency lags: half its window, and the half-band stages before it."""
     rate_Hz, delay_s = tick_rate_Hz, 0.0
     while rate_Hz > SPECTRUM_RATE_Hz:
         delay_s += STAGE_DELAY_SAMPLES / rate_Hz
         rate_Hz //= 2
-    return delay_s
+    return 0.5e-3 * window_ms + delay_s
 
 
 def sensor_counts(accel_m_s2: np.ndarray, params: dict[str, int]) -> np.ndarray:
@@ -114,7 +110,7 @@ def summarize(replayed: Replayed) -> dict[str, Any]:
         "valid_pct": round(100.0 * float(valid.mean()), 3),
         "first_valid_s": round(float(replayed.time_s[valid][0]), 3) if valid.any() else None,
         "median_freq_Hz": round(float(np.median(freq_Hz)), 4) if valid.any() else None,
-        "latency_s": round(replayed.latency_s, 4),
+        "latency_s": round(float(np.median(replayed.latency_s[valid])), 4) if valid.any() else None,
         "max_rms_m_s2": round(float(trace["rms_um_s2"].max()) * 1e-6, 6),
         "mean_current_A": round(float(trace["current_cmd_mA"].mean()) * 1e-3, 4),
         "faults_seen": replayed.summary["faults_seen"],

@@ -40,11 +40,11 @@ def draw_frequency(axes, replayed: Replayed, reference: tuple[np.ndarray, np.nda
     if reference is not None:
         axes.plot(*reference, color=COLORS["reference"], linewidth=2.4, label="reference sensor")
     axes.plot(
-        time_s[step] - replayed.latency_s,
+        (time_s - replayed.latency_s)[step],
         freq_Hz[step],
         color=COLORS["main"],
         linewidth=1.1,
-        label=f"firmware, drawn {replayed.latency_s:.3f} s earlier",
+        label="firmware, drawn at the middle of its window",
     )
     axes.set_ylabel("frequency (Hz)")
     top = np.nanpercentile(freq_Hz, 99.5) if is_valid.any() else 10.0

@@ -10,7 +10,7 @@ from quiesce.errors import UsageError
 from quiesce.paths import root
 from quiesce.recording import Recording, read_recording
 from quiesce.reference_peak import compare, reference_freq_Hz
-from quiesce.replay import SPECTRUM_RATE_Hz, decimation_delay_s
+from quiesce.replay import SPECTRUM_RATE_Hz, frequency_latency_s
 from quiesce.resample import resample
 from quiesce.signal_offline import trailing_Hz
 from quiesce.signal_records import Rig
@@ -88,7 +88,7 @@ def against_reference(rig: Rig, replay: Replay, source: Source, from_s: float) -
     middle_s, reference_Hz = reference_freq_Hz(
         recording.accel_m_s2[source.reference_column], recording.rate_Hz
     )
-    latency_s = 0.5e-3 * replay.window_ms + decimation_delay_s(rig.rate_Hz)
+    latency_s = frequency_latency_s(replay.window_ms, rig.rate_Hz)
     updates = np.flatnonzero(replay.time_s >= from_s)[:: rig.rate_Hz // SPECTRUM_RATE_Hz]
     agreement = compare(
         (replay.time_s - latency_s)[updates],
@@ -118,16 +118,22 @@ def against_offline(rig: Rig, replay: Replay, instants: int) -> dict[str, Any]:
     ends = np.arange(every - 1, len(replay.time_s), every)
     lengths = np.rint(replay.window_ms[ends] * 1e-3 * rig.rate_Hz).astype(int)
     offline_Hz = trailing_Hz(replay.accel_m_s2, ends, lengths, rig.rate_Hz)
-    judged = replay.is_valid[ends] & np.isfinite(offline_Hz)
-    error_Hz = np.abs(replay.freq_Hz[ends] - offline_Hz)[judged]
-    within = error_Hz <= OFFLINE_TOLERANCE * offline_Hz[judged]
+    there = np.isfinite(offline_Hz)
+    judged = replay.is_valid[ends] & there
+    error_Hz = np.abs(replay.freq_Hz[ends] - offline_Hz)
+    is_within = error_Hz <= OFFLINE_TOLERANCE * offline_Hz
     return {
         "against": "float64 least squares, trailing window of equal length",
         "compared": int(judged.sum()),
-        "within_2pct_pct": 100.0 * float(within.mean()) if judged.any() else None,
-        "median_error_Hz": float(np.median(error_Hz)) if judged.any() else None,
+        "within_2pct_pct": share_pct(is_within[judged]),
+        "median_error_Hz": float(np.median(error_Hz[judged])) if judged.any() else None,
         "offline_median_Hz": float(np.median(offline_Hz[judged])) if judged.any() else None,
+        "within_2pct_valid_or_not_pct": share_pct(is_within[there]),
     }
+
+
+def share_pct(is_it: np.ndarray) -> float | None:
+    return 100.0 * float(is_it.mean()) if is_it.size else None
 
 
 def row(rig: Rig, replay: Replay, source: Source, instants: int) -> dict[str, Any]:

@@ -43,7 +43,7 @@ class Rig:
 
     @property
     def longest_window_ms(self) -> int:
-        return self.params.get("track_window_ms", 1024)
+        return self.params["track_window_ms"]
 
     @property
     def band_Hz(self) -> tuple[float, float]:

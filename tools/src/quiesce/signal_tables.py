@@ -90,6 +90,7 @@ def recording_table(rows: Sequence[dict[str, Any]]) -> str:
             "within": (row["reference"] or {}).get("within_0p12Hz_pct"),
             "offline_within": row["offline"]["within_2pct_pct"],
             "offline_error": row["offline"]["median_error_Hz"],
+            "any": row["offline"]["within_2pct_valid_or_not_pct"],
         }
         for row in rows
     ]
@@ -103,6 +104,7 @@ def recording_table(rows: Sequence[dict[str, Any]]) -> str:
             "within": "reference %",
             "offline_within": "least squares %",
             "offline_error": "median apart Hz",
+            "any": "valid or not %",
         },
     )
 
