@@ -22,8 +22,8 @@ from quiesce.signal_tables import tables
 NAME = "signal"
 HELP = "the sensing chain: accuracy, response, validity, robustness, cost"
 DESCRIPTION = """Measure the sensing chain as shipped: accuracy against the Cramer-Rao bound,
-response to steps, validity, the rule of the dominant frequency, stick-slip, recordings, and the
-instructions of a tick beside a batch pipeline on CMSIS-DSP."""
+response to steps, validity, the rule of the dominant frequency, stick-slip, recordings, and
+the instructions of a tick beside a batch pipeline on CMSIS-DSP."""
 
 # Ticks whose instructions are counted: at each rate, and for the share of each source file.
 QUICK_COST_TICKS = {"ticks": 20_000, "profile_ticks": 10_000}
