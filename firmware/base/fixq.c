@@ -1,31 +1,35 @@
 #include "fixq.h"
 
-uint32_t isqrt_u64(uint64_t value) {
-    uint64_t rest = value;
-    uint64_t root = 0;
-    for (uint64_t bit = UINT64_C(1) << 62; bit != 0; bit >>= 2) {
-        if (rest >= root + bit) {
-            rest -= root + bit;
-            root = (root >> 1) + bit;
-        } else {
-            root >>= 1;
-        }
+uint32_t isqrt_u32(uint32_t value) {
+    if (value == 0) {
+        return 0;
     }
-    return (uint32_t)root;
+    // Newton's iteration from above, at most twice too large at first: four steps leave less
+    // than 1.
+    uint32_t root = 1u << ((33u - (uint32_t)__builtin_clz(value)) / 2u);
+    for (uint32_t i = 0; i < 4u; i++) {
+        root = (root + value / root) / 2u;
+    }
+    return root > UINT16_MAX || root * root > value ? root - 1u : root;
 }
 
-uint32_t isqrt_u32(uint32_t value) {
-    uint32_t rest = value;
-    uint32_t root = 0;
-    for (uint32_t bit = UINT32_C(1) << 30; bit != 0; bit >>= 2) {
-        if (rest >= root + bit) {
-            rest -= root + bit;
-            root = (root >> 1) + bit;
-        } else {
-            root >>= 1;
-        }
+uint32_t isqrt_u64(uint64_t value) {
+    if (value == 0) {
+        return 0;
     }
-    return root;
+    // At full scale: the upper half's root, then one Newton step for the lower 16 bits.
+    const uint32_t up = leading_zeros_u64(value) & ~1u;
+    const uint64_t full = value << up;
+    const uint32_t high = (uint32_t)(full >> 32);
+    const uint32_t half = isqrt_u32(high);
+    const uint64_t rest = (uint64_t)(high - half * half) << 32 | (uint32_t)full;
+    uint64_t root = ((uint64_t)half << 16) + (uint32_t)(rest >> 17) / half;
+    root = root > UINT32_MAX ? UINT32_MAX : root;
+    // The step overshoots by less than 1, its rounding adds less than 1 on either side.
+    for (uint32_t i = 0; i < 2u; i++) {
+        root -= root * root > full ? 1u : 0u;
+    }
+    return (uint32_t)root >> (up / 2u);
 }
 
 uint32_t sqrt_fast_u64(uint64_t value) {

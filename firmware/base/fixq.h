@@ -44,10 +44,10 @@ static inline uint32_t leading_zeros_u64(uint64_t value) {
     return (uint32_t)__builtin_clzll(value);
 }
 
-/// floor(sqrt(value)), exact. 32 steps.
+/// floor(sqrt(value)), exact. About 90 instructions.
 uint32_t isqrt_u64(uint64_t value);
 
-/// floor(sqrt(value)), exact. 16 steps.
+/// floor(sqrt(value)), exact. Four divisions.
 uint32_t isqrt_u32(uint32_t value);
 
 /// sqrt(value), low by at most 2^-15 of it plus 1 (floor of the leading 32 bits' root).
@@ -68,6 +68,14 @@ static inline uint32_t log2_q8_u64(uint64_t value) {
                               ? (uint32_t)(value >> (55u - zeros) & 0x1FFu) << 23
                               : lead << zeros;
     return ((high != 0 ? 63u : 31u) - zeros) << 8 | ((bits >> 23) & 0xFFu);
+}
+
+/// 2^63 / value for value >= 2^31, to 3 units; one 32-bit division and a Newton step.
+static inline uint32_t reciprocal_u32(uint32_t value) {
+    const uint32_t rough = (UINT32_MAX / (value >> 16)) << 14; // half of it, to 2^-15
+    const int64_t error = (INT64_C(1) << 62) - (int64_t)((uint64_t)value * rough);
+    const int64_t exact = ((int64_t)rough << 1) + (((error >> 16) * (int64_t)rough) >> 45);
+    return exact > (int64_t)UINT32_MAX ? UINT32_MAX : (uint32_t)exact;
 }
 
 /// A positive factor as mantissa x 2^-shift, so that one multiplication applies it at full

@@ -18,8 +18,7 @@ typedef struct {
 
 static reciprocal_t reciprocal(int32_t pivot_q30) {
     const uint32_t zeros = (uint32_t)__builtin_clz((uint32_t)pivot_q30);
-    const uint64_t full = (UINT64_C(1) << 63) / ((uint32_t)pivot_q30 << zeros);
-    return (reciprocal_t){full > UINT32_MAX ? UINT32_MAX : (uint32_t)full, zeros};
+    return (reciprocal_t){reciprocal_u32((uint32_t)pivot_q30 << zeros), zeros};
 }
 
 // value / pivot with `fraction` bits more than value has, value below 2^31.

@@ -11,7 +11,8 @@ enum {
     OUTLIER = 8,      // of noise + tolerance: no square counts as more noise than this
     OFFSET_SHIFT = 6, // the slow part: over 64 decimated samples (a quarter of a second)
     NOISE_SHIFT = 9,  // the noise: over 512 of the shortest blocks (a second)
-    SCALE_SHIFT = 2,  // a block of the next scale is four of this one
+    JUDGED_A_TICK = 2,
+    SCALE_SHIFT = 2, // a block of the next scale is four of this one
 };
 
 void predictor_init(predictor_t *self, uint32_t stages) {
@@ -22,11 +23,16 @@ static uint32_t block_shift(const predictor_t *self, uint32_t scale) {
     return self->stages - 1u + SCALE_SHIFT * scale;
 }
 
+// Blocks of the scale below (of the first one: ticks) that make one of this scale.
+static uint32_t block_parts(const predictor_t *self, uint32_t scale) {
+    return scale == 0 ? 1u << block_shift(self, 0) : 1u << SCALE_SHIFT;
+}
+
 static void arm(predictor_t *self, int32_t noise_um_s2) {
     const int64_t noise = clamp_i32(noise_um_s2, 0, DIFFERENCE_LIMIT);
     for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
         self->watch[i] = (predictor_watch_t){
-            .left = 1u << block_shift(self, i),
+            .left = block_parts(self, i),
             .noise = (2 * noise * noise) >> (SCALE_SHIFT * i),
         };
     }
@@ -69,9 +75,8 @@ static int32_t run_on(predictor_t *self) {
 }
 
 // Page's sum after one more block's average. Returns true iff it says: changed.
-static bool judge(predictor_watch_t *watch, int64_t average, int64_t tolerance,
-                  uint32_t settle_shift) {
-    const int64_t square = average * average;
+static bool judge(predictor_watch_t *watch, int64_t tolerance, uint32_t settle_shift) {
+    const int64_t square = watch->average * watch->average;
     watch->sum += square - NOISE_SHARE * watch->noise - TOLERANCE_SHARE * tolerance - 1;
     watch->suspect_blocks++;
     if (watch->sum <= 0) {
@@ -83,23 +88,39 @@ static bool judge(predictor_watch_t *watch, int64_t average, int64_t tolerance,
     return watch->sum > NOISE_ALARM * watch->noise + TOLERANCE_ALARM * tolerance;
 }
 
-static bool watch(predictor_t *self, int32_t difference) {
-    bool has_changed = false;
+// Sums blocks: a finished one of a scale is a part of the next scale's.
+static void collect(predictor_t *self, int64_t difference) {
+    int64_t part = difference;
     for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
         predictor_watch_t *at = &self->watch[i];
-        const uint32_t shift = block_shift(self, i);
-        at->open += difference;
+        at->open += part;
         at->left--;
         if (at->left != 0) {
+            break;
+        }
+        part = at->open;
+        at->open = 0;
+        at->left = block_parts(self, i);
+        at->average = part >> block_shift(self, i);
+        at->is_due = true;
+    }
+}
+
+// Judges two finished blocks a tick at most, the shortest first; the others can wait.
+static bool watch(predictor_t *self) {
+    bool has_changed = false;
+    uint32_t judged = 0;
+    for (uint32_t i = 0; i < PREDICTOR_SCALES && judged < JUDGED_A_TICK; i++) {
+        predictor_watch_t *at = &self->watch[i];
+        if (!at->is_due) {
             continue;
         }
-        at->left = 1u << shift;
-        const int64_t average = at->open >> shift;
-        at->open = 0;
-        if (judge(at, average, self->tolerance, NOISE_SHIFT - SCALE_SHIFT * i) && !has_changed) {
+        at->is_due = false;
+        judged++;
+        if (judge(at, self->tolerance, NOISE_SHIFT - SCALE_SHIFT * i) && !has_changed) {
             has_changed = true;
             // The block in which it began may still hold some of what was before.
-            self->suspect_ticks = (at->suspect_blocks - 1u) << shift;
+            self->suspect_ticks = (at->suspect_blocks - 1u) << block_shift(self, i);
         }
     }
     return has_changed;
@@ -114,5 +135,6 @@ bool predictor_step(predictor_t *self, int32_t accel_um_s2, bool is_good) {
     const int64_t difference = clamp_i64(error, -DIFFERENCE_LIMIT, DIFFERENCE_LIMIT);
     self->offset_q12 += (int64_t)self->drift_um_s2_q8 * 16;
     self->offset_q12 += (difference * (1 << 12)) >> (OFFSET_SHIFT + self->stages);
-    return watch(self, (int32_t)difference);
+    collect(self, difference);
+    return watch(self);
 }

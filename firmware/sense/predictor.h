@@ -27,9 +27,11 @@ typedef struct {
 
 /// Page's test on blocks of one length.
 typedef struct {
-    int64_t open;  ///< sum of the unfinished block's differences
-    uint32_t left; ///< differences that it still lacks
-    int64_t noise; ///< mean square of a block's average
+    int64_t open;    ///< sum of the unfinished block's differences
+    uint32_t left;   ///< blocks of the scale below that it still lacks
+    int64_t average; ///< of the last finished block
+    bool is_due;     ///< it has not been judged yet
+    int64_t noise;   ///< mean square of a block's average
     int64_t sum;
     uint32_t suspect_blocks; ///< since the sum was zero
 } predictor_watch_t;

@@ -19,10 +19,10 @@ int32_t spectrum_mean_um_s2(const spectrum_t *self, uint32_t level) {
     return (int32_t)(self->sum[level] >> SPECTRUM_POINTS_LOG2(level));
 }
 
-void spectrum_init(spectrum_t *self, uint32_t slices) {
+void spectrum_init(spectrum_t *self, uint32_t slices_log2) {
     *self = (spectrum_t){
-        .slices = slices,
-        .next_slice = slices,
+        .slices_log2 = slices_log2,
+        .next_slice = 1u << slices_log2,
         .power_level = SPECTRUM_LEVELS,
         .wanted_level = SPECTRUM_LEVELS,
     };
@@ -31,9 +31,11 @@ void spectrum_init(spectrum_t *self, uint32_t slices) {
 void spectrum_want_powers(spectrum_t *self, uint32_t level, int32_t constant_um_s2) {
     self->wanted_level = level;
     self->constant_um_s2 = constant_um_s2;
+    self->power_level = SPECTRUM_LEVELS;
+    self->has_powers = false;
 }
 
-bool spectrum_start_round(spectrum_t *self, int32_t accel_um_s2) {
+void spectrum_start_round(spectrum_t *self, int32_t accel_um_s2) {
     const uint32_t newest = (self->newest + 1u) % SPECTRUM_RING;
     for (uint32_t level = 0; level < SPECTRUM_LEVELS; level++) {
         const uint32_t oldest = (newest - SPECTRUM_POINTS(level)) % SPECTRUM_RING;
@@ -43,9 +45,11 @@ bool spectrum_start_round(spectrum_t *self, int32_t accel_um_s2) {
     self->sample[newest] = accel_um_s2;
     self->newest = newest;
     self->next_slice = 0;
-    self->power_level = self->wanted_level;
-    self->wanted_level = SPECTRUM_LEVELS;
-    return self->power_level < SPECTRUM_LEVELS;
+    if (self->wanted_level != SPECTRUM_LEVELS) {
+        self->power_level = self->wanted_level;
+        self->wanted_level = SPECTRUM_LEVELS;
+        self->power_round = 0;
+    }
 }
 
 // Table entries that one sample index is worth at bin 1 of a window.
@@ -74,9 +78,13 @@ typedef struct {
     int32_t im;
 } phasor_t;
 
-static phasor_t phasor(const spectrum_bin_t *bin, uint32_t level) {
-    const uint32_t shift = 24u + SPECTRUM_POINTS_LOG2(level);
-    return (phasor_t){(int32_t)(bin->re >> shift), (int32_t)(bin->im >> shift)};
+static int32_t high_word(int64_t value) {
+    return (int32_t)(value >> 32);
+}
+
+// 2^up of the high word: a tone's amplitude in every window, in steps of 2^up um/s2.
+static phasor_t phasor(const spectrum_bin_t *bin, int32_t up) {
+    return (phasor_t){high_word(bin->re) * up, high_word(bin->im) * up};
 }
 
 // Bin 0, less the constant part that does not belong to the vibration.
@@ -85,53 +93,88 @@ static phasor_t constant_phasor(const spectrum_t *self, uint32_t level) {
     return (phasor_t){(int32_t)clamp_i64(2 * rest, -(1 << 30), 1 << 30), 0};
 }
 
-static int32_t high_word(int64_t value) {
-    return (int32_t)(value >> 32);
+// What the powers of a round have in common.
+typedef struct {
+    uint32_t level;
+    int32_t up;      // of phasor()
+    int32_t cos_q31; // angle of the window's oldest sample
+    int32_t sin_q31;
+} hann_t;
+
+static hann_t hann_of(const spectrum_t *self, uint32_t level) {
+    const uint32_t angle = (self->newest + 1u) * stride_of(level);
+    return (hann_t){
+        .level = level,
+        .up = 1 << (8u - SPECTRUM_POINTS_LOG2(level)),
+        .cos_q31 = cosine_q25[angle % COSINE_POINTS] * 64,
+        .sin_q31 = cosine_q25[(angle - QUARTER) % COSINE_POINTS] * 64,
+    };
 }
 
 // Power of bin k under the Hann window, which starts at the window's oldest sample: the two
 // neighbours enter with half weight (the Q31 product's high word), turned by that sample's angle.
-static uint64_t windowed_power(const spectrum_t *self, uint32_t level, uint32_t k) {
-    const uint32_t angle = (self->newest + 1u) * stride_of(level);
-    const int32_t cos_q31 = cosine_q25[angle % COSINE_POINTS] * 64;
-    const int32_t sin_q31 = cosine_q25[(angle - QUARTER) % COSINE_POINTS] * 64;
-    const spectrum_bin_t *bin = &self->bin[first_slot[level] + k - 1u];
-    const phasor_t low = k == 1u ? constant_phasor(self, level) : phasor(bin - 1, level);
-    const phasor_t mid = phasor(bin, level);
-    const phasor_t high = phasor(bin + 1, level);
-    const int32_t side_re =
-        high_word((int64_t)(low.re + high.re) * cos_q31 + (int64_t)(low.im - high.im) * sin_q31);
-    const int32_t side_im =
-        high_word((int64_t)(low.im + high.im) * cos_q31 + (int64_t)(high.re - low.re) * sin_q31);
+static uint64_t windowed_power(const spectrum_t *self, const hann_t *hann, uint32_t k) {
+    const spectrum_bin_t *bin = &self->bin[first_slot[hann->level] + k - 1u];
+    const phasor_t low = k == 1u ? constant_phasor(self, hann->level) : phasor(bin - 1, hann->up);
+    const phasor_t mid = phasor(bin, hann->up);
+    const phasor_t high = phasor(bin + 1, hann->up);
+    const int32_t side_re = high_word((int64_t)(low.re + high.re) * hann->cos_q31 +
+                                      (int64_t)(low.im - high.im) * hann->sin_q31);
+    const int32_t side_im = high_word((int64_t)(low.im + high.im) * hann->cos_q31 +
+                                      (int64_t)(high.re - low.re) * hann->sin_q31);
     const int32_t re = mid.re - side_re;
     const int32_t im = mid.im - side_im;
     return (uint64_t)((int64_t)re * re) + (uint64_t)((int64_t)im * im);
 }
 
-// Powers of the bins whose upper neighbour lies in first .. end-1.
-static spectrum_span_t form_powers(spectrum_t *self, uint32_t level, uint32_t first, uint32_t end) {
-    const uint32_t from = first < 2u ? 1u : first - 1u;
-    const uint32_t to = end < 2u ? 1u : end - 1u;
-    for (uint32_t k = from; k < to; k++) {
-        self->power[k] = windowed_power(self, level, k);
-    }
-    return (spectrum_span_t){from, to};
+// Rounds that share a window's powers, so that they cost a tick no more than anything else.
+static uint32_t power_rounds(uint32_t level) {
+    return level == SPECTRUM_LONGEST ? 2u : 1u;
 }
 
-spectrum_span_t spectrum_slice(spectrum_t *self) {
-    spectrum_span_t span = {0, 0};
-    if (self->next_slice == self->slices) {
-        return span;
+// Powers of this round's bins whose upper neighbour lies in first .. end-1.
+static void form_powers(spectrum_t *self, uint32_t first, uint32_t end) {
+    const hann_t hann = hann_of(self, self->power_level);
+    const uint32_t rounds = power_rounds(self->power_level);
+    uint32_t k = first < 2u ? 1u : first - 1u;
+    k += (self->power_round + rounds - k % rounds) % rounds;
+    for (; k + 1u < end; k += rounds) {
+        self->power[k] = windowed_power(self, &hann, k);
     }
-    // An equal share of every window's bins.
-    for (uint32_t level = 0; level < SPECTRUM_LEVELS; level++) {
-        const uint32_t first = 1u + bins_of(level) * self->next_slice / self->slices;
-        const uint32_t end = 1u + bins_of(level) * (self->next_slice + 1u) / self->slices;
-        slide(self, level, first, end);
-        if (level == self->power_level) {
-            span = form_powers(self, level, first, end);
+}
+
+static void end_round(spectrum_t *self) {
+    if (self->power_level == SPECTRUM_LEVELS) {
+        return;
+    }
+    self->power_round++;
+    if (self->power_round == power_rounds(self->power_level)) {
+        self->power_level = SPECTRUM_LEVELS;
+        self->has_powers = true;
+    }
+}
+
+void spectrum_slice(spectrum_t *self) {
+    const uint32_t slice = self->next_slice;
+    if (slice >> self->slices_log2 != 0) {
+        return;
+    }
+    uint32_t slot = (SPECTRUM_BINS * slice) >> self->slices_log2;
+    const uint32_t end = (SPECTRUM_BINS * (slice + 1u)) >> self->slices_log2;
+    for (uint32_t level = 0; slot < end; level++) {
+        const uint32_t limit = first_slot[level + 1u] < end ? first_slot[level + 1u] : end;
+        if (slot >= limit) {
+            continue;
         }
+        const uint32_t first = slot - first_slot[level] + 1u;
+        slide(self, level, first, first + limit - slot);
+        if (level == self->power_level) {
+            form_powers(self, first, first + limit - slot);
+        }
+        slot = limit;
     }
     self->next_slice++;
-    return span;
+    if (self->next_slice >> self->slices_log2 != 0) {
+        end_round(self);
+    }
 }

@@ -9,9 +9,9 @@
 ///
 /// Scaling: samples um/s2, |x| < 2^29; table Q25; bins 64 bit, below 2^8 x 2^29 x 2^25 = 2^62. A
 /// tone of amplitude A makes |bin| = A x points / 2 x 2^25; powers are A^2 where a bin's middle
-/// meets the tone, 64 bit, floor. Bounded; about 16 instructions a bin and 45 more for a power.
-/// Source of the sliding form: K. Duda, IEEE Signal Processing Magazine 27(6), 2010 (equations
-/// only).
+/// meets the tone, 64 bit, A in steps of 256 / points um/s2. Bounded; about 17 instructions a bin
+/// and 50 more for a power. Source of the sliding form: K. Duda, IEEE Signal Processing Magazine
+/// 27(6), 2010 (equations only).
 #ifndef SPECTRUM_H
 #define SPECTRUM_H
 
@@ -39,30 +39,28 @@ typedef struct {
     int32_t difference[SPECTRUM_LEVELS]; ///< newest sample minus the one that leaves
     uint64_t power[SPECTRUM_MAX_POWERS]; ///< (um/s2)^2 of the last requested round, from index 1
     uint32_t newest;                     ///< ring index of the newest sample
-    uint32_t slices;                     ///< of a round
-    uint32_t next_slice;                 ///< slices: the round is finished
-    uint32_t power_level;   ///< window whose powers this round forms; SPECTRUM_LEVELS: none
-    uint32_t wanted_level;  ///< and the next one
+    uint32_t slices_log2;                ///< of a round
+    uint32_t next_slice;                 ///< all done: the round is finished
+    uint32_t power_level;   ///< window whose powers are being formed; SPECTRUM_LEVELS: none
+    uint32_t power_round;   ///< of the rounds that share them
+    uint32_t wanted_level;  ///< window to start with in the next round
+    bool has_powers;        ///< power[] is complete
     int32_t constant_um_s2; ///< that bin 0 is to be without
 } spectrum_t;
 
-/// What one tick has brought up to date: powers first .. end-1 (none where first == end).
-typedef struct {
-    uint32_t first;
-    uint32_t end;
-} spectrum_span_t;
+/// slices_log2: ticks a sample, as a power of two, 1 .. 4.
+void spectrum_init(spectrum_t *self, uint32_t slices_log2);
 
-/// slices: ticks a sample, 2 .. 16.
-void spectrum_init(spectrum_t *self, uint32_t slices);
-
-/// The next round shall form the powers of a window, less a constant part of the samples.
+/// The next rounds shall form the powers of a window, less a constant part of the samples;
+/// has_powers tells when they have. (Those of the longest window come from two rounds, alternating
+/// bins.)
 void spectrum_want_powers(spectrum_t *self, uint32_t level, int32_t constant_um_s2);
 
-/// A new sample, |accel_um_s2| < 2^29; starts a round. Returns true iff it will form powers.
-bool spectrum_start_round(spectrum_t *self, int32_t accel_um_s2);
+/// A new sample, |accel_um_s2| < 2^29; starts a round.
+void spectrum_start_round(spectrum_t *self, int32_t accel_um_s2);
 
 /// One slice of the round. All of it must be worked off before the next sample.
-spectrum_span_t spectrum_slice(spectrum_t *self);
+void spectrum_slice(spectrum_t *self);
 
 /// Last power of a window (they start at 1).
 uint32_t spectrum_last_power(uint32_t level);

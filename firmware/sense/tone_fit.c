@@ -8,7 +8,7 @@ enum {
     DATA_BITS = 22,
     SUM_BITS = 24,         // fraction of cosines and sines in the sums
     RIGHT_BITS = 8,        // of the right sides, above the data's unit
-    PAIRS_A_COUPLING = 10, // what one coupling costs, in pairs of samples
+    PAIRS_A_COUPLING = 12, // what one coupling costs, in pairs of samples
 };
 
 static uint32_t points_of(const tone_fit_t *self) {
@@ -180,6 +180,15 @@ static int32_t times_q30(int32_t a, int32_t b) {
     return (int32_t)(((int64_t)a * b) >> 30);
 }
 
+// 1 / (N sine) in Q30, sine Q30 > 0: 0.64 for t of half a cycle a window.
+static int32_t over_points(int32_t sine_q30, uint32_t points_log2) {
+    const uint32_t zeros = (uint32_t)__builtin_clz((uint32_t)sine_q30 | 1u);
+    const uint32_t inverse = reciprocal_u32(((uint32_t)sine_q30 | 1u) << zeros);
+    const int32_t down = 3 + (int32_t)points_log2 - (int32_t)zeros;
+    const uint32_t g_q30 = down > 0 ? inverse >> down : (uint32_t)INT32_MAX;
+    return g_q30 > (uint32_t)INT32_MAX ? INT32_MAX : (int32_t)g_q30;
+}
+
 // t in turns a sample, t = 0 or about half a cycle a window and more. Closed sums: d0 = sin(N t/2)
 // / (N sin(t/2)), d1 and d2 from its derivatives.
 static kernel_t kernel(uint32_t t, uint32_t points_log2) {
@@ -189,9 +198,7 @@ static kernel_t kernel(uint32_t t, uint32_t points_log2) {
     }
     const sincos_t half = sincos_q30(t / 2u);
     const sincos_t edge = sincos_q30((t / 2u) << points_log2);
-    // 1 / (N sin(t/2)): below 0.64 for half a cycle a window.
-    const int64_t wide = (int64_t)half.sin << points_log2;
-    const int32_t g_q30 = (int32_t)clamp_i64((INT64_C(1) << 60) / wide, 0, INT32_MAX);
+    const int32_t g_q30 = over_points(half.sin, points_log2);
     const int32_t d0 = times_q30(edge.sin, g_q30);
     const int32_t d1 = times_q30(times_q30(half.cos, d0) - edge.cos, g_q30);
     const int32_t d2 = times_q30(one_less, d0) - 2 * times_q30(times_q30(half.cos, d1), g_q30);
@@ -257,7 +264,7 @@ static bool couple_some(tone_fit_t *self, uint32_t pairs) {
 
 // At least one column. Returns true iff the half is solved.
 static bool solve_some(ldlt_t *half, uint32_t pairs) {
-    for (uint32_t cost = 0; cost == 0 || cost < pairs; cost += 2u * half->size + 4u) {
+    for (uint32_t cost = 0; cost == 0 || cost < pairs; cost += 3u * half->size + 4u) {
         if (ldlt_step(half)) {
             return true;
         }
@@ -324,7 +331,7 @@ static uint32_t sigma_turn(const tone_fit_t *self, uint32_t slot, uint64_t amp_s
     return (uint32_t)((root_q20 * 1304) >> self->window.points_log2);
 }
 
-static void read_tone(tone_fit_t *self, uint32_t slot, uint64_t residual_q16) {
+static void read_tone(tone_fit_t *self, uint32_t slot) {
     tone_t *tone = &self->tone[slot];
     const int32_t a = self->even_half.right[even_row(slot)];
     const int32_t p = self->even_half.right[even_row(slot) + 1u];
@@ -336,7 +343,13 @@ static void read_tone(tone_fit_t *self, uint32_t slot, uint64_t residual_q16) {
     tone->turn += (uint32_t)as_turn(tone->shift_q29, self->window.points_log2);
     tone->phase_turn = atan2_turn(-b, a);
     tone->amp_um_s2 = in_um_s2(self, sqrt_fast_u64(square));
-    tone->sigma_turn = sigma_turn(self, slot, square, residual_q16);
+}
+
+static void read_sigma(tone_fit_t *self, uint32_t slot) {
+    const int64_t a = self->even_half.right[even_row(slot)];
+    const int64_t b = self->odd_half.right[odd_row(slot)];
+    self->tone[slot].sigma_turn =
+        sigma_turn(self, slot, (uint64_t)(a * a + b * b), self->residual_q16);
 }
 
 // Reads how much of the window's energy about its mean the fit explains; returns the variance of
@@ -382,12 +395,17 @@ static void read_whole(tone_fit_t *self) {
     self->constant_um_s2 = offset_um_s2(self, constant);
     self->end_um_s2 = offset_um_s2(self, slow);
     self->slot = 0;
+    self->other = 0;
 }
 
-// One component. Returns true iff it was the last.
+// Half of a component's figures. Returns true iff all are read.
 static bool read_next(tone_fit_t *self) {
-    if (self->slot < self->tones) {
-        read_tone(self, self->slot, self->residual_q16);
+    if (self->other == 0) {
+        read_tone(self, self->slot);
+        self->other = 1;
+    } else {
+        read_sigma(self, self->slot);
+        self->other = 0;
         self->slot++;
     }
     return self->slot >= self->tones;
@@ -400,14 +418,14 @@ static bool is_all_done(const tone_fit_t *self) {
 bool tone_fit_step(tone_fit_t *self, uint32_t pairs) {
     switch (self->stage) {
     case TONE_FIT_GATHER:
-        gather(self, 2u * pairs); // half as dear as projecting
+        gather(self, pairs + pairs / 4u); // less dear than projecting
         if (is_all_done(self)) {
             start_normalize(self);
         }
         return false;
     case TONE_FIT_NORMALIZE:
         if (!is_all_done(self)) {
-            normalize(self, 2u * pairs);
+            normalize(self, pairs + pairs / 4u);
         }
         return is_all_done(self);
     case TONE_FIT_PROJECT:

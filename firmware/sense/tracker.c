@@ -37,6 +37,9 @@ void tracker_start_search(tracker_t *self, const tracker_window_t *window) {
     self->candidates = 0;
     self->height = 0;
     self->is_rising = false;
+    self->next = 0;
+    self->starts = 0;
+    self->has_drift = false;
 }
 
 // Keeps the strongest candidates in order; a weaker one than all of a full list is dropped.
@@ -138,13 +141,8 @@ static bool displaces_more(uint32_t amp_a, uint32_t fa, uint32_t amp_b, uint32_t
     return (uint64_t)amp_a * (fb * fb) > (uint64_t)amp_b * (fa * fa);
 }
 
-typedef struct {
-    uint32_t turn;
-    uint32_t amp;
-} start_t;
-
 // Puts the one with the largest displacement first; the others keep their order.
-static void dominant_start_first(start_t *start, uint32_t count) {
+static void dominant_start_first(tracker_start_t *start, uint32_t count) {
     if (count == 0) {
         return;
     }
@@ -155,17 +153,18 @@ static void dominant_start_first(start_t *start, uint32_t count) {
             best = i;
         }
     }
-    const start_t first = start[best];
+    const tracker_start_t first = start[best];
     for (; best > 0; best--) {
         start[best] = start[best - 1];
     }
     start[0] = first;
 }
 
-static bool is_close(const start_t *start, uint32_t count, uint32_t turn, uint32_t gap) {
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t other = start[i].turn;
-        if ((turn > other ? turn - other : other - turn) < gap) {
+// Whether a start within a bin of it stands already.
+static bool is_close(const tracker_t *self, uint32_t turn) {
+    for (uint32_t i = 0; i < self->starts; i++) {
+        const uint32_t other = self->start[i].turn;
+        if ((turn > other ? turn - other : other - turn) < bin_turn(self)) {
             return true;
         }
     }
@@ -173,49 +172,46 @@ static bool is_close(const start_t *start, uint32_t count, uint32_t turn, uint32
 }
 
 // Components of the last fit stay in, even where the spectrum does not show a peak of their own.
-static uint32_t add_known(const tracker_t *self, start_t *start, uint32_t count) {
-    uint32_t all = count;
-    for (uint32_t i = 0; i < self->tones && all < TRACKER_CANDIDATES; i++) {
+static void add_known(tracker_t *self) {
+    for (uint32_t i = 0; i < self->tones && self->starts < TRACKER_CANDIDATES; i++) {
         const tracker_tone_t *tone = &self->tone[i];
-        if (!is_close(start, all, tone->turn, bin_turn(self))) {
-            start[all] = (start_t){tone->turn, (uint32_t)tone->amp_um_s2};
-            all++;
+        if (!is_close(self, tone->turn)) {
+            self->start[self->starts] = (tracker_start_t){tone->turn, (uint32_t)tone->amp_um_s2};
+            self->starts++;
         }
     }
-    return all;
 }
 
-uint32_t tracker_end_search(tracker_t *self, const uint64_t *power, uint32_t *turns,
-                            bool *has_drift) {
-    start_t start[TRACKER_CANDIDATES];
-    uint32_t count = 0;
-    *has_drift = false;
-    for (uint32_t i = 0; i < self->candidates; i++) {
-        const uint32_t k = self->candidate[i];
-        if (!is_significant(self, power, k)) {
-            continue;
-        }
-        const int32_t bin_q15 = interpolate_q15(power, k);
-        const uint32_t turn = start_turn(self, bin_q15);
-        if (tracker_is_drift(self, turn)) {
-            *has_drift = self->window.is_longest;
-        } else if (!is_close(start, count, turn, bin_turn(self))) {
-            start[count] = (start_t){turn, sqrt_fast_u64(power[k])};
-            count++;
-        }
+static void take_candidate(tracker_t *self, const uint64_t *power, uint32_t k) {
+    if (!is_significant(self, power, k)) {
+        return;
+    }
+    const uint32_t turn = start_turn(self, interpolate_q15(power, k));
+    if (tracker_is_drift(self, turn)) {
+        self->has_drift |= self->window.is_longest;
+    } else if (!is_close(self, turn)) {
+        self->start[self->starts] = (tracker_start_t){turn, sqrt_fast_u64(power[k])};
+        self->starts++;
+    }
+}
+
+bool tracker_choose(tracker_t *self, const uint64_t *power) {
+    if (self->next < self->candidates) {
+        take_candidate(self, power, self->candidate[self->next]);
+        self->next++;
+    }
+    if (self->next < self->candidates) {
+        return false;
     }
     if (self->window.is_longest) {
-        count = add_known(self, start, count);
-        dominant_start_first(start, count);
+        add_known(self);
+        dominant_start_first(self->start, self->starts);
     }
     // A window of n samples tells about log2(n) - 4 components apart.
     const uint32_t most = self->window.points_log2 - 4u;
-    count = count < most ? count : most;
-    count = count < TRACKER_TONES ? count : TRACKER_TONES;
-    for (uint32_t i = 0; i < count; i++) {
-        turns[i] = start[i].turn;
-    }
-    return count;
+    self->starts = self->starts < most ? self->starts : most;
+    self->starts = self->starts < TRACKER_TONES ? self->starts : TRACKER_TONES;
+    return true;
 }
 
 static bool is_third_harmonic(const tracker_t *self, const tracker_tone_t *of,

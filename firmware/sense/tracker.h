@@ -49,6 +49,12 @@ typedef struct {
     int32_t freq_uHz;
 } tracker_tone_t;
 
+/// Where the fit shall start.
+typedef struct {
+    uint32_t turn; ///< turns a sample Q32
+    uint32_t amp;  ///< um/s2, roughly
+} tracker_start_t;
+
 typedef struct {
     tracker_cfg_t cfg;
     uint64_t min_power;
@@ -59,6 +65,10 @@ typedef struct {
     uint32_t candidates;
     uint64_t height; ///< of the newest power, rising weight
     bool is_rising;
+    uint32_t next;                             ///< candidate to be looked at
+    tracker_start_t start[TRACKER_CANDIDATES]; ///< dominant one first in the longest window
+    uint32_t starts;                           ///< at most TRACKER_TONES in the end
+    bool has_drift;                     ///< something slower than the window can resolve is there
     tracker_tone_t tone[TRACKER_TONES]; ///< of the last fit; in the band first, dominant one first
     uint32_t tones;
     uint32_t in_band; ///< of them
@@ -77,10 +87,9 @@ void tracker_start_search(tracker_t *self, const tracker_window_t *window);
 /// Reads powers first .. end-1 (rising from 1).
 void tracker_read(tracker_t *self, const uint64_t *power, uint32_t first, uint32_t end);
 
-/// Start frequencies for the fit, dominant candidate first. *has_drift: something slower than the
-/// window can resolve is there. Returns their number, 0 .. TRACKER_TONES.
-uint32_t tracker_end_search(tracker_t *self, const uint64_t *power, uint32_t *turns,
-                            bool *has_drift);
+/// All powers have been read: looks at one candidate more. Returns true iff start, starts and
+/// has_drift are complete.
+bool tracker_choose(tracker_t *self, const uint64_t *power);
 
 /// Whether a frequency is too low to be told from a drift in the window: below 7/8 of a cycle.
 bool tracker_is_drift(const tracker_t *self, uint32_t turn);

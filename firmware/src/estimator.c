@@ -3,10 +3,11 @@
 #include <stddef.h>
 
 enum {
-    PAIRS_A_SAMPLE = 96, // work of a job between two samples, in pairs of samples
-    MOST_FITS = 4,       // to one window
-    CALM_s = 2,          // without a contradiction, before a longer window is tried again
-    PURE_Q16 = 52429,    // 80 %: share of the energy that one component must explain
+    PAIRS_A_SAMPLE = 80,  // work of a job between two samples, in pairs of samples
+    POWERS_A_SAMPLE = 28, // and powers to read
+    MOST_FITS = 4,        // to one window
+    CALM_s = 2,           // without a contradiction, before a longer window is tried again
+    PURE_Q16 = 52429,     // 80 %: share of the energy that one component must explain
 };
 
 // Samples whose filters still remember what was before.
@@ -19,11 +20,12 @@ void estimator_init(estimator_t *self, const estimator_cfg_t *cfg) {
     *self = (estimator_t){.age_ticks = UINT32_MAX, .job_ticks = UINT32_MAX};
     decimate_init(&self->decimate, cfg->tick_rate_Hz);
     self->stages = self->decimate.stages;
-    spectrum_init(&self->spectrum, 1u << self->stages);
+    spectrum_init(&self->spectrum, self->stages);
     tracker_init(&self->tracker, &cfg->tracker);
     velocity_init(&self->velocity, cfg->tracker.band_low_mHz, cfg->tracker.band_high_mHz);
     predictor_init(&self->predictor, self->stages);
     self->slice_pairs = PAIRS_A_SAMPLE >> self->stages;
+    self->slice_powers = POWERS_A_SAMPLE >> self->stages;
     self->hop_ticks = cfg->hop_ms * cfg->tick_rate_Hz / 1000u;
     self->clean_samples = -filter_memory(self);
     while (self->longest_level < SPECTRUM_LONGEST &&
@@ -92,6 +94,45 @@ static void start_job(estimator_t *self) {
     if (self->job_ticks < self->hop_ticks || !choose_level(self)) {
         return;
     }
+    // The window's own mean holds some of the vibration; the last fit knows better.
+    const int32_t constant_um_s2 = self->predictor.is_armed && !self->has_drift
+                                       ? self->fit.constant_um_s2
+                                       : spectrum_mean_um_s2(&self->spectrum, self->level);
+    spectrum_want_powers(&self->spectrum, self->level, constant_um_s2);
+    self->job_ticks = 0;
+    self->stage = ESTIMATOR_SEARCH;
+}
+
+static void search(estimator_t *self) {
+    if (!self->spectrum.has_powers) {
+        return;
+    }
+    const tracker_window_t window = {
+        .points_log2 = SPECTRUM_POINTS_LOG2(self->level),
+        .last_power = spectrum_last_power(self->level),
+        .is_longest = self->level == self->longest_level,
+    };
+    tracker_start_search(&self->tracker, &window);
+    velocity_start(&self->velocity, SPECTRUM_POINTS_LOG2(self->level));
+    self->next_power = 1;
+    self->stage = ESTIMATOR_READ;
+}
+
+static void read(estimator_t *self) {
+    const uint32_t last = spectrum_last_power(self->level);
+    uint32_t end = self->next_power + self->slice_powers;
+    end = end < last + 1u ? end : last + 1u;
+    tracker_read(&self->tracker, self->spectrum.power, self->next_power, end);
+    velocity_read(&self->velocity, self->spectrum.power, self->next_power, end);
+    self->next_power = end;
+    if (end > last) {
+        velocity_end(&self->velocity);
+        self->stage = ESTIMATOR_CHOOSE;
+    }
+}
+
+// Candidates found: takes the window's samples in.
+static void start_gathering(estimator_t *self) {
     const tone_fit_window_t window = {
         .ring = self->spectrum.sample,
         .ring_mask = SPECTRUM_RING - 1u,
@@ -101,34 +142,34 @@ static void start_job(estimator_t *self) {
     };
     tone_fit_start(&self->fit, &window);
     self->job_age_ticks = self->sample_age_ticks;
-    self->job_ticks = 0;
     self->stage = ESTIMATOR_GATHER;
 }
 
-static void gather(estimator_t *self) {
-    if (tone_fit_step(&self->fit, self->slice_pairs)) {
-        // The window's own mean holds some of the vibration; the last fit knows better.
-        const int32_t constant_um_s2 = self->predictor.is_armed && !self->has_drift
-                                           ? self->fit.constant_um_s2
-                                           : spectrum_mean_um_s2(&self->spectrum, self->level);
-        spectrum_want_powers(&self->spectrum, self->level, constant_um_s2);
-        self->stage = ESTIMATOR_SEARCH;
-    }
-}
-
 static void choose(estimator_t *self) {
-    uint32_t turns[TRACKER_TONES];
-    const uint32_t count =
-        tracker_end_search(&self->tracker, self->spectrum.power, turns, &self->has_drift);
-    velocity_end(&self->velocity);
+    tracker_t *tracker = &self->tracker;
+    if (!tracker_choose(tracker, self->spectrum.power)) {
+        return;
+    }
     // A drift goes on until a fit finds none.
-    self->has_drift |= self->is_drifting && self->level == self->longest_level;
-    if (count == 0) {
-        (void)tracker_decide(&self->tracker, NULL, 0, 0, 0);
+    self->has_drift =
+        tracker->has_drift || (self->is_drifting && self->level == self->longest_level);
+    if (tracker->starts == 0) {
+        (void)tracker_decide(tracker, NULL, 0, 0, 0);
         self->stage = ESTIMATOR_WAIT;
         return;
     }
-    tone_fit_set(&self->fit, turns, count, self->has_drift);
+    start_gathering(self);
+}
+
+static void gather(estimator_t *self) {
+    if (!tone_fit_step(&self->fit, self->slice_pairs)) {
+        return;
+    }
+    uint32_t turns[TRACKER_TONES];
+    for (uint32_t i = 0; i < self->tracker.starts; i++) {
+        turns[i] = self->tracker.start[i].turn;
+    }
+    tone_fit_set(&self->fit, turns, self->tracker.starts, self->has_drift);
     self->fits = 1;
     self->stage = ESTIMATOR_FIT;
 }
@@ -248,6 +289,7 @@ static void publish(estimator_t *self) {
     self->sigma_uHz = tracker_freq_uHz(tracker->tone[0].sigma_turn);
     self->window_ms = SPECTRUM_POINTS(self->level) * 1000u / SPECTRUM_RATE_Hz;
     self->has_published = true;
+    self->stage = ESTIMATOR_WAIT;
 }
 
 static void decide(estimator_t *self) {
@@ -262,66 +304,24 @@ static void decide(estimator_t *self) {
             .amp_um_s2 = tone->amp_um_s2,
         };
     }
-    if (tracker_decide(&self->tracker, tones, self->fit.tones, self->fit.residual_um_s2,
-                       self->fit.explained_q16)) {
-        publish(self);
-    }
-    self->stage = ESTIMATOR_WAIT;
+    const bool is_good = tracker_decide(&self->tracker, tones, self->fit.tones,
+                                        self->fit.residual_um_s2, self->fit.explained_q16);
+    self->stage = is_good ? ESTIMATOR_PUBLISH : ESTIMATOR_WAIT;
 }
 
 static void work(estimator_t *self) {
-    switch (self->stage) {
-    case ESTIMATOR_WAIT:
-        start_job(self);
-        break;
-    case ESTIMATOR_GATHER:
-        gather(self);
-        break;
-    case ESTIMATOR_CHOOSE:
-        choose(self);
-        break;
-    case ESTIMATOR_FIT:
-        fit(self);
-        break;
-    case ESTIMATOR_DECIDE:
-        decide(self);
-        break;
-    case ESTIMATOR_SEARCH: // starts with the next sample
-    case ESTIMATOR_READ:   // goes on with the spectrum's slices
-    default:
-        break;
-    }
-}
-
-static void start_search(estimator_t *self) {
-    const tracker_window_t window = {
-        .points_log2 = SPECTRUM_POINTS_LOG2(self->level),
-        .last_power = spectrum_last_power(self->level),
-        .is_longest = self->level == self->longest_level,
+    static void (*const step[])(estimator_t *) = {
+        [ESTIMATOR_WAIT] = start_job, [ESTIMATOR_SEARCH] = search,   [ESTIMATOR_READ] = read,
+        [ESTIMATOR_CHOOSE] = choose,  [ESTIMATOR_GATHER] = gather,   [ESTIMATOR_FIT] = fit,
+        [ESTIMATOR_DECIDE] = decide,  [ESTIMATOR_PUBLISH] = publish,
     };
-    tracker_start_search(&self->tracker, &window);
-    velocity_start(&self->velocity, SPECTRUM_POINTS_LOG2(self->level));
-    self->stage = ESTIMATOR_READ;
+    step[self->stage](self);
 }
 
 static void take_sample(estimator_t *self, int32_t sample_um_s2) {
-    if (spectrum_start_round(&self->spectrum, sample_um_s2) && self->stage == ESTIMATOR_SEARCH) {
-        start_search(self);
-    }
+    spectrum_start_round(&self->spectrum, sample_um_s2);
     self->clean_samples += self->clean_samples < INT32_MAX ? 1 : 0;
     self->sample_age_ticks = 0;
-}
-
-static void slide(estimator_t *self) {
-    const spectrum_span_t span = spectrum_slice(&self->spectrum);
-    if (self->stage != ESTIMATOR_READ || span.first == span.end) {
-        return;
-    }
-    tracker_read(&self->tracker, self->spectrum.power, span.first, span.end);
-    velocity_read(&self->velocity, self->spectrum.power, span.first, span.end);
-    if (span.end > spectrum_last_power(self->level)) {
-        self->stage = ESTIMATOR_CHOOSE;
-    }
 }
 
 static void age(estimator_t *self) {
@@ -344,13 +344,10 @@ void estimator_step(estimator_t *self, const estimator_in_t *in) {
     int32_t sample = in->is_good || !self->predictor.is_armed ? in->accel_um_s2
                                                               : self->predictor.prediction_um_s2;
     sample = clamp_i32(sample, -DECIMATE_LIMIT, DECIMATE_LIMIT);
-    const bool is_reading = self->stage == ESTIMATOR_SEARCH || self->stage == ESTIMATOR_READ;
     if (decimate_step(&self->decimate, &sample)) {
         take_sample(self, sample);
     }
-    slide(self);
-    if (!is_reading) {
-        work(self);
-    }
+    spectrum_slice(&self->spectrum);
+    work(self);
     self->age_ticks = estimator_is_valid(self) ? 0 : increment_sat_u32(self->age_ticks);
 }

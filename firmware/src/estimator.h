@@ -39,13 +39,14 @@ typedef struct {
 } estimator_tone_t;
 
 typedef enum {
-    ESTIMATOR_WAIT,
-    ESTIMATOR_GATHER,
-    ESTIMATOR_SEARCH,
+    ESTIMATOR_WAIT,   ///< for samples
+    ESTIMATOR_SEARCH, ///< for the spectrum's powers
     ESTIMATOR_READ,
     ESTIMATOR_CHOOSE,
+    ESTIMATOR_GATHER,
     ESTIMATOR_FIT,
     ESTIMATOR_DECIDE,
+    ESTIMATOR_PUBLISH,
 } estimator_stage_t;
 
 typedef struct {
@@ -56,6 +57,7 @@ typedef struct {
     predictor_t predictor;
     velocity_t velocity;
     uint32_t stages;        ///< a sample every 2^stages ticks
+    uint32_t slice_powers;  ///< to read a tick
     uint32_t slice_pairs;   ///< of work a tick
     uint32_t longest_level; ///< longest window in use
     uint32_t hop_ticks;
@@ -70,6 +72,7 @@ typedef struct {
     uint32_t calm_enough_ticks;
     bool is_pure; ///< the longest window last held one component only: shorter ones may be trusted
     estimator_stage_t stage;
+    uint32_t next_power;                    ///< to be read
     uint32_t fits;                          ///< to the job's window so far
     bool has_drift;                         ///< in the job's window
     bool is_drifting;                       ///< so did the last published one of the longest window
