@@ -26,7 +26,9 @@ enum {
     MAX_SETTINGS = 12,
     ACCEL_LIMIT_um_s2 = 500000000,
     AMP_LIMIT_um_s2 = 1 << 30,
+    SHORTEST_WINDOW_ms = 128,
     LONGEST_WINDOW_ms = 1024,
+    MOVE_TICKS = 7, // between copies of the state, where the input asks for them
 };
 
 typedef struct {
@@ -204,6 +206,7 @@ static void check_signals(const fuzz_t *fuzz, const quiesce_telemetry_t *t) {
     REQUIRE(t->freq_is_valid <= 1u);
     REQUIRE(t->freq_is_valid == 0u || (t->freq_uHz > 0 && t->freq_age_ticks == 0u));
     REQUIRE(t->freq_sigma_uHz >= 0 && t->freq_window_ms <= LONGEST_WINDOW_ms);
+    REQUIRE(t->freq_is_valid == 0u || t->freq_window_ms >= SHORTEST_WINDOW_ms);
     REQUIRE(t->displacement_amp_nm >= 0 && t->velocity_rms_um_s >= 0);
     REQUIRE(t->displacement_nm != INT32_MIN);
     REQUIRE(t->rules_fired < UINT32_C(1) << 16);
@@ -257,14 +260,14 @@ static void run(fuzz_t *fuzz, stretch_t stretch) {
     if (stretch.flags & FLAG_RESTART) {
         start(fuzz);
     }
-    if (stretch.flags & FLAG_MOVE) {
-        move(fuzz);
-    }
     if (stretch.flags & FLAG_GAP) {
         fuzz->tick += stretch.freq_mHz;
     }
     const uint32_t ticks = stretch.ticks < fuzz->ticks_left ? stretch.ticks : fuzz->ticks_left;
     for (uint32_t i = 0; i < ticks; i++) {
+        if ((stretch.flags & FLAG_MOVE) != 0 && i % MOVE_TICKS == 0) {
+            move(fuzz);
+        }
         step(fuzz, &stretch);
     }
     fuzz->ticks_left -= ticks;
