@@ -7,12 +7,17 @@ enum {
     NOISE_SHARE = 3,     // of the noise that each square is expected to exceed at most
     TOLERANCE_SHARE = 2, // and of the tolerance
     NOISE_ALARM = 24,
+    UNCLEAR_ALARM = 48, // where much is not explained, it is not white noise either
     TOLERANCE_ALARM = 4,
-    OUTLIER = 8,      // of noise + tolerance: no square counts as more noise than this
-    OFFSET_SHIFT = 6, // the slow part: over 64 decimated samples (a quarter of a second)
-    NOISE_SHIFT = 9,  // the noise: over 512 of the shortest blocks (a second)
-    JUDGED_A_TICK = 2,
-    SCALE_SHIFT = 2, // a block of the next scale is four of this one
+    OUTLIER = 8,        // of noise + tolerance: no square counts as more noise than this
+    OFFSET_SHIFT = 6,   // the slow part: over 64 decimated samples (a quarter of a second)
+    NOISE_SHIFT = 9,    // the noise: over 512 of the shortest blocks (a second)
+    CALM_SCALE = 1,     // blocks of 8 ms ..
+    CALM_BLOCKS = 5,    // .. in a row that fit again end a suspicion
+    CALM_NOISE = 6,     // of the noise that the square of a fitting block does not exceed
+    BURST_SHARE = 1024, // of the tolerance: squares of 2 ms that a burst may sum up to, 0.8 % of
+                        // the longest window's energy
+    SCALE_SHIFT = 2,    // a block of the next scale is four of this one
 };
 
 void predictor_init(predictor_t *self, uint32_t stages) {
@@ -50,6 +55,7 @@ void predictor_load(predictor_t *self, const predictor_tone_t *tones, uint32_t c
     self->tones = count;
     const int64_t bend = clamp_i32(rest->bend_um_s2, 0, DIFFERENCE_LIMIT);
     self->tolerance = (square >> TOLERANCE_SHIFT) + bend * bend;
+    self->noise_alarm = rest->is_clear ? NOISE_ALARM : UNCLEAR_ALARM;
     self->drift_um_s2_q8 = rest->drift_um_s2_q8;
     if (!self->is_armed || rest->bend_um_s2 != 0) {
         self->offset_q12 = (int64_t)rest->mean_um_s2 * (1 << 12);
@@ -61,6 +67,7 @@ void predictor_load(predictor_t *self, const predictor_tone_t *tones, uint32_t c
 
 void predictor_disarm(predictor_t *self) {
     self->is_armed = false;
+    self->is_suspicious = false;
 }
 
 static int32_t run_on(predictor_t *self) {
@@ -74,18 +81,32 @@ static int32_t run_on(predictor_t *self) {
     return (int32_t)clamp_i64((self->offset_q12 >> 12) + sum, -INT32_MAX, INT32_MAX);
 }
 
-// Page's sum after one more block's average. Returns true iff it says: changed.
-static bool judge(predictor_watch_t *watch, int64_t tolerance, uint32_t settle_shift) {
-    const int64_t square = watch->average * watch->average;
-    watch->sum += square - NOISE_SHARE * watch->noise - TOLERANCE_SHARE * tolerance - 1;
-    watch->suspect_blocks++;
-    if (watch->sum <= 0) {
-        watch->sum = 0;
-        watch->suspect_blocks = 0;
+// Mean square that a block's average may have by noise. Where noise is not white, a block of the
+// next scale has more than a quarter of it left: then these blocks are not independent either.
+static int64_t noise_of(const predictor_t *self, uint32_t scale) {
+    const int64_t own = self->watch[scale].noise;
+    if (scale + 1u == PREDICTOR_SCALES) {
+        return own;
     }
-    const int64_t most = OUTLIER * (watch->noise + tolerance + 1);
-    watch->noise += ((square < most ? square : most) - watch->noise) >> settle_shift;
-    return watch->sum > NOISE_ALARM * watch->noise + TOLERANCE_ALARM * tolerance;
+    const int64_t slower = self->watch[scale + 1u].noise * (1 << SCALE_SHIFT);
+    return own > slower ? own : slower;
+}
+
+// Page's sum after one more block's average. Returns true iff it says: changed.
+static bool judge(predictor_t *self, uint32_t scale) {
+    predictor_watch_t *at = &self->watch[scale];
+    const int64_t noise = noise_of(self, scale);
+    const int64_t square = at->average * at->average;
+    at->sum += square - NOISE_SHARE * noise - TOLERANCE_SHARE * self->tolerance - 1;
+    at->suspect_blocks++;
+    if (at->sum <= 0) {
+        at->sum = 0;
+        at->suspect_blocks = 0;
+    }
+    const int64_t most = OUTLIER * (at->noise + self->tolerance + 1);
+    at->noise +=
+        ((square < most ? square : most) - at->noise) >> (NOISE_SHIFT - SCALE_SHIFT * scale);
+    return at->sum > self->noise_alarm * noise + TOLERANCE_ALARM * self->tolerance;
 }
 
 // Sums blocks: a finished one of a scale is a part of the next scale's.
@@ -106,18 +127,20 @@ static void collect(predictor_t *self, int64_t difference) {
     }
 }
 
-// Judges two finished blocks a tick at most, the shortest first; the others can wait.
+// Judges one finished block a tick, the shortest first; the others can wait for a tick in which it
+// does not end (where every tick ends one, two are judged).
 static bool watch(predictor_t *self) {
     bool has_changed = false;
+    const uint32_t most = block_parts(self, 0) == 1u ? 2u : 1u;
     uint32_t judged = 0;
-    for (uint32_t i = 0; i < PREDICTOR_SCALES && judged < JUDGED_A_TICK; i++) {
+    for (uint32_t i = 0; i < PREDICTOR_SCALES && judged < most; i++) {
         predictor_watch_t *at = &self->watch[i];
         if (!at->is_due) {
             continue;
         }
         at->is_due = false;
         judged++;
-        if (judge(at, self->tolerance, NOISE_SHIFT - SCALE_SHIFT * i) && !has_changed) {
+        if (judge(self, i) && !has_changed) {
             has_changed = true;
             // The block in which it began may still hold some of what was before.
             self->suspect_ticks = (at->suspect_blocks - 1u) << block_shift(self, i);
@@ -126,15 +149,50 @@ static bool watch(predictor_t *self) {
     return has_changed;
 }
 
-bool predictor_step(predictor_t *self, int32_t accel_um_s2, bool is_good) {
+static void suspect(predictor_t *self) {
+    self->is_suspicious = true;
+    self->calm_blocks = 0;
+    self->burst = self->watch[0].sum;
+    for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
+        self->watch[i].sum = 0;
+        self->watch[i].is_due = false;
+    }
+}
+
+// Whether the samples fit again after a burst so small that the windows bear it.
+static bool is_back(predictor_t *self) {
+    predictor_watch_t *shortest = &self->watch[0];
+    if (shortest->is_due) {
+        shortest->is_due = false;
+        self->burst += shortest->average * shortest->average;
+    }
+    predictor_watch_t *at = &self->watch[CALM_SCALE];
+    if (at->is_due) {
+        at->is_due = false;
+        const int64_t most = CALM_NOISE * at->noise + TOLERANCE_SHARE * self->tolerance;
+        self->calm_blocks = at->average * at->average <= most ? self->calm_blocks + 1u : 0;
+    }
+    const bool is_small = self->burst <= BURST_SHARE * self->tolerance;
+    return self->calm_blocks >= CALM_BLOCKS && is_small;
+}
+
+predictor_verdict_t predictor_step(predictor_t *self, int32_t accel_um_s2, bool is_good) {
     self->prediction_um_s2 = run_on(self);
     if (!self->is_armed || !is_good) {
-        return false;
+        return PREDICTOR_FITS;
     }
     const int64_t error = (int64_t)accel_um_s2 - self->prediction_um_s2;
     const int64_t difference = clamp_i64(error, -DIFFERENCE_LIMIT, DIFFERENCE_LIMIT);
+    collect(self, difference);
+    if (self->is_suspicious) {
+        self->is_suspicious = !is_back(self);
+        return self->is_suspicious ? PREDICTOR_FITS : PREDICTOR_BACK;
+    }
     self->offset_q12 += (int64_t)self->drift_um_s2_q8 * 16;
     self->offset_q12 += (difference * (1 << 12)) >> (OFFSET_SHIFT + self->stages);
-    collect(self, difference);
-    return watch(self);
+    if (!watch(self)) {
+        return PREDICTOR_FITS;
+    }
+    suspect(self);
+    return PREDICTOR_CHANGED;
 }

@@ -36,6 +36,12 @@ typedef struct {
     uint32_t suspect_blocks; ///< since the sum was zero
 } predictor_watch_t;
 
+typedef enum {
+    PREDICTOR_FITS = 0,
+    PREDICTOR_CHANGED = 1, ///< the vibration is not what it was; suspect_ticks tells since when
+    PREDICTOR_BACK = 2,    ///< after CHANGED: it was a small burst, the samples fit again
+} predictor_verdict_t;
+
 typedef struct {
     predictor_tone_t tone[PREDICTOR_TONES];
     uint32_t tones;
@@ -43,8 +49,12 @@ typedef struct {
     uint32_t stages;
     int64_t offset_q12;     ///< constant and slow part of the samples
     int32_t drift_um_s2_q8; ///< its change a tick
+    int64_t noise_alarm;    ///< of the noise, see judge
     int64_t tolerance;      ///< mean square that the components may be off
     predictor_watch_t watch[PREDICTOR_SCALES];
+    bool is_suspicious;       ///< since CHANGED; only BACK or disarming ends it
+    uint32_t calm_blocks;     ///< that fitted again, in a row
+    int64_t burst;            ///< sum of squares since it began
     uint32_t suspect_ticks;   ///< at an alarm: how long ago the change began
     int32_t prediction_um_s2; ///< of this tick's sample
 } predictor_t;
@@ -57,6 +67,7 @@ typedef struct {
     int32_t mean_um_s2;     ///< constant part now
     int32_t drift_um_s2_q8; ///< its change a tick
     int32_t bend_um_s2;     ///< how far it may be off that line; 0: it does not drift
+    bool is_clear;          ///< the components explain most of the samples
     int32_t noise_um_s2;    ///< standard deviation of decimated samples
 } predictor_rest_t;
 
@@ -69,8 +80,9 @@ void predictor_load(predictor_t *self, const predictor_tone_t *tones, uint32_t c
 /// Stops watching; the components run on.
 void predictor_disarm(predictor_t *self);
 
-/// One tick: advances the components and looks at the sample (unless !is_good).
-/// Returns true iff the vibration has changed; suspect_ticks tells how long ago.
-bool predictor_step(predictor_t *self, int32_t accel_um_s2, bool is_good);
+/// One tick: advances the components and looks at the sample (unless !is_good). Samples that fit
+/// again for 40 ms after CHANGED, with less than 0.8 % of the longest window's energy in between,
+/// make it BACK.
+predictor_verdict_t predictor_step(predictor_t *self, int32_t accel_um_s2, bool is_good);
 
 #endif

@@ -28,11 +28,20 @@ void spectrum_init(spectrum_t *self, uint32_t slices_log2) {
     };
 }
 
+static void start_powers(spectrum_t *self) {
+    self->power_level = self->wanted_level;
+    self->wanted_level = SPECTRUM_LEVELS;
+    self->power_round = 0;
+}
+
 void spectrum_want_powers(spectrum_t *self, uint32_t level, int32_t constant_um_s2) {
     self->wanted_level = level;
     self->constant_um_s2 = constant_um_s2;
     self->power_level = SPECTRUM_LEVELS;
     self->has_powers = false;
+    if (self->next_slice == 0) {
+        start_powers(self);
+    }
 }
 
 void spectrum_start_round(spectrum_t *self, int32_t accel_um_s2) {
@@ -46,9 +55,7 @@ void spectrum_start_round(spectrum_t *self, int32_t accel_um_s2) {
     self->newest = newest;
     self->next_slice = 0;
     if (self->wanted_level != SPECTRUM_LEVELS) {
-        self->power_level = self->wanted_level;
-        self->wanted_level = SPECTRUM_LEVELS;
-        self->power_round = 0;
+        start_powers(self);
     }
 }
 
@@ -129,7 +136,7 @@ static uint64_t windowed_power(const spectrum_t *self, const hann_t *hann, uint3
 
 // Rounds that share a window's powers, so that they cost a tick no more than anything else.
 static uint32_t power_rounds(uint32_t level) {
-    return level == SPECTRUM_LONGEST ? 2u : 1u;
+    return level == SPECTRUM_LONGEST ? 3u : level == SPECTRUM_LONGEST - 1u ? 2u : 1u;
 }
 
 // Powers of this round's bins whose upper neighbour lies in first .. end-1.

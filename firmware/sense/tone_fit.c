@@ -6,6 +6,7 @@
 
 enum {
     DATA_BITS = 22,
+    SPARE_BITS = 3,
     SUM_BITS = 24,         // fraction of cosines and sines in the sums
     RIGHT_BITS = 8,        // of the right sides, above the data's unit
     PAIRS_A_COUPLING = 12, // what one coupling costs, in pairs of samples
@@ -24,16 +25,18 @@ static void enter(tone_fit_t *self, tone_fit_stage_t stage) {
     self->done = 0;
 }
 
-void tone_fit_start(tone_fit_t *self, const tone_fit_window_t *window) {
-    self->window = *window;
-    self->bits = 0;
-    self->slots = 0;
-    enter(self, TONE_FIT_GATHER);
-}
-
 static uint32_t end_of_slice(const tone_fit_t *self, uint32_t pairs) {
     const uint32_t left = pairs_of(self) - self->done;
     return self->done + (pairs < left ? pairs : left);
+}
+
+// value x 2^up_shift; what leaves the word is noticed afterwards (has_right_scale).
+static int32_t scaled(int32_t value, int32_t up_shift) {
+    return up_shift >= 0 ? (int32_t)((uint32_t)value << up_shift) : value >> -up_shift;
+}
+
+static uint32_t magnitude_bits(int32_t value) {
+    return (uint32_t)(value ^ (value >> 31));
 }
 
 // Folds the window about its middle. |x| < 2^29, so that the folded ones fit 32 bits.
@@ -41,45 +44,53 @@ static void gather(tone_fit_t *self, uint32_t pairs) {
     const tone_fit_window_t *w = &self->window;
     const uint32_t end = end_of_slice(self, pairs);
     const uint32_t right = w->newest - pairs_of(self) + 1u;
+    uint32_t bits = self->bits;
+    uint64_t energy = self->energy;
     for (uint32_t i = self->done; i < end; i++) {
         const int32_t ahead = w->ring[(right + i) & w->ring_mask] - w->mean_um_s2;
         const int32_t behind = w->ring[(right - 1u - i) & w->ring_mask] - w->mean_um_s2;
-        const int32_t even = ahead + behind;
-        const int32_t odd = ahead - behind;
+        const int32_t even = scaled(ahead + behind, self->up_shift);
+        const int32_t odd = scaled(ahead - behind, self->up_shift);
+        bits |= magnitude_bits(ahead + behind) | magnitude_bits(ahead - behind);
         self->even[i] = even;
         self->odd[i] = odd;
-        self->bits |= (uint32_t)(even ^ (even >> 31)) | (uint32_t)(odd ^ (odd >> 31));
+        energy += (uint64_t)((int64_t)even * even) + (uint64_t)((int64_t)odd * odd);
+        self->constant += even;
     }
+    self->bits = bits;
+    self->energy = energy;
     self->done = end;
 }
 
-static int32_t scaled(int32_t value, int32_t up_shift) {
-    return up_shift >= 0 ? value * (1 << up_shift) : value >> -up_shift;
-}
-
-static void start_normalize(tone_fit_t *self) {
-    const int32_t used = self->bits == 0 ? DATA_BITS : 32 - __builtin_clz(self->bits);
-    self->up_shift = DATA_BITS - used;
+static void start_gathering(tone_fit_t *self) {
+    self->bits = 0;
     self->energy = 0;
     self->constant = 0;
-    enter(self, TONE_FIT_NORMALIZE);
+    enter(self, TONE_FIT_GATHER);
 }
 
-static void normalize(tone_fit_t *self, uint32_t pairs) {
-    const uint32_t end = end_of_slice(self, pairs);
-    int64_t energy = self->energy;
-    int64_t constant = self->constant;
-    for (uint32_t i = self->done; i < end; i++) {
-        const int32_t even = scaled(self->even[i], self->up_shift);
-        const int32_t odd = scaled(self->odd[i], self->up_shift);
-        self->even[i] = even;
-        self->odd[i] = odd;
-        energy += (int64_t)even * even + (int64_t)odd * odd;
-        constant += even;
-    }
-    self->energy = energy;
-    self->constant = constant;
-    self->done = end;
+// That makes DATA_BITS of a size.
+static int32_t best_shift(uint32_t size) {
+    return size == 0 ? 0 : DATA_BITS - (32 - __builtin_clz(size));
+}
+
+// Whether the data came out with DATA_BITS or a few less; sets the right scale otherwise.
+static bool has_right_scale(tone_fit_t *self) {
+    const int32_t best = best_shift(self->bits);
+    const bool is_right = self->up_shift <= best && self->up_shift >= best - SPARE_BITS;
+    self->up_shift = is_right ? self->up_shift : best;
+    return is_right;
+}
+
+void tone_fit_init(tone_fit_t *self) {
+    *self = (tone_fit_t){.stage = TONE_FIT_IDLE};
+}
+
+void tone_fit_start(tone_fit_t *self, const tone_fit_window_t *window) {
+    self->window = *window;
+    self->slots = 0;
+    self->up_shift = best_shift(window->size_um_s2);
+    start_gathering(self);
 }
 
 static int32_t to_i32(int64_t value) {
@@ -201,7 +212,9 @@ static kernel_t kernel(uint32_t t, uint32_t points_log2) {
     const int32_t g_q30 = over_points(half.sin, points_log2);
     const int32_t d0 = times_q30(edge.sin, g_q30);
     const int32_t d1 = times_q30(times_q30(half.cos, d0) - edge.cos, g_q30);
-    const int32_t d2 = times_q30(one_less, d0) - 2 * times_q30(times_q30(half.cos, d1), g_q30);
+    const int64_t twice_q30 = 2 * (int64_t)times_q30(times_q30(half.cos, d1), g_q30);
+    const int32_t d2 =
+        (int32_t)clamp_i64(times_q30(one_less, d0) - twice_q30, -INT32_MAX, INT32_MAX);
     return (kernel_t){d0, d1, d2};
 }
 
@@ -264,7 +277,7 @@ static bool couple_some(tone_fit_t *self, uint32_t pairs) {
 
 // At least one column. Returns true iff the half is solved.
 static bool solve_some(ldlt_t *half, uint32_t pairs) {
-    for (uint32_t cost = 0; cost == 0 || cost < pairs; cost += 3u * half->size + 4u) {
+    for (uint32_t cost = 0; cost == 0 || cost < pairs; cost += 4u * half->size + 4u) {
         if (ldlt_step(half)) {
             return true;
         }
@@ -357,7 +370,7 @@ static void read_sigma(tone_fit_t *self, uint32_t slot) {
 static uint64_t read_energy(tone_fit_t *self) {
     const uint32_t log2 = self->window.points_log2;
     const int64_t mean_q8 = (self->constant * (1 << RIGHT_BITS)) >> log2;
-    const int64_t all_q16 = (self->energy >> log2) * (1 << (2 * RIGHT_BITS - 1));
+    const int64_t all_q16 = (int64_t)(self->energy >> log2) * (1 << (2 * RIGHT_BITS - 1));
     const int64_t total_q16 = clamp_i64(all_q16 - mean_q8 * mean_q8, 1, INT64_MAX);
     const int64_t fitted_q16 = self->even_half.energy + self->odd_half.energy;
     const int64_t left_q16 = clamp_i64(all_q16 - fitted_q16, 0, total_q16);
@@ -418,16 +431,16 @@ static bool is_all_done(const tone_fit_t *self) {
 bool tone_fit_step(tone_fit_t *self, uint32_t pairs) {
     switch (self->stage) {
     case TONE_FIT_GATHER:
-        gather(self, pairs + pairs / 4u); // less dear than projecting
-        if (is_all_done(self)) {
-            start_normalize(self);
-        }
-        return false;
-    case TONE_FIT_NORMALIZE:
+        gather(self, (2u * pairs + 2u) / 3u); // dearer than projecting
         if (!is_all_done(self)) {
-            normalize(self, pairs + pairs / 4u);
+            return false;
         }
-        return is_all_done(self);
+        if (!has_right_scale(self)) {
+            start_gathering(self); // the ring still has the samples
+            return false;
+        }
+        self->stage = TONE_FIT_GATHERED;
+        return true;
     case TONE_FIT_PROJECT:
         project(self, pairs);
         if (is_all_done(self)) {

@@ -10,8 +10,8 @@
 /// their coefficients are closed sums. Where a slow drift is announced, a component of half a cycle
 /// a window stands for it.
 ///
-/// Formats: frequencies in turns a sample, Q32; data scaled to 22 bits as the window requires,
-/// mean removed; projections Q24 x 22 bits summed in 64 bit; matrices Q30. Bounded: 25
+/// Formats: frequencies in turns a sample, Q32; data scaled to 19 .. 22 bits as the window
+/// requires, mean removed; projections Q24 x 22 bits summed in 64 bit; matrices Q30. Bounded: 25
 /// instructions a pair of samples and component, 200 a pair of components and 500 a call of the
 /// rest; each call of step() does about as much as `pairs` pairs of samples.
 #ifndef TONE_FIT_H
@@ -37,7 +37,7 @@ typedef struct {
 typedef enum {
     TONE_FIT_IDLE,
     TONE_FIT_GATHER,
-    TONE_FIT_NORMALIZE,
+    TONE_FIT_GATHERED,
     TONE_FIT_PROJECT,
     TONE_FIT_COUPLE,
     TONE_FIT_SOLVE_EVEN,
@@ -52,7 +52,8 @@ typedef struct {
     uint32_t ring_mask;
     uint32_t newest; ///< ring index of the window's newest sample
     uint32_t points_log2;
-    int32_t mean_um_s2; ///< of the window, roughly
+    int32_t mean_um_s2;  ///< of the window, roughly
+    uint32_t size_um_s2; ///< largest magnitude about it that is to be expected; a guess
 } tone_fit_window_t;
 
 typedef struct {
@@ -73,7 +74,7 @@ typedef struct {
     uint32_t slots;   ///< components, a drift included
     uint32_t bits;    ///< of all magnitudes, ored
     int32_t up_shift; ///< data = samples << up_shift
-    int64_t energy;   ///< sum of squares of the data, times two
+    uint64_t energy;  ///< sum of squares of the data, times two
     int64_t constant; ///< sum of the data
     int32_t turn_cos_q30;
     int32_t turn_sin_q30;
@@ -93,7 +94,10 @@ typedef struct {
     int32_t residual_um_s2; ///< standard deviation of what it leaves
 } tone_fit_t;
 
-/// Takes a window's samples in. The ring must keep them until gathered() is true.
+void tone_fit_init(tone_fit_t *self);
+
+/// Takes a window's samples in (twice where size_um_s2 was 4 times wrong). The ring must keep them
+/// until gathered() is true.
 void tone_fit_start(tone_fit_t *self, const tone_fit_window_t *window);
 
 /// Start frequencies (turns a sample), at least 0.3 cycles a window and about a cycle a window

@@ -11,8 +11,8 @@ enum {
     BAND_EDGE_uHz = 20000,    // noise of an estimate right at the edge
 };
 
-// Share of the energy that a fit must explain to be trusted, Q16: 98, 97 and 92 %, and 88 % in the
-// longest window; noise of that size would hide a change for too long.
+// Share of the energy that a fit must explain to be clear, Q16: 98, 97 and 92 %, and 88 % in the
+// longest window; more noise would hide a change for too long.
 static const uint16_t least_explained_q16[] = {64300, 63600, 60300, 57700};
 
 void tracker_init(tracker_t *self, const tracker_cfg_t *cfg) {
@@ -39,6 +39,7 @@ void tracker_start_search(tracker_t *self, const tracker_window_t *window) {
     self->is_rising = false;
     self->next = 0;
     self->starts = 0;
+    self->strongest_um_s2 = 0;
     self->has_drift = false;
 }
 
@@ -190,7 +191,9 @@ static void take_candidate(tracker_t *self, const uint64_t *power, uint32_t k) {
     if (tracker_is_drift(self, turn)) {
         self->has_drift |= self->window.is_longest;
     } else if (!is_close(self, turn)) {
-        self->start[self->starts] = (tracker_start_t){turn, sqrt_fast_u64(power[k])};
+        const uint32_t amp = sqrt_fast_u64(power[k]);
+        self->start[self->starts] = (tracker_start_t){turn, amp};
+        self->strongest_um_s2 = amp > self->strongest_um_s2 ? amp : self->strongest_um_s2;
         self->starts++;
     }
 }
@@ -282,7 +285,7 @@ static bool is_explained(const tracker_t *self, uint32_t explained_q16) {
     return explained_q16 >= least_explained_q16[level];
 }
 
-// Whether the fit holds; in a short window it must be trusted, too.
+// Whether the fit holds; in a short window it must be clear, too.
 static bool qualifies(const tracker_t *self, uint32_t explained_q16) {
     if (self->in_band == 0) {
         return false;
@@ -301,8 +304,9 @@ bool tracker_decide(tracker_t *self, const tracker_tone_t *tones, uint32_t count
     keep(self, tones, count, residual_um_s2);
     const bool is_good = qualifies(self, explained_q16);
     self->misses = is_good ? 0 : increment_sat_u32(self->misses);
+    self->is_clear = is_explained(self, explained_q16);
     if (is_good) {
-        self->is_valid = is_explained(self, explained_q16);
+        self->is_valid = true;
     } else if (self->misses >= MISSED_FITS) {
         self->is_valid = false;
     }

@@ -68,12 +68,14 @@ typedef struct {
     uint32_t next;                             ///< candidate to be looked at
     tracker_start_t start[TRACKER_CANDIDATES]; ///< dominant one first in the longest window
     uint32_t starts;                           ///< at most TRACKER_TONES in the end
+    uint32_t strongest_um_s2;                  ///< amplitude of the strongest of them
     bool has_drift;                     ///< something slower than the window can resolve is there
     tracker_tone_t tone[TRACKER_TONES]; ///< of the last fit; in the band first, dominant one first
     uint32_t tones;
     uint32_t in_band; ///< of them
     uint32_t misses;  ///< fits in a row that do not
-    bool is_valid;
+    bool is_valid;    ///< the last fits qualify
+    bool is_clear;    ///< and leave so little unexplained that a change would be seen soon
 } tracker_t;
 
 void tracker_init(tracker_t *self, const tracker_cfg_t *cfg);

@@ -12,23 +12,26 @@ void velocity_init(velocity_t *self, int32_t band_low_mHz, int32_t band_high_mHz
     *self = (velocity_t){.band_low_mHz = band_low_mHz, .band_high_mHz = band_high_mHz};
 }
 
+// First bin whose middle lies at freq or above.
+static uint32_t bin_from(int32_t freq_mHz, uint32_t points_log2) {
+    return (((uint32_t)freq_mHz << points_log2) + RATE_mHz - 1u) / RATE_mHz;
+}
+
 void velocity_start(velocity_t *self, uint32_t points_log2) {
+    // Half a bin of room: a tone at the edge of the band belongs to it.
+    const int32_t room_mHz = (int32_t)(RATE_mHz >> (points_log2 + 1u));
+    const int32_t low_mHz = self->band_low_mHz > room_mHz ? self->band_low_mHz - room_mHz : 0;
     self->points_log2 = points_log2;
+    self->first_bin = bin_from(low_mHz, points_log2);
+    self->end_bin = bin_from(self->band_high_mHz + room_mHz, points_log2);
     self->sum = 0;
 }
 
-static bool is_in_band(const velocity_t *self, uint32_t k) {
-    const int32_t freq_mHz = (int32_t)((k * RATE_mHz) >> self->points_log2);
-    // Half a bin of room: a tone at the edge of the band belongs to it.
-    const int32_t room_mHz = (int32_t)(RATE_mHz >> (self->points_log2 + 1u));
-    return freq_mHz + room_mHz >= self->band_low_mHz && freq_mHz - room_mHz <= self->band_high_mHz;
-}
-
 void velocity_read(velocity_t *self, const uint64_t *power, uint32_t first, uint32_t end) {
-    for (uint32_t k = first; k < end; k++) {
-        if (is_in_band(self, k)) {
-            self->sum += over_square(power[k], k);
-        }
+    const uint32_t from = first > self->first_bin ? first : self->first_bin;
+    const uint32_t to = end < self->end_bin ? end : self->end_bin;
+    for (uint32_t k = from; k < to; k++) {
+        self->sum += over_square(power[k], k);
     }
 }
 

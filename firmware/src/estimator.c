@@ -3,9 +3,11 @@
 #include <stddef.h>
 
 enum {
-    PAIRS_A_SAMPLE = 80,  // work of a job between two samples, in pairs of samples
-    POWERS_A_SAMPLE = 28, // and powers to read
+    PAIRS_A_SAMPLE = 88,  // work of a job between two samples, in pairs of samples
+    POWERS_A_SAMPLE = 40, // and powers to read
     MOST_FITS = 4,        // to one window
+    SUSPEND_ms = 96,      // longest wait for the end of a burst
+    STEADY_FRACTION = 16, // of the frequency: what moves no further is steady
     CALM_s = 2,           // without a contradiction, before a longer window is tried again
     PURE_Q16 = 52429,     // 80 %: share of the energy that one component must explain
 };
@@ -21,6 +23,7 @@ void estimator_init(estimator_t *self, const estimator_cfg_t *cfg) {
     decimate_init(&self->decimate, cfg->tick_rate_Hz);
     self->stages = self->decimate.stages;
     spectrum_init(&self->spectrum, self->stages);
+    tone_fit_init(&self->fit);
     tracker_init(&self->tracker, &cfg->tracker);
     velocity_init(&self->velocity, cfg->tracker.band_low_mHz, cfg->tracker.band_high_mHz);
     predictor_init(&self->predictor, self->stages);
@@ -33,10 +36,13 @@ void estimator_init(estimator_t *self, const estimator_cfg_t *cfg) {
         self->longest_level++;
     }
     self->most_level = self->longest_level;
+    self->suspend_most_ticks = SUSPEND_ms * cfg->tick_rate_Hz / 1000u;
     self->calm_enough_ticks = CALM_s * cfg->tick_rate_Hz;
+    self->trust_ticks = SPECTRUM_POINTS(self->longest_level) << self->stages;
 }
 
 static void forget(estimator_t *self) {
+    self->is_suspended = false;
     self->stage = ESTIMATOR_WAIT;
     predictor_disarm(&self->predictor);
     tracker_reset(&self->tracker);
@@ -44,7 +50,7 @@ static void forget(estimator_t *self) {
 
 // The windows start anew; the last `ticks` ticks already belong to the new vibration.
 static void restart(estimator_t *self, uint32_t ticks) {
-    const uint32_t longest = SPECTRUM_RING << self->stages;
+    const uint32_t longest = (uint32_t)SPECTRUM_RING << self->stages;
     const int32_t known = (int32_t)((ticks < longest ? ticks : longest) >> self->stages);
     const int32_t clean = known - filter_memory(self);
     self->clean_samples = clean < self->clean_samples ? clean : self->clean_samples;
@@ -52,14 +58,10 @@ static void restart(estimator_t *self, uint32_t ticks) {
     forget(self);
 }
 
-// The samples contradict what was published. After the longest window: the vibration has changed.
-// After a shorter one, which is younger than the change before: it wanders, and a still shorter one
-// must do for a while; where none is left, it never was of one component.
-static void contradict(estimator_t *self) {
-    if (self->published_level == self->longest_level) {
-        restart(self, self->predictor.suspect_ticks);
-        return;
-    }
+// The samples contradict what was published. After a window shorter than the longest, which is
+// younger than the change before: the vibration wanders, and a still shorter one must do for a
+// while; where none is left, it never was of one component.
+static void contradict_short(estimator_t *self) {
     if (self->published_level > 0) {
         self->most_level = self->published_level - 1u;
     } else {
@@ -67,6 +69,32 @@ static void contradict(estimator_t *self) {
     }
     self->calm_ticks = 0;
     forget(self);
+}
+
+// After the longest one: the vibration has changed, or there was a burst. The estimate is not valid
+// and no job runs until that is known; the new windows' samples are counted meanwhile.
+static void suspend(estimator_t *self) {
+    self->is_suspended = true;
+    self->suspended_ticks = 0;
+    self->stage = ESTIMATOR_WAIT;
+}
+
+static void judge_sample(estimator_t *self, predictor_verdict_t verdict) {
+    if (verdict == PREDICTOR_BACK) {
+        self->is_suspended = false;
+    } else if (verdict == PREDICTOR_CHANGED) {
+        if (self->published_level == self->longest_level) {
+            suspend(self);
+        } else {
+            contradict_short(self);
+        }
+    }
+    if (self->is_suspended) {
+        self->suspended_ticks++;
+        if (self->suspended_ticks == self->suspend_most_ticks) {
+            restart(self, self->predictor.suspect_ticks + self->suspended_ticks);
+        }
+    }
 }
 
 // A vibration that has stopped wandering gets longer windows again, step by step.
@@ -91,7 +119,7 @@ static bool choose_level(estimator_t *self) {
 }
 
 static void start_job(estimator_t *self) {
-    if (self->job_ticks < self->hop_ticks || !choose_level(self)) {
+    if (self->is_suspended || self->job_ticks < self->hop_ticks || !choose_level(self)) {
         return;
     }
     // The window's own mean holds some of the vibration; the last fit knows better.
@@ -139,6 +167,7 @@ static void start_gathering(estimator_t *self) {
         .newest = self->spectrum.newest,
         .points_log2 = SPECTRUM_POINTS_LOG2(self->level),
         .mean_um_s2 = spectrum_mean_um_s2(&self->spectrum, self->level),
+        .size_um_s2 = 3u * self->tracker.strongest_um_s2,
     };
     tone_fit_start(&self->fit, &window);
     self->job_age_ticks = self->sample_age_ticks;
@@ -147,7 +176,8 @@ static void start_gathering(estimator_t *self) {
 
 static void choose(estimator_t *self) {
     tracker_t *tracker = &self->tracker;
-    if (!tracker_choose(tracker, self->spectrum.power)) {
+    if (!tracker_choose(tracker, self->spectrum.power) &&
+        !tracker_choose(tracker, self->spectrum.power)) {
         return;
     }
     // A drift goes on until a fit finds none.
@@ -162,6 +192,7 @@ static void choose(estimator_t *self) {
 }
 
 static void gather(estimator_t *self) {
+    self->fit.window.ring = self->spectrum.sample; // the state may have been copied since
     if (!tone_fit_step(&self->fit, self->slice_pairs)) {
         return;
     }
@@ -207,7 +238,8 @@ static void fit(estimator_t *self) {
     uint32_t turns[TRACKER_TONES];
     const bool had_drift = self->has_drift;
     const uint32_t count = next_starts(self, turns);
-    if (!had_drift && tracker_is_missing_something(&self->tracker, self->fit.residual_um_s2)) {
+    if (!had_drift && !self->is_drift_futile &&
+        tracker_is_missing_something(&self->tracker, self->fit.residual_um_s2)) {
         self->has_drift = true;
     }
     const bool is_to_refine = has_moved(self) || self->has_drift != had_drift;
@@ -245,6 +277,7 @@ static predictor_rest_t rest_of(const estimator_t *self) {
         .mean_um_s2 = (int32_t)clamp_i64(mean, -INT32_MAX, INT32_MAX),
         .drift_um_s2_q8 = (int32_t)clamp_i64(drift_q8, -INT32_MAX, INT32_MAX),
         .bend_um_s2 = self->fit.bend_um_s2,
+        .is_clear = self->tracker.is_clear,
         .noise_um_s2 = self->fit.residual_um_s2,
     };
 }
@@ -255,8 +288,10 @@ static void judge_window(estimator_t *self) {
     const tone_fit_t *fit = &self->fit;
     const bool is_missing = tracker_is_missing_something(&self->tracker, fit->residual_um_s2);
     self->is_drifting = self->has_drift && !is_missing && fit->bend_um_s2 > fit->residual_um_s2 / 8;
+    // Where a drift does not explain what is missing, none needs to be tried the next time.
+    self->is_drift_futile = is_missing && (self->has_drift || self->is_drift_futile);
     self->is_pure = self->tracker.tones == 1u && fit->explained_q16 >= PURE_Q16 &&
-                    self->has_drift == is_missing;
+                    (is_missing ? self->is_drift_futile : !self->has_drift);
 }
 
 static void publish(estimator_t *self) {
@@ -282,6 +317,13 @@ static void publish(estimator_t *self) {
     }
     const predictor_rest_t rest = rest_of(self);
     predictor_load(&self->predictor, tones, tracker->tones, &rest);
+    const uint32_t turn = tracker->tone[0].turn;
+    const uint32_t moved =
+        turn > self->steady_turn ? turn - self->steady_turn : self->steady_turn - turn;
+    if (moved > turn / STEADY_FRACTION) {
+        self->steady_turn = turn;
+        self->steady_ticks = 0;
+    }
     self->published_level = self->level;
     if (self->level == self->longest_level) {
         judge_window(self);
@@ -328,14 +370,13 @@ static void age(estimator_t *self) {
     self->sample_age_ticks++;
     self->job_age_ticks++;
     self->job_ticks = increment_sat_u32(self->job_ticks);
+    self->steady_ticks = self->predictor.is_armed ? increment_sat_u32(self->steady_ticks) : 0;
     self->has_published = false;
 }
 
 void estimator_step(estimator_t *self, const estimator_in_t *in) {
     age(self);
-    if (predictor_step(&self->predictor, in->accel_um_s2, in->is_good)) {
-        contradict(self);
-    }
+    judge_sample(self, predictor_step(&self->predictor, in->accel_um_s2, in->is_good));
     calm_down(self);
     if (in->is_lost) {
         restart(self, 0);
@@ -347,7 +388,7 @@ void estimator_step(estimator_t *self, const estimator_in_t *in) {
     if (decimate_step(&self->decimate, &sample)) {
         take_sample(self, sample);
     }
-    spectrum_slice(&self->spectrum);
     work(self);
+    spectrum_slice(&self->spectrum);
     self->age_ticks = estimator_is_valid(self) ? 0 : increment_sat_u32(self->age_ticks);
 }

@@ -3,9 +3,10 @@
 /// A job runs in the background, a bounded slice a tick: take in the longest window that holds only
 /// samples since the last change, search its spectrum, fit, decide, publish; then the next one. In
 /// between the components run on at every tick, and every sample is checked against them: a change
-/// makes the estimate invalid at once and starts the windows anew at the moment when it began.
-/// Windows shorter than the longest (which is 1.024 s; 0.128, 0.256 and 0.512 s) are used only
-/// after a vibration of one component: they could not tell several apart.
+/// makes the estimate invalid at once and starts the windows anew at the moment when it began
+/// (unless the samples fit again after a small burst). Windows shorter than the longest (which
+/// is 1.024 s; 0.128, 0.256 and 0.512 s) are used only after a vibration of one component: they
+/// could not tell several apart.
 #ifndef ESTIMATOR_H
 #define ESTIMATOR_H
 
@@ -67,8 +68,14 @@ typedef struct {
     uint32_t job_ticks;        ///< since the job began, saturating
     uint32_t level;            ///< the job's window
     uint32_t published_level;  ///< window of the last published fit
-    uint32_t most_level;       ///< longest window that the vibration has not contradicted lately
-    uint32_t calm_ticks;       ///< since it last did
+    uint32_t steady_turn;      ///< frequency that tone[0] has stayed at ..
+    uint32_t steady_ticks;     ///< .. for so long, not contradicted by a sample
+    uint32_t trust_ticks;      ///< of them that make up for noise
+    bool is_suspended;         ///< a change or a burst: which is not known yet
+    uint32_t suspended_ticks;
+    uint32_t suspend_most_ticks;
+    uint32_t most_level; ///< longest window that the vibration has not contradicted lately
+    uint32_t calm_ticks; ///< since it last did
     uint32_t calm_enough_ticks;
     bool is_pure; ///< the longest window last held one component only: shorter ones may be trusted
     estimator_stage_t stage;
@@ -76,6 +83,7 @@ typedef struct {
     uint32_t fits;                          ///< to the job's window so far
     bool has_drift;                         ///< in the job's window
     bool is_drifting;                       ///< so did the last published one of the longest window
+    bool is_drift_futile;                   ///< it left as much unexplained as without
     estimator_tone_t tone[ESTIMATOR_TONES]; ///< last published; dominant one first, 0 Hz: none
     int32_t sigma_uHz;                      ///< expected of tone[0].freq_uHz
     uint32_t window_ms;                     ///< that they come from
@@ -88,9 +96,12 @@ void estimator_init(estimator_t *self, const estimator_cfg_t *cfg);
 /// One tick.
 void estimator_step(estimator_t *self, const estimator_in_t *in);
 
-/// Whether tone[0] can be trusted now.
+/// Whether tone[0] can be trusted now: at once where a change would be seen soon, else after the
+/// samples of another whole window have not contradicted it and the frequency has stayed within 3
+/// %.
 static inline bool estimator_is_valid(const estimator_t *self) {
-    return self->tracker.is_valid && self->predictor.is_armed;
+    return self->tracker.is_valid && self->predictor.is_armed && !self->is_suspended &&
+           (self->tracker.is_clear || self->steady_ticks >= self->trust_ticks);
 }
 
 /// Phase of a published component at this tick, in turns Q32: acceleration = amp cos(phase).
