@@ -9,7 +9,7 @@ enum {
     SPARE_BITS = 3,
     SUM_BITS = 24,         // fraction of cosines and sines in the sums
     RIGHT_BITS = 8,        // of the right sides, above the data's unit
-    PAIRS_A_COUPLING = 12, // what one coupling costs, in pairs of samples
+    PAIRS_A_COUPLING = 24, // what one coupling costs, in pairs of samples
 };
 
 static uint32_t points_of(const tone_fit_t *self) {
@@ -253,31 +253,37 @@ static void couple_constant(tone_fit_t *self, uint32_t i) {
     self->even_half.matrix[ldlt_index(even_row(i) + 1u, 0)] = own.d1;
 }
 
-static void couple_next(tone_fit_t *self) {
-    if (self->other > self->slot) {
+// The component's coupling to the constant, then to those before it and to itself. Returns its
+// cost.
+static uint32_t couple_next(tone_fit_t *self) {
+    const uint32_t partner = self->other;
+    self->other++;
+    if (partner == 0) {
         couple_constant(self, self->slot);
+        return PAIRS_A_COUPLING / 2u;
+    }
+    couple(self, self->slot, partner - 1u);
+    if (partner > self->slot) {
         self->slot++;
         self->other = 0;
-    } else {
-        couple(self, self->slot, self->other);
-        self->other++;
     }
+    return PAIRS_A_COUPLING;
 }
 
 // At least one coupling. Returns true iff all are there.
 static bool couple_some(tone_fit_t *self, uint32_t pairs) {
-    for (uint32_t cost = 0; cost == 0 || cost < pairs; cost += PAIRS_A_COUPLING) {
+    for (uint32_t cost = 0; cost == 0 || cost < pairs;) {
         if (self->slot == self->slots) {
             return true;
         }
-        couple_next(self);
+        cost += couple_next(self);
     }
     return self->slot == self->slots;
 }
 
 // At least one column. Returns true iff the half is solved.
 static bool solve_some(ldlt_t *half, uint32_t pairs) {
-    for (uint32_t cost = 0; cost == 0 || cost < pairs; cost += 4u * half->size + 4u) {
+    for (uint32_t cost = 0; cost == 0 || cost < pairs; cost += half->size * half->size + 2u) {
         if (ldlt_step(half)) {
             return true;
         }
@@ -444,8 +450,11 @@ bool tone_fit_step(tone_fit_t *self, uint32_t pairs) {
     case TONE_FIT_PROJECT:
         project(self, pairs);
         if (is_all_done(self)) {
-            end_projection(self);
+            self->stage = TONE_FIT_PROJECTED;
         }
+        return false;
+    case TONE_FIT_PROJECTED:
+        end_projection(self);
         return false;
     case TONE_FIT_COUPLE:
         if (couple_some(self, pairs)) {

@@ -11,9 +11,9 @@ enum {
     BAND_EDGE_uHz = 20000,    // noise of an estimate right at the edge
 };
 
-// Share of the energy that a fit must explain to be clear, Q16: 98, 97 and 92 %, and 88 % in the
+// Share of the energy that a fit must explain to be clear, Q16: 98, 97 and 92 %, and 85 % in the
 // longest window; more noise would hide a change for too long.
-static const uint16_t least_explained_q16[] = {64300, 63600, 60300, 57700};
+static const uint16_t least_explained_q16[] = {64300, 63600, 60300, 55700};
 
 void tracker_init(tracker_t *self, const tracker_cfg_t *cfg) {
     const uint64_t min_um_s2 = (uint32_t)cfg->min_accel_um_s2;

@@ -3,11 +3,11 @@
 #include <stddef.h>
 
 enum {
-    PAIRS_A_SAMPLE = 88,  // work of a job between two samples, in pairs of samples
+    PAIRS_A_SAMPLE = 92,  // work of a job between two samples, in pairs of samples
     POWERS_A_SAMPLE = 40, // and powers to read
     MOST_FITS = 4,        // to one window
     SUSPEND_ms = 96,      // longest wait for the end of a burst
-    STEADY_FRACTION = 16, // of the frequency: what moves no further is steady
+    STEADY_FRACTION = 12, // of the frequency: what moves no further is steady
     CALM_s = 2,           // without a contradiction, before a longer window is tried again
     PURE_Q16 = 52429,     // 80 %: share of the energy that one component must explain
 };
