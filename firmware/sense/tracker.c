@@ -33,7 +33,8 @@ void tracker_reset(tracker_t *self) {
 
 void tracker_start_search(tracker_t *self, const tracker_window_t *window) {
     self->window = *window;
-    self->log2_sum_q8 = 0;
+    self->log2_sum_q8[0] = 0;
+    self->log2_sum_q8[1] = 0;
     self->candidates = 0;
     self->height = 0;
     self->is_rising = false;
@@ -63,7 +64,7 @@ static void insert_candidate(tracker_t *self, const uint64_t *power, uint32_t k)
 
 void tracker_read(tracker_t *self, const uint64_t *power, uint32_t first, uint32_t end) {
     for (uint32_t k = first; k < end; k++) {
-        self->log2_sum_q8 += log2_q8_u64(power[k]);
+        self->log2_sum_q8[2u * k > self->window.last_power] += log2_q8_u64(power[k]);
         // Rising with the frequency, so that a drift's flank does not hide what stands on it. The
         // newest bin completes the neighbourhood of the one before it; bin 1 stands against bin 2
         // alone, and what peaks at the last one lies beyond the band.
@@ -95,7 +96,8 @@ static bool is_significant(const tracker_t *self, const uint64_t *power, uint32_
     if (power[k] < self->min_power || power[k] < strongest / (LEAKAGE_RATIO * LEAKAGE_RATIO)) {
         return false;
     }
-    const uint32_t floor_log2_q8 = self->log2_sum_q8 / self->window.last_power;
+    const uint32_t floor_log2_q8 =
+        (self->log2_sum_q8[0] + self->log2_sum_q8[1]) / self->window.last_power;
     return !self->window.is_longest || log2_q8_u64(power[k]) >= floor_log2_q8 + self->snr_log2_q8;
 }
 
@@ -112,20 +114,28 @@ bool tracker_is_missing_something(const tracker_t *self, int32_t residual_um_s2)
     // White noise of variance s^2 makes Hann powers of 6 s^2 / N on average; the mean of their
     // logarithms lies 0.83 below the logarithm of that. 1.5 times the deviation is 1.17 more.
     const uint64_t variance = (uint64_t)(uint32_t)residual_um_s2 * (uint32_t)residual_um_s2;
-    const int32_t floor_log2_q8 = (int32_t)(self->log2_sum_q8 / self->window.last_power);
+    // The half of the spectrum with less in it knows the noise better.
+    const uint32_t below = self->window.last_power / 2u;
+    const uint32_t low_q8 = self->log2_sum_q8[0] / below;
+    const uint32_t high_q8 = self->log2_sum_q8[1] / (self->window.last_power - below);
+    const int32_t floor_log2_q8 = (int32_t)(low_q8 < high_q8 ? low_q8 : high_q8);
     const int32_t limit_q8 =
         floor_log2_q8 + (int32_t)(self->window.points_log2 << 8) + FLOOR_TO_LIMIT_Q8;
     return self->window.is_longest && (int32_t)log2_q8_u64(variance) > limit_q8;
 }
 
-// The last fit's frequency where it belongs to this candidate, else the candidate's own.
+static uint32_t gap_between(uint32_t a, uint32_t b) {
+    return a > b ? a - b : b - a;
+}
+
+// The last fit's frequency where it belongs to this candidate, else the candidate's own. A fit from
+// before a reset is a hint only.
 static uint32_t start_turn(const tracker_t *self, int32_t bin_q15) {
     const uint32_t turn = (uint32_t)bin_q15 << (17u - self->window.points_log2);
-    const uint32_t gate = bin_turn(self);
-    for (uint32_t i = 0; i < self->tones; i++) {
-        const uint32_t known = self->tone[i].turn;
-        if ((turn > known ? turn - known : known - turn) < gate) {
-            return known;
+    const uint32_t gate = self->tones > 0 ? bin_turn(self) : bin_turn(self) / 4u;
+    for (uint32_t i = 0; i < self->hints; i++) {
+        if (gap_between(turn, self->tone[i].turn) < gate) {
+            return self->tone[i].turn;
         }
     }
     return turn;
@@ -164,8 +174,7 @@ static void dominant_start_first(tracker_start_t *start, uint32_t count) {
 // Whether a start within a bin of it stands already.
 static bool is_close(const tracker_t *self, uint32_t turn) {
     for (uint32_t i = 0; i < self->starts; i++) {
-        const uint32_t other = self->start[i].turn;
-        if ((turn > other ? turn - other : other - turn) < bin_turn(self)) {
+        if (gap_between(turn, self->start[i].turn) < bin_turn(self)) {
             return true;
         }
     }
@@ -219,9 +228,7 @@ bool tracker_choose(tracker_t *self, const uint64_t *power) {
 
 static bool is_third_harmonic(const tracker_t *self, const tracker_tone_t *of,
                               const tracker_tone_t *tone) {
-    const uint32_t third = 3u * of->turn;
-    const uint32_t gap = third > tone->turn ? third - tone->turn : tone->turn - third;
-    return gap < bin_turn(self) / 4u;
+    return gap_between(3u * of->turn, tone->turn) < bin_turn(self) / 4u;
 }
 
 // Index of the dominant one among tones in the band; count > 0.
@@ -275,6 +282,7 @@ static void keep(tracker_t *self, const tracker_tone_t *tones, uint32_t count,
             self->in_band++;
         }
     }
+    self->hints = self->tones;
     if (self->in_band > 0) {
         swap(&self->tone[dominant_of(self, self->tone, self->in_band)], &self->tone[0]);
     }

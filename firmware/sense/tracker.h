@@ -60,7 +60,7 @@ typedef struct {
     uint64_t min_power;
     uint32_t snr_log2_q8;
     tracker_window_t window;
-    uint32_t log2_sum_q8;                   ///< of the powers read so far
+    uint32_t log2_sum_q8[2];                ///< of the powers read so far, lower and upper half
     uint32_t candidate[TRACKER_CANDIDATES]; ///< bins of local maxima, strongest first
     uint32_t candidates;
     uint64_t height; ///< of the newest power, rising weight
@@ -73,6 +73,7 @@ typedef struct {
     tracker_tone_t tone[TRACKER_TONES]; ///< of the last fit; in the band first, dominant one first
     uint32_t tones;
     uint32_t in_band; ///< of them
+    uint32_t hints;   ///< tones that are still there as hints after a reset
     uint32_t misses;  ///< fits in a row that do not
     bool is_valid;    ///< the last fits qualify
     bool is_clear;    ///< and leave so little unexplained that a change would be seen soon

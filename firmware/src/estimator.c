@@ -3,13 +3,14 @@
 #include <stddef.h>
 
 enum {
-    PAIRS_A_SAMPLE = 92,  // work of a job between two samples, in pairs of samples
-    POWERS_A_SAMPLE = 40, // and powers to read
-    MOST_FITS = 4,        // to one window
-    SUSPEND_ms = 96,      // longest wait for the end of a burst
-    STEADY_FRACTION = 12, // of the frequency: what moves no further is steady
-    CALM_s = 2,           // without a contradiction, before a longer window is tried again
-    PURE_Q16 = 52429,     // 80 %: share of the energy that one component must explain
+    PAIRS_A_SAMPLE = 92,     // work of a job between two samples, in pairs of samples
+    POWERS_A_SAMPLE = 40,    // and powers to read
+    MOST_FITS = 4,           // to one window
+    SUSPEND_ms = 96,         // longest wait for the end of a burst
+    STEADY_FRACTION = 12,    // of the frequency: what moves no further is steady ..
+    STEADY_AMP_FRACTION = 4, // .. and of the amplitude
+    CALM_s = 2,              // without a contradiction, before a longer window is tried again
+    PURE_Q16 = 52429,        // 80 %: share of the energy that one component must explain
 };
 
 // Samples whose filters still remember what was before.
@@ -202,6 +203,7 @@ static void gather(estimator_t *self) {
     }
     tone_fit_set(&self->fit, turns, self->tracker.starts, self->has_drift);
     self->fits = 1;
+    self->residual_without_um_s2 = 0;
     self->stage = ESTIMATOR_FIT;
 }
 
@@ -231,6 +233,25 @@ static bool has_moved(const estimator_t *self) {
     return false;
 }
 
+// Decides about a drift for the next fit to the same window: tries one where something is missing,
+// takes it back where it explains next to nothing of that. Returns true iff that changes the fit.
+static bool reconsider_drift(estimator_t *self, bool had_drift) {
+    const int32_t residual_um_s2 = self->fit.residual_um_s2;
+    if (self->residual_without_um_s2 != 0) {
+        const bool is_real = residual_um_s2 < self->residual_without_um_s2 / 8 * 7;
+        self->residual_without_um_s2 = 0;
+        self->has_drift = is_real;
+        self->is_drift_futile = !is_real;
+        return !is_real;
+    }
+    if (!self->has_drift && !self->is_drift_futile &&
+        tracker_is_missing_something(&self->tracker, residual_um_s2)) {
+        self->has_drift = true;
+        self->residual_without_um_s2 = residual_um_s2;
+    }
+    return self->has_drift != had_drift;
+}
+
 static void fit(estimator_t *self) {
     if (!tone_fit_step(&self->fit, self->slice_pairs)) {
         return;
@@ -238,11 +259,7 @@ static void fit(estimator_t *self) {
     uint32_t turns[TRACKER_TONES];
     const bool had_drift = self->has_drift;
     const uint32_t count = next_starts(self, turns);
-    if (!had_drift && !self->is_drift_futile &&
-        tracker_is_missing_something(&self->tracker, self->fit.residual_um_s2)) {
-        self->has_drift = true;
-    }
-    const bool is_to_refine = has_moved(self) || self->has_drift != had_drift;
+    const bool is_to_refine = has_moved(self) || reconsider_drift(self, had_drift);
     if (count == 0 || !is_to_refine || self->fits == MOST_FITS) {
         self->stage = ESTIMATOR_DECIDE;
         return;
@@ -289,9 +306,14 @@ static void judge_window(estimator_t *self) {
     const bool is_missing = tracker_is_missing_something(&self->tracker, fit->residual_um_s2);
     self->is_drifting = self->has_drift && !is_missing && fit->bend_um_s2 > fit->residual_um_s2 / 8;
     // Where a drift does not explain what is missing, none needs to be tried the next time.
-    self->is_drift_futile = is_missing && (self->has_drift || self->is_drift_futile);
+    self->is_drift_futile &= is_missing;
     self->is_pure = self->tracker.tones == 1u && fit->explained_q16 >= PURE_Q16 &&
-                    (is_missing ? self->is_drift_futile : !self->has_drift);
+                    !self->has_drift && (!is_missing || self->is_drift_futile);
+}
+
+// Whether a and b are more than a / fraction apart.
+static bool differs(uint32_t a, uint32_t b, uint32_t fraction) {
+    return (a > b ? a - b : b - a) > a / fraction;
 }
 
 static void publish(estimator_t *self) {
@@ -317,11 +339,11 @@ static void publish(estimator_t *self) {
     }
     const predictor_rest_t rest = rest_of(self);
     predictor_load(&self->predictor, tones, tracker->tones, &rest);
-    const uint32_t turn = tracker->tone[0].turn;
-    const uint32_t moved =
-        turn > self->steady_turn ? turn - self->steady_turn : self->steady_turn - turn;
-    if (moved > turn / STEADY_FRACTION) {
-        self->steady_turn = turn;
+    const tracker_tone_t *dominant = &tracker->tone[0];
+    if (differs(dominant->turn, self->steady_turn, STEADY_FRACTION) ||
+        differs((uint32_t)dominant->amp_um_s2, self->steady_amp_um_s2, STEADY_AMP_FRACTION)) {
+        self->steady_turn = dominant->turn;
+        self->steady_amp_um_s2 = (uint32_t)dominant->amp_um_s2;
         self->steady_ticks = 0;
     }
     self->published_level = self->level;

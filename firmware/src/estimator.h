@@ -68,10 +68,11 @@ typedef struct {
     uint32_t job_ticks;        ///< since the job began, saturating
     uint32_t level;            ///< the job's window
     uint32_t published_level;  ///< window of the last published fit
-    uint32_t steady_turn;      ///< frequency that tone[0] has stayed at ..
-    uint32_t steady_ticks;     ///< .. for so long, not contradicted by a sample
-    uint32_t trust_ticks;      ///< of them that make up for noise
-    bool is_suspended;         ///< a change or a burst: which is not known yet
+    uint32_t steady_turn;      ///< where tone[0] has stayed ..
+    uint32_t steady_amp_um_s2;
+    uint32_t steady_ticks; ///< .. for so long, not contradicted by a sample
+    uint32_t trust_ticks;  ///< of them that make up for noise
+    bool is_suspended;     ///< a change or a burst: which is not known yet
     uint32_t suspended_ticks;
     uint32_t suspend_most_ticks;
     uint32_t most_level; ///< longest window that the vibration has not contradicted lately
@@ -79,11 +80,12 @@ typedef struct {
     uint32_t calm_enough_ticks;
     bool is_pure; ///< the longest window last held one component only: shorter ones may be trusted
     estimator_stage_t stage;
-    uint32_t next_power;                    ///< to be read
-    uint32_t fits;                          ///< to the job's window so far
-    bool has_drift;                         ///< in the job's window
-    bool is_drifting;                       ///< so did the last published one of the longest window
-    bool is_drift_futile;                   ///< it left as much unexplained as without
+    uint32_t next_power;            ///< to be read
+    uint32_t fits;                  ///< to the job's window so far
+    bool has_drift;                 ///< in the job's window
+    bool is_drifting;               ///< so did the last published one of the longest window
+    bool is_drift_futile;           ///< it left as much unexplained as without
+    int32_t residual_without_um_s2; ///< of the fit before a drift was tried; 0: none is tried
     estimator_tone_t tone[ESTIMATOR_TONES]; ///< last published; dominant one first, 0 Hz: none
     int32_t sigma_uHz;                      ///< expected of tone[0].freq_uHz
     uint32_t window_ms;                     ///< that they come from
