@@ -33,15 +33,20 @@ static uint32_t block_parts(const predictor_t *self, uint32_t scale) {
     return scale == 0 ? 1u << block_shift(self, 0) : 1u << SCALE_SHIFT;
 }
 
-static void arm(predictor_t *self, int32_t noise_um_s2) {
-    const int64_t noise = clamp_i32(noise_um_s2, 0, DIFFERENCE_LIMIT);
+static void arm(predictor_t *self) {
     for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
-        self->watch[i] = (predictor_watch_t){
-            .left = block_parts(self, i),
-            .noise = (2 * noise * noise) >> (SCALE_SHIFT * i),
-        };
+        self->watch[i] = (predictor_watch_t){.left = block_parts(self, i)};
     }
     self->is_armed = true;
+}
+
+// No less noise than white noise of what the fit leaves: a watch that has just begun cannot know.
+static void raise_noise(predictor_t *self, int32_t noise_um_s2) {
+    const int64_t noise = clamp_i32(noise_um_s2, 0, DIFFERENCE_LIMIT);
+    for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
+        const int64_t least = (2 * noise * noise) >> (SCALE_SHIFT * i);
+        self->watch[i].noise = self->watch[i].noise > least ? self->watch[i].noise : least;
+    }
 }
 
 void predictor_load(predictor_t *self, const predictor_tone_t *tones, uint32_t count,
@@ -61,8 +66,9 @@ void predictor_load(predictor_t *self, const predictor_tone_t *tones, uint32_t c
         self->offset_q12 = (int64_t)rest->mean_um_s2 * (1 << 12);
     }
     if (!self->is_armed) {
-        arm(self, rest->noise_um_s2);
+        arm(self);
     }
+    raise_noise(self, rest->noise_um_s2);
 }
 
 void predictor_disarm(predictor_t *self) {

@@ -5,10 +5,12 @@
 enum {
     PAIRS_A_SAMPLE = 92,     // work of a job between two samples, in pairs of samples
     POWERS_A_SAMPLE = 40,    // and powers to read
-    MOST_FITS = 4,           // to one window
+    JOB_SAMPLES = 12,        // that come in while a job runs
+    LOST_FITS = 3,           // in a row that do not hold: a longer window is tried
+    MOST_FITS = 5,           // to one window
     SUSPEND_ms = 96,         // longest wait for the end of a burst
     STEADY_FRACTION = 12,    // of the frequency: what moves no further is steady ..
-    STEADY_AMP_FRACTION = 4, // .. and of the amplitude
+    STEADY_AMP_FRACTION = 3, // .. and of the amplitude
     CALM_s = 2,              // without a contradiction, before a longer window is tried again
     PURE_Q16 = 52429,        // 80 %: share of the energy that one component must explain
 };
@@ -119,8 +121,15 @@ static bool choose_level(estimator_t *self) {
     return false;
 }
 
+// Whether a job on a window that has just failed would only keep the next longer one waiting.
+static bool is_worth_waiting(const estimator_t *self) {
+    return self->tracker.misses > 0 && self->level < self->most_level &&
+           self->clean_samples + JOB_SAMPLES >= (int32_t)SPECTRUM_POINTS(self->level + 1u);
+}
+
 static void start_job(estimator_t *self) {
-    if (self->is_suspended || self->job_ticks < self->hop_ticks || !choose_level(self)) {
+    if (self->is_suspended || self->job_ticks < self->hop_ticks || !choose_level(self) ||
+        is_worth_waiting(self)) {
         return;
     }
     // The window's own mean holds some of the vibration; the last fit knows better.
@@ -290,12 +299,14 @@ static predictor_rest_t rest_of(const estimator_t *self) {
     const int64_t drift_q8 = ((int64_t)self->fit.slope_um_s2 * 256) / half_ticks;
     const int64_t ticks = self->job_age_ticks + DECIMATE_DELAY(1u << self->stages);
     const int64_t mean = self->fit.end_um_s2 + ((drift_q8 * ticks) >> 8);
+    // A short window knows its noise to some 8 / N only.
+    const int32_t residual = clamp_i32(self->fit.residual_um_s2, 0, INT32_MAX / 2);
     return (predictor_rest_t){
         .mean_um_s2 = (int32_t)clamp_i64(mean, -INT32_MAX, INT32_MAX),
         .drift_um_s2_q8 = (int32_t)clamp_i64(drift_q8, -INT32_MAX, INT32_MAX),
         .bend_um_s2 = self->fit.bend_um_s2,
         .is_clear = self->tracker.is_clear,
-        .noise_um_s2 = self->fit.residual_um_s2,
+        .noise_um_s2 = residual + (residual >> (SPECTRUM_POINTS_LOG2(self->level) - 3u)),
     };
 }
 
@@ -304,7 +315,7 @@ static predictor_rest_t rest_of(const estimator_t *self) {
 static void judge_window(estimator_t *self) {
     const tone_fit_t *fit = &self->fit;
     const bool is_missing = tracker_is_missing_something(&self->tracker, fit->residual_um_s2);
-    self->is_drifting = self->has_drift && !is_missing && fit->bend_um_s2 > fit->residual_um_s2 / 8;
+    self->is_drifting = self->has_drift && !is_missing && fit->bend_um_s2 > fit->residual_um_s2 / 2;
     // Where a drift does not explain what is missing, none needs to be tried the next time.
     self->is_drift_futile &= is_missing;
     self->is_pure = self->tracker.tones == 1u && fit->explained_q16 >= PURE_Q16 &&
@@ -371,6 +382,10 @@ static void decide(estimator_t *self) {
     const bool is_good = tracker_decide(&self->tracker, tones, self->fit.tones,
                                         self->fit.residual_um_s2, self->fit.explained_q16);
     self->stage = is_good ? ESTIMATOR_PUBLISH : ESTIMATOR_WAIT;
+    if (self->tracker.misses >= LOST_FITS && self->level == self->most_level &&
+        self->most_level < self->longest_level) {
+        self->most_level++; // so short a window does not help either
+    }
 }
 
 static void work(estimator_t *self) {
