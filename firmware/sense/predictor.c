@@ -6,7 +6,7 @@ enum {
     TOLERANCE_SHIFT = 9, // of amplitude^2: 4 % of the amplitude
     NOISE_SHARE = 3,     // of the noise that each square is expected to exceed at most
     TOLERANCE_SHARE = 2, // and of the tolerance
-    NOISE_ALARM = 24,
+    NOISE_ALARM = 19,
     UNCLEAR_ALARM = 48, // where much is not explained, it is not white noise either
     TOLERANCE_ALARM = 4,
     OUTLIER = 8,        // of noise + tolerance: no square counts as more noise than this

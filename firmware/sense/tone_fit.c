@@ -361,7 +361,7 @@ static void read_tone(tone_fit_t *self, uint32_t slot) {
     tone->shift_q29 = radians_q29(turned, square == 0 ? 1u : square);
     tone->turn += (uint32_t)as_turn(tone->shift_q29, self->window.points_log2);
     tone->phase_turn = atan2_turn(-b, a);
-    tone->amp_um_s2 = in_um_s2(self, sqrt_fast_u64(square));
+    tone->amp_um_s2 = in_um_s2(self, isqrt_u64(square));
 }
 
 static void read_sigma(tone_fit_t *self, uint32_t slot) {

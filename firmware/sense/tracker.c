@@ -208,7 +208,8 @@ static void take_candidate(tracker_t *self, const uint64_t *power, uint32_t k) {
 }
 
 bool tracker_choose(tracker_t *self, const uint64_t *power) {
-    if (self->next < self->candidates) {
+    const uint32_t before = self->starts;
+    while (self->next < self->candidates && self->starts == before) {
         take_candidate(self, power, self->candidate[self->next]);
         self->next++;
     }

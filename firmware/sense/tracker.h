@@ -90,7 +90,8 @@ void tracker_start_search(tracker_t *self, const tracker_window_t *window);
 /// Reads powers first .. end-1 (rising from 1).
 void tracker_read(tracker_t *self, const uint64_t *power, uint32_t first, uint32_t end);
 
-/// All powers have been read: looks at one candidate more. Returns true iff start, starts and
+/// All powers have been read: looks at the candidates up to the next one that
+/// counts. Returns true iff start, starts and
 /// has_drift are complete.
 bool tracker_choose(tracker_t *self, const uint64_t *power);
 

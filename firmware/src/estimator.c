@@ -4,7 +4,7 @@
 
 enum {
     PAIRS_A_SAMPLE = 92,     // work of a job between two samples, in pairs of samples
-    POWERS_A_SAMPLE = 40,    // and powers to read
+    POWERS_A_SAMPLE = 34,    // and powers to read
     JOB_SAMPLES = 12,        // that come in while a job runs
     LOST_FITS = 3,           // in a row that do not hold: a longer window is tried
     MOST_FITS = 5,           // to one window
@@ -41,7 +41,7 @@ void estimator_init(estimator_t *self, const estimator_cfg_t *cfg) {
     self->most_level = self->longest_level;
     self->suspend_most_ticks = SUSPEND_ms * cfg->tick_rate_Hz / 1000u;
     self->calm_enough_ticks = CALM_s * cfg->tick_rate_Hz;
-    self->trust_ticks = SPECTRUM_POINTS(self->longest_level) << self->stages;
+    self->trust_ticks = 3u * (SPECTRUM_POINTS(self->longest_level) << self->stages) / 2u;
 }
 
 static void forget(estimator_t *self) {
@@ -186,8 +186,7 @@ static void start_gathering(estimator_t *self) {
 
 static void choose(estimator_t *self) {
     tracker_t *tracker = &self->tracker;
-    if (!tracker_choose(tracker, self->spectrum.power) &&
-        !tracker_choose(tracker, self->spectrum.power)) {
+    if (!tracker_choose(tracker, self->spectrum.power)) {
         return;
     }
     // A drift goes on until a fit finds none.

@@ -99,7 +99,8 @@ void estimator_init(estimator_t *self, const estimator_cfg_t *cfg);
 void estimator_step(estimator_t *self, const estimator_in_t *in);
 
 /// Whether tone[0] can be trusted now: at once where a change would be seen soon, else after the
-/// samples of another whole window have not contradicted it and the frequency has stayed within 3
+/// samples of another one and a half windows have not contradicted it and the frequency has stayed
+/// within 3
 /// %.
 static inline bool estimator_is_valid(const estimator_t *self) {
     return self->tracker.is_valid && self->predictor.is_armed && !self->is_suspended &&
