@@ -10,9 +10,9 @@
 typedef struct {
     int64_t velocity_um_s_q32;
     int32_t accel_um_s2;
-    int32_t freq_uHz; ///< last valid dominant frequency
-    bool freq_is_valid;
-    int32_t base_mA; ///< the rule base's current, or unlock_current_mA while freq is not valid
+    int32_t freq_uHz;   ///< last dominant frequency
+    bool freq_is_valid; ///< or was, less than track_hold_ms ago
+    int32_t base_mA;    ///< the rule base's current, or unlock_current_mA while freq is not valid
 } law_in_t;
 
 /// State of any law: caller-owned, cleared by reset.

@@ -17,6 +17,7 @@ typedef struct {
     signal_chain_t signal;
     const law_t *law;
     law_state_t law_state;
+    uint32_t hold_ticks; ///< that laws go on with a frequency that is no longer valid
     supervisor_t supervisor;
     current_monitor_t monitor;
     guard_t guard;
@@ -60,6 +61,7 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
     }
     signal_chain_init(&c->signal, &c->params);
     c->law = law_find(c->params.law);
+    c->hold_ticks = (uint32_t)(c->params.track_hold_ms * (c->params.tick_rate_Hz / 100) / 10);
     init_output(c, params, is_accepted);
     return is_accepted;
 }
@@ -113,13 +115,14 @@ static void supervise(controller_t *self, const quiesce_in_t *in, const conditio
 
 static law_in_t law_input(const controller_t *self, const signal_chain_out_t *signal,
                           int32_t fuzzy_mA) {
-    const bool is_valid = estimator_is_valid(&self->signal.estimator);
+    // A short doubt must not make the command jump: that would itself change the vibration.
+    const bool is_known = self->signal.estimator.age_ticks <= self->hold_ticks;
     return (law_in_t){
         .velocity_um_s_q32 = signal->velocity_um_s_q32,
         .accel_um_s2 = signal->sample.accel_um_s2,
         .freq_uHz = self->signal.estimator.tone[0].freq_uHz,
-        .freq_is_valid = is_valid,
-        .base_mA = is_valid ? fuzzy_mA : self->params.unlock_current_mA,
+        .freq_is_valid = is_known,
+        .base_mA = is_known ? fuzzy_mA : self->params.unlock_current_mA,
     };
 }
 
