@@ -25,7 +25,8 @@ sincos_t sincos_q30(uint32_t turn) {
 // Within 0.0007 turns for 0 <= y <= x, x > 0.
 static uint32_t first_octant(int32_t y, int32_t x) {
     const uint32_t up = (uint32_t)__builtin_clz((uint32_t)x) - 1u;
-    const int32_t t_q15 = (y << up) / ((x << up) >> 15);
+    const int32_t below = ((x << up) >> 15) | 1; // at least 2^15
+    const int32_t t_q15 = (y << up) / below;
     // atan(t) / 2 pi = t (1/8 + 0.0435 (1 - t)), in turns Q32.
     return (uint32_t)t_q15 * (uint32_t)(16384 + ((5702 * (32768 - t_q15)) >> 15));
 }

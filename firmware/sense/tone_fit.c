@@ -36,7 +36,7 @@ static int32_t scaled(int32_t value, int32_t up_shift) {
 }
 
 static uint32_t magnitude_bits(int32_t value) {
-    return (uint32_t)(value ^ (value >> 31));
+    return value < 0 ? ~(uint32_t)value : (uint32_t)value;
 }
 
 // Folds the window about its middle. |x| < 2^29, so that the folded ones fit 32 bits.

@@ -260,7 +260,7 @@ static bool reconsider_drift(estimator_t *self, bool had_drift) {
     return self->has_drift != had_drift;
 }
 
-static void fit(estimator_t *self) {
+static void fit_on(estimator_t *self) {
     if (!tone_fit_step(&self->fit, self->slice_pairs)) {
         return;
     }
@@ -390,7 +390,7 @@ static void decide(estimator_t *self) {
 static void work(estimator_t *self) {
     static void (*const step[])(estimator_t *) = {
         [ESTIMATOR_WAIT] = start_job, [ESTIMATOR_SEARCH] = search,   [ESTIMATOR_READ] = read,
-        [ESTIMATOR_CHOOSE] = choose,  [ESTIMATOR_GATHER] = gather,   [ESTIMATOR_FIT] = fit,
+        [ESTIMATOR_CHOOSE] = choose,  [ESTIMATOR_GATHER] = gather,   [ESTIMATOR_FIT] = fit_on,
         [ESTIMATOR_DECIDE] = decide,  [ESTIMATOR_PUBLISH] = publish,
     };
     step[self->stage](self);
