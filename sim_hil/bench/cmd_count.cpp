@@ -28,7 +28,7 @@ std::vector<std::uint32_t> words_from(const Arguments &arguments) {
 }
 
 std::string profile_from(const Arguments &arguments) {
-    const std::string text = arguments.text("profile").value_or("off");
+    std::string text = arguments.text("profile").value_or("off");
     if (text != "all" && text != "off" && parse_integer(text).value_or(0) < 1) {
         throw InputError("--profile " + text + ": expected off, all or the number of a pass");
     }
