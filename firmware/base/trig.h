@@ -10,10 +10,10 @@ typedef struct {
     int32_t sin;
 } sincos_t;
 
-/// Cosine and sine in Q30, error at most 3 x 10^-9. About 35 instructions.
+/// Cosine and sine in Q30, error at most 3.1 x 10^-9. About 35 instructions.
 sincos_t sincos_q30(uint32_t turn);
 
-/// Cosine in Q25, linear between 256 points: error at most 7.6 x 10^-5. About 10 instructions.
+/// Cosine in Q25, linear between 256 points: error at most 7.7 x 10^-5. About 10 instructions.
 static inline int32_t cos_linear_q25(uint32_t turn) {
     const uint32_t i = turn >> 24;
     const int32_t here = cosine_q25[i];
@@ -23,7 +23,7 @@ static inline int32_t cos_linear_q25(uint32_t turn) {
 }
 
 /// Angle of the vector (x, y) in turns, |x|, |y| <= 2^30; 0 for (0, 0). Error at most 10^-8 turns
-/// where the longer one is above 2^16 (shorter vectors: their own resolution).
+/// where the longer one is above 2^17 (shorter vectors: their own resolution).
 uint32_t atan2_turn(int32_t y, int32_t x);
 
 #endif
