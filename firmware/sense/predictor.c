@@ -3,10 +3,10 @@
 #define DIFFERENCE_LIMIT (1 << 27)
 
 enum {
-    TOLERANCE_SHIFT = 9, // of amplitude^2: 4 % of the amplitude
-    NOISE_SHARE = 3,     // of the noise that each square is expected to exceed at most
-    TOLERANCE_SHARE = 2, // and of the tolerance
-    NOISE_ALARM = 19,
+    TOLERANCE_SHIFT = 10, // of amplitude^2: 3 % of the amplitude
+    NOISE_SHARE = 3,      // of the noise that each square is expected to exceed at most
+    TOLERANCE_SHARE = 2,  // and of the tolerance
+    NOISE_ALARM = 17,
     UNCLEAR_ALARM = 48, // where much is not explained, it is not white noise either
     TOLERANCE_ALARM = 4,
     OUTLIER = 8,        // of noise + tolerance: no square counts as more noise than this
@@ -15,7 +15,7 @@ enum {
     CALM_SCALE = 1,     // blocks of 8 ms ..
     CALM_BLOCKS = 5,    // .. in a row that fit again end a suspicion
     CALM_NOISE = 6,     // of the noise that the square of a fitting block does not exceed
-    BURST_SHARE = 1024, // of the tolerance: squares of 2 ms that a burst may sum up to, 0.8 % of
+    BURST_SHARE = 2048, // of the tolerance: squares of 2 ms that a burst may sum up to, 0.8 % of
                         // the longest window's energy
     SCALE_SHIFT = 2,    // a block of the next scale is four of this one
 };

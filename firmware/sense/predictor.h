@@ -3,7 +3,7 @@
 ///
 /// Every sample is compared with its prediction. The differences are averaged over blocks of 2, 8
 /// and 32 ms; of the squared averages, less three times the noise
-/// and twice a tolerance of 1/512 of the amplitudes' squares, a cumulative sum is kept that never
+/// and twice a tolerance of 1/1024 of the amplitudes' squares, a cumulative sum is kept that never
 /// falls below zero (E. S. Page's test). It crosses its limit within a few blocks of a change, and
 /// by white noise alone once in 10^8 blocks; since when it has been positive tells when the change
 /// began. The noise is learnt from the differences themselves; their slow part (drift, below about
