@@ -151,6 +151,59 @@ static void test_powers_of_a_tone_on_a_constant_in_every_window(void) {
     }
 }
 
+// Amplitude at bin k under 1 - cos, which starts at the window's oldest sample, by its definition.
+static int64_t direct_amplitude(uint32_t level, uint32_t k, int32_t constant_um_s2) {
+    const uint32_t points = SPECTRUM_POINTS(level);
+    const uint32_t stride = COSINE_POINTS / points;
+    int64_t re = 0;
+    int64_t im = 0;
+    for (uint32_t n = 0; n < points; n++) {
+        const uint32_t index = (spectrum.newest + 1u + n - points) % SPECTRUM_RING;
+        const int64_t weight_q25 = (1 << 25) - cosine_q25[n * stride];
+        const int64_t rest = spectrum.sample[index] - constant_um_s2;
+        const int64_t weighted = (rest * weight_q25) >> 25;
+        re += weighted * cosine_q25[k * n * stride % COSINE_POINTS];
+        im += weighted * cosine_q25[(k * n * stride - QUARTER) % COSINE_POINTS];
+    }
+    re >>= 24 + SPECTRUM_POINTS_LOG2(level);
+    im >>= 24 + SPECTRUM_POINTS_LOG2(level);
+    return isqrt_u64((uint64_t)(re * re + im * im));
+}
+
+static bool is_near(uint64_t power, int64_t amplitude) {
+    const int64_t low = amplitude > 30 ? amplitude - 30 : 0;
+    const int64_t high = amplitude + 30;
+    return power >= (uint64_t)(low * low) && power <= (uint64_t)(high * high);
+}
+
+// Each power is the direct one at the end of one of the rounds that the request took.
+static void test_powers_of_noise_are_those_of_a_direct_hann_window(void) {
+    const int32_t constant = 1234567;
+    uint32_t seed = 17;
+    for (uint32_t level = 0; level < SPECTRUM_LEVELS; level++) {
+        for (uint32_t i = 0; i < 300; i++) {
+            feed(constant + signal_noise(&seed, 5000000));
+        }
+        int64_t direct[3][SPECTRUM_MAX_POWERS] = {{0}};
+        uint32_t rounds = 0;
+        spectrum_want_powers(&spectrum, level, constant);
+        for (; rounds < 3 && !spectrum.has_powers; rounds++) {
+            feed(constant + signal_noise(&seed, 5000000));
+            for (uint32_t k = 1; k <= spectrum_last_power(level); k++) {
+                direct[rounds][k] = direct_amplitude(level, k, constant);
+            }
+        }
+        TEST_ASSERT_TRUE(spectrum.has_powers);
+        for (uint32_t k = 1; k <= spectrum_last_power(level); k++) {
+            bool is_direct = false;
+            for (uint32_t round = 0; round < rounds; round++) {
+                is_direct = is_direct || is_near(spectrum.power[k], direct[round][k]);
+            }
+            TEST_ASSERT_TRUE(is_direct);
+        }
+    }
+}
+
 static void test_constant_that_is_left_in_shows_in_the_first_power(void) {
     for (uint32_t i = 0; i < 600; i++) {
         feed(1000000);
@@ -202,6 +255,7 @@ int main(void) {
     RUN_TEST(test_constant_leaves_no_trace);
     RUN_TEST(test_mean_of_each_window_is_its_floor);
     RUN_TEST(test_powers_of_a_tone_on_a_constant_in_every_window);
+    RUN_TEST(test_powers_of_noise_are_those_of_a_direct_hann_window);
     RUN_TEST(test_constant_that_is_left_in_shows_in_the_first_power);
     RUN_TEST(test_full_scale_does_not_overflow);
     RUN_TEST(test_powers_come_only_on_request_and_the_last_request_counts);
