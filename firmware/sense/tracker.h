@@ -21,7 +21,7 @@
 
 #define TRACKER_TONES 3 ///< fitted and reported
 /// A fit that moves a frequency no further has converged, radians over half a window: 0.04 bins, of
-/// which 10^-5 bins are left.
+/// which 5 x 10^-4 bins are left at most (0.005 below two cycles a window).
 #define TRACKER_CONVERGED_Q29 (1 << 26)
 #define TRACKER_CANDIDATES 6 ///< kept while a spectrum is read
 
