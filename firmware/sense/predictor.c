@@ -158,9 +158,10 @@ static bool watch(predictor_t *self) {
 static void suspect(predictor_t *self) {
     self->is_suspicious = true;
     self->calm_blocks = 0;
-    self->burst = self->watch[0].sum;
+    self->burst = self->watch[0].sum / BURST_SHARE;
     for (uint32_t i = 0; i < PREDICTOR_SCALES; i++) {
         self->watch[i].sum = 0;
+        self->watch[i].suspect_blocks = 0;
         self->watch[i].is_due = false;
     }
 }
@@ -168,18 +169,17 @@ static void suspect(predictor_t *self) {
 // Whether the samples fit again after a burst so small that the windows bear it.
 static bool is_back(predictor_t *self) {
     predictor_watch_t *shortest = &self->watch[0];
-    if (shortest->is_due) {
-        shortest->is_due = false;
-        self->burst += shortest->average * shortest->average;
+    if (shortest->is_due && self->burst <= self->tolerance) { // else it is too large for good
+        self->burst += shortest->average * shortest->average / BURST_SHARE;
     }
+    shortest->is_due = false;
     predictor_watch_t *at = &self->watch[CALM_SCALE];
     if (at->is_due) {
         at->is_due = false;
         const int64_t most = CALM_NOISE * at->noise + TOLERANCE_SHARE * self->tolerance;
         self->calm_blocks = at->average * at->average <= most ? self->calm_blocks + 1u : 0;
     }
-    const bool is_small = self->burst <= BURST_SHARE * self->tolerance;
-    return self->calm_blocks >= CALM_BLOCKS && is_small;
+    return self->calm_blocks >= CALM_BLOCKS && self->burst <= self->tolerance;
 }
 
 predictor_verdict_t predictor_step(predictor_t *self, int32_t accel_um_s2, bool is_good) {

@@ -2,12 +2,12 @@
 /// what it was?
 ///
 /// Every sample is compared with its prediction. The differences are averaged over blocks of 2, 8
-/// and 32 ms; of the squared averages, less three times the noise
-/// and twice a tolerance of 1/1024 of the amplitudes' squares, a cumulative sum is kept that never
-/// falls below zero (E. S. Page's test). It crosses its limit within a few blocks of a change, and
-/// by white noise alone once in 10^8 blocks; since when it has been positive tells when the change
-/// began. The noise is learnt from the differences themselves; their slow part (drift, below about
-/// 0.6 Hz) is taken out.
+/// and 32 ms; of the squared averages, less three times the noise and twice a tolerance of 1/1024
+/// of the amplitudes' squares, a cumulative sum is kept that never falls below zero (E. S. Page's
+/// test). It crosses its limit within a few blocks of a change, and by white noise alone (without
+/// any tolerance) about once in 40,000 blocks; since when it has been positive tells when the
+/// change began. The noise is learnt from the differences themselves; their slow part (drift, below
+/// about 0.6 Hz) is taken out.
 ///
 /// Formats: phases in turns Q32; squares in (um/s2)^2, 64 bit; differences limited to 2^27.
 /// Bounded, about 25 instructions a tick and 15 a component, 40 more a block.
@@ -54,7 +54,7 @@ typedef struct {
     predictor_watch_t watch[PREDICTOR_SCALES];
     bool is_suspicious;       ///< since CHANGED; only BACK or disarming ends it
     uint32_t calm_blocks;     ///< that fitted again, in a row
-    int64_t burst;            ///< sum of squares since it began
+    int64_t burst;            ///< mean square since it began, over as many blocks as it may last
     uint32_t suspect_ticks;   ///< at an alarm: how long ago the change began
     int32_t prediction_um_s2; ///< of this tick's sample
 } predictor_t;
