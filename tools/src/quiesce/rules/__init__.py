@@ -1,0 +1,1 @@
+"""Fuzzy rule bases: read, write, compile to integers, check, draw, optimise."""
