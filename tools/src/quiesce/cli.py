@@ -14,6 +14,7 @@ from quiesce import (
     cmd_plant,
     cmd_record,
     cmd_replay,
+    cmd_rules,
 )
 from quiesce.errors import (
     EXIT_BAD_INPUT,
@@ -24,13 +25,23 @@ from quiesce.errors import (
     one_line,
 )
 
-COMMANDS = (cmd_hil, cmd_replay, cmd_record, cmd_plant, cmd_params, cmd_chain, cmd_bench)
+COMMANDS = (
+    cmd_hil,
+    cmd_replay,
+    cmd_record,
+    cmd_plant,
+    cmd_params,
+    cmd_chain,
+    cmd_rules,
+    cmd_bench,
+)
 
 EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report
   quiesce replay FILE.csv --column acc --unit g a recorded acceleration through the firmware
   quiesce plant check my_plant.toml             is my own plant file right?
   quiesce params                                every parameter of the controller
+  quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
   quiesce bench signal --check                  the sensing chain's figures and goals
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,
