@@ -17,15 +17,18 @@ def built_image(name: str) -> Path:
     UsageError where it cannot be had: the network, a tool.
     """
     if not os.environ.get("QUIESCE_BUILD"):
-        build(name)
+        build("bench_images", name)
     return require_file(build_folder() / f"mps2/bench/{name}.elf", "the image")
 
 
 @cache
-def build(name: str) -> None:
-    """Builds it, and fetches its sources where it is a peer. Its progress goes to stderr."""
+def build(script: str, name: str) -> None:
+    """Builds it with that script of tools/, and fetches what it needs where it is a peer.
+
+    Its progress goes to stderr.
+    """
     process = subprocess.Popen(
-        [root() / "tools/bench_images", name],
+        [root() / "tools" / script, name],
         stdin=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
@@ -39,5 +42,5 @@ def build(name: str) -> None:
     if process.wait() == EXIT_BAD_INPUT:
         raise UsageError(last)
     if process.returncode != 0:
-        raise BenchFailure(f"tools/bench_images ended with {ending(process.returncode)}: {last}")
+        raise BenchFailure(f"tools/{script} ended with {ending(process.returncode)}: {last}")
     print(last, end="", file=sys.stderr, flush=True)
