@@ -94,6 +94,8 @@ def random_set(random: np.random.Generator, name: str, low: float, high: float) 
 
 def random_rule(random: np.random.Generator, inputs: tuple[Input, ...], output: Output) -> Rule:
     chosen = [i for i in range(len(inputs)) if random.random() < 0.8] or [0]
+    if random.random() < 0.2:
+        chosen.append(chosen[0])
     conditions = tuple(
         Condition(i, int(random.integers(len(inputs[i].sets))), bool(random.random() < 0.2))
         for i in chosen

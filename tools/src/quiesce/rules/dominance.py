@@ -2,17 +2,18 @@
 
 Where only the greatest strength of a term counts, a rule changes nothing if another one with the
 same conclusion is at least as strong everywhere. With minimum conditions this separates by input:
-Q outdoes R where, along each input, Q's own condition is nowhere weaker than R's, the latter
-capped by the most that R's other conditions can reach. Each of these is a comparison of two
-piecewise linear functions, done at their breakpoints (from both sides) and where the cap is met.
+Q outdoes R where, along each input, Q's conditions are nowhere weaker than R's, the latter capped
+by the most that R's conditions on other inputs can reach. Each of these is a comparison of
+piecewise linear functions, done at their breakpoints (from both sides) and where they meet.
 """
 
 from collections.abc import Sequence
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 
-from quiesce.rules.model import AND, WEIGHTED_SUM, Condition, FuzzySet, Input, Rule, RuleBase
+from quiesce.rules.model import AND, WEIGHTED_SUM, Condition, Input, Rule, RuleBase
 from quiesce.rules.reference import evaluate, limits
 
 TOLERANCE = 1e-12
@@ -86,27 +87,21 @@ def and_outdoes(
     weak: Sequence[Condition],
     weak_weight: float,
 ) -> bool:
-    most = [weak_weight * span(base, condition)[1] for condition in weak]
+    by_input: dict[int, list[Condition]] = {}
+    for condition in weak:
+        by_input.setdefault(condition.input, []).append(condition)
+    most = {
+        i: weak_weight * max(map(min, values(base.inputs[i], tuple(conditions))))
+        for i, conditions in by_input.items()
+    }
     for condition in strong:
-        along = [i for i, other in enumerate(weak) if other.input == condition.input]
-        cap = min((m for i, m in enumerate(most) if i not in along), default=weak_weight)
-        variable = base.inputs[condition.input]
-        if not along:
-            if strong_weight * span(base, condition)[0] < cap - TOLERANCE:
-                return False
-        elif not is_above(variable, condition, strong_weight, weak[along[0]], weak_weight, cap):
+        along = tuple(by_input.get(condition.input, ()))
+        cap = min((m for i, m in most.items() if i != condition.input), default=weak_weight)
+        weights = (strong_weight, *[weak_weight] * len(along))
+        rows = values(base.inputs[condition.input], (condition, *along), weights, cap)
+        if any(row[0] < min(cap, *row[1:], 1.0) - TOLERANCE for row in rows):
             return False
     return True
-
-
-def span(base: RuleBase, condition: Condition) -> tuple[float, float]:
-    """Least and greatest value of a condition over its input's universe."""
-    variable = base.inputs[condition.input]
-    one = variable.sets[condition.set]
-    values = [mu for start, end in intervals(variable) for mu in limits(one, start, end)]
-    values += [one.membership(x) for x in edges(variable)]
-    low, high = min(values), max(values)
-    return (1 - high, 1 - low) if condition.negated else (low, high)
 
 
 @cache
@@ -116,52 +111,45 @@ def edges(variable: Input) -> tuple[float, ...]:
     return tuple(sorted(x for x in places if variable.minimum <= x <= variable.maximum))
 
 
-def intervals(variable: Input) -> list[tuple[float, float]]:
-    return list(zip(edges(variable), edges(variable)[1:], strict=False))
-
-
 @cache
-def is_above(
+def values(
     variable: Input,
-    strong: Condition,
-    strong_weight: float,
-    weak: Condition,
-    weak_weight: float,
-    cap: float,
-) -> bool:
-    """Whether strong_weight * strong >= min(cap, weak_weight * weak) all along the input."""
-    upper, lower = variable.sets[strong.set], variable.sets[weak.set]
-    for x in edges(variable):
-        a = strong_weight * counted(upper.membership(x), strong)
-        b = weak_weight * counted(lower.membership(x), weak)
-        if a < min(cap, b) - TOLERANCE:
-            return False
-    return all(
-        is_line_above(
-            [strong_weight * mu for mu in line(upper, strong, start, end)],
-            [weak_weight * mu for mu in line(lower, weak, start, end)],
-            cap,
-        )
-        for start, end in intervals(variable)
-    )
+    conditions: tuple[Condition, ...],
+    weights: tuple[float, ...] | None = None,
+    level: float | None = None,
+) -> list[tuple[float, ...]]:
+    """Weighted values of all conditions together, wherever a comparison of them can turn.
+
+    That is at the breakpoints, on both sides of them, and where two of them, or one and the level,
+    are equal.
+    """
+    weights = weights or (1.0,) * len(conditions)
+    pairs = list(zip(conditions, weights, strict=True))
+    sets = variable.sets
+    rows = [
+        tuple(weight * counted(sets[c.set].membership(x), c) for c, weight in pairs)
+        for x in edges(variable)
+    ]
+    for start, end in zip(edges(variable), edges(variable)[1:], strict=False):
+        lines = [
+            [weight * counted(mu, c) for mu in limits(sets[c.set], start, end)]
+            for c, weight in pairs
+        ]
+        levels = [] if level is None else [[level, level]]
+        for u in (0.0, 1.0, *crossings([*lines, *levels])):
+            rows.append(tuple(first + u * (last - first) for first, last in lines))
+    return rows
 
 
 def counted(mu: float, condition: Condition) -> float:
     return 1 - mu if condition.negated else mu
 
 
-def line(one: FuzzySet, condition: Condition, start: float, end: float) -> list[float]:
-    return [counted(mu, condition) for mu in limits(one, start, end)]
-
-
-def is_line_above(upper: Sequence[float], lower: Sequence[float], cap: float) -> bool:
-    """Between two ends: upper >= min(cap, lower), where upper and lower are straight."""
-    places = [0.0, 1.0]
-    if min(lower) < cap < max(lower):
-        places.append((cap - lower[0]) / (lower[1] - lower[0]))
-    for u in places:
-        a = upper[0] + u * (upper[1] - upper[0])
-        b = lower[0] + u * (lower[1] - lower[0])
-        if a < min(cap, b) - TOLERANCE:
-            return False
-    return True
+def crossings(lines: Sequence[Sequence[float]]) -> list[float]:
+    """Places between 0 and 1 at which two lines, given there, are equal."""
+    found = []
+    for one, other in combinations(lines, 2):
+        start, end = one[0] - other[0], one[1] - other[1]
+        if start * end < 0:
+            found.append(start / (start - end))
+    return found
