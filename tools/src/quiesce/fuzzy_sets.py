@@ -62,7 +62,7 @@ def pairs(rng: np.random.Generator, count: int, low: float, high: float) -> list
 
 def tops(rng: np.random.Generator, a: float, d: float) -> list[float]:
     """One place or two between a and d, sometimes on one of them."""
-    shares = np.sort(rng.choice([rng.random(), rng.random(), 0.0, 1.0], 2))
+    shares = np.sort(rng.choice([*rng.random(2), 0.0, 1.0], 2, p=[0.4, 0.4, 0.1, 0.1]))
     if rng.random() < 0.4:
         shares[:] = rng.random()
     return [float(x) for x in np.clip(a + (d - a) * shares, a, d)]
