@@ -1,10 +1,11 @@
 """`quiesce rules SUB`: fuzzy rule files. One module a subcommand."""
 
 import argparse
-from types import ModuleType
+
+from quiesce.rules import cli_convert
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
-SUBCOMMANDS: tuple[ModuleType, ...] = ()
+SUBCOMMANDS = (cli_convert,)
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
