@@ -2,10 +2,10 @@
 
 import argparse
 
-from quiesce.rules import cli_convert
+from quiesce.rules import cli_convert, cli_show
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
-SUBCOMMANDS = (cli_convert,)
+SUBCOMMANDS = (cli_convert, cli_show)
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
