@@ -1,5 +1,6 @@
 """From what a rule file says to a RuleBase: everything that the formats have to check alike."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -24,6 +25,7 @@ from quiesce.rules.shapes import Curve, Shape, ShapeError, chain
 
 MAX_POINTS = 256  # of a set
 MAX_NAME = 64  # characters
+FORBIDDEN = re.compile(r"[\"'\\*%#]")  # in names: they end texts and comments, here and in C
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,8 @@ class Builder:
     def check_name(self, name: Token, others: Sequence[Token], what: str) -> None:
         if not name.text.strip() or len(name.text) > MAX_NAME:
             raise self.source.error(name, f"{what} name of {len(name.text)} characters", "1 to 64")
+        if FORBIDDEN.search(name.text):
+            raise self.source.error(name, f"{what} {name.shown()}", "a name without ' \" \\ * % #")
         if self.key(name) in [self.key(other) for other in others]:
             raise self.source.error(name, f"{what} {name.shown()} again", "a new name")
 

@@ -6,13 +6,17 @@ from quiesce.errors import UsageError
 from quiesce.paths import shown
 from quiesce.rules.build import Options
 from quiesce.rules.fcl import read_fcl
+from quiesce.rules.fis import read_fis
+from quiesce.rules.fll import read_fll
 from quiesce.rules.model import RuleBase
 from quiesce.rules.same import difference
 from quiesce.rules.scan import Source
 from quiesce.rules.write_fcl import fcl_text
+from quiesce.rules.write_fis import fis_text
+from quiesce.rules.write_fll import fll_text
 
-READERS = {"fcl": read_fcl}
-WRITERS = {"fcl": fcl_text}
+READERS = {"fcl": read_fcl, "fll": read_fll, "fis": read_fis}
+WRITERS = {"fcl": fcl_text, "fll": fll_text, "fis": fis_text}
 FORMATS = tuple(READERS)
 MAX_BYTES = 1 << 20
 MAX_SEGMENTS = 128  # of a chain; at least 2

@@ -203,6 +203,14 @@ def negated(expression: Expression) -> Expression:
     return join(other, [negated(part) for part in expression.parts])
 
 
+def uses(expression: Expression, connective: str) -> bool:
+    if isinstance(expression, Condition):
+        return False
+    return expression.connective == connective or any(
+        uses(part, connective) for part in expression.parts
+    )
+
+
 def plain_rules(source: Source, draft: Draft, outputs: Sequence[Output]) -> list[Rule]:
     """The rules of the model that mean this one."""
     conclusions = tuple(draft.conclusions.get(i) for i in range(len(outputs)))
