@@ -83,7 +83,7 @@ def random_set(random: np.random.Generator, name: str, low: float, high: float) 
     x = np.sort(random.uniform(low - margin, high + margin, count))
     if random.random() < 0.4:
         x[1] = x[0]
-    if random.random() < 0.3:
+    if random.random() < 0.3 and count > 3:
         x[-1] = x[-2]
     mu = random.uniform(0.0, 1.0, count)
     if random.random() < 0.7:
