@@ -206,7 +206,7 @@ def test_points_that_do_not_bend_a_set_do_not_count() -> None:
 # What comes out
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(18))
 def test_a_base_equals_itself(seed: int) -> None:
     base = random_base(seed, METHODS[seed % 3], input_count=1 + seed % 3)
     (found,) = compare_outputs(base, base, make_grid(base, base), None)

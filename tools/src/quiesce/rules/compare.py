@@ -10,7 +10,7 @@ from quiesce.errors import UsageError
 from quiesce.rules.model import Input, RuleBase
 from quiesce.rules.reference import evaluate
 
-POINTS = {1: 4001, 2: 401, 3: 65, 4: 9}  # along an axis, by the number of inputs
+POINTS = {1: 4001, 2: 401, 3: 33, 4: 9}  # along an axis, by the number of inputs
 REFINEMENTS, REFINED_POINTS = 6, 9
 SAME = 1e-9  # of the output's range: smaller differences are rounding
 

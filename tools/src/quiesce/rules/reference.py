@@ -13,7 +13,7 @@ import numpy as np
 
 from quiesce.rules.model import AND, CENTROID, WEIGHTED_SUM, FuzzySet, Output, Rule, RuleBase
 
-CHUNK_POINTS = 1 << 15  # evaluated at once; bounds the memory
+CHUNK_POINTS = 1 << 13  # evaluated at once; bounds the memory
 
 
 @dataclass(frozen=True)
@@ -197,10 +197,13 @@ def integrate(ends: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndar
     width, middle = np.diff(cuts, axis=0), (cuts[1:] + cuts[:-1]) / 2
     value, slope = np.zeros_like(middle), np.zeros_like(middle)
     for (start, end), level in zip(ends, levels, strict=True):
-        line = start * (1 - middle) + end * middle
-        is_greatest = np.minimum(line, level) > value
-        value = np.where(is_greatest, np.minimum(line, level), value)
-        slope = np.where(is_greatest, np.where(line < level, end - start, 0.0), slope)
+        line = middle * (end - start)
+        line += start
+        own_slope = np.where(line < level, end - start, 0.0) if start != end else 0.0
+        np.minimum(line, level, out=line)
+        is_greatest = line > value
+        np.copyto(slope, own_slope, where=is_greatest)
+        np.copyto(value, line, where=is_greatest)
     area = width * value
     return area.sum(axis=0), (area * middle + slope * width**3 / 12).sum(axis=0)
 
