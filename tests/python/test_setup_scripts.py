@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-SCRIPTS = ("bench_images", "hil", "quiesce", "setup", "test")
+SCRIPTS = ("bench_images", "bench_peers", "hil", "quiesce", "setup", "test")
 COMMON = (
     "awk bash cat chmod cp cut dirname env flock grep mkdir mktemp mv nproc readlink rm "
     "sha256sum tail tar touch"
@@ -92,6 +92,7 @@ def assert_one_line(result: subprocess.CompletedProcess[str], *words: str) -> No
         ("setup", ["everything"], ["everything", "run, test or python"]),
         ("setup", ["run", "test"], ["one argument"]),
         ("bench_images", ["cmsis_cost", "all"], ["all", "signal_cost"]),
+        ("bench_peers", ["python", "matlab"], ["matlab", "fuzzylite"]),
         ("test", ["--fast"], ["--fast", "--help"]),
         ("test", ["--only", "units"], ["units", "sanitize"]),
         ("test", ["--only"], ["--only", "sanitize"]),
@@ -102,7 +103,7 @@ def test_unknown_argument_is_refused(clone: Clone, name, arguments, words) -> No
     assert not (clone.root / "build").exists()
 
 
-@pytest.mark.parametrize("name", ["bench_images", "setup", "test"])
+@pytest.mark.parametrize("name", ["bench_images", "bench_peers", "setup", "test"])
 def test_help_needs_nothing_installed(clone: Clone, name) -> None:
     result = clone.script(name, "--help")
     assert result.returncode == 0

@@ -1,0 +1,123 @@
+// The fuzzy engines on the reference controller, each evaluation bracketed for the instruction
+// counter. Inputs: every pair from two lists, each with even steps over the universe, both sides of
+// every cell's border, and values beyond the universe. Of every pair the other engine's answer is
+// compared, outside the bracket.
+#include "counted_call.h"
+#include "fuzzy_reference.h"
+#include "mailbox.h"
+#include "print.h"
+
+#define VALUES_MAX 2048u
+
+/// What the run is to be; the emulator puts it where the mailbox is otherwise.
+typedef struct {
+    uint32_t variant;     ///< in the order of FUZZY_REFERENCES
+    uint32_t is_straight; ///< 0: the table engine is counted
+    uint32_t steps;       ///< even steps over each universe
+    uint32_t universe[2]; ///< inputs go from 0 to this
+} order_t;
+
+typedef struct {
+    fuzzy_function_t straight;
+    const uint32_t *table;
+} variant_t;
+
+typedef struct {
+    uint32_t count;
+    int32_t value[VALUES_MAX];
+} list_t;
+
+#define VARIANT(name) {name, name##_table},
+static const variant_t variants[] = {FUZZY_REFERENCES(VARIANT)};
+#define VARIANTS (sizeof variants / sizeof variants[0])
+
+static void add(list_t *list, int64_t value) {
+    if (list->count < VALUES_MAX && value >= INT32_MIN && value <= INT32_MAX) {
+        list->value[list->count++] = (int32_t)value;
+    }
+}
+
+static void add_even(list_t *list, uint32_t steps, uint32_t universe) {
+    for (uint32_t i = 0; i <= steps; i++) {
+        add(list, (int64_t)((uint64_t)universe * i / steps));
+    }
+}
+
+/// The ends of every cell, and one beside.
+static void add_borders(list_t *list, const fuzzy_table_t *table, uint32_t input) {
+    const fuzzy_axis_t axis = table->axis[input];
+    for (uint32_t i = 0; i < axis.cells; i++) {
+        const fuzzy_cell_t *cell = fuzzy_at(table, axis.offset + i * axis.stride);
+        for (int32_t beside = -1; beside <= 1; beside++) {
+            add(list, (int64_t)cell->first + beside);
+            add(list, (int64_t)cell->last + beside);
+        }
+    }
+}
+
+static void add_beyond(list_t *list, uint32_t universe) {
+    add(list, INT32_MIN);
+    add(list, -1);
+    add(list, (int64_t)universe + 1);
+    add(list, INT32_MAX);
+}
+
+typedef struct {
+    uint32_t evaluations;
+    uint32_t differing; ///< table and straight-line C did not give the same
+    uint32_t defaults;
+} tally_t;
+
+static void evaluate(const order_t *order, const int32_t *input, tally_t *tally) {
+    const variant_t *variant = &variants[order->variant];
+    const fuzzy_table_t *table = (const fuzzy_table_t *)(const void *)variant->table;
+    int32_t counted = 0, other = 0;
+    uint32_t flags;
+    if (order->is_straight != 0) {
+        counted_call((counted_function_t)variant->straight, (uintptr_t)input, (uintptr_t)&counted,
+                     0);
+        flags = fuzzy_evaluate(table, input, &other);
+    } else {
+        counted_call((counted_function_t)fuzzy_evaluate, (uintptr_t)table, (uintptr_t)input,
+                     (uintptr_t)&counted);
+        flags = variant->straight(input, &other);
+    }
+    tally->evaluations++;
+    tally->differing += counted != other ? 1u : 0u;
+    tally->defaults += flags != 0 ? 1u : 0u;
+}
+
+static void walk(const order_t *order, const list_t *lists, tally_t *tally) {
+    for (uint32_t i = 0; i < lists[0].count; i++) {
+        for (uint32_t j = 0; j < lists[1].count; j++) {
+            const int32_t input[2] = {lists[0].value[i], lists[1].value[j]};
+            evaluate(order, input, tally);
+        }
+    }
+}
+
+int main(void) {
+    static list_t lists[2];
+    const order_t order = *(const volatile order_t *)MAILBOX_BASE;
+    tally_t tally = {0};
+
+    if (order.variant >= VARIANTS || order.steps == 0) {
+        print("refused", 1);
+        return 1;
+    }
+    const fuzzy_table_t *table = (const fuzzy_table_t *)(const void *)variants[order.variant].table;
+    for (uint32_t input = 0; input < 2; input++) {
+        add_even(&lists[input], order.steps, order.universe[input]);
+        add_borders(&lists[input], table, input);
+        add_beyond(&lists[input], order.universe[input]);
+    }
+    counted_call_init();
+    walk(&order, lists, &tally);
+    print("evaluations", tally.evaluations);
+    print("differing", tally.differing);
+    print("defaults", tally.defaults);
+    print("table_bytes", table->size_words * (uint32_t)sizeof(uint32_t));
+    print("stack_bytes", counted_call_stack_bytes());
+    const bool is_complete = lists[0].count < VALUES_MAX && lists[1].count < VALUES_MAX;
+    return is_complete && counted_call_stack_bytes() < counted_call_stack_size_bytes() ? 0 : 1;
+}
