@@ -164,6 +164,15 @@ class Builder:
             return Smooth(at.text, made, height)
         return tuple((x, height * mu) for x, mu in made)
 
+    def linear(self, at: Token, values: Sequence[float]) -> float:
+        """A first-order term whose slopes are all 0 is a constant: its last number."""
+        count = len(self.of_kind(is_input=True)) + 1
+        if len(values) != count:
+            raise self.source.error(at, f"{len(values)} numbers of {at.text}", f"{count}")
+        if any(values[:-1]):
+            raise self.source.error(at, f"{at.text} of {numbers(values)}", "slopes of 0")
+        return values[-1]
+
     def finish(
         self, name: str, at: Token, make_rules: Callable[[Sequence[Output]], list[Rule]]
     ) -> RuleBase:

@@ -24,8 +24,8 @@ MAX_SEGMENTS = 128  # of a chain; at least 2
 
 def read_rules(path: Path, approximate: int | None = None) -> RuleBase:
     """approximate: see read_text. UsageError, `FILE:LINE:COLUMN: ...`, for what is no rule file."""
-    name = shown(path)
-    return read_text(load(path, name), format_of(path), path.stem, approximate, name)
+    format, name = format_of(path), shown(path)
+    return read_text(load(path, name), format, path.stem, approximate, name)
 
 
 def read_text(

@@ -1,4 +1,7 @@
-"""Reads FIS, the files of MATLAB's Fuzzy Logic Toolbox: Mamdani and zero-order Sugeno."""
+"""Reads FIS, the files of MATLAB's Fuzzy Logic Toolbox: Mamdani and zero-order Sugeno.
+
+Comments begin with % as in MATLAB or # as in Octave.
+"""
 
 import re
 from collections.abc import Sequence
@@ -39,7 +42,7 @@ SYSTEM, RULES = "System", "Rules"
 COUNTS = ("NumInputs", "NumOutputs", "NumRules")
 METHODS = {
     "AndMethod": ("min", "prod"),
-    "OrMethod": ("max", "probor"),
+    "OrMethod": ("max", "probor", "sum"),
     "ImpMethod": ("min", "prod"),
     "AggMethod": ("max", "sum", "probor"),
     "DefuzzMethod": ("centroid", "bisector", "mom", "lom", "som", "wtaver", "wtsum"),
@@ -69,7 +72,7 @@ def read_fis(source: Source, name: str, options: Options) -> RuleBase:
 def split_sections(source: Source) -> list[Section]:
     sections: list[Section] = []
     for start, line_end in source.lines():
-        end = start + len(source.text[start:line_end].split("%")[0].rstrip())
+        end = start + len(re.split("[%#]", source.text[start:line_end])[0].rstrip())
         tokens = scan(source, PATTERN, start, end)
         stream = Stream(source, tokens)
         if stream.token.kind == END:
@@ -221,11 +224,12 @@ class FisReader:
     ) -> tuple[Point, ...] | float | Smooth:
         if at.text == "constant" and not variable.is_input:
             return self.vector(stream, 1)[0]
+        if at.text == "linear" and not variable.is_input:
+            inputs = len(self.builder.of_kind(is_input=True))
+            return self.builder.linear(at, self.vector(stream, inputs + 1))
         if at.text not in FIS_SHAPES:
-            words = ", ".join(FIS_SHAPES)
-            constant = "" if variable.is_input else "constant, "
-            what = f"membership function {at.shown()}"
-            raise self.source.error(at, what, f"one of {constant}{words}")
+            words = ", ".join((*(() if variable.is_input else ("constant", "linear")), *FIS_SHAPES))
+            raise self.source.error(at, f"membership function {at.shown()}", f"one of {words}")
         shape = FIS_SHAPES[at.text]
         return self.builder.shape(at, shape, self.vector(stream, shape.parameters))
 

@@ -2,9 +2,18 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 from quiesce.rules.build import Builder, Options, Smooth, Term, Variable
+from quiesce.rules.fll_lines import (
+    BLOCK,
+    ENGINE,
+    INPUT,
+    OUTPUT,
+    Line,
+    Section,
+    split_lines,
+    split_sections,
+)
 from quiesce.rules.logic import Draft, RuleParser, Words, plain_rules, uses
 from quiesce.rules.model import (
     AND,
@@ -33,28 +42,12 @@ from quiesce.rules.shapes import FLL_SHAPES
 PATTERN = re.compile(
     rf"\s+|(?P<number>{NUMBER_PATTERN})|(?P<name>{WORD_PATTERN})|(?P<symbol>[()])"
 )
-LINE = re.compile(r"[ \t]*(?P<key>[A-Za-z][A-Za-z-]*)[ \t]*:[ \t]*")
 HEDGES = ("any", "extremely", "seldom", "somewhat", "very")
 WORDS = Words(
     "if", "then", "is", "not", "and", "or", "with", ("and",), ignore_case=False, refused=HEDGES
 )
 RESERVED = WORDS.reserved()
-ENGINE, INPUT, OUTPUT, BLOCK = "Engine", "InputVariable", "OutputVariable", "RuleBlock"
-# description is for people; lock-range makes no difference inside the range, to which inputs
-# clamp here in any case.
-IGNORED = ("description", "lock-range")
-KEYS = {
-    ENGINE: ("description",),
-    INPUT: (*IGNORED, "enabled", "range", "term"),
-    OUTPUT: (
-        *IGNORED, "enabled", "range", "term", "aggregation", "defuzzifier", "default",
-        "lock-previous",
-    ),
-    BLOCK: (
-        "description", "enabled", "conjunction", "disjunction", "implication", "activation", "rule",
-    ),
-}  # fmt: skip
-REPEATED = ("term", "rule")
+OTHER_TERMS = ("Constant", "Linear", "Discrete")
 T_NORMS = (
     "Minimum", "AlgebraicProduct", "BoundedDifference", "DrasticProduct", "EinsteinProduct",
     "HamacherProduct", "NilpotentMinimum",
@@ -67,76 +60,23 @@ NONE = "none"
 PRECISE_FROM = 2  # resolutions of a centroid, which is exact here
 
 
-@dataclass(frozen=True)
-class Line:
-    """`key: value`; start: of the value, end: of the line less its comment."""
-
-    key: Token
-    start: int
-    end: int
-
-
-@dataclass
-class Section:
-    head: Line
-    lines: list[Line] = field(default_factory=list)
-
-
 def read_fll(source: Source, name: str, options: Options) -> RuleBase:
     """name: of the base where the file gives it none."""
     return FllReader(source, options).read(name)
-
-
-def split_lines(source: Source) -> list[Line]:
-    """Those with content."""
-    found = []
-    for start, line_end in source.lines():
-        text = source.text[start:line_end].split("#")[0].rstrip()
-        if not text:
-            continue
-        end = start + len(text)
-        match = LINE.match(source.text, start, end)
-        if not match:
-            first = start + len(text) - len(text.lstrip())
-            word = Token(NAME, text.strip(), first)
-            raise source.error(first, f"found {word.shown()}", "'key: value'")
-        found.append(Line(Token(NAME, match["key"], match.start("key")), match.end(), end))
-    return found
-
-
-def split_sections(source: Source, lines: Sequence[Line]) -> list[Section]:
-    sections: list[Section] = []
-    for line in lines:
-        if line.key.text in KEYS:
-            sections.append(Section(line))
-        elif not sections:
-            raise source.error(line.key, f"found {line.key.shown()}", "'Engine: name' first")
-        else:
-            add_line(source, sections[-1], line)
-    return sections
-
-
-def add_line(source: Source, section: Section, line: Line) -> None:
-    kind, key = section.head.key.text, line.key
-    if key.text not in KEYS[kind]:
-        allowed = ", ".join(KEYS[kind])
-        raise source.error(key, f"no key {key.shown()} of {kind}", f"one of {allowed}")
-    if key.text not in REPEATED and key.text in (other.key.text for other in section.lines):
-        raise source.error(key, f"{key.shown()} again", "it once")
-    section.lines.append(line)
 
 
 class FllReader:
     def __init__(self, source: Source, options: Options) -> None:
         self.source = source
         self.builder = Builder(source, options)
-        self.aggregations: list[Token | None] = []  # of each output
         self.drafts: list[Draft] = []
         self.implications: list[Token | None] = []  # of the rule blocks
         self.blocks: list[Section] = []
 
     def read(self, name: str) -> RuleBase:
         sections = split_sections(self.source, split_lines(self.source))
+        if not sections:
+            raise self.source.error(0, "no line but comments", "'Engine: name' first")
         first = sections[0].head
         if first.key.text != ENGINE:
             raise self.source.error(first.key, f"found {first.key.shown()}", "'Engine: name' first")
@@ -228,14 +168,16 @@ class FllReader:
         self.builder.add_term(variable, Term(name, at, self.content(stream)))
 
     def content(self, stream: Stream) -> tuple[Point, ...] | float | Smooth:
-        if not stream.sees(*FLL_SHAPES, "Discrete", "Constant"):
-            raise stream.unexpected(f"Constant, Discrete, {', '.join(FLL_SHAPES)}")
+        if not stream.sees(*FLL_SHAPES, *OTHER_TERMS):
+            raise stream.unexpected(f"one of {', '.join((*OTHER_TERMS, *FLL_SHAPES))}")
         at = stream.take()
         tokens = []
         while stream.token.kind != END:
             tokens.append(stream.expect_kind(NUMBER, "a number"))
         if at.text == "Discrete":
             return self.discrete(at, tokens)
+        if at.text == "Linear":
+            return self.builder.linear(at, [self.source.number(token) for token in tokens])
         count = 1 if at.text == "Constant" else FLL_SHAPES[at.text].parameters
         has_height = at.text != "Constant" and len(tokens) == count + 1
         if len(tokens) != count and not has_height:
