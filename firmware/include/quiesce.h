@@ -80,7 +80,7 @@ typedef struct {
     int32_t displacement_amp_nm;         ///< half peak-to-peak of that over a cycle
     int32_t velocity_rms_um_s;           ///< of the whole band, from the last spectrum
     quiesce_peak_t peaks[QUIESCE_PEAKS]; ///< 0 Hz where there are fewer
-    uint32_t rules_fired;                ///< bit per fuzzy rule, row-major (frequency rows)
+    uint32_t rules_fired;                ///< bit per fuzzy rule in its file's order, the first 32
     int32_t current_fuzzy_mA;            ///< the rule base's own output
     int32_t current_law_mA;              ///< what the law requests
     int32_t current_cmd_mA;              ///< what leaves the guard
@@ -112,8 +112,53 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
 /// safe_current_mA, or 0 where it or max_current_mA is outside its own range or they contradict.
 int32_t quiesce_params_safe_current_mA(const quiesce_params_t *params);
 
-/// The rule base alone, for drawing and checking it: current in mA at a frequency and an RMS
-/// acceleration. *rules_fired (may be NULL) receives a bit per rule, row-major (frequency rows).
+/// Why a rule table is refused. Numbers are for logs and are never reused.
+typedef enum {
+    QUIESCE_RULES_OK = 0,
+    QUIESCE_RULES_SIZE = 1,   ///< shorter than it says, or too long
+    QUIESCE_RULES_MAGIC = 2,  ///< not a table, or of another version
+    QUIESCE_RULES_CRC = 3,    ///< damaged
+    QUIESCE_RULES_SHAPE = 4,  ///< numbers of inputs, outputs, rules
+    QUIESCE_RULES_CELL = 5,   ///< memberships
+    QUIESCE_RULES_RULE = 6,   ///< a rule names what is not there
+    QUIESCE_RULES_OUTPUT = 7, ///< a term out of range
+    QUIESCE_RULES_FIT = 8, ///< not frequency (uHz) and RMS acceleration (um/s2) to one current (mA)
+} quiesce_rules_verdict_t;
+
+/// Uses another rule base from the next tick on: words from `quiesce rules compile`, count of
+/// them; NULL: the one that ships. The words stay the caller's and must not change while they are
+/// in use. A table that is refused changes nothing. Call between steps, also while running: the
+/// swap is one pointer. quiesce_init goes back to the one that ships.
+quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words, uint32_t count);
+
+/// Receives a rule table in parts beside the one in use: two slots of the caller's memory. A table
+/// is put to use whole and checked, or not at all; the one before it is kept.
+#define QUIESCE_RULES_WORDS 1024
+typedef struct {
+    uint32_t words[2][QUIESCE_RULES_WORDS];
+    uint32_t filled;   ///< words received in the spare slot
+    uint32_t in_use;   ///< slot 0 or 1, or 2: the one that ships
+    uint32_t previous; ///< likewise, what quiesce_rules_revert goes back to
+} quiesce_rules_store_t;
+
+/// Empty, with the shipped rules in use.
+void quiesce_rules_store_init(quiesce_rules_store_t *store);
+
+/// Appends words of a new table to the spare slot; offset 0 starts anew and gives up what
+/// quiesce_rules_revert would go back to. Returns false, and changes nothing, iff offset is
+/// neither 0 nor where the last part ended, or the part does not fit.
+bool quiesce_rules_store_write(quiesce_rules_store_t *store, uint32_t offset, const uint32_t *words,
+                               uint32_t count);
+
+/// Checks what was received and uses it from the next tick on. A table that is refused leaves the
+/// one in use where it is. Call it, like the next two, between steps.
+quiesce_rules_verdict_t quiesce_rules_store_commit(quiesce_rules_store_t *store, quiesce_t *self);
+
+/// Goes back to the rules in use before the last commit. A second call changes nothing.
+void quiesce_rules_store_revert(quiesce_rules_store_t *store, quiesce_t *self);
+
+/// The shipped rule base alone, for drawing and checking it: current in mA at a frequency and an
+/// RMS acceleration. *rules_fired (may be NULL) receives a bit per rule in its file's order.
 int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *rules_fired);
 
 #endif

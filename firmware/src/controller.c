@@ -7,14 +7,21 @@
 #include "fuzzy.h"
 #include "guard.h"
 #include "law.h"
+#include "rules_squeeze_2012.h"
 #include "signal_chain.h"
-#include "squeeze_rules.h"
 #include "supervisor.h"
+
+// Frequency in uHz, RMS acceleration in um/s2; one output, mA.
+#define RULE_INPUTS 2u
+// Whatever a loaded table says, a request stays a current that arithmetic can hold.
+#define RULES_MAX_mA 1000000
 
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
 typedef struct {
     quiesce_params_t params;
     signal_chain_t signal;
+    const fuzzy_table_t *rules;      ///< in use
+    const fuzzy_table_t *rules_next; ///< from the next tick on
     const law_t *law;
     law_state_t law_state;
     uint32_t hold_ticks; ///< that laws go on with a frequency that is no longer valid
@@ -30,6 +37,10 @@ typedef struct {
 _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
 _Static_assert(QUIESCE_PEAKS == ESTIMATOR_TONES, "telemetry holds the estimator's components");
+
+static const fuzzy_table_t *shipped_rules(void) {
+    return (const fuzzy_table_t *)(const void *)rules_squeeze_2012_table;
+}
 
 static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
@@ -60,6 +71,8 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
         quiesce_params_default(&c->params);
     }
     signal_chain_init(&c->signal, &c->params);
+    c->rules = shipped_rules();
+    c->rules_next = c->rules;
     c->law = law_find(c->params.law);
     c->hold_ticks = (uint32_t)(c->params.track_hold_ms * (c->params.tick_rate_Hz / 100) / 10);
     init_output(c, params, is_accepted);
@@ -93,6 +106,20 @@ static bool is_tick_lost(controller_t *self, uint32_t tick) {
     self->has_ticked = true;
     self->last_tick = tick;
     return is_lost;
+}
+
+// The shipped rules run as straight-line C, the same numbers in half the time.
+static int32_t rules_current_mA(const fuzzy_table_t *rules, const int32_t input[RULE_INPUTS]) {
+    int32_t current_mA = 0;
+    (void)(rules == shipped_rules() ? rules_squeeze_2012(input, &current_mA)
+                                    : fuzzy_evaluate(rules, input, &current_mA));
+    return clamp_i32(current_mA, 0, RULES_MAX_mA);
+}
+
+static uint32_t rules_fired(const fuzzy_table_t *rules, const int32_t input[RULE_INPUTS]) {
+    uint64_t fired = 0;
+    (void)fuzzy_fired(rules, input, &fired);
+    return (uint32_t)fired;
 }
 
 static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample,
@@ -175,9 +202,10 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
 
-    const fuzzy_out_t fuzzy =
-        fuzzy_evaluate(&squeeze_rules, c->signal.estimator.tone[0].freq_uHz, signal.rms_um_s2);
-    const law_in_t law_in = law_input(c, &signal, fuzzy.current_mA);
+    c->rules = c->rules_next;
+    const int32_t fuzzy_in[] = {c->signal.estimator.tone[0].freq_uHz, signal.rms_um_s2};
+    const int32_t fuzzy_mA = rules_current_mA(c->rules, fuzzy_in);
+    const law_in_t law_in = law_input(c, &signal, fuzzy_mA);
     const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
 
     supervise(c, in, &signal.sample, signal_in.has_gap);
@@ -193,16 +221,34 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     t->displacement_nm = signal.displacement_nm;
     t->velocity_um_s = motion_velocity_um_s(signal.velocity_um_s_q32);
     t->rms_um_s2 = signal.rms_um_s2;
-    t->rules_fired = fuzzy.rules_fired;
-    t->current_fuzzy_mA = fuzzy.current_mA;
+    t->rules_fired = rules_fired(c->rules, fuzzy_in);
+    t->current_fuzzy_mA = fuzzy_mA;
     t->current_law_mA = request_mA;
     t->current_cmd_mA = out->current_cmd_mA;
 }
 
-int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *rules_fired) {
-    const fuzzy_out_t out = fuzzy_evaluate(&squeeze_rules, freq_uHz, rms_um_s2);
-    if (rules_fired != NULL) {
-        *rules_fired = out.rules_fired;
+quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    if (words == NULL) {
+        c->rules_next = shipped_rules();
+        return QUIESCE_RULES_OK;
     }
-    return out.current_mA;
+    const fuzzy_table_t *table = (const fuzzy_table_t *)(const void *)words;
+    const fuzzy_verdict_t verdict = fuzzy_table_check(table, count);
+    if (verdict != FUZZY_TABLE_OK) {
+        return (quiesce_rules_verdict_t)verdict;
+    }
+    if (table->inputs != RULE_INPUTS || table->outputs != 1u) {
+        return QUIESCE_RULES_FIT;
+    }
+    c->rules_next = table;
+    return QUIESCE_RULES_OK;
+}
+
+int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *fired) {
+    const int32_t input[] = {freq_uHz, rms_um_s2};
+    if (fired != NULL) {
+        *fired = rules_fired(shipped_rules(), input);
+    }
+    return rules_current_mA(shipped_rules(), input);
 }

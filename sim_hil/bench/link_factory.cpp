@@ -4,6 +4,7 @@
 #include "input_error.h"
 #include "qemu_shm_link.h"
 #include "qemu_uart_link.h"
+#include "rule_file.h"
 
 namespace quiesce {
 
@@ -15,6 +16,9 @@ struct Target {
 };
 
 QemuOptions emulated(const LinkOptions &options) {
+    if (!options.rules_path.empty()) {
+        throw InputError("--rules: only the host target takes a rule table");
+    }
     if (options.image_path.empty()) {
         throw InputError(
             "an emulated target needs --image ELF; cmake --preset mps2 && cmake --build "
@@ -29,8 +33,10 @@ QemuOptions emulated(const LinkOptions &options) {
 
 const Target kTargets[] = {
     {"host",
-     [](const LinkOptions &) -> std::unique_ptr<ControllerLink> {
-         return std::make_unique<InProcessLink>();
+     [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
+         return std::make_unique<InProcessLink>(options.rules_path.empty()
+                                                    ? std::vector<std::uint32_t>{}
+                                                    : load_rules(options.rules_path));
      }},
     {"mps2",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {

@@ -13,6 +13,7 @@ namespace quiesce {
 struct LinkOptions {
     std::string image_path;  ///< --image: ELF for an emulated target
     std::string plugin_path; ///< --plugin: emulator plugin that counts instructions
+    std::string rules_path;  ///< --rules: rule table for the controller, host only
 };
 
 /// Throws InputError where the target is unknown (the message lists those known) or cannot start.

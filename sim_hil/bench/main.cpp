@@ -29,7 +29,8 @@ const Entry kCommands[] = {
      quiesce::cmd_replay},
     {"run",
      "--scenario FILE --law NAME [--plant FILE] [--set NAME=VALUE]... [--target T] [--image ELF] "
-     "[--plugin SO] [--seed N] [--noise-mg X] [--dt-us N] [--trace FILE] [--repeat N]",
+     "[--plugin SO] [--rules FILE] [--seed N] [--noise-mg X] [--dt-us N] [--trace FILE] "
+     "[--repeat N]",
      quiesce::cmd_run},
     {"scenario-check", "FILE", quiesce::cmd_scenario_check},
     {"uart-rate", "--image ELF --echo-image ELF [--exchanges N]", quiesce::cmd_uart_rate},

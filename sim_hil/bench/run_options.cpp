@@ -45,7 +45,7 @@ const std::vector<std::string> &run_option_names() {
 }
 
 const std::vector<std::string> &target_option_names() {
-    static const std::vector<std::string> names = {"target", "image", "plugin"};
+    static const std::vector<std::string> names = {"target", "image", "plugin", "rules"};
     return names;
 }
 
@@ -87,7 +87,8 @@ RunSetup run_setup(const Arguments &arguments) {
 
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {
     const LinkOptions link_options = {arguments.text("image").value_or(""),
-                                      arguments.text("plugin").value_or("")};
+                                      arguments.text("plugin").value_or(""),
+                                      arguments.text("rules").value_or("")};
     return make_link(arguments.text("target").value_or("host"), link_options);
 }
 

@@ -25,6 +25,7 @@ MAX_OUTPUTS = 4
 MAX_SETS = 7  # of an input, and of an output with sets
 MAX_SINGLETONS = 64  # of an output with singletons
 MAX_RULES = 1024
+MAX_CONDITIONS = 8  # of a rule
 
 AND = "and"
 OR = "or"
@@ -100,7 +101,7 @@ class Condition:
 class Rule:
     """Conditions joined by one connective; an input that is not named does not matter."""
 
-    conditions: tuple[Condition, ...]  # at least one, at most one an input where they are "and"
+    conditions: tuple[Condition, ...]  # at least one
     conclusions: tuple[int | None, ...]  # index of the term of each output; None: says nothing
     connective: str = AND
     weight: float = 1.0  # 0..1

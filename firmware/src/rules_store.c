@@ -1,0 +1,55 @@
+#include "quiesce.h"
+
+#include <stddef.h>
+
+#define SHIPPED 2u
+
+static uint32_t spare_of(const quiesce_rules_store_t *store) {
+    return store->in_use == 0 ? 1u : 0;
+}
+
+void quiesce_rules_store_init(quiesce_rules_store_t *store) {
+    store->filled = 0;
+    store->in_use = SHIPPED;
+    store->previous = SHIPPED;
+}
+
+bool quiesce_rules_store_write(quiesce_rules_store_t *store, uint32_t offset, const uint32_t *words,
+                               uint32_t count) {
+    if ((offset != 0 && offset != store->filled) || count > QUIESCE_RULES_WORDS ||
+        offset > QUIESCE_RULES_WORDS - count) {
+        return false;
+    }
+    const uint32_t spare = spare_of(store);
+    if (store->previous == spare) {
+        store->previous = store->in_use;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        store->words[spare][offset + i] = words[i];
+    }
+    store->filled = offset + count;
+    return true;
+}
+
+static quiesce_rules_verdict_t use(quiesce_rules_store_t *store, quiesce_t *self, uint32_t slot,
+                                   uint32_t count) {
+    const uint32_t *words = slot == SHIPPED ? NULL : store->words[slot];
+    return quiesce_rules_use(self, words, count);
+}
+
+quiesce_rules_verdict_t quiesce_rules_store_commit(quiesce_rules_store_t *store, quiesce_t *self) {
+    const uint32_t spare = spare_of(store);
+    const quiesce_rules_verdict_t verdict = use(store, self, spare, store->filled);
+    store->filled = 0;
+    if (verdict == QUIESCE_RULES_OK) {
+        store->previous = store->in_use;
+        store->in_use = spare;
+    }
+    return verdict;
+}
+
+void quiesce_rules_store_revert(quiesce_rules_store_t *store, quiesce_t *self) {
+    if (use(store, self, store->previous, QUIESCE_RULES_WORDS) == QUIESCE_RULES_OK) {
+        store->in_use = store->previous;
+    }
+}

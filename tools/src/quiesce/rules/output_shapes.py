@@ -1,0 +1,199 @@
+"""Areas and moments of clipped output sets, in closed form.
+
+A set is cut into layers of its height in which both of its flanks are straight. Over a layer that
+starts at height t0 the width is W - S t and the middle m0 + m1 t, t counted from t0; filled up to
+t = beta the layer has
+
+    area(beta)   = beta * w          w = W - beta S / 2
+    moment(beta) = beta * (m0 w + beta (m1 W / 2 - beta m1 S / 3))
+
+Sets are in order: of any two at any height, neither flank of the later one lies left of the
+earlier one's. The union of intervals in such an order is their sum less the overlaps of those that
+follow one another, so that the aggregated set is
+
+    sum over terms k of filled(k, beta_k)
+      - sum over pairs k < l of filled(overlap of k and l, min(beta_k, beta_l))
+                              - filled(overlap of k and l, the same or less, max beta between them)
+
+exactly, whatever overlaps whatever: no sampling, no crossing points.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+
+from quiesce.errors import UsageError
+from quiesce.rules.integer_cells import exact
+from quiesce.rules.model import FuzzySet, Output
+
+Line = tuple[Fraction, Fraction]  # value at the layer's start, slope over height
+
+
+@dataclass(frozen=True)
+class Layer:
+    """All positions as shares of the output's span, 0..1."""
+
+    start: Fraction  # heights, 0..1
+    end: Fraction
+    left: Line
+    right: Line
+
+    @property
+    def width(self) -> Line:
+        return self.right[0] - self.left[0], self.left[1] - self.right[1]
+
+    @property
+    def middle(self) -> Line:
+        return (self.left[0] + self.right[0]) / 2, (self.left[1] + self.right[1]) / 2
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One term, or the overlap of two (first < second)."""
+
+    first: int  # indices into OutputShapes.order
+    second: int
+    layers: tuple[Layer, ...]
+
+
+@dataclass(frozen=True)
+class OutputShapes:
+    order: tuple[int, ...]  # the output's terms from left to right
+    shapes: tuple[Shape, ...]  # every term, then every pair that overlaps
+
+    @property
+    def terms(self) -> tuple[Shape, ...]:
+        return self.shapes[: len(self.order)]
+
+
+class Flanks:
+    """Left and right edge of a unimodal set at any height."""
+
+    def __init__(self, output: Output, fuzzy_set: FuzzySet, low: Fraction, span: Fraction) -> None:
+        self._name = f"output set {output.name}.{fuzzy_set.name}"
+        self.points = clipped(output, fuzzy_set, low, span)
+        heights = [mu for _, mu in self.points]
+        self.peak = max(heights)
+        top = heights.index(self.peak)
+        self._rise = self.points[: top + 1]
+        last_top = len(heights) - 1 - heights[::-1].index(self.peak)
+        self._fall = self.points[last_top:]
+        flat = heights[top : last_top + 1]
+        if (
+            not (rises(heights[: top + 1]) and rises(heights[last_top:][::-1]))
+            or min(flat) < self.peak
+        ):
+            raise UsageError(f"{self._name} has a dip: the exact centroid needs one top")
+        if self.peak == 0:
+            raise UsageError(f"{self._name} is 0 all over the output's universe")
+        self.levels = sorted({Fraction(0), *heights})
+
+    def left(self, height: Fraction) -> Fraction:
+        return crossing(self._rise, height)
+
+    def right(self, height: Fraction) -> Fraction:
+        return crossing(self._fall[::-1], height)
+
+
+def rises(values: list[Fraction]) -> bool:
+    return all(b >= a for a, b in zip(values, values[1:], strict=False))
+
+
+def crossing(flank: list[tuple[Fraction, Fraction]], height: Fraction) -> Fraction:
+    """Where a flank, walked from its foot, first reaches a height."""
+    x0, mu0 = flank[0]
+    if mu0 >= height:
+        return x0
+    for x1, mu1 in flank[1:]:
+        if mu1 >= height:
+            return x0 + (x1 - x0) * (height - mu0) / (mu1 - mu0)
+        x0, mu0 = x1, mu1
+    raise AssertionError("above the set's top")
+
+
+def clipped(
+    output: Output, fuzzy_set: FuzzySet, low: Fraction, span: Fraction
+) -> list[tuple[Fraction, Fraction]]:
+    """The set's points inside the universe, with its values at the ends, x as shares of the span."""
+    ends = exact(output.minimum), exact(output.maximum)
+    points = [(exact(x), exact(mu)) for x, mu in fuzzy_set.points]
+    points = [(min(ends[0], points[0][0]) - 1, points[0][1]), *points]
+    points.append((max(ends[1], points[-1][0]) + 1, points[-1][1]))
+    out: list[tuple[Fraction, Fraction]] = []
+    for (x0, mu0), (x1, mu1) in zip(points, points[1:], strict=False):
+        if x1 < ends[0] or x0 > ends[1]:
+            continue
+        for x in (max(x0, ends[0]), min(x1, ends[1])):
+            mu = mu0 if x == x0 else mu1 if x == x1 else mu0 + (mu1 - mu0) * (x - x0) / (x1 - x0)
+            point = ((x - low) / span, mu)
+            if not out or out[-1] != point:
+                out.append(point)
+    return out
+
+
+def line(at: Fraction, end: Fraction, function) -> Line:
+    """The straight line through a function inside (at, end): value at `at`, slope."""
+    near, far = at + (end - at) / 3, end - (end - at) / 3
+    slope = (function(far) - function(near)) / (far - near)
+    return function(near) - slope * (near - at), slope
+
+
+def layers_of(left, right, levels: list[Fraction]) -> tuple[Layer, ...]:
+    """Layers between levels, cut where the width becomes 0, those without area left out."""
+    out = []
+    for start, end in zip(levels, levels[1:], strict=False):
+        layer = Layer(start, end, line(start, end, left), line(start, end, right))
+        width, slope = layer.width
+        if width <= 0:
+            continue
+        if width - slope * (end - start) < 0:
+            layer = Layer(start, start + width / slope, layer.left, layer.right)
+        out.append(layer)
+    return tuple(out)
+
+
+def levels_below(peak: Fraction, *sets: Flanks) -> list[Fraction]:
+    return sorted({level for one in sets for level in one.levels if level < peak} | {peak})
+
+
+def make_shapes(output: Output, low: Fraction, span: Fraction) -> OutputShapes:
+    """Of an output with sets. UsageError names the sets that the closed form cannot hold."""
+    flanks = [Flanks(output, term, low, span) for term in output.terms]
+
+    def place(index: int) -> tuple[Fraction, ...]:
+        one = flanks[index]
+        middle = one.peak / 2
+        return (one.left(middle) + one.right(middle), one.left(one.peak) + one.right(one.peak))
+
+    order = sorted(range(len(flanks)), key=place)
+    shapes = []
+    for rank, index in enumerate(order):
+        one = flanks[index]
+        shapes.append(
+            Shape(rank, rank, layers_of(one.left, one.right, levels_below(one.peak, one)))
+        )
+    for (i, first), (j, second) in combinations(enumerate(order), 2):
+        one, other = flanks[first], flanks[second]
+        levels = levels_below(min(one.peak, other.peak), one, other)
+        layers = layers_of(other.left, one.right, levels)
+        if layers:
+            require_order(output, (first, second), one, other, levels)
+            shapes.append(Shape(i, j, layers))
+    return OutputShapes(tuple(order), tuple(shapes))
+
+
+def require_order(
+    output: Output, pair: tuple[int, int], one: Flanks, other: Flanks, levels: list[Fraction]
+) -> None:
+    inner = [
+        a + (b - a) * share / 3
+        for a, b in zip(levels, levels[1:], strict=False)
+        for share in (1, 2)
+    ]
+    for height in inner:
+        if one.left(height) > other.left(height) or one.right(height) > other.right(height):
+            names = " and ".join(output.terms[index].name for index in pair)
+            raise UsageError(
+                f"output {output.name}: of sets {names} one lies inside the other; the exact "
+                "centroid needs sets that follow one another"
+            )

@@ -1,0 +1,241 @@
+"""The run-time table: 32-bit words, the same as a C constant and as a file to load.
+
+firmware/fuzzy/fuzzy_table.h has the layout; fuzzy_table_check() there refuses whatever could make
+the engine leave its bounds.
+"""
+
+import binascii
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+from quiesce.errors import UsageError
+from quiesce.rules.compile import CompiledBase, IntegerOutput, IntegerRule, pair_of
+from quiesce.rules.integer_cells import Cell, nearest
+from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM
+from quiesce.rules.output_shapes import Layer, Shape
+
+MAGIC = 0x31545A46  # "FZT1"
+HEADER_WORDS = 16
+MAX_WORDS = 65535
+GRID_STRIDE = 8
+METHOD = {WEIGHTED_SUM: 0, WEIGHTED_MAX: 1, CENTROID: 2}
+ANY, GRID, PARTITION_SUM, PARTITION_MAX, PARTITION_CENTROID = range(5)
+NONE = 0xFF
+UINT32 = 0xFFFFFFFF
+
+
+def table_words(compiled: CompiledBase) -> list[int]:
+    body = Body()
+    form = form_of(compiled)
+    twins = 0
+    if form >= PARTITION_SUM:
+        body.add(block_words(compiled, form))
+        twins = body.add(twins_words(compiled)) if form == PARTITION_MAX else 0
+    axes = [body.add(cells_words(cells)) for cells in compiled.cells]
+    rules = body.add([word for rule in compiled.rules for word in rule_words(rule)])
+    outputs = [add_output(body, compiled, index) for index in range(len(compiled.outputs))]
+    size = HEADER_WORDS + len(body.words)
+    if size > MAX_WORDS:
+        raise UsageError(f"the rule base needs a table of {size} words; at most {MAX_WORDS}")
+    shape = len(axes) | len(outputs) << 8 | compiled.bits << 16 | form << 24
+    inputs = [
+        offset | len(cells) << 16 | stride(cells) << 24
+        for offset, cells in zip(axes, compiled.cells, strict=True)
+    ]
+    header = [
+        size,
+        shape,
+        *padded(inputs, 4),
+        rules | len(compiled.rules) << 16,
+        *padded(outputs, 4),
+    ]
+    quick = [1 << compiled.bits, compiled.outputs[0].origin & UINT32, twins]
+    rest = [*header, *quick, *body.words]
+    return [MAGIC, crc32(rest), *rest]
+
+
+def block_words(compiled: CompiledBase, form: int) -> list[int]:
+    """The grid's values (terms of a centroid), with a row and a column beyond the sets."""
+    terms = [*grid_terms(compiled, 0), *[NONE] * GRID_STRIDE]
+    if form == PARTITION_CENTROID:
+        return [0 if term == NONE else term for term in terms]
+    return [0 if term == NONE else compiled.outputs[0].terms[term] for term in terms]
+
+
+def twins_words(compiled: CompiledBase) -> list[int]:
+    """fuzzy_twins_t of every block by its first place."""
+    terms = [*grid_terms(compiled, 0), *[NONE] * GRID_STRIDE]
+    rows = len(terms) // GRID_STRIDE - 1
+    return [
+        twins_of([terms[place + step] for step in (0, 1, GRID_STRIDE, GRID_STRIDE + 1)])
+        if place % GRID_STRIDE < GRID_STRIDE - 1
+        else 0
+        for place in range(rows * GRID_STRIDE)
+    ]
+
+
+# In the order of fuzzy_twins_t: the groups of equal ones among places a b c d.
+TWINS = (
+    "a b c d", "ab c d", "ac b d", "ad b c", "bc a d", "bd a c", "cd a b",
+    "ab cd", "ac bd", "ad bc", "abc d", "abd c", "acd b", "bcd a", "abcd",
+)  # fmt: skip
+
+
+def twins_of(terms: Sequence[int]) -> int:
+    """What lies beyond the grid is like nothing."""
+    groups: dict[object, str] = {}
+    for place, term in zip("abcd", terms, strict=True):
+        key = place if term == NONE else term
+        groups[key] = groups.get(key, "") + place
+    wanted = sorted(groups.values())
+    return next(i for i, name in enumerate(TWINS) if sorted(name.split()) == wanted)
+
+
+def form_of(compiled: CompiledBase) -> int:
+    """fuzzy_form_t: the most that the engine can take for granted."""
+    if not compiled.is_partition:
+        return GRID if compiled.is_grid else ANY
+    return {
+        WEIGHTED_SUM: PARTITION_SUM,
+        WEIGHTED_MAX: PARTITION_MAX,
+        CENTROID: PARTITION_CENTROID,
+    }[compiled.outputs[0].method]
+
+
+def crc32(words: Sequence[int]) -> int:
+    return binascii.crc32(struct.pack(f"<{len(words)}I", *words))
+
+
+def padded(words: Sequence[int], count: int) -> list[int]:
+    return [*words, *[0] * (count - len(words))]
+
+
+class Body:
+    """Words after the header; add() returns where its words begin in the table."""
+
+    def __init__(self) -> None:
+        self.words: list[int] = []
+
+    def add(self, words: Sequence[int]) -> int:
+        offset = HEADER_WORDS + len(self.words)
+        self.words += [word & UINT32 for word in words]
+        return offset
+
+
+def stride(cells: Sequence[Cell]) -> int:
+    return 4 + 4 * max(2, *(len(cell.ramps) for cell in cells))
+
+
+def cells_words(cells: Sequence[Cell]) -> list[int]:
+    out = []
+    for cell in cells:
+        ramps = [word for ramp in cell.ramps for word in (ramp.a, ramp.a >> 32, ramp.b, ramp.set)]
+        head = [cell.last, cell.first, cell.shift, len(cell.ramps)]
+        out += padded([*head, *ramps], stride(cells))
+    return out
+
+
+def rule_words(rule: IntegerRule) -> list[int]:
+    conditions = [(i << 3 | fuzzy_set | negated << 7) for i, fuzzy_set, negated in rule.conditions]
+    conclusions = [NONE if term is None else term for term in rule.conclusions]
+    head = rule.weight_q16 | rule.is_or << 20 | len(conditions) << 24
+    return [
+        head,
+        *packed(padded(conditions, 8)),
+        *packed([*conclusions, *[NONE] * (4 - len(conclusions))]),
+    ]
+
+
+def packed(values: Sequence[int]) -> list[int]:
+    """Bytes in words, the first in the lowest."""
+    return list(struct.unpack(f"<{len(values) // 4}I", bytes(values)))
+
+
+def add_output(body: Body, compiled: CompiledBase, index: int) -> int:
+    output = compiled.outputs[index]
+    grid = grid_terms(compiled, index) if form_of(compiled) == GRID else []
+    if output.method == CENTROID:
+        values, terms = 0, body.add(grid)
+        data = body.add(centroid_words(compiled, output))
+        assert output.shapes is not None
+        count = len(output.shapes.order)
+        layers, term_layers = (
+            sum(len(shape.layers) for shape in shapes)
+            for shapes in (output.shapes.shapes, output.shapes.terms)
+        )
+    else:
+        values = body.add([0 if t == NONE else output.terms[t] for t in grid])
+        terms = body.add(grid)
+        data = body.add(output.terms)
+        count, layers, term_layers = len(output.terms), 0, 0
+    head = METHOD[output.method] | count << 8 | layers << 16
+    return body.add(
+        [head, output.default, output.origin, output.span, values, terms, data, term_layers]
+    )
+
+
+def grid_terms(compiled: CompiledBase, index: int) -> list[int]:
+    """Term of every pair of sets, rows of GRID_STRIDE."""
+    conclusion = {pair_of(rule): rule.conclusions[index] for rule in compiled.rules}
+    rows, columns = (len(variable.sets) for variable in compiled.base.inputs)
+    grid = [NONE] * (rows * GRID_STRIDE)
+    for row, column in product(range(rows), range(columns)):
+        grid[row * GRID_STRIDE + column] = conclusion[row, column] or 0
+    return grid
+
+
+def centroid_words(compiled: CompiledBase, output: IntegerOutput) -> list[int]:
+    """Peaks of the terms, then the layers."""
+    shapes = output.shapes
+    assert shapes is not None
+    one = 1 << compiled.bits
+    terms = [shape for shape in shapes.shapes if shape.first == shape.second]
+    peaks = [nearest(shape.layers[-1].end * one) for shape in terms]
+    return [
+        *peaks,
+        *(word for shape in shapes.shapes for word in shape_words(compiled, output, shape)),
+    ]
+
+
+def shape_words(compiled: CompiledBase, output: IntegerOutput, shape: Shape) -> list[int]:
+    name = compiled.base.outputs[compiled.outputs.index(output)].name
+    out = []
+    for layer in shape.layers:
+        found = layer_integers(layer, compiled.bits, f"output {name}")
+        head = shape.first | shape.second << 8 | found.is_skewed_left << 16
+        out += [head, found.start, found.height, *found.flanks]
+    return out
+
+
+@dataclass(frozen=True)
+class LayerIntegers:
+    start: int  # 2^-bits
+    height: int
+    flanks: tuple[int, ...]  # fuzzy_flanks_t
+    is_skewed_left: bool
+
+
+def layer_integers(layer: Layer, bits: int, name: str) -> LayerIntegers:
+    """UsageError where a coefficient leaves its format."""
+    one = 1 << bits
+    width, narrowing = layer.width
+    m0, m1 = layer.middle
+    start, end = nearest(layer.start * one), nearest(layer.end * one)
+    coefficients = [
+        (width, 26),
+        (narrowing / 2, 28),
+        (m0, 31),
+        (abs(m1) * width / 2, 27),
+        (abs(m1) * narrowing / 3, 29),
+    ]
+    integers = tuple(nearest(value * 2**q) for value, q in coefficients)
+    if max(integers) > UINT32:
+        raise UsageError(f"{name}: a flank of its sets is too flat for its height")
+    if width < Fraction(1, 1024) and layer.start == 0:
+        raise UsageError(
+            f"{name}: a set, or the overlap of two, is narrower than 1/1024 of its universe"
+        )
+    return LayerIntegers(start, end - start, integers, m1 < 0)
