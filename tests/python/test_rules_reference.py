@@ -206,6 +206,13 @@ def test_default_where_nothing_fires(method: str) -> None:
     assert np.isnan(evaluate(silent, [np.array([9.0])]).outputs[0, 0])
 
 
+def test_default_where_what_fires_has_no_area() -> None:
+    """A set beyond the output's universe has no centroid in it."""
+    base = one_input_base((ALWAYS,), (triangle("t", 12, 14, 16),), CENTROID, default=7.5)
+    answer = evaluate(base, [np.array([3.0])])
+    assert answer.outputs[0, 0] == 7.5 and answer.is_default[0, 0]
+
+
 def test_outputs_are_independent() -> None:
     """A rule that says nothing about an output does not make it fire."""
     base = one_input_base((ALWAYS,), (Singleton("t", 4.0),), WEIGHTED_MAX, default=1.0)

@@ -11,7 +11,7 @@ from typing import Any
 from quiesce.atomic import output_files
 from quiesce.errors import EXIT_FAILED
 from quiesce.paths import build_folder, shown
-from quiesce.rules.cli_show import add_reading_options, slice_of
+from quiesce.rules.cli_show import add_reading_options, read_with_notes, slice_of
 from quiesce.rules.compare import (
     OutputDifference,
     compare_outputs,
@@ -19,7 +19,6 @@ from quiesce.rules.compare import (
     matched,
 )
 from quiesce.rules.diff_plots import plot_difference
-from quiesce.rules.files import read_rules
 from quiesce.rules.findings import number
 from quiesce.rules.model import RuleBase
 from quiesce.rules.page import make_page, picture, preformatted
@@ -88,7 +87,8 @@ def threshold(text: str) -> float:
 def read_pair(args: argparse.Namespace) -> tuple[RuleBase, RuleBase]:
     """Named by their files; the second one in the order of the first."""
     one, other = (
-        replace(read_rules(file, args.approximate), name=shown(file)) for file in (args.a, args.b)
+        replace(read_with_notes(file, args.approximate), name=shown(file))
+        for file in (args.a, args.b)
     )
     return one, matched(one, other)
 

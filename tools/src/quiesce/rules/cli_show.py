@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -83,6 +84,14 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def read_with_notes(file: Path, approximate: int | None) -> RuleBase:
+    """Notes of the reader go to stderr."""
+    base = read_rules(file, approximate)
+    for note in base.notes:
+        print(f"{shown(file)}: {note}", file=sys.stderr)
+    return base
+
+
 def slice_of(args: argparse.Namespace, base: RuleBase) -> Slice:
     return make_slice(base, [name for name in args.axes.split(",") if name], args.at)
 
@@ -153,7 +162,7 @@ def json_object(
 
 
 def run(args: argparse.Namespace) -> int:
-    base = read_rules(args.file, args.approximate)
+    base = read_with_notes(args.file, args.approximate)
     cut = slice_of(args, base)
     visits = visits_of(args, base)
     fired = fired_rules(base, visits) if visits is not None else []
@@ -166,8 +175,6 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps({**json_object(args, base, visits, fired), "outputs": outputs}, indent=1))
         return 0
     print(f"{summary(base)}\n\n{rules_text(base)}\n")
-    for note in base.notes:
-        print(f"note: {note}")
     if visits is not None:
         print(f"{visits_text(base, visits)}\n\n{fired_text(base, fired)}\n")
     print(f"written  {', '.join(outputs)}")

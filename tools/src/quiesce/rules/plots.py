@@ -154,8 +154,9 @@ def draw_map(
     mesh = axis.pcolormesh(*points, values.T, cmap=SURFACE_MAP, shading="gouraud", vmin=low,
                            vmax=high, rasterized=True)  # fmt: skip
     axis.figure.colorbar(mesh, ax=axis, label=output.name)
-    if has_contours(values):
-        lines = axis.contour(*points, values.T, levels=9, colors="#33415c", linewidths=0.6)
+    ruled = np.where(is_default, np.nan, values)
+    if has_contours(ruled):
+        lines = axis.contour(*points, ruled.T, levels=9, colors="#33415c", linewidths=0.6)
         axis.clabel(lines, fontsize=7, fmt="%g")
     hatch(axis, points, is_default)
 
@@ -191,7 +192,7 @@ def draw_visits(axis: Any, base: RuleBase, cut: Slice, visits: Visits | None) ->
 
 
 def visit_label(visits: Visits) -> str:
-    return f"visited in {Path(visits.name).name}, the larger the longer"
+    return f"visited in {Path(visits.name).name} (size: time spent)"
 
 
 def label_map(axis: Any, base: RuleBase, cut: Slice, output: Output) -> None:
