@@ -2,10 +2,10 @@
 
 import argparse
 
-from quiesce.rules import cli_convert, cli_diff, cli_show
+from quiesce.rules import cli_convert, cli_diff, cli_lookup, cli_optimize, cli_show
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
-SUBCOMMANDS = (cli_convert, cli_show, cli_diff)
+SUBCOMMANDS = (cli_convert, cli_show, cli_diff, cli_lookup, cli_optimize)
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:

@@ -10,12 +10,13 @@ from quiesce.bench_exe import Bench
 from quiesce.errors import UsageError
 from quiesce.params import effective_params
 from quiesce.paths import shown
-from quiesce.rules.cli_optimize import stopping_pool, whole
+from quiesce.rules.cli_optimize import stopping_pool
 from quiesce.rules.files import write_text
+from quiesce.rules.optimize_arguments import add_settle, drives_V, freqs_Hz, whole
 from quiesce.rules.optimize_evaluate import ClosedLoop, driver_max_A
 from quiesce.rules.optimize_lookup import Sweep, lookup_json, lookup_table, sweep
 from quiesce.rules.optimize_result import rule_table, set_lines
-from quiesce.rules.optimize_scenarios import numbers, plant_file, steady_scenarios
+from quiesce.rules.optimize_scenarios import plant_file, steady_scenarios
 from quiesce.rules.optimize_start import recipe_base
 
 FREQS, DRIVES = "5,10,15,20", "0.09,0.1,0.12"
@@ -44,6 +45,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--freq", metavar="HZ,...", default=FREQS, help="(%(default)s)")
     parser.add_argument("--drive", metavar="V,...", default=DRIVES, help="(%(default)s)")
     parser.add_argument("--plant", metavar="FILE", help="plant file (squeeze_2012.toml)")
+    add_settle(parser)
     parser.add_argument(
         "--step-mA", type=whole(1, 20000), default=STEP_mA, metavar="N",
         help="of the currents (%(default)s)",
@@ -63,15 +65,14 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def measure(args: argparse.Namespace, bench: Bench) -> tuple[Sweep, float]:
     """The sweep, and the largest current."""
-    freqs = numbers(args.freq, "--freq", 0.1, 100.0)
-    drives = numbers(args.drive, "--drive", 0.0, 1e6)
+    freqs, drives = freqs_Hz(args.freq), drives_V(args.drive)
     params = effective_params(bench, args.set)
     with (
         tempfile.TemporaryDirectory(prefix="quiesce-") as folder,
         stopping_pool(bench, args.jobs) as pool,
     ):
         plant = plant_file(args.plant)
-        chosen = steady_scenarios(bench, Path(folder), plant, freqs, drives)
+        chosen = steady_scenarios(bench, Path(folder), plant, freqs, drives, args.settle)
         max_A = min(driver_max_A(chosen), params["max_current_mA"] / 1000)
         loop = ClosedLoop(bench, chosen, args.set)
         return sweep(loop, round(1000 * max_A), args.step_mA, pool), max_A

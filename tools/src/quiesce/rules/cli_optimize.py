@@ -15,7 +15,9 @@ from quiesce.bench_exe import Bench
 from quiesce.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.params import effective_params
 from quiesce.paths import build_folder, shown
+from quiesce.rules import optimize_state
 from quiesce.rules.files import read_rules
+from quiesce.rules.optimize_arguments import add_settle, drives_V, freqs_Hz, whole
 from quiesce.rules.optimize_evaluate import driver_max_A, require_bench_option
 from quiesce.rules.optimize_ga import SELECTIONS
 from quiesce.rules.optimize_genes import RULES, SETS, TUNABLE
@@ -24,7 +26,7 @@ from quiesce.rules.optimize_objective import OBJECTIVES, Objective, parse_weight
 from quiesce.rules.optimize_report import headline, write_report
 from quiesce.rules.optimize_result import Found, result_json, text_sections
 from quiesce.rules.optimize_run import Limits
-from quiesce.rules.optimize_scenarios import numbers, plant_file, steady_scenarios
+from quiesce.rules.optimize_scenarios import plant_file, steady_scenarios
 from quiesce.rules.optimize_session import Session, Task, say, start_from_recipe
 from quiesce.rules.optimize_state import FILE_NAME, unfinished
 from quiesce.scenarios import Scenario
@@ -36,7 +38,7 @@ EPILOG = f"""examples:
   quiesce rules optimize                                  rule table, 5, 10, 15 and 20 Hz, GA
   quiesce rules optimize --freq 4,5,6,7,8,9,10,12 --tune both --method de --generations 60
   quiesce rules optimize --scenario my_scenario.toml --start my_rules.fcl --objective thrifty
-  quiesce rules optimize --method nsga2 --weight current=1
+  quiesce rules optimize --method nsga2 --objective thrifty
   quiesce rules optimize --resume                         goes on where it was interrupted
 
 The cost is the weighted mean of what is left, in %: displacement amplitude and RMS acceleration of
@@ -50,18 +52,6 @@ Written to build/report/rules_optimize: best.fcl, report.html, report.md, result
 rule file for every point of the front), and during the search state.json. The same seed and options
 give the same result, interrupted or not, whatever --jobs is.
 """
-
-
-def whole(low: int, high: int):
-    """An argparse type: an integer in low .. high."""
-
-    def integer(text: str) -> int:
-        value = int(text)
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{text} is not in {low} .. {high}")
-        return value
-
-    return integer
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -86,6 +76,7 @@ def add_what(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--freq", metavar="HZ,...", help="steady vibration at these, too")
     parser.add_argument("--drive", metavar="V,...", help="of each --freq (the plant's)")
     parser.add_argument("--plant", metavar="FILE", help="of --freq (squeeze_2012.toml)")
+    add_settle(parser)
     parser.add_argument("--start", metavar="FILE", help="rule file to begin at (the recipe)")
     parser.add_argument(
         "--tune", metavar="WHAT", default=RULES,
@@ -149,9 +140,9 @@ def chosen_scenarios(args: argparse.Namespace, bench: Bench, folder: Path) -> li
     names = list(dict.fromkeys(args.scenario)) or ([] if args.freq else list(STEADY))
     chosen = [scenarios.load(bench, name) for name in names]
     if args.freq:
-        drives = numbers(args.drive, "--drive", 0.0, 1e6) if args.drive else [None]
-        freqs = numbers(args.freq, "--freq", 0.1, 100.0)
-        chosen += steady_scenarios(bench, folder, plant_file(args.plant), freqs, drives)
+        drives = drives_V(args.drive) if args.drive else [None]
+        freqs, plant = freqs_Hz(args.freq), plant_file(args.plant)
+        chosen += steady_scenarios(bench, folder, plant, freqs, drives, args.settle)
     return chosen
 
 
@@ -186,6 +177,7 @@ def rerun_command(args: argparse.Namespace) -> str:
     for option in ("freq", "drive", "plant", "start", "population", "evaluations"):
         value = getattr(args, option)
         words += [] if value is None else [f"--{option}", str(value)]
+    words += ["--settle", str(args.settle)] if args.freq else []
     for option in ("tune", "objective", "method", "selection", "generations", "seed"):
         words += [f"--{option}", str(getattr(args, option))]
     return shlex.join(words)
@@ -205,7 +197,12 @@ def stopping_pool(bench: Bench, jobs: int):
         pool.shutdown()
 
 
-def require_no_unfinished(args: argparse.Namespace, state_file: Path) -> None:
+def require_right_state(args: argparse.Namespace, state_file: Path) -> None:
+    """What can be told about the state file before anything runs."""
+    if args.resume and args.anew:
+        raise UsageError("--resume and --anew exclude each other")
+    if args.resume:
+        optimize_state.read(state_file)
     generations = unfinished(state_file)
     if generations is not None and not args.resume and not args.anew:
         raise UsageError(
@@ -239,13 +236,11 @@ def search(args: argparse.Namespace, bench: Bench, state_file: Path) -> Found:
 
 
 def run(args: argparse.Namespace) -> int:
-    if args.resume and args.anew:
-        raise UsageError("--resume and --anew exclude each other")
     bench = Bench()
     require_bench_option(bench)
     out = args.out or build_folder() / "report/rules_optimize"
     state_file = out / FILE_NAME
-    require_no_unfinished(args, state_file)
+    require_right_state(args, state_file)
     try:
         found = search(args, bench, state_file)
     except KeyboardInterrupt:

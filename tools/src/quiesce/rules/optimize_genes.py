@@ -10,6 +10,7 @@ A genome is a tuple of integers, gene i in 0 .. levels[i] - 1:
 All searches work on genomes, so what was evaluated is known again whichever way it was reached.
 """
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -78,6 +79,11 @@ class Axis:
         return (1 << POSITION_BITS,) * self.count
 
     @property
+    def digits(self) -> int:
+        """Decimals that a reader of the rule file needs: 1e-5 .. 1e-6 of the universe."""
+        return 5 - math.floor(math.log10(self.high - self.low))
+
+    @property
     def room(self) -> float:
         """What is left of the universe when every gap is taken."""
         return (self.high - self.low) - self.gap * (self.count - 1)
@@ -89,9 +95,9 @@ class Axis:
 
     def decode(self, genes: Genome) -> list[float]:
         top = (1 << POSITION_BITS) - 1
-        return [
-            self.low + i * self.gap + self.room * gene / top for i, gene in enumerate(sorted(genes))
-        ]
+        shares = (gene / top for gene in sorted(genes))
+        exact = (self.low + i * self.gap + self.room * share for i, share in enumerate(shares))
+        return [round(x, self.digits) for x in exact]
 
 
 @dataclass(frozen=True)

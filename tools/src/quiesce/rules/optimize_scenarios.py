@@ -10,23 +10,8 @@ from quiesce.paths import root
 from quiesce.scenarios import SCHEMA, Scenario
 
 DEFAULT_PLANT = "sim_hil/plants/squeeze_2012.toml"
-SETTLE_s, MEASURE_s = 6.0, 2.0
+SETTLE_s, MAX_SETTLE_s, MEASURE_s = 6, 600, 2
 NOISE_mg = 0.5
-MAX_VALUES = 100
-
-
-def numbers(text: str, option: str, low: float, high: float) -> list[float]:
-    """'5,10,15' as numbers in low .. high."""
-    try:
-        values = [float(word) for word in text.split(",")]
-    except ValueError:
-        values = []
-    if not 0 < len(values) <= MAX_VALUES or not all(low <= value <= high for value in values):
-        raise UsageError(
-            f"{option} {text}: expected up to {MAX_VALUES} numbers in {low:g} .. {high:g}, with "
-            "commas between them"
-        )
-    return list(dict.fromkeys(values))
 
 
 def plant_file(name: str | None) -> Path:
@@ -37,14 +22,16 @@ def toml_text(text: object) -> str:
     return str(text).replace("\\", "\\\\").replace('"', '\\"')
 
 
-def steady_text(name: str, plant: Path, freq_Hz: float, drive_V: float | None) -> str:
-    """A steady sine from rest; measured over the last 2 s of 8."""
+def steady_text(
+    name: str, plant: Path, freq_Hz: float, drive_V: float | None, settle_s: int
+) -> str:
+    """A steady sine from rest; measured over 2 s after settle_s."""
     drive = "" if drive_V is None else f"drive_V = {drive_V!r}\n"
     return (
         f'schema = "{SCHEMA}"\nversion = 1\nname = "{name}"\nplant = "{toml_text(plant)}"\n'
-        f"duration_s = {SETTLE_s + MEASURE_s}\nnoise_mg = {NOISE_mg}\n{drive}"
+        f"duration_s = {settle_s + MEASURE_s}\nnoise_mg = {NOISE_mg}\n{drive}"
         f'\n[[segment]]\nkind = "sine"\nfreq_Hz = {freq_Hz!r}\n'
-        f"\n[[window]]\nstart_s = {SETTLE_s}\nend_s = {SETTLE_s + MEASURE_s}\n"
+        f"\n[[window]]\nstart_s = {settle_s}\nend_s = {settle_s + MEASURE_s}\n"
     )
 
 
@@ -54,6 +41,7 @@ def steady_scenarios(
     plant: Path,
     freqs_Hz: Sequence[float],
     drives_V: Sequence[float | None],
+    settle_s: int = SETTLE_s,
 ) -> list[Scenario]:
     """One scenario for every frequency and drive, in files of `folder`. None: the plant's drive."""
     check_plant(bench, plant)
@@ -62,7 +50,8 @@ def steady_scenarios(
         for freq_Hz in freqs_Hz:
             name = f"{freq_Hz:g} Hz" + ("" if drive_V is None else f" {drive_V:g} V")
             file = folder / f"{name.replace(' ', '_')}.toml"
-            file.write_text(steady_text(name, plant, freq_Hz, drive_V), encoding="utf-8")
+            text = steady_text(name, plant, freq_Hz, drive_V, settle_s)
+            file.write_text(text, encoding="utf-8")
             found.append(scenarios.load(bench, str(file)))
     return found
 
