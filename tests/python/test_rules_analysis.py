@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from quiesce.rules.analysis import analyse
 from quiesce.rules.coverage import uncovered_regions
-from quiesce.rules.dominance import dominated_rules
+from quiesce.rules.dominance import dominated_rules, outdoes
 from quiesce.rules.findings import (
     CONTRADICTORY,
     DUPLICATE,
+    EMPTY,
     ERROR,
     NON_MONOTONE,
     NOTE,
@@ -146,6 +147,14 @@ def test_unused_input_and_output() -> None:
     assert "no rule concludes output I" in texts
 
 
+def test_term_without_an_area() -> None:
+    sets = (triangle("s", 0, 5, 10), triangle("t", 0, 5, 10))
+    terms = (triangle("inside", 8, 12, 14), triangle("beyond", 10, 12, 14))
+    (finding,) = of_kind(one_input_base(sets, terms, CENTROID), EMPTY)
+    assert finding.severity == ERROR and finding.place == "output y, beyond"
+    assert of_kind(one_input_base(sets[:1], terms, CENTROID), EMPTY) == []  # no rule concludes it
+
+
 # Unreachable
 
 
@@ -200,6 +209,23 @@ def test_a_cap_by_other_conditions_counts() -> None:
 
     assert found(0.5) == {1: 0}
     assert found(0.6) == {0: 1}  # now the second one is the greater
+
+
+def test_a_cap_is_met_between_breakpoints() -> None:
+    """R: min(x / 10, 0.5). Q, from 0.1 to 0.5, is above it at both ends, but not at x = 5."""
+    rising = FuzzySet("rising", ((0, 0), (10, 1)))
+    slow = FuzzySet("slow", ((0, 0.1), (10, 0.5)))
+    half = Input("a", 0, 10, (FuzzySet("constant", ((0.0, 0.5),)),))
+    output = Output("I", 0, 5, (Singleton("t", 1.0),), WEIGHTED_MAX)
+    weak = Rule((Condition(0, 0), Condition(1, 0)), (0,))
+    strong = Rule((Condition(0, 1),), (0,))
+
+    def slow_outdoes(one: FuzzySet) -> bool:
+        base = RuleBase("cap", (Input("f", 0, 10, (rising, one)), half), (output,), (weak, strong))
+        return outdoes(base, strong, weak)
+
+    assert not slow_outdoes(slow)
+    assert slow_outdoes(FuzzySet("fast", ((0, 0.1), (5, 0.5), (10, 0.5))))
 
 
 @pytest.mark.parametrize("seed", range(150))
@@ -258,7 +284,7 @@ def test_duplicates(method: str, weight: float, words: str) -> None:
     repeated = with_rules(base, *base.rules, when(0, 0, 0, weight))
     (finding,) = of_kind(repeated, DUPLICATE)
     assert finding.place == "rule 17" and words in finding.text
-    assert of_kind(repeated, UNREACHABLE) == []
+    assert of_kind(repeated, UNREACHABLE) == of_kind(repeated, CONTRADICTORY) == []
     assert of_kind(base, DUPLICATE) == []
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from quiesce.rules.compare import compare_outputs, make_grid, matched
+from quiesce.rules.compare import Grid, compare_outputs, make_grid, matched
 from quiesce.rules.model import (
     METHODS,
     WEIGHTED_MAX,
@@ -225,6 +225,18 @@ def test_the_largest_difference_is_refined_between_the_points_of_the_grid() -> N
     assert found.at[0] == pytest.approx(10 * u, abs=1e-3)
     assert found.largest == pytest.approx(10 * (2 * u / (1 + u) - u), abs=1e-9)
     assert found.values == pytest.approx((10 * u, 10 * 2 * u / (1 + u)), abs=1e-2)
+
+
+def test_points_count_by_the_volume_around_them() -> None:
+    grid = Grid((np.array([0.0, 1.0, 10.0]), np.array([0.0, 4.0])))
+    expected = np.outer([0.05, 0.5, 0.45], [0.5, 0.5])
+    assert grid.weights == pytest.approx(expected) and grid.points == 6
+
+
+def test_two_without_a_value_are_the_same() -> None:
+    base = one_input_base((triangle("s", 0, 0, 5),), (Singleton("t", 4.0),), WEIGHTED_MAX)
+    (found,) = compare_outputs(base, base, make_grid(base, base), None)
+    assert found.is_same and found.share_beyond == 0
 
 
 def test_missing_values_and_defaults_are_told() -> None:

@@ -7,6 +7,7 @@ from quiesce.rules.dominance import dominated_rules
 from quiesce.rules.findings import (
     CONTRADICTORY,
     DUPLICATE,
+    EMPTY,
     ERROR,
     UNREACHABLE,
     UNUSED,
@@ -14,8 +15,9 @@ from quiesce.rules.findings import (
     Finding,
     rule_place,
 )
-from quiesce.rules.model import WEIGHTED_SUM, Rule, RuleBase
+from quiesce.rules.model import CENTROID, WEIGHTED_SUM, Rule, RuleBase
 from quiesce.rules.monotone import monotone_findings
+from quiesce.rules.reference import stretches
 
 
 def analyse(base: RuleBase) -> list[Finding]:
@@ -23,6 +25,7 @@ def analyse(base: RuleBase) -> list[Finding]:
     found = [
         *coverage_findings(base),
         *unused_findings(base),
+        *empty_findings(base),
         *silent_findings(base),
         *dominated_findings(base),
         *pair_findings(base),
@@ -56,6 +59,22 @@ def nothing_uses(kind: str, name: str, parts: tuple, used: set, verb: str) -> li
         for i, part in enumerate(parts)
         if i not in used
     ]
+
+
+def empty_findings(base: RuleBase) -> list[Finding]:
+    """Terms of a centroid output that rules conclude, but that have no area in its universe."""
+    found = []
+    for index, output in enumerate(base.outputs):
+        if output.method != CENTROID:
+            continue
+        used = {rule.conclusions[index] for rule in base.rules}
+        filled = {term for stretch in stretches(output) for term in stretch.terms}
+        for i, term in enumerate(output.terms):
+            if i in used and i not in filled:
+                place = f"output {output.name}, {term.name}"
+                text = f"{term.name} of output {output.name} has no area in its universe: rules "
+                found.append(Finding(EMPTY, ERROR, f"{text}that conclude it say nothing", place))
+    return found
 
 
 # Rules beside other rules

@@ -3,7 +3,7 @@
 Where only the greatest strength of a term counts, a rule changes nothing if another one with the
 same conclusion is at least as strong everywhere. With minimum conditions this separates by input:
 Q outdoes R where, along each input, Q's conditions are nowhere weaker than R's, the latter capped
-by the most that R's conditions on other inputs can reach. Each of these is a comparison of
+by the most that R can reach. Each of these is a comparison of
 piecewise linear functions, done at their breakpoints (from both sides) and where they meet.
 """
 
@@ -94,12 +94,12 @@ def and_outdoes(
         i: weak_weight * max(map(min, values(base.inputs[i], tuple(conditions))))
         for i, conditions in by_input.items()
     }
+    cap = min(most.values())
     for condition in strong:
         along = tuple(by_input.get(condition.input, ()))
-        cap = min((m for i, m in most.items() if i != condition.input), default=weak_weight)
         weights = (strong_weight, *[weak_weight] * len(along))
         rows = values(base.inputs[condition.input], (condition, *along), weights, cap)
-        if any(row[0] < min(cap, *row[1:], 1.0) - TOLERANCE for row in rows):
+        if any(row[0] < min((cap, *row[1:])) - TOLERANCE for row in rows):
             return False
     return True
 

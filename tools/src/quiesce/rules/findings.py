@@ -7,6 +7,7 @@ ERROR, WARNING, NOTE = "error", "warning", "note"
 # Kinds
 UNCOVERED = "uncovered"
 UNUSED = "unused"
+EMPTY = "empty"
 UNREACHABLE = "unreachable"
 CONTRADICTORY = "contradictory"
 DUPLICATE = "duplicate"
