@@ -1,11 +1,10 @@
 """One random rule base: the integers against the exact reference, and the peers against it.
 
-The engine may be off by one output LSB from what the reference says anywhere in the box to which the
-inputs were rounded. A peer that does not agree with the reference is explained: the reference is
-asked again in the peer's own way (sampled, summed), and has to give the peer's answer.
+The engine may be off by one output LSB from what the reference says anywhere in the box to which
+the inputs were rounded. A peer that does not agree with the reference is explained: the reference
+is asked again in the peer's own way (sampled, summed), and has to give the peer's answer.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,8 +13,7 @@ from quiesce.fuzzy_points import Range, integers_of, random_points, rounding_ran
 from quiesce.fuzzy_random import RandomBase
 from quiesce.fuzzy_sets import breakpoints
 from quiesce.rules.compile import CompiledBase, compile_base
-from quiesce.rules.emit import why_not_straight
-from quiesce.rules.engine import Engine
+from quiesce.rules.engine import STRAIGHT, TABLE, Engine
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM, Output, RuleBase
 from quiesce.rules.reference import evaluate, membership, term_strengths
 
@@ -101,14 +99,15 @@ def judge_engine(case: Case, kind: str, allowed: Range) -> EngineResult:
     )
 
 
-def judge_engines(case: Case) -> list[EngineResult]:
+def judge_engines(case: Case, with_straight: bool) -> list[EngineResult]:
+    """The table engine, and straight-line C where it is wanted."""
     allowed = rounding_range(case.base, case.points, lsb_of(case.compiled))
-    kinds = ["table"] if why_not_straight(case.compiled) else ["table", "straight"]
+    kinds = (TABLE, STRAIGHT) if with_straight else (TABLE,)
     return [judge_engine(case, kind, allowed) for kind in kinds]
 
 
 def sampled_centroid(output: Output, strengths: np.ndarray, resolution: int) -> np.ndarray:
-    """[point] from the strengths of the terms [term, point]: middles of even steps; NaN if empty."""
+    """[point] from strengths [term, point]: middles of even steps; NaN where nothing is there."""
     step = (output.maximum - output.minimum) / resolution
     x = output.minimum + (np.arange(resolution) + 0.5) * step
     memberships = np.stack([membership(term, x) for term in output.terms])
@@ -200,12 +199,3 @@ def explain_skfuzzy(case: Case, found: np.ndarray) -> PeerResult:
 def add(result: PeerResult, reason: str, count: int) -> None:
     if count:
         result.differing[reason] = result.differing.get(reason, 0) + count
-
-
-def reasons(results: Sequence[PeerResult]) -> dict[str, int]:
-    """Points that differ from the reference, by reason, over many bases."""
-    total: dict[str, int] = {}
-    for result in results:
-        for reason, count in result.differing.items():
-            total[reason] = total.get(reason, 0) + count
-    return total

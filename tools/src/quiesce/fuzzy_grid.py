@@ -1,8 +1,8 @@
 """Accuracy on the reference controller: engines, peers and the exact reference over a grid.
 
 The grid has both ends of both universes. "engine": the reference is fed the same integers, so that
-only the engine's arithmetic is left. "end to end": the reference is fed the physical inputs, so that
-the rounding of inputs and output is in it, too.
+only the engine's arithmetic is left. "end to end": the reference is fed the physical inputs, so
+that the rounding of inputs and output is in it, too.
 """
 
 from collections.abc import Callable, Sequence
@@ -62,7 +62,9 @@ class GridResult:
     absent: list[str]
     maps: dict[str, np.ndarray]  # for plots: [frequency, acceleration], A
 
-    def worst_A(self, what: str, methods: Sequence[str], of: str = "", form: str = "") -> float | None:
+    def worst_A(
+        self, what: str, methods: Sequence[str], of: str = "", form: str = ""
+    ) -> float | None:
         """Largest of the errors of this kind; None where there is none."""
         found = [
             error.worst_A
@@ -120,7 +122,15 @@ class Grid:
         )
         freq_Hz, accel_m_s2 = (float(x) for x in self.points[worst])
         return Error(
-            what, method, form, of, against, float(off[worst]), float(off.mean()), freq_Hz, accel_m_s2
+            what,
+            method,
+            form,
+            of,
+            against,
+            float(off[worst]),
+            float(off.mean()),
+            freq_Hz,
+            accel_m_s2,
         )
 
 
