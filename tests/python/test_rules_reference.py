@@ -1,5 +1,8 @@
 """The float64 meaning of a rule base: hand-computed, and against brute force."""
 
+import itertools
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from quiesce.rules.model import (
@@ -176,6 +179,62 @@ def test_centroid_agrees_with_brute_force(seed: int) -> None:
         errors.append(np.abs(answer.outputs[0, found] - expected)[area_is_seen].max(initial=0.0))
     # Vertical edges cost the midpoint rule up to a step of its grid each.
     assert errors[0] < 0.05 and errors[1] < 5e-3
+
+
+def exact_membership(points: tuple, x: Fraction) -> Fraction:
+    """Between breakpoints, in rational numbers."""
+    fractions = [(Fraction(at), Fraction(mu)) for at, mu in points]
+    after = next((i for i, (at, _) in enumerate(fractions) if at > x), len(fractions))
+    if after in (0, len(fractions)):
+        return fractions[min(after, len(fractions) - 1)][1]
+    (x0, mu0), (x1, mu1) = fractions[after - 1 : after + 1]
+    return mu0 + (mu1 - mu0) * (x - x0) / (x1 - x0)
+
+
+def exact_centroid(base: RuleBase, strengths: np.ndarray) -> Fraction:
+    """In rational numbers, from strengths [rule]: pieces end wherever two lines or levels meet."""
+    output = base.outputs[0]
+    sets = [output.terms[rule.conclusions[0]].points for rule in base.rules]
+    levels = [Fraction(float(strength)) for strength in strengths]
+    low, high = Fraction(output.minimum), Fraction(output.maximum)
+    places = {low, high} | {Fraction(x) for points in sets for x, _ in points}
+    edges = sorted(x for x in places if low <= x <= high)
+    area = moment = Fraction(0)
+    for start, end in itertools.pairwise(edges):
+        third = (end - start) / 3
+        lines = [(level, Fraction(0)) for level in levels]  # value at start, slope
+        for points in sets:
+            mu = [exact_membership(points, start + k * third) for k in (1, 2)]
+            lines.append((2 * mu[0] - mu[1], (mu[1] - mu[0]) / third))
+        meets = {
+            start + (d - b) / (m - n)
+            for (b, m), (d, n) in itertools.combinations(lines, 2)
+            if m != n
+        }
+        cuts = sorted({start, end} | {x for x in meets if start < x < end})
+        for left, right in itertools.pairwise(cuts):
+            values = [
+                max(min(s, exact_membership(p, x)) for s, p in zip(levels, sets, strict=True))
+                for x in (left + (right - left) / 4, right - (right - left) / 4)
+            ]
+            middle, slope = sum(values) / 2, (values[1] - values[0]) / ((right - left) / 2)
+            area += (right - left) * middle
+            moment += (right - left) * middle * (left + right) / 2 + slope * (
+                right - left
+            ) ** 3 / 12
+    return moment / area
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_centroid_is_exact(seed: int) -> None:
+    base = random_base(seed, CENTROID)
+    random = np.random.default_rng(seed)
+    points = [random.uniform(-1.5, 3.5, 5) for _ in base.inputs]
+    answer = evaluate(base, points, want_strengths=True)
+    assert answer.strengths is not None
+    for i in np.flatnonzero(~answer.is_default[0]):
+        exact = exact_centroid(base, answer.strengths[:, i])
+        assert abs(Fraction(float(answer.outputs[0, i])) - exact) < Fraction(1, 10**13)
 
 
 def test_centroid_of_the_reference_controller_is_what_sampling_converges_to() -> None:
