@@ -129,6 +129,7 @@ class Builder:
         found = {}
         for is_input in (True, False):
             for index, variable in enumerate(self.of_kind(is_input)):
+                self.check_terms(variable)
                 terms = {self.key(term.name): i for i, term in enumerate(variable.terms)}
                 shown = tuple(term.name.text for term in variable.terms)
                 found[self.key(variable.name)] = Names(
@@ -207,9 +208,12 @@ class Builder:
             )
         return Output(variable.name.text, low, high, terms, variable.method, default)
 
-    def universe(self, variable: Variable) -> tuple[float, float]:
+    def check_terms(self, variable: Variable) -> None:
         if not variable.terms:
             raise self.source.error(variable.name, f"{variable.shown()} has no terms", "terms")
+
+    def universe(self, variable: Variable) -> tuple[float, float]:
+        self.check_terms(variable)
         if variable.low is not None and variable.high is not None:
             return variable.low, variable.high
         x = extents(variable.terms)

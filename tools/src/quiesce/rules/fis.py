@@ -77,8 +77,7 @@ def split_sections(source: Source) -> list[Section]:
         stream = Stream(source, tokens)
         if stream.token.kind == END:
             continue
-        is_head = [token.text for token in tokens[:3:2]] == ["[", "]"]
-        if is_head or not sections:
+        if stream.sees("[") or not sections:
             sections.append(Section(head_of(stream)))
         else:
             sections[-1].lines.append(tokens)

@@ -92,8 +92,6 @@ class FllReader:
 
     def section(self, section: Section) -> None:
         kind = section.head.key.text
-        if kind == ENGINE:
-            raise self.source.error(section.head.key, "a second Engine", "one in a file")
         if kind == BLOCK:
             self.blocks.append(section)
             return

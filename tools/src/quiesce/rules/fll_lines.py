@@ -60,6 +60,8 @@ def split_lines(source: Source) -> list[Line]:
 def split_sections(source: Source, lines: Sequence[Line]) -> list[Section]:
     sections: list[Section] = []
     for line in lines:
+        if sections and line.key.text == ENGINE:
+            raise source.error(line.key, "a second Engine", "one in a file")
         if line.key.text in KEYS:
             sections.append(Section(line))
         elif not sections:

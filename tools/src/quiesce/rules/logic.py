@@ -113,7 +113,10 @@ class RuleParser:
             return self.condition()
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise stream.unexpected(f"at most {MAX_DEPTH} nested parentheses")
+            at = is_not or opened
+            assert at is not None
+            expected = f"at most {MAX_DEPTH} nested NOTs and parentheses"
+            raise stream.source.error(at, f"found {at.shown()}", expected)
         found = negated(self.factor()) if is_not else self.alternatives()
         if opened:
             stream.expect(")")
