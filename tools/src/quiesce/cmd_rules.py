@@ -2,10 +2,26 @@
 
 import argparse
 
-from quiesce.rules import cli_convert, cli_diff, cli_lookup, cli_optimize, cli_show
+from quiesce.rules import (
+    cli_check,
+    cli_compile,
+    cli_convert,
+    cli_diff,
+    cli_lookup,
+    cli_optimize,
+    cli_show,
+)
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
-SUBCOMMANDS = (cli_convert, cli_show, cli_diff, cli_lookup, cli_optimize)
+SUBCOMMANDS = (
+    cli_convert,
+    cli_compile,
+    cli_check,
+    cli_show,
+    cli_diff,
+    cli_lookup,
+    cli_optimize,
+)
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:

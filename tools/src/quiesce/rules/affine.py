@@ -67,7 +67,7 @@ def constant(value: int) -> Affine:
 
 @dataclass(frozen=True)
 class Order:
-    """What is known of the variables: their range, and that `least` <= the others <= its complement.
+    """What is known of the variables: their range, and which is the least of its region.
 
     With u and v of a region, one of u, 1-u, v, 1-v is the least; its complement is the greatest,
     and the other two and 1/2 lie between.

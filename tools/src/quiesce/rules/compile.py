@@ -6,7 +6,7 @@ universe. The firmware's table of these integers is made by rules/table.py, stra
 rules/emit.py; firmware/fuzzy/fuzzy.h says what they mean.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -97,11 +97,12 @@ def compile_base(
     base: RuleBase,
     inputs: str | Sequence[float | str] = Q15,
     outputs: str | Sequence[float | str] = Q16,
-    defaults: Sequence[float] | None = None,
+    defaults: Mapping[str, float] | None = None,
 ) -> CompiledBase:
     """inputs, outputs: one format for all, or one each: "q15"/"q16" or a physical LSB > 0.
 
-    defaults: of outputs for which the file states none; else the value nearest to 0, with a note.
+    defaults: of outputs, by name, for which the file states none; else the value nearest to 0, with
+    a note.
     UsageError where the integers cannot hold the base.
     """
     axes = tuple(
@@ -111,8 +112,8 @@ def compile_base(
     forms = each(outputs, base.outputs)
     notes: list[str] = []
     made = tuple(
-        make_output(output, form, default_of(output, index, defaults, notes))
-        for index, (output, form) in enumerate(zip(base.outputs, forms, strict=True))
+        make_output(output, form, default_of(output, defaults or {}, notes))
+        for output, form in zip(base.outputs, forms, strict=True)
     )
     order = tuple(left_to_right(variable) for variable in base.inputs)
     sorted_base = replace(base, inputs=tuple(map(reordered, base.inputs, order)))
@@ -184,13 +185,11 @@ def input_axis(variable: Input, form: float | str) -> Axis:
     return Axis(Fraction(0), lsb)
 
 
-def default_of(
-    output: Output, index: int, defaults: Sequence[float] | None, notes: list[str]
-) -> float:
+def default_of(output: Output, defaults: Mapping[str, float], notes: list[str]) -> float:
     if output.default is not None:
         return output.default
-    if defaults is not None:
-        return defaults[index]
+    if output.name in defaults:
+        return defaults[output.name]
     value = min(max(0.0, output.minimum), output.maximum)
     notes.append(f"output {output.name} has no default: {value:g} where no rule fires")
     return value

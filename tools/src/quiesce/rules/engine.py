@@ -20,11 +20,8 @@ class Engine:
 
     def __init__(self, compiled: CompiledBase, kind: str = TABLE) -> None:
         self._compiled = compiled
-        text = '#include "fuzzy.h"\n'
-        if kind == STRAIGHT:
-            header = f"uint32_t {FUNCTION}(const int32_t *input, int32_t *output);\n"
-            text = f'#include "fuzzy_math.h"\n{header}{straight_line_c(compiled, FUNCTION)}'
-        library = build([*firmware_sources(), NATIVE / "many.c"], text, ())
+        texts = {"straight.c": straight_source(compiled)} if kind == STRAIGHT else {}
+        library = build([*firmware_sources(), NATIVE / "many.c"], texts, ())
         self._library = ctypes.CDLL(str(library))
         self._function = getattr(self._library, FUNCTION) if kind == STRAIGHT else None
         self._table = np.array(compiled.words, dtype=np.uint32)
@@ -55,6 +52,12 @@ class Engine:
             pointer(self._table), points.shape[1], pointer(points), pointer(fired)
         )
         return fired
+
+
+def straight_source(compiled: CompiledBase) -> str:
+    """FUNCTION, complete for a compiler."""
+    declaration = f"uint32_t {FUNCTION}(const int32_t *input, int32_t *output);"
+    return f'#include "fuzzy_math.h"\n{declaration}\n{straight_line_c(compiled, FUNCTION)}'
 
 
 def pointer(array: np.ndarray) -> ctypes.c_void_p:

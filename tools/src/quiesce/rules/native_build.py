@@ -5,7 +5,7 @@ import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from quiesce.errors import BenchFailure, UsageError, one_line
@@ -28,17 +28,22 @@ def compiler() -> str:
     return name
 
 
-def build(sources: Sequence[Path], text: str, flags: Sequence[str], suffix: str = ".so") -> Path:
-    """A program (suffix "") or shared library of these files and of the C text, built once.
+def build(
+    sources: Sequence[Path], texts: Mapping[str, str], flags: Sequence[str], suffix: str = ".so"
+) -> Path:
+    """A program (suffix "") or shared library of these files and of the C texts, built once.
 
-    The result lies in build/rules, named by the hash of all that it is made of.
+    texts: file name and contents; what ends in .c is compiled, the rest may be included. The result
+    lies in build/rules, named by the hash of all that it is made of.
     """
     headers = [
         *sorted((root() / "firmware/fuzzy").glob("*.h")),
         *sorted((root() / "firmware/base").glob("*.h")),
+        *sorted(NATIVE.glob("*.h")),
     ]
     command = [compiler(), *FLAGS, *flags]
-    digest = hashlib.sha256("\0".join([*command, text, suffix]).encode())
+    parts = [*command, suffix, *(text for item in sorted(texts.items()) for text in item)]
+    digest = hashlib.sha256("\0".join(parts).encode())
     for file in [*sources, *headers]:
         digest.update(file.read_bytes())
     folder = build_folder() / "rules"
@@ -46,25 +51,29 @@ def build(sources: Sequence[Path], text: str, flags: Sequence[str], suffix: str 
     if not result.is_file():
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            compile_into(Path(scratch), command, sources, text, result)
+            compile_into(Path(scratch), command, sources, texts, result)
     return result
 
 
 def compile_into(
-    scratch: Path, command: Sequence[str], sources: Sequence[Path], text: str, result: Path
+    scratch: Path,
+    command: Sequence[str],
+    sources: Sequence[Path],
+    texts: Mapping[str, str],
+    result: Path,
 ) -> None:
-    generated = scratch / "generated.c"
-    generated.write_text(text, encoding="utf-8")
+    for name, text in texts.items():
+        (scratch / name).write_text(text, encoding="utf-8")
     made = scratch / "made"
     shared = ("-shared", "-fPIC") if result.suffix == ".so" else ()
-    includes = [f"-I{root() / 'firmware' / name}" for name in ("base", "fuzzy")]
+    folders = [*(root() / "firmware" / name for name in ("base", "fuzzy")), NATIVE, scratch]
+    own = [scratch / name for name in texts if name.endswith(".c")]
     process = subprocess.run(
-        [*command, *shared, *includes, *map(str, sources), str(generated), "-lm", "-o", str(made)],
+        [*command, *shared, *(f"-I{folder}" for folder in folders)]
+        + [*map(str, [*sources, *own]), "-lm", "-o", str(made)],
         capture_output=True,
         text=True,
     )
     if process.returncode != 0:
-        raise BenchFailure(
-            f"the C compiler refused generated code: {one_line(process.stderr)[:300]}"
-        )
+        raise BenchFailure(f"the C compiler refused: {one_line(process.stderr)[:300]}")
     made.replace(result)

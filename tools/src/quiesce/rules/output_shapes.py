@@ -114,7 +114,7 @@ def crossing(flank: list[tuple[Fraction, Fraction]], height: Fraction) -> Fracti
 def clipped(
     output: Output, fuzzy_set: FuzzySet, low: Fraction, span: Fraction
 ) -> list[tuple[Fraction, Fraction]]:
-    """The set's points inside the universe, with its values at the ends, x as shares of the span."""
+    """The set's points inside the universe, its ends included, x as shares of the span."""
     ends = exact(output.minimum), exact(output.maximum)
     points = [(exact(x), exact(mu)) for x, mu in fuzzy_set.points]
     points = [(min(ends[0], points[0][0]) - 1, points[0][1]), *points]
