@@ -13,7 +13,13 @@ from quiesce.rules import optimize_state
 from quiesce.rules.optimize_de import DeSettings
 from quiesce.rules.optimize_ga import Coding, GaSettings, roulette_shares
 from quiesce.rules.optimize_methods import make_search
-from quiesce.rules.optimize_nsga2 import NsgaSettings, crowding, fronts
+from quiesce.rules.optimize_nsga2 import (
+    NsgaSettings,
+    crowding,
+    fronts,
+    survivors,
+    tournament,
+)
 from quiesce.rules.optimize_objective import Steady
 from quiesce.rules.optimize_run import Limits, Problem, Runner, simplify
 from quiesce.rules.optimize_state import State
@@ -199,6 +205,30 @@ def test_crowding_is_infinite_at_the_ends_and_larger_where_it_is_lonely() -> Non
     assert np.allclose(distances[1:4], [2 / 10 + 3 / 10, 7 / 10 + 7 / 10, 8 / 10 + 7 / 10])
 
 
+def test_parents_win_by_front_and_then_by_distance() -> None:
+    rank, distance = np.array([0, 0, 1]), np.array([0.5, 2.0, np.inf])
+    rng = np.random.default_rng(1)
+    chosen = np.concatenate([tournament(rank, distance, rng) for _ in range(400)])
+    share = np.bincount(chosen, minlength=3) / len(chosen)
+    # Of the nine pairs 1 wins five, 0 three, 2 only the one against itself.
+    assert np.allclose(share, [3 / 9, 5 / 9, 1 / 9], atol=0.05)
+
+
+def test_survivors_are_the_best_fronts_and_the_lonely_of_the_last() -> None:
+    costs = np.array([[2.0, 2.0], [1.0, 9.0], [9.0, 1.0], [3.0, 4.0], [4.0, 3.5], [3.1, 3.9]])
+    people = np.arange(6, dtype=np.uint8)[:, None]
+    kept, kept_costs = survivors(people, costs, 5)
+    assert sorted(kept[:, 0]) == [0, 1, 2, 3, 4]
+    assert (kept_costs == costs[kept[:, 0]]).all()
+    assert sorted(survivors(people, costs, 3)[0][:, 0]) == [0, 1, 2]
+
+
+def test_equal_people_survive_once() -> None:
+    people = np.array([[1], [1], [1], [2], [3]], dtype=np.uint8)
+    costs = np.array([[0.0, 0.0]] * 3 + [[1.0, 2.0], [2.0, 1.0]])
+    assert sorted(survivors(people, costs, 3)[0][:, 0]) == [1, 2, 3]
+
+
 # Runs
 
 
@@ -251,7 +281,8 @@ def test_interruption_inside_a_generation_keeps_what_was_done(tmp_path, name) ->
     state = loaded(parts)
     done = [n for n in expected.history.evaluations if n <= 100]
     assert len(state.digests) == len(done) < 9
-    assert len(state.evaluated) >= done[-1]
+    # Two jobs: the call that breaks may overtake one before it.
+    assert 98 <= len(state.evaluated) <= 100
     resumed = run(parts, name, Limits(9), state=state)
     assert list(resumed.visited.items()) == list(expected.visited.items())
     assert resumed.history == expected.history

@@ -165,7 +165,6 @@ def make_task(args: argparse.Namespace, bench: Bench, folder: Path, pool: Execut
         seed=args.seed,
         limits=Limits(args.generations, args.evaluations),
         params=args.set,
-        options=[],
         command=rerun_command(args),
     )
 

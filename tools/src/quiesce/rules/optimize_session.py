@@ -46,7 +46,6 @@ class Task:
     seed: int
     limits: Limits
     params: Sequence[str]  # NAME=VALUE, for every run
-    options: Sequence[str]  # of the bench, for every run
     command: str
 
 
@@ -81,7 +80,6 @@ def search_settings(task: Task) -> dict[str, Any]:
         ],
         "start": hashlib.sha256(repr(task.start).encode()).hexdigest()[:16],
         "set": list(task.params),
-        "options": list(task.options),
         "bench": bench_digest(),
     }
 
@@ -104,16 +102,14 @@ class Session:
         self._task = task
         self._pool = pool
         self.space = make_space(task.start, task.tune)
-        self._loop = ClosedLoop(bench, task.scenarios, task.params, task.options)
+        self._loop = ClosedLoop(bench, task.scenarios, task.params)
         self._problem = make_problem(self.space, self._loop, task)
         self.settings = search_settings(task)
 
     def state(self, file: Path, is_resumed: bool) -> State:
         if not is_resumed:
             return State(self.settings)
-        state = optimize_state.load(
-            file, self.settings, self.space.levels, len(self._loop.places)
-        )
+        state = optimize_state.load(file, self.settings, self.space.levels, len(self._loop.places))
         state.is_finished = False
         say(f"resuming after generation {len(state.digests)}, {len(state.evaluated)} known")
         return state
@@ -165,7 +161,7 @@ class Session:
         """Start and best under noise that the search has not seen."""
         checks = []
         for seed in CHECK_SEEDS:
-            loop = self._loop.with_options([*self._task.options, "--seed", str(seed)])
+            loop = self._loop.with_options(["--seed", str(seed)])
             costs = [self._task.objective.cost(loop.of_rules(b)) for b in (self._task.start, best)]
             checks.append(NoiseCheck(seed, *costs))
         return checks
