@@ -27,8 +27,9 @@ PATTERNS = {"fcl": fcl.PATTERN, "fll": fll.PATTERN, "fis": fis.PATTERN}
 PLACED = re.compile(r"[^:]+:\d+:\d+: .")
 # Lines whose tokens have no meaning, or do not reach the RuleBase by themselves.
 UNSEEN = {
-    # The numbers of rules, the name of the rule block; REAL or LREAL.
-    "fcl": re.compile(r"^\s*(RULE \d+ :|RULEBLOCK|\w+ : REAL)"),
+    # The numbers of rules, the name of the rule block; REAL or LREAL; operators without which the
+    # same ones hold.
+    "fcl": re.compile(r"^\s*(RULE \d+ :|RULEBLOCK|\w+ : REAL|(AND|OR|ACT) : \w+)"),
     "fll": re.compile(r"^\s*(enabled|lock-range|RuleBlock|(con|dis)junction|implication)"),
     # Operators that a Sugeno system, or one without such a rule, does not use.
     "fis": re.compile(r"^(Version|And|Or|Imp|Agg)"),

@@ -88,6 +88,7 @@ FCL_CASES: list[tuple[Edits, str]] = [
     ((("AND : MIN", "AND : @PROD"),), "found 'PROD', expected 'MIN'"),
     ((("OR : MAX", "OR : @ASUM"),), "found 'ASUM', expected 'MAX'"),
     ((("ACT : MIN", "ACT : @PROD"),), "found 'PROD', expected 'MIN'"),
+    ((("ACT : MIN", "@AND : MIN"),), "found 'AND', expected one AND in a rule block"),
     ((("RULE 1", "@RUEL 1"),), "expected 'RULE'"),
     ((("RULE 1 :", "RULE @:"),), "found ':', expected the number of the rule"),
     ((("IF level IS low", "@level IS low"),), "found 'level', expected 'IF'"),

@@ -262,9 +262,13 @@ class FclReader:
         if not stream.sees(*OPERATORS, "RULE", "END_RULEBLOCK"):
             self.new_name("the name of the rule block")
         parser = RuleParser(stream, WORDS, self.builder.names())
-        drafts = []
+        drafts, operators = [], set()
         while not stream.accept("END_RULEBLOCK"):
             if stream.sees(*OPERATORS):
+                kind = stream.token.text.upper()
+                if kind in operators:
+                    raise stream.unexpected(f"one {kind} in a rule block")
+                operators.add(kind)
                 self.operator()
                 continue
             stream.expect("RULE", after=", AND, OR, ACT, ACCU or END_RULEBLOCK")
