@@ -103,6 +103,8 @@ FLL_STYLES = {
     "outputs first": re.sub(
         r"(InputVariable.*?)(OutputVariable.*?)(RuleBlock)", r"\2\1\3", FLL, flags=re.DOTALL
     ),
+    "infinite shoulder": FLL.replace("Ramp 5.000 0.000", "Trapezoid -inf -inf 0.000 5.000"),
+    "infinite shoulder to the right": FLL.replace("Ramp 2.000 8.000", "Trapezoid 2 8 inf inf"),
     "height": FLL.replace("Ramp 2.000 8.000", "Ramp 2.000 8.000 1.000"),
     "points": FLL.replace("Trapezoid -1.000 0.000 1.500 2.500", "Discrete -1 0 0 1 1.5 1 2.5 0"),
     "points with height": FLL.replace("Ramp 2.000 8.000", "Discrete 2 0 8 1 1"),
@@ -139,6 +141,8 @@ FIS_STYLES = {
     "outputs first": re.sub(
         r"(\[Input1\].*?)(\[Output1\].*?)(\[Rules\])", r"\2\1\3", FIS, flags=re.DOTALL
     ),
+    "infinite shoulder": FIS.replace("'linzmf',[0 5]", "'trapmf',[-Inf -Inf 0 5]"),
+    "infinite shoulder to the right": FIS.replace("'linsmf',[2 8]", "'trapmf',[2 8 inf Inf]"),
     "other implication": FIS.replace("ImpMethod='prod'", "ImpMethod='min'"),
     "no implication": FIS.replace("ImpMethod='prod'\n", ""),
     "no name": FIS.replace("Name='tank'", "Name=''"),

@@ -22,6 +22,7 @@ from quiesce.rules.model import (
 )
 from quiesce.rules.scan import (
     END,
+    INFINITE_PATTERN,
     NAME,
     NUMBER,
     NUMBER_PATTERN,
@@ -32,10 +33,10 @@ from quiesce.rules.scan import (
     Token,
     scan,
 )
-from quiesce.rules.shapes import FIS_SHAPES
+from quiesce.rules.shapes import FIS_SHAPES, SHOULDERS
 
 PATTERN = re.compile(
-    rf"\s+|(?P<number>{NUMBER_PATTERN})|(?P<name>{WORD_PATTERN})|(?P<string>'[^'\n]*'|\"[^\"\n]*\")"
+    rf"\s+|(?P<number>{NUMBER_PATTERN}|{INFINITE_PATTERN})|(?P<name>{WORD_PATTERN})|(?P<string>'[^'\n]*'|\"[^\"\n]*\")"
     r"|(?P<unclosed>['\"])|(?P<symbol>[\[\]=(),:])"
 )
 SYSTEM, RULES = "System", "Rules"
@@ -52,8 +53,7 @@ REQUIRED = {
     "mamdani": {"ImpMethod": "min", "AggMethod": "max", "DefuzzMethod": "centroid"},
     "sugeno": {"DefuzzMethod": "wtaver"},
 }
-IGNORED = ("Version",)
-SYSTEM_KEYS = ("Name", "Type", *IGNORED, *COUNTS, *METHODS)
+SYSTEM_KEYS = ("Name", "Type", "Version", *COUNTS, *METHODS)
 
 
 @dataclass
@@ -230,17 +230,18 @@ class FisReader:
             words = ", ".join((*(() if variable.is_input else ("constant", "linear")), *FIS_SHAPES))
             raise self.source.error(at, f"membership function {at.shown()}", f"one of {words}")
         shape = FIS_SHAPES[at.text]
-        return self.builder.shape(at, shape, self.vector(stream, shape.parameters))
+        values = self.vector(stream, shape.parameters, at.text in SHOULDERS)
+        return self.builder.shape(at, shape, values)
 
-    def vector(self, stream: Stream, count: int) -> list[float]:
+    def vector(self, stream: Stream, count: int, or_infinite: bool = False) -> list[float]:
         """`[a b ...]`, also with commas, to the end of the line; one number may stand bare."""
         is_bare = count == 1 and stream.token.kind == NUMBER
         if not is_bare:
             stream.expect("[")
-        values = [stream.number(f"{count} numbers")]
+        values = [stream.number(f"{count} numbers", or_infinite)]
         while len(values) < count:
             stream.accept(",")
-            values.append(stream.number(f"{count} numbers"))
+            values.append(stream.number(f"{count} numbers", or_infinite))
         if not is_bare:
             stream.expect("]", after=f" behind {count} numbers")
         self.finish_line(stream)

@@ -28,6 +28,7 @@ from quiesce.rules.model import (
 )
 from quiesce.rules.scan import (
     END,
+    INFINITE_PATTERN,
     NAME,
     NUMBER,
     NUMBER_PATTERN,
@@ -37,10 +38,11 @@ from quiesce.rules.scan import (
     Token,
     scan,
 )
-from quiesce.rules.shapes import FLL_SHAPES
+from quiesce.rules.shapes import FLL_SHAPES, SHOULDERS
 
 PATTERN = re.compile(
-    rf"\s+|(?P<number>{NUMBER_PATTERN})|(?P<name>{WORD_PATTERN})|(?P<symbol>[()])"
+    rf"\s+|(?P<number>{NUMBER_PATTERN}|{INFINITE_PATTERN})|(?P<name>{WORD_PATTERN})"
+    r"|(?P<symbol>[()])"
 )
 HEDGES = ("any", "extremely", "seldom", "somewhat", "very")
 WORDS = Words(
@@ -182,7 +184,7 @@ class FllReader:
             height = "" if at.text == "Constant" else " (and a height)"
             what = f"{len(tokens)} numbers of {at.text}"
             raise self.source.error(at, what, f"{count}{height}")
-        values = [self.source.number(token) for token in tokens]
+        values = [self.source.number(token, at.text in SHOULDERS) for token in tokens]
         if at.text == "Constant":
             return values[0]
         height = self.height(tokens[-1]) if has_height else 1.0

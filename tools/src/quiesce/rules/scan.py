@@ -18,9 +18,9 @@ UNCLOSED = "unclosed"  # the start of a comment or text without an end
 MAX_NUMBER = 1e30  # magnitude; differences and products of two stay finite
 SHOWN_CHARACTERS = 40
 # "0..25" is a range, not "0." and ".25"; what follows at once must not be part of another number.
-NUMBER_PATTERN = (
-    r"[+-]?(?:\d+(?:\.(?!\.)\d*)?|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_+-])(?!\.\d)"
-)
+NUMBER_PATTERN = r"[+-]?(?:\d+(?:\.(?!\.)\d*)?|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_+-])(?!\.\d)"
+# Where a format has infinities; only some shapes take them.
+INFINITE_PATTERN = r"[+-]?[Ii]nf(?![A-Za-z0-9_])"
 WORD_PATTERN = r"[A-Za-z_][A-Za-z0-9_]*"
 
 
@@ -66,9 +66,11 @@ class Source:
         ends = [*(start - 1 for start in self.starts[1:]), len(self.text)]
         return list(zip(self.starts, ends, strict=True))
 
-    def number(self, token: Token) -> float:
+    def number(self, token: Token, or_infinite: bool = False) -> float:
         """Finite, of bounded magnitude; the sign of zero is dropped."""
         value = float(token.text)
+        if or_infinite and re.fullmatch(INFINITE_PATTERN, token.text):
+            return value
         if not math.isfinite(value) or abs(value) > MAX_NUMBER:
             raise self.error(token, f"number {token.shown()}", f"one within +-{MAX_NUMBER:g}")
         return value + 0.0
@@ -134,8 +136,8 @@ class Stream:
             raise self.unexpected(what)
         return self.take()
 
-    def number(self, what: str = "a number") -> float:
-        return self.source.number(self.expect_kind(NUMBER, what))
+    def number(self, what: str = "a number", or_infinite: bool = False) -> float:
+        return self.source.number(self.expect_kind(NUMBER, what), or_infinite)
 
     def unexpected(self, expected: str) -> UsageError:
         return self.source.error(self.token, f"found {self.token.shown()}", expected)

@@ -9,6 +9,7 @@ import numpy as np
 from quiesce.rules.model import Point, ramp, trapezoid, triangle
 
 Curve = Callable[[np.ndarray], np.ndarray]  # membership at each x
+SHOULDERS = ("Trapezoid", "trapmf")  # whose flanks may be infinite
 ERROR_STEPS = 20000  # of the universe, at which an approximation's error is taken
 GRID_STEPS = 2000  # of the universe, where breakpoints may lie
 
@@ -28,7 +29,11 @@ def triangle_points(left: float, top: float, right: float) -> tuple[Point, ...]:
 
 
 def trapezoid_points(a: float, b: float, c: float, d: float) -> tuple[Point, ...]:
+    """A shoulder where both ends of a flank are infinite."""
     require(a <= b <= c <= d, "parameters that never fall")
+    pairs = math.isinf(a) == math.isinf(b) and math.isinf(c) == math.isinf(d)
+    is_somewhere = b < math.inf and c > -math.inf
+    require(pairs and is_somewhere, "flanks with two finite ends or two infinite ones")
     return trapezoid("", a, b, c, d).points
 
 
