@@ -228,7 +228,8 @@ def tables(grid: GridResult, result: RandomResult | None, costs: Costs) -> list[
     if costs.host:
         found.append(host_table(costs.host))
     if result is not None:
-        found += [random_table(result), *beyond_lines(result)]
+        lines = beyond_lines(result)
+        found += [random_table(result), *(["\n".join(lines)] if lines else [])]
         if costs.fallbacks:
             found.append(fallback_table(result, costs.fallbacks))
     return found

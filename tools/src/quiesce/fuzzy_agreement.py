@@ -9,7 +9,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from quiesce.fuzzy_points import Range, integers_of, random_points, rounding_range
+from quiesce.fuzzy_points import (
+    FINE_BOX_LINES,
+    Range,
+    integers_of,
+    random_points,
+    rounding_range,
+)
 from quiesce.fuzzy_random import RandomBase
 from quiesce.fuzzy_sets import breakpoints
 from quiesce.rules.compile import CompiledBase, compile_base
@@ -36,7 +42,7 @@ UNEXPLAINED = "unexplained"
 class EngineResult:
     kind: str  # "table" or "straight"
     beyond: int  # points outside the bound
-    worst_lsb: float  # distance from the box's range, in output LSB, where it is not the default
+    worst_lsb: float  # distance from the box's range, in output LSB
     worst_at: list[float]
 
 
@@ -79,23 +85,38 @@ def lsb_of(compiled: CompiledBase) -> list[float]:
     return [float(axis.lsb) for axis in compiled.axes]
 
 
-def judge_engine(case: Case, kind: str, allowed: Range) -> EngineResult:
-    engine = Engine(case.compiled, kind)
-    integers, mask = engine.evaluate(integers_of(case.compiled, case.points))
-    beyond = np.zeros(len(case.points), dtype=bool)
-    distance = np.zeros(len(case.points))
+def excess(
+    compiled: CompiledBase, integers: np.ndarray, mask: np.ndarray, allowed: Range
+) -> np.ndarray:
+    """[point]: how many output LSB the worst output lies outside the box's range.
+
+    Infinite where the default stands and no part of the box has it, or the other way round.
+    """
+    worst = np.zeros(len(mask))
     for i in range(len(integers)):
-        lsb = case.compiled.output_lsb(i)
-        value = case.compiled.output_value(i, integers[i])
-        is_default = (mask >> i & 1).astype(bool)
-        off = np.maximum(allowed.low[i] - value, value - allowed.high[i]) / lsb
+        value = compiled.output_value(i, integers[i])
+        off = np.maximum(allowed.low[i] - value, value - allowed.high[i]) / compiled.output_lsb(i)
         off = np.where(allowed.has_value[i], np.maximum(off, 0.0), np.inf)
-        is_wrong = np.where(is_default, ~allowed.has_default[i], off > 1.0)
-        beyond |= is_wrong
-        distance = np.maximum(distance, np.where(is_default, 0.0, off))
+        off_default = np.where(allowed.has_default[i], 0.0, np.inf)
+        worst = np.maximum(worst, np.where(mask >> i & 1, off_default, off))
+    return worst
+
+
+def judge_engine(case: Case, kind: str, allowed: Range) -> EngineResult:
+    points, compiled = case.points, case.compiled
+    integers, mask = Engine(compiled, kind).evaluate(integers_of(compiled, points))
+    distance = excess(compiled, integers, mask, allowed)
+    # The box again, seen more finely, where it matters.
+    beyond = np.flatnonzero(distance > 1.0)
+    if len(beyond):
+        fine = rounding_range(case.base, points[beyond], lsb_of(compiled), FINE_BOX_LINES)
+        distance[beyond] = excess(compiled, integers[:, beyond], mask[beyond], fine)
     worst = int(distance.argmax())
     return EngineResult(
-        kind, int(beyond.sum()), float(distance[worst]), [float(x) for x in case.points[worst]]
+        kind,
+        int((distance > 1.0).sum()),
+        float(distance[worst]),
+        [float(x) for x in points[worst]],
     )
 
 

@@ -15,6 +15,7 @@ INT32_MIN, INT32_MAX = -(2**31), 2**31 - 1
 NEAR = (-3.0, -1.5, -1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0, 1.5, 3.0)
 # A rounding box is looked at on so many lines of each input, and at the breakpoints inside.
 BOX_LINES = 5
+FINE_BOX_LINES = 41
 BOX_BREAKS = 2
 CHUNK_POINTS = 2000
 
@@ -57,19 +58,21 @@ class Range:
     has_value: np.ndarray  # some rule fires somewhere in the box
 
 
-def rounding_range(base: RuleBase, points: np.ndarray, lsb: Sequence[float]) -> Range:
-    """Over x +- half a count in every input."""
+def rounding_range(
+    base: RuleBase, points: np.ndarray, lsb: Sequence[float], lines: int = BOX_LINES
+) -> Range:
+    """Over x +- half a count in every input. With more lines it can only be wider, and slower."""
     parts = [
-        box_range(base, points[i : i + CHUNK_POINTS], lsb)
+        box_range(base, points[i : i + CHUNK_POINTS], lsb, lines)
         for i in range(0, len(points), CHUNK_POINTS)
     ]
     names = ("low", "high", "has_default", "has_value")
     return Range(*(np.concatenate([getattr(one, n) for one in parts], axis=1) for n in names))
 
 
-def box_range(base: RuleBase, points: np.ndarray, lsb: Sequence[float]) -> Range:
+def box_range(base: RuleBase, points: np.ndarray, lsb: Sequence[float], lines: int) -> Range:
     axes = [
-        box_lines(variable, x, step)
+        box_lines(variable, x, step, lines)
         for variable, x, step in zip(base.inputs, points.T, lsb, strict=True)
     ]
     grids = [
@@ -88,9 +91,9 @@ def box_range(base: RuleBase, points: np.ndarray, lsb: Sequence[float]) -> Range
     )
 
 
-def box_lines(variable: Input, x: np.ndarray, lsb: float) -> np.ndarray:
+def box_lines(variable: Input, x: np.ndarray, lsb: float, lines: int) -> np.ndarray:
     """[point, line]: even lines over the box, and both sides of the breakpoints inside it."""
-    even = x[:, None] + lsb * np.linspace(-0.5, 0.5, BOX_LINES)
+    even = x[:, None] + lsb * np.linspace(-0.5, 0.5, lines)
     places = np.array(breakpoints(variable.sets))
     distance = np.abs(places[None, :] - x[:, None])
     nearest = np.argsort(distance, axis=1)[:, :BOX_BREAKS]

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
 
-from quiesce.errors import UsageError, one_line
+from quiesce.errors import BenchFailure, UsageError, one_line
 from quiesce.fuzzy_agreement import (
     UNEXPLAINED,
     Case,
@@ -120,13 +120,13 @@ class RandomResult:
 
 
 def judge_base(number: int, seed: int, budget: Budget) -> Outcome | str:
-    """Or one line why the integers cannot hold the base."""
+    """Or one line why the integers cannot hold the base, or the compiler its C."""
     try:
         case = make_case(random_base(seed, number), seed, budget.points)
         why_not = why_not_straight(case.compiled)
         with_straight = not why_not and number % budget.straight_every == 0
         return Outcome(case, why_not, judge_engines(case, with_straight))
-    except UsageError as error:
+    except (UsageError, BenchFailure) as error:
         return one_line(error)
 
 
