@@ -57,8 +57,8 @@ static uint32_t rule_strength(const fuzzy_rule_t *rule, const memberships_t *mem
         const uint32_t here = condition >> 7 != 0 ? one - direct : direct;
         strength = is_or ? fuzzy_max(strength, here) : fuzzy_min(strength, here);
     }
-    const uint32_t weight_q16 = rule->head & FUZZY_WEIGHT_MASK;
-    return weight_q16 == FUZZY_WEIGHT_ONE_q16 ? strength : fuzzy_weighted(strength, weight_q16);
+    const uint32_t weight_q19 = rule->head & FUZZY_WEIGHT_MASK;
+    return weight_q19 == FUZZY_WEIGHT_ONE_q19 ? strength : fuzzy_weighted(strength, weight_q19);
 }
 
 static const fuzzy_rule_t *rules_of(const fuzzy_table_t *table) {

@@ -8,7 +8,7 @@
 ///   FUZZY_MAX       the same over terms, each with the greatest strength of its rules
 ///   FUZZY_CENTROID  of max over terms of min(greatest strength of its rules, set), exactly
 /// Formats: inputs int32 in the table's units, any value (the ends of the universe hold beyond it);
-/// memberships and strengths 2^-bits, to nearest; weights Q16, products to nearest; sums of
+/// memberships and strengths 2^-bits, to nearest; weights Q19, products to nearest; sums of
 /// singletons exact in 64 bits, their quotient to nearest; a centroid's areas Q26 of the universe,
 /// its quotient from sums of 22 significant bits. Outputs int32 in the table's units. Nothing
 /// overflows with a table that fuzzy_table_check() accepts. Straight-line C from `quiesce rules

@@ -14,11 +14,11 @@ static inline uint32_t fuzzy_max(uint32_t a, uint32_t b) {
 }
 
 /// strength * weight, to nearest.
-static inline uint32_t fuzzy_weighted(uint32_t strength, uint32_t weight_q16) {
-    return (uint32_t)(((uint64_t)strength * weight_q16 + 32768u) >> 16);
+static inline uint32_t fuzzy_weighted(uint32_t strength, uint32_t weight_q19) {
+    return (uint32_t)(((uint64_t)strength * weight_q19 + (1u << 18)) >> 19);
 }
 
-/// (a + b * distance) >> 32, floor: a straight line of a cell, its result 0 .. 2^24.
+/// (a + b * distance) >> 32, floor: a straight line of a cell, its result 0 .. 2^28.
 static inline uint32_t fuzzy_ramp(int64_t a, int32_t b, uint32_t distance) {
     return (uint32_t)((a + (int64_t)b * (int32_t)distance) >> 32);
 }

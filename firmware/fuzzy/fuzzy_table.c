@@ -252,7 +252,7 @@ static bool are_rules_good(const fuzzy_table_t *table) {
     }
     const fuzzy_rule_t *rule = fuzzy_at(table, table->rules_offset);
     for (uint32_t i = 0; i < table->rules; i++) {
-        if ((rule[i].head & FUZZY_WEIGHT_MASK) > FUZZY_WEIGHT_ONE_q16 ||
+        if ((rule[i].head & FUZZY_WEIGHT_MASK) > FUZZY_WEIGHT_ONE_q19 ||
             !are_conditions_good(table, &rule[i]) || !are_conclusions_good(table, &rule[i])) {
             return false;
         }

@@ -22,10 +22,10 @@
 #define FUZZY_MAX_RULES 1024u
 #define FUZZY_MAX_CONDITIONS 8u
 #define FUZZY_MIN_BITS 16u
-#define FUZZY_MAX_BITS 24u
+#define FUZZY_MAX_BITS 28u
 #define FUZZY_GRID_STRIDE 8u
 #define FUZZY_NO_TERM 0xFFu
-#define FUZZY_WEIGHT_ONE_q16 UINT32_C(65536)
+#define FUZZY_WEIGHT_ONE_q19 (UINT32_C(1) << 19)
 #define FUZZY_WEIGHT_MASK UINT32_C(0xFFFFF)
 
 typedef enum {
@@ -108,7 +108,7 @@ typedef struct {
     fuzzy_ramp_t ramp[2];
 } fuzzy_pair_cell_t;
 
-/// head: weight Q16 in bits 0..19, "or" bit 20, number of conditions from bit 24.
+/// head: weight Q19 in bits 0..19, "or" bit 20, number of conditions from bit 24.
 /// condition: set | input << 3 | negated << 7.
 typedef struct {
     uint32_t head;

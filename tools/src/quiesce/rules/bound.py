@@ -9,13 +9,13 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import product
 
-from quiesce.rules.compile import CompiledBase, IntegerRule
+from quiesce.rules.compile import WEIGHT_ONE, CompiledBase, IntegerRule
 from quiesce.rules.integer_cells import Cell
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 
 MEMBERSHIP_ERROR = Fraction(3, 4)  # units of 2^-bits (integer_cells.py)
 PRODUCT_ERROR = Fraction(1, 2)
-WEIGHT_ERROR = Fraction(1, 2**17)  # of a weight in Q16
+WEIGHT_ERROR = Fraction(1, 2 * WEIGHT_ONE)
 MAX_COMBINATIONS = 20_000
 
 
@@ -100,12 +100,12 @@ def strengths(
             one - memberships[i].get(s, 0) if negated else memberships[i].get(s, 0)
             for i, s, negated in rule.conditions
         ]
-        found.append(Fraction(min(values) * rule.weight_q16, 65536))
+        found.append(Fraction(min(values) * rule.weight_q19, WEIGHT_ONE))
     return found
 
 
 def strength_error(compiled: CompiledBase, rule: IntegerRule) -> Fraction:
-    if rule.weight_q16 == 65536:
+    if rule.weight_q19 == WEIGHT_ONE:
         return MEMBERSHIP_ERROR
     one = 1 << compiled.bits
     return MEMBERSHIP_ERROR + PRODUCT_ERROR + WEIGHT_ERROR * one

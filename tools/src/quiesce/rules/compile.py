@@ -17,18 +17,20 @@ import numpy as np
 from quiesce.errors import UsageError
 from quiesce.rules.integer_cells import Axis, Cell, Ramp, ceil, exact, floor, make_cells, nearest
 from quiesce.rules.model import AND, CENTROID, Input, Output, Rule, RuleBase
-from quiesce.rules.output_shapes import OutputShapes, make_shapes
+from quiesce.rules.output_shapes import OutputShapes, Shape, make_shapes
 
 Q15 = "q15"
 Q16 = "q16"
 INT32_LIMIT = 2**31 - 1
 MAX_OUTPUT_COUNTS = 2**24  # of an output's universe
-GENERAL_BITS = 24
+GENERAL_BITS = 28  # less where many rules might fire at once: sums of strengths fit 32 bits
+WEIGHT_ONE = 1 << 19
 # Where the sum of strengths is known to lie in 1..2: fewer bits, so that 32-bit words and one
 # division do; rules/check.py proves the error that is left.
 PARTITION_BITS = 16
 WIDE_PARTITION_BITS = 20
 CENTROID_PARTITION_BITS = 17
+MIN_PARTITION_AREA = Fraction(1, 64)
 NARROW_COUNTS = 2**15  # an output's range inside any cell, for PARTITION_BITS
 
 
@@ -40,7 +42,7 @@ class IntegerRule:
     conditions: tuple[tuple[int, int, bool], ...]
     conclusions: tuple[int | None, ...]
     is_or: bool
-    weight_q16: int
+    weight_q19: int
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,7 @@ def compile_base(
     order = tuple(left_to_right(variable) for variable in base.inputs)
     sorted_base = replace(base, inputs=tuple(map(reordered, base.inputs, order)))
     rules = tuple(integer_rule(rule, order, made) for rule in base.rules)
-    bits = GENERAL_BITS - max(0, (len(rules) - 1).bit_length() - 8)
+    bits = min(GENERAL_BITS, 32 - len(rules).bit_length())
     cells = all_cells(sorted_base, axes, bits)
     is_grid = has_grid(base, rules) and all(len(cell.ramps) <= 2 for axis in cells for cell in axis)
     is_partition = is_grid and len(made) == 1 and has_partition(cells, bits, made[0])
@@ -240,7 +242,7 @@ def integer_rule(
         tuple((c.input, order[c.input].index(c.set), c.negated) for c in rule.conditions),
         conclusions,
         rule.connective != AND and len(rule.conditions) > 1,
-        nearest(exact(rule.weight) * 65536),
+        nearest(exact(rule.weight) * WEIGHT_ONE),
     )
 
 
@@ -257,7 +259,7 @@ def pair_of(rule: IntegerRule) -> tuple[int, int] | None:
     """The sets of both inputs, where the rule is a plain one of a grid."""
     is_plain = (
         not rule.is_or
-        and rule.weight_q16 == 65536
+        and rule.weight_q19 == WEIGHT_ONE
         and len(rule.conditions) == 2
         and {c[0] for c in rule.conditions} == {0, 1}
         and not any(c[2] for c in rule.conditions)
@@ -270,9 +272,14 @@ def pair_of(rule: IntegerRule) -> tuple[int, int] | None:
 
 
 def has_partition(cells: Sequence[Sequence[Cell]], bits: int, output: IntegerOutput) -> bool:
-    if output.shapes and any(shape.layers[-1].end != 1 for shape in output.shapes.terms):
+    if output.shapes and not all(map(is_ample, output.shapes.terms)):
         return False
     return all(adds_to_one(cell, bits) for axis in cells for cell in axis)
+
+
+def is_ample(term: Shape) -> bool:
+    """Reaches 1, and half filled has an area that 22 bits of the universe's hold well."""
+    return term.layers[-1].end == 1 and term.area(Fraction(1, 2)) >= MIN_PARTITION_AREA
 
 
 def adds_to_one(cell: Cell, bits: int) -> bool:

@@ -11,7 +11,13 @@ from dataclasses import dataclass, field
 from math import prod
 
 from quiesce.rules.affine import Affine, Order, constant, maximum, minimum
-from quiesce.rules.compile import CompiledBase, IntegerOutput, IntegerRule, is_complementary
+from quiesce.rules.compile import (
+    WEIGHT_ONE,
+    CompiledBase,
+    IntegerOutput,
+    IntegerRule,
+    is_complementary,
+)
 from quiesce.rules.integer_cells import Cell, Ramp
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 from quiesce.rules.output_shapes import Shape
@@ -249,14 +255,14 @@ class Leaf:
             direct = self.memberships.get((index, fuzzy_set), constant(0))
             values.append(direct.complement(self.one) if negated else direct)
         strength = (maximum if rule.is_or else minimum)(values, order, self.named)
-        return self.weighted(strength, rule.weight_q16)
+        return self.weighted(strength, rule.weight_q19)
 
-    def weighted(self, strength: Affine, weight_q16: int) -> Affine:
-        if weight_q16 == 65536 or strength.is_zero:
+    def weighted(self, strength: Affine, weight_q19: int) -> Affine:
+        if weight_q19 == WEIGHT_ONE or strength.is_zero:
             return strength
         if strength.is_constant:
-            return constant((strength.offset * weight_q16 + 32768) >> 16)
-        return self.named(f"fuzzy_weighted({strength.text()}, {weight_q16}u)")
+            return constant((strength.offset * weight_q19 + WEIGHT_ONE // 2) // WEIGHT_ONE)
+        return self.named(f"fuzzy_weighted({strength.text()}, {weight_q19}u)")
 
     def named(self, text: str) -> Affine:
         name = self.writer.fresh("s")
@@ -429,11 +435,18 @@ class CentroidWriter:
             self.add(shape, upper, self.less, self.more)
             return
         between = maximum(inside, self.order, self.leaf.named)
-        self.line(f"if ({upper.text()} > {between.text()}) {{")
-        with self.leaf.writer.indented():
-            self.add(shape, upper, self.less, self.more)
-            self.add(shape, between, self.more, self.less)
-        self.line("}")
+        is_hidden = self.order.is_less(upper, between)
+        if is_hidden is None:
+            self.line(f"if ({upper.text()} > {between.text()}) {{")
+            with self.leaf.writer.indented():
+                self.add_between(shape, upper, between)
+            self.line("}")
+        elif not is_hidden:
+            self.add_between(shape, upper, between)
+
+    def add_between(self, shape: Shape, upper: Affine, between: Affine) -> None:
+        self.add(shape, upper, self.less, self.more)
+        self.add(shape, between, self.more, self.less)
 
     def add(self, shape: Shape, beta: Affine, to: str, opposite: str) -> None:
         name = self.leaf.compiled.base.outputs[self.output.index].name

@@ -55,6 +55,15 @@ class Shape:
     second: int
     layers: tuple[Layer, ...]
 
+    def area(self, beta: Fraction) -> Fraction:
+        """Filled up to beta, as a share of the span."""
+        total = Fraction(0)
+        for layer in self.layers:
+            filled = max(Fraction(0), min(beta, layer.end) - layer.start)
+            width, narrowing = layer.width
+            total += filled * (width - filled * narrowing / 2)
+        return total
+
 
 @dataclass(frozen=True)
 class OutputShapes:

@@ -141,7 +141,7 @@ def cells_words(cells: Sequence[Cell]) -> list[int]:
 def rule_words(rule: IntegerRule) -> list[int]:
     conditions = [(i << 3 | fuzzy_set | negated << 7) for i, fuzzy_set, negated in rule.conditions]
     conclusions = [NONE if term is None else term for term in rule.conclusions]
-    head = rule.weight_q16 | rule.is_or << 20 | len(conditions) << 24
+    head = rule.weight_q19 | rule.is_or << 20 | len(conditions) << 24
     return [
         head,
         *packed(padded(conditions, 8)),
@@ -156,7 +156,9 @@ def packed(values: Sequence[int]) -> list[int]:
 
 def add_output(body: Body, compiled: CompiledBase, index: int) -> int:
     output = compiled.outputs[index]
-    grid = grid_terms(compiled, index) if form_of(compiled) == GRID else []
+    # Places beyond the sets are read where a strength is 0.
+    places = grid_terms(compiled, index) if form_of(compiled) == GRID else []
+    grid = [0 if term == NONE else term for term in places]
     if output.method == CENTROID:
         values, terms = 0, body.add(grid)
         data = body.add(centroid_words(compiled, output))
@@ -167,7 +169,7 @@ def add_output(body: Body, compiled: CompiledBase, index: int) -> int:
             for shapes in (output.shapes.shapes, output.shapes.terms)
         )
     else:
-        values = body.add([0 if t == NONE else output.terms[t] for t in grid])
+        values = body.add([output.terms[term] for term in grid])
         terms = body.add(grid)
         data = body.add(output.terms)
         count, layers, term_layers = len(output.terms), 0, 0
