@@ -75,7 +75,9 @@ def fll_header() -> str:
 
 
 def files() -> dict[str, str]:
-    return {HEADER: header(), FLL_HEADER: fll_header()} | {f"{variant.name}.c": source(variant) for variant in VARIANTS}
+    return {HEADER: header(), FLL_HEADER: fll_header()} | {
+        f"{variant.name}.c": source(variant) for variant in VARIANTS
+    }
 
 
 def main() -> int:
