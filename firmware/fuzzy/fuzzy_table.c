@@ -214,7 +214,7 @@ static bool is_partition_good(const fuzzy_table_t *table, const largest_t *large
         return are_below(table, HEADER_WORDS, words, output->terms);
     }
     // Strengths add up to twice `one` at most; fuzzy_short_quotient() takes 43 bits.
-    const uint32_t limit = (uint32_t)(((UINT64_C(1) << 42) / table->one - 1u) & UINT32_MAX);
+    const uint32_t limit = (uint32_t)((UINT64_C(1) << 42) / table->one);
     return are_below(table, HEADER_WORDS, words, fuzzy_min(limit, MAX_VALUE)) &&
            (output->method == FUZZY_SUM || is_inside(table, table->twins_offset, words));
 }
