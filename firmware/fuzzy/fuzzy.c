@@ -108,12 +108,36 @@ typedef struct {
 static void add_wide_layer(const fuzzy_layer_t *layer, uint32_t bits, uint32_t beta,
                            fuzzy_wide_sums_t *to, fuzzy_wide_sums_t *from) {
     const uint32_t height = fuzzy_fill_height(beta, layer->start, layer->height);
-    fuzzy_add_wide_area(to, layer->flanks, bits, height);
-    fuzzy_add_wide_skew(layer->is_skewed_left != 0 ? from : to, layer->flanks, bits, height);
+    fuzzy_add_wide_area(to, layer->flanks, layer->steep, bits, height);
+    fuzzy_add_wide_skew((layer->marks & FUZZY_SKEWED_LEFT) != 0 ? from : to, layer->flanks,
+                        layer->steep, bits, height);
 }
 
-static uint32_t any_centre(const fuzzy_table_t *table, const fuzzy_output_t *output,
-                           const fuzzy_layer_t *layer, const uint32_t *strength) {
+// Sets in any arrangement, one stretch of the output after the other: in a stretch no set crosses
+// another, and from the highest down each adds what its strength exceeds those above it.
+static uint32_t stacked_centre(const fuzzy_table_t *table, const fuzzy_output_t *output,
+                               const fuzzy_layer_t *layer, const uint32_t *strength) {
+    wide_balance_t sums = {{0, 0}, {0, 0}};
+    uint32_t lower = 0;
+    uint32_t upper = 0;
+    for (uint32_t i = 0; i < output->layers; i++, layer++) {
+        if ((layer->marks & FUZZY_BEGINS_STRETCH) != 0) {
+            upper = 0;
+        }
+        if ((layer->marks & FUZZY_BEGINS_SET) != 0) {
+            lower = upper;
+            upper = fuzzy_max(upper, strength[layer->first]);
+        }
+        if (upper > lower) {
+            add_wide_layer(layer, table->bits, upper, &sums.more, &sums.less);
+            add_wide_layer(layer, table->bits, lower, &sums.less, &sums.more);
+        }
+    }
+    return fuzzy_wide_centre(sums.more, sums.less, output->span);
+}
+
+static uint32_t ordered_centre(const fuzzy_table_t *table, const fuzzy_output_t *output,
+                               const fuzzy_layer_t *layer, const uint32_t *strength) {
     wide_balance_t sums = {{0, 0}, {0, 0}};
     for (uint32_t i = 0; i < output->layers; i++, layer++) {
         const uint32_t upper = fuzzy_min(strength[layer->first], strength[layer->second]);
@@ -141,7 +165,9 @@ static uint32_t centroid(const fuzzy_table_t *table, const fuzzy_output_t *outpu
         return 1;
     }
     const fuzzy_layer_t *layer = (const fuzzy_layer_t *)(const void *)(peak + output->terms);
-    *value = output->origin + (int32_t)any_centre(table, output, layer, strength);
+    *value = output->origin + (int32_t)(output->term_layers == 0
+                                            ? stacked_centre(table, output, layer, strength)
+                                            : ordered_centre(table, output, layer, strength));
     return 0;
 }
 
@@ -277,7 +303,8 @@ static inline void add_layer(const fuzzy_layer_t *layer, uint32_t bits, uint32_t
     const uint32_t beta_q30 = filled << (30u - bits);
     fuzzy_add_area(to, layer->flanks, beta_q30);
     if (layer->flanks.skew_q27 != 0) {
-        fuzzy_add_skew(layer->is_skewed_left != 0 ? opposite : to, layer->flanks, beta_q30);
+        fuzzy_add_skew((layer->marks & FUZZY_SKEWED_LEFT) != 0 ? opposite : to, layer->flanks,
+                       beta_q30);
     }
 }
 

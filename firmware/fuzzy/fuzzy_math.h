@@ -102,16 +102,18 @@ typedef struct {
     uint64_t moment; ///< 2^-(bits + 25)
 } fuzzy_wide_sums_t;
 
-static inline void fuzzy_add_wide_area(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f, uint32_t bits,
-                                       uint32_t beta) {
-    const uint32_t width_q26 = fuzzy_width_q26(f, beta << (30u - bits));
+/// steep: narrowing, skew and skew_narrowing are 2^-steep of their values.
+static inline void fuzzy_add_wide_area(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f, uint32_t steep,
+                                       uint32_t bits, uint32_t beta) {
+    const uint32_t narrowed = fuzzy_high_half(beta << (30u - bits), f.narrowing_q28) << steep;
+    const uint32_t width_q26 = f.width_q26 - fuzzy_min(narrowed, f.width_q26);
     sums->area += (uint64_t)beta * width_q26;
     sums->moment += (uint64_t)beta * fuzzy_high_half(width_q26, f.middle_q31);
 }
 
-static inline void fuzzy_add_wide_skew(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f, uint32_t bits,
-                                       uint32_t beta) {
-    sums->moment += (uint64_t)beta * fuzzy_skew_q25(f, beta << (30u - bits));
+static inline void fuzzy_add_wide_skew(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f, uint32_t steep,
+                                       uint32_t bits, uint32_t beta) {
+    sums->moment += (uint64_t)beta * (fuzzy_skew_q25(f, beta << (30u - bits)) << steep);
 }
 
 /// (more - less): moment / area in counts, to nearest, from 21 significant bits. 0 .. span.

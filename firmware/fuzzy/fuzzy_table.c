@@ -146,7 +146,8 @@ static bool is_layer_good(const fuzzy_table_t *table, const fuzzy_output_t *outp
                           const fuzzy_layer_t *layer, bool is_term) {
     return layer->first <= layer->second && layer->second < output->terms &&
            is_term == (layer->first == layer->second) && layer->start <= table->one &&
-           layer->height <= table->one - layer->start;
+           layer->height <= table->one - layer->start && layer->steep < 32u &&
+           (layer->steep == 0 || !is_partition(table));
 }
 
 static bool is_centroid_good(const fuzzy_table_t *table, const fuzzy_output_t *output) {
@@ -158,9 +159,10 @@ static bool is_centroid_good(const fuzzy_table_t *table, const fuzzy_output_t *o
         !is_inside(table, layers, output->layers * words)) {
         return false;
     }
+    const bool is_stacked = output->term_layers == 0;
     const fuzzy_layer_t *layer = fuzzy_at(table, layers);
     for (uint32_t i = 0; i < output->layers; i++) {
-        if (!is_layer_good(table, output, &layer[i], i < output->term_layers)) {
+        if (!is_layer_good(table, output, &layer[i], is_stacked || i < output->term_layers)) {
             return false;
         }
     }

@@ -126,16 +126,22 @@ typedef struct {
     uint32_t grid_values;  ///< offset: singletons of all pairs of sets, rows of FUZZY_GRID_STRIDE
     uint32_t grid_terms;   ///< offset: terms, likewise
     uint32_t terms_offset; ///< singletons less the origin; or peaks of the sets, then layers
-    uint32_t term_layers;  ///< of the sets themselves; those of overlaps follow
+    uint32_t term_layers;  ///< of the sets themselves; those of overlaps follow; 0: stacked
 } fuzzy_output_t;
+
+/// Marks of a layer. The last two where sets are stacked: the output is cut where sets begin, end,
+/// bend or cross, and each stretch has the layers of its sets, from the highest set down.
+#define FUZZY_SKEWED_LEFT 1u
+#define FUZZY_BEGINS_STRETCH 2u
+#define FUZZY_BEGINS_SET 4u
 
 /// A stretch of the height of a set, or of the overlap of two, in which its flanks are straight
 /// (tools/src/quiesce/rules/output_shapes.py has the equations).
 typedef struct {
     uint8_t first;  ///< term, from left to right
     uint8_t second; ///< the same, or the one that overlaps it
-    uint8_t is_skewed_left;
-    uint8_t reserved;
+    uint8_t marks;  ///< FUZZY_SKEWED_LEFT ...
+    uint8_t steep;  ///< flanks' narrowing and skews are 2^-steep of their values; 0 in a partition
     uint32_t start; ///< height, 2^-bits
     uint32_t height;
     fuzzy_flanks_t flanks; ///< shares of the span

@@ -17,7 +17,7 @@ import numpy as np
 from quiesce.errors import UsageError
 from quiesce.rules.integer_cells import Axis, Cell, Ramp, ceil, exact, floor, make_cells, nearest
 from quiesce.rules.model import AND, CENTROID, Input, Output, Rule, RuleBase
-from quiesce.rules.output_shapes import OutputShapes, Shape, make_shapes
+from quiesce.rules.output_shapes import OutputShapes, layer_integers, make_shapes
 
 Q15 = "q15"
 Q16 = "q16"
@@ -272,14 +272,21 @@ def pair_of(rule: IntegerRule) -> tuple[int, int] | None:
 
 
 def has_partition(cells: Sequence[Sequence[Cell]], bits: int, output: IntegerOutput) -> bool:
-    if output.shapes and not all(map(is_ample, output.shapes.terms)):
+    if output.shapes and not is_ample(output.shapes):
         return False
     return all(adds_to_one(cell, bits) for axis in cells for cell in axis)
 
 
-def is_ample(term: Shape) -> bool:
-    """Reaches 1, and half filled has an area that 22 bits of the universe's hold well."""
-    return term.layers[-1].end == 1 and term.area(Fraction(1, 2)) >= MIN_PARTITION_AREA
+def is_ample(shapes: OutputShapes) -> bool:
+    """In order, every set reaches 1 and, half filled, an area that 22 bits of the universe's hold
+    well, and no flank needs fuzzy_layer_t's steep."""
+    layers = [layer for shape in shapes.shapes for layer in shape.layers]
+    return (
+        not shapes.not_ordered
+        and all(peak == 1 for peak in shapes.peaks)
+        and all(term.area(Fraction(1, 2)) >= MIN_PARTITION_AREA for term in shapes.terms)
+        and all(layer_integers(layer, CENTROID_PARTITION_BITS).steep == 0 for layer in layers)
+    )
 
 
 def adds_to_one(cell: Cell, bits: int) -> bool:

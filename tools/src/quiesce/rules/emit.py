@@ -18,10 +18,9 @@ from quiesce.rules.compile import (
     IntegerRule,
     is_complementary,
 )
-from quiesce.rules.integer_cells import Cell, Ramp
+from quiesce.rules.integer_cells import Cell, Ramp, nearest
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
-from quiesce.rules.output_shapes import Shape
-from quiesce.rules.table import LayerIntegers, layer_integers
+from quiesce.rules.output_shapes import LayerIntegers, Shape, layer_integers
 
 MAX_OVERLAP = 2  # sets of an input that overlap
 MAX_LEAVES = 400  # combinations of cells
@@ -39,6 +38,11 @@ def why_not_straight(compiled: CompiledBase) -> str:
         if most > MAX_OVERLAP:
             return (
                 f"{most} sets of input {variable.name} overlap; straight-line C takes {MAX_OVERLAP}"
+            )
+    for output in compiled.outputs:
+        if output.shapes and output.shapes.not_ordered:
+            return (
+                f"{output.shapes.not_ordered}; straight-line C takes sets that follow one another"
             )
     leaves = prod(len(cells) for cells in compiled.cells)
     if leaves > MAX_LEAVES:
@@ -397,7 +401,7 @@ class CentroidWriter:
         self.bits = self.leaf.compiled.bits
         shapes = output.output.shapes
         assert shapes is not None
-        self.shapes = shapes.shapes
+        self.shapes, self.peaks = shapes.shapes, shapes.peaks
         self.wide = "" if self.leaf.compiled.is_partition else "wide_"
         self.more = self.less = ""
 
@@ -407,8 +411,7 @@ class CentroidWriter:
         return self.output.write_guarded(total, lambda: self.write_sums(filled))
 
     def below_peak(self, rank: int, strength: Affine) -> Affine:
-        layers = next(s.layers for s in self.shapes if s.first == s.second == rank)
-        peak = round(layers[-1].end * (1 << self.bits))
+        peak = nearest(self.peaks[rank] * (1 << self.bits))
         if peak == 1 << self.bits:
             return strength
         return minimum([strength, constant(peak)], self.order, self.leaf.named)
@@ -449,9 +452,8 @@ class CentroidWriter:
         self.add(shape, between, self.more, self.less)
 
     def add(self, shape: Shape, beta: Affine, to: str, opposite: str) -> None:
-        name = self.leaf.compiled.base.outputs[self.output.index].name
         for layer in shape.layers:
-            found = layer_integers(layer, self.bits, f"output {name}")
+            found = layer_integers(layer, self.bits)
             numbers = ", ".join(f"{number}u" for number in found.flanks)
             height = self.fill_text(beta, found)
             flanks = f"(fuzzy_flanks_t){{{numbers}}}"
@@ -465,4 +467,8 @@ class CentroidWriter:
             filled = minimum([beta, constant(layer.height)], self.order, self.leaf.named).text()
         else:
             filled = f"fuzzy_fill_height({beta.text()}, {layer.start}u, {layer.height}u)"
-        return f"{self.bits}u, {filled}" if self.wide else f"{filled} << {30 - self.bits}"
+        return (
+            f"{layer.steep}u, {self.bits}u, {filled}"
+            if self.wide
+            else f"{filled} << {30 - self.bits}"
+        )

@@ -16,17 +16,25 @@ follow one another, so that the aggregated set is
                               - filled(overlap of k and l, the same or less, max beta between them)
 
 exactly, whatever overlaps whatever: no sampling, no crossing points.
+
+Sets in any other arrangement (one inside another, with a dip) are stacked: the universe is cut into
+stretches where sets begin, end, bend or cross. In a stretch, from the highest set down, each adds
+the layers between the greatest strength above it and its own.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations
+from functools import partial
+from itertools import combinations, pairwise
 
 from quiesce.errors import UsageError
-from quiesce.rules.integer_cells import exact
+from quiesce.rules.integer_cells import exact, nearest
 from quiesce.rules.model import FuzzySet, Output
 
-Line = tuple[Fraction, Fraction]  # value at the layer's start, slope over height
+Line = tuple[Fraction, Fraction]  # value at the start, slope
+MIN_AREA = Fraction(1, 1024)  # of a set
+MAX_STEEP = 20
 
 
 @dataclass(frozen=True)
@@ -68,11 +76,18 @@ class Shape:
 @dataclass(frozen=True)
 class OutputShapes:
     order: tuple[int, ...]  # the output's terms from left to right
-    shapes: tuple[Shape, ...]  # every term, then every pair that overlaps
+    shapes: tuple[Shape, ...]  # every term, then every pair that overlaps; none where stacked
+    stretches: tuple[tuple[Shape, ...], ...] = ()  # where stacked: the highest set of each first
+    peaks: tuple[Fraction, ...] = ()  # of the terms in order
+    not_ordered: str = ""  # why they are stacked
 
     @property
     def terms(self) -> tuple[Shape, ...]:
         return self.shapes[: len(self.order)]
+
+
+class NotOrdered(Exception):
+    """Why sets do not follow one another; one line."""
 
 
 class Flanks:
@@ -92,9 +107,7 @@ class Flanks:
             not (rises(heights[: top + 1]) and rises(heights[last_top:][::-1]))
             or min(flat) < self.peak
         ):
-            raise UsageError(f"{self._name} has a dip: the exact centroid needs one top")
-        if self.peak == 0:
-            raise UsageError(f"{self._name} is 0 all over the output's universe")
+            raise NotOrdered(f"{self._name} has a dip")
         self.levels = sorted({Fraction(0), *heights})
 
     def left(self, height: Fraction) -> Fraction:
@@ -105,7 +118,7 @@ class Flanks:
 
 
 def rises(values: list[Fraction]) -> bool:
-    return all(b >= a for a, b in zip(values, values[1:], strict=False))
+    return all(b >= a for a, b in pairwise(values))
 
 
 def crossing(flank: list[tuple[Fraction, Fraction]], height: Fraction) -> Fraction:
@@ -129,7 +142,7 @@ def clipped(
     points = [(min(ends[0], points[0][0]) - 1, points[0][1]), *points]
     points.append((max(ends[1], points[-1][0]) + 1, points[-1][1]))
     out: list[tuple[Fraction, Fraction]] = []
-    for (x0, mu0), (x1, mu1) in zip(points, points[1:], strict=False):
+    for (x0, mu0), (x1, mu1) in pairwise(points):
         if x1 < ends[0] or x0 > ends[1]:
             continue
         for x in (max(x0, ends[0]), min(x1, ends[1])):
@@ -140,17 +153,21 @@ def clipped(
     return out
 
 
-def line(at: Fraction, end: Fraction, function) -> Line:
+def line(at: Fraction, end: Fraction, function: Callable[[Fraction], Fraction]) -> Line:
     """The straight line through a function inside (at, end): value at `at`, slope."""
     near, far = at + (end - at) / 3, end - (end - at) / 3
     slope = (function(far) - function(near)) / (far - near)
     return function(near) - slope * (near - at), slope
 
 
-def layers_of(left, right, levels: list[Fraction]) -> tuple[Layer, ...]:
+def layers_of(
+    left: Callable[[Fraction], Fraction],
+    right: Callable[[Fraction], Fraction],
+    levels: list[Fraction],
+) -> tuple[Layer, ...]:
     """Layers between levels, cut where the width becomes 0, those without area left out."""
     out = []
-    for start, end in zip(levels, levels[1:], strict=False):
+    for start, end in pairwise(levels):
         layer = Layer(start, end, line(start, end, left), line(start, end, right))
         width, slope = layer.width
         if width <= 0:
@@ -166,7 +183,26 @@ def levels_below(peak: Fraction, *sets: Flanks) -> list[Fraction]:
 
 
 def make_shapes(output: Output, low: Fraction, span: Fraction) -> OutputShapes:
-    """Of an output with sets. UsageError names the sets that the closed form cannot hold."""
+    """Of an output with sets. UsageError names a set that has no area to speak of."""
+    for term in output.terms:
+        require_area(output, term, low, span)
+    try:
+        return ordered_shapes(output, low, span)
+    except NotOrdered as reason:
+        return stacked_shapes(output, low, span, str(reason))
+
+
+def require_area(output: Output, term: FuzzySet, low: Fraction, span: Fraction) -> None:
+    points = clipped(output, term, low, span)
+    area = sum((x1 - x0) * (y0 + y1) / 2 for (x0, y0), (x1, y1) in pairwise(points))
+    if area < MIN_AREA:
+        raise UsageError(
+            f"output set {output.name}.{term.name} has less than 1/{1 / MIN_AREA} of the area of "
+            "its output's universe"
+        )
+
+
+def ordered_shapes(output: Output, low: Fraction, span: Fraction) -> OutputShapes:
     flanks = [Flanks(output, term, low, span) for term in output.terms]
 
     def place(index: int) -> tuple[Fraction, ...]:
@@ -178,9 +214,8 @@ def make_shapes(output: Output, low: Fraction, span: Fraction) -> OutputShapes:
     shapes = []
     for rank, index in enumerate(order):
         one = flanks[index]
-        shapes.append(
-            Shape(rank, rank, layers_of(one.left, one.right, levels_below(one.peak, one)))
-        )
+        layers = layers_of(one.left, one.right, levels_below(one.peak, one))
+        shapes.append(Shape(rank, rank, layers))
     for (i, first), (j, second) in combinations(enumerate(order), 2):
         one, other = flanks[first], flanks[second]
         levels = levels_below(min(one.peak, other.peak), one, other)
@@ -188,21 +223,109 @@ def make_shapes(output: Output, low: Fraction, span: Fraction) -> OutputShapes:
         if layers:
             require_order(output, (first, second), one, other, levels)
             shapes.append(Shape(i, j, layers))
-    return OutputShapes(tuple(order), tuple(shapes))
+    peaks = tuple(flanks[index].peak for index in order)
+    return OutputShapes(tuple(order), tuple(shapes), peaks=peaks)
 
 
 def require_order(
     output: Output, pair: tuple[int, int], one: Flanks, other: Flanks, levels: list[Fraction]
 ) -> None:
-    inner = [
-        a + (b - a) * share / 3
-        for a, b in zip(levels, levels[1:], strict=False)
-        for share in (1, 2)
-    ]
+    inner = [a + (b - a) * share / 3 for a, b in pairwise(levels) for share in (1, 2)]
     for height in inner:
         if one.left(height) > other.left(height) or one.right(height) > other.right(height):
             names = " and ".join(output.terms[index].name for index in pair)
-            raise UsageError(
-                f"output {output.name}: of sets {names} one lies inside the other; the exact "
-                "centroid needs sets that follow one another"
-            )
+            raise NotOrdered(f"of sets {names} of output {output.name} one lies inside the other")
+
+
+def stacked_shapes(output: Output, low: Fraction, span: Fraction, reason: str) -> OutputShapes:
+    curves = [clipped(output, term, low, span) for term in output.terms]
+    ends = sorted({x for points in curves for x, _ in points})
+    stretches = []
+    for start, end in pairwise(ends):
+        lines = [line(start, end, partial(height_at, points)) for points in curves]
+        cuts = sorted({start, end, *crossings(lines, start, end)})
+        for left, right in pairwise(cuts):
+            stretches.append(stretch(lines, start, left, right))
+    order = tuple(range(len(output.terms)))
+    peaks = tuple(max(mu for _, mu in points) for points in curves)
+    filled = tuple(one for one in stretches if one)
+    return OutputShapes(order, (), filled, peaks, reason)
+
+
+def height_at(points: Sequence[tuple[Fraction, Fraction]], x: Fraction) -> Fraction:
+    """Between two neighbouring points; x is none of them."""
+    for (x0, y0), (x1, y1) in pairwise(points):
+        if x0 < x < x1:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    raise AssertionError("beyond the curve")
+
+
+def crossings(lines: Sequence[Line], start: Fraction, end: Fraction) -> list[Fraction]:
+    found = []
+    for (a, slope_a), (b, slope_b) in combinations(lines, 2):
+        if slope_a != slope_b:
+            at = start + (b - a) / (slope_a - slope_b)
+            if start < at < end:
+                found.append(at)
+    return found
+
+
+def stretch(
+    lines: Sequence[Line], origin: Fraction, left: Fraction, right: Fraction
+) -> tuple[Shape, ...]:
+    """Sets that are not 0 in it, the highest first."""
+
+    def heights(index: int) -> tuple[Fraction, Fraction]:
+        value, slope = lines[index]
+        return value + slope * (left - origin), value + slope * (right - origin)
+
+    above = [index for index in range(len(lines)) if sum(heights(index)) > 0]
+    above.sort(key=lambda index: -sum(heights(index)))
+    return tuple(Shape(i, i, column_layers(left, right, *heights(i))) for i in above)
+
+
+def column_layers(
+    left: Fraction, right: Fraction, at_left: Fraction, at_right: Fraction
+) -> tuple[Layer, ...]:
+    """Below a straight line from (left, at_left) to (right, at_right)."""
+    low, high = sorted((at_left, at_right))
+    layers = []
+    still = Fraction(0)
+    if low > 0:
+        layers.append(Layer(still, low, (left, still), (right, still)))
+    if high > low:
+        pace = (right - left) / (high - low)
+        falls = at_left > at_right
+        flanks = ((left, still), (right, -pace)) if falls else ((left, pace), (right, still))
+        layers.append(Layer(low, high, *flanks))
+    return tuple(layers)
+
+
+@dataclass(frozen=True)
+class LayerIntegers:
+    start: int  # 2^-bits
+    height: int
+    flanks: tuple[int, ...]  # fuzzy_flanks_t
+    is_skewed_left: bool
+    steep: int
+
+
+def layer_integers(layer: Layer, bits: int) -> LayerIntegers:
+    """Flanks over little height narrow by more than their formats hold: then 2^-steep of it."""
+    one = 1 << bits
+    width, narrowing = layer.width
+    m0, m1 = layer.middle
+    start, end = nearest(layer.start * one), nearest(layer.end * one)
+    slopes = (
+        (narrowing / 2, 28),
+        (abs(m1) * width / 2, 27),
+        (abs(m1) * narrowing / 3, 29),
+    )
+    most = max(value * 2**q for value, q in slopes)
+    steep = max(0, nearest(most).bit_length() - 32)
+    if steep > MAX_STEEP:
+        # So low that it holds less than a count's worth of area.
+        return LayerIntegers(start, 0, (0, 0, 0, 0, 0), False, 0)
+    turn, skew, skew_turn = (nearest(value * 2**q / 2**steep) for value, q in slopes)
+    flanks = (nearest(width * 2**26), turn, nearest(m0 * 2**31), skew, skew_turn)
+    return LayerIntegers(start, end - start, flanks, m1 < 0, steep)

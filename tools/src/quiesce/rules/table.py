@@ -7,15 +7,13 @@ the engine leave its bounds.
 import binascii
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
-from fractions import Fraction
 from itertools import product
 
 from quiesce.errors import UsageError
 from quiesce.rules.compile import CompiledBase, IntegerOutput, IntegerRule, pair_of
 from quiesce.rules.integer_cells import Cell, nearest
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM
-from quiesce.rules.output_shapes import Layer, Shape
+from quiesce.rules.output_shapes import LayerIntegers, Shape, layer_integers
 
 MAGIC = 0x31545A46  # "FZT1"
 HEADER_WORDS = 16
@@ -23,6 +21,7 @@ MAX_WORDS = 65535
 GRID_STRIDE = 8
 METHOD = {WEIGHTED_SUM: 0, WEIGHTED_MAX: 1, CENTROID: 2}
 ANY, GRID, PARTITION_SUM, PARTITION_MAX, PARTITION_CENTROID = range(5)
+SKEWED_LEFT, BEGINS_STRETCH, BEGINS_SET = 1, 2, 4
 NONE = 0xFF
 UINT32 = 0xFFFFFFFF
 
@@ -164,10 +163,13 @@ def add_output(body: Body, compiled: CompiledBase, index: int) -> int:
         data = body.add(centroid_words(compiled, output))
         assert output.shapes is not None
         count = len(output.shapes.order)
-        layers, term_layers = (
-            sum(len(shape.layers) for shape in shapes)
-            for shapes in (output.shapes.shapes, output.shapes.terms)
+        shapes = output.shapes
+        term_layers = sum(len(shape.layers) for shape in shapes.terms)
+        every = (
+            *shapes.shapes,
+            *(shape for shapes_here in shapes.stretches for shape in shapes_here),
         )
+        layers = sum(len(shape.layers) for shape in every)
     else:
         values = body.add([output.terms[term] for term in grid])
         terms = body.add(grid)
@@ -194,50 +196,21 @@ def centroid_words(compiled: CompiledBase, output: IntegerOutput) -> list[int]:
     shapes = output.shapes
     assert shapes is not None
     one = 1 << compiled.bits
-    terms = [shape for shape in shapes.shapes if shape.first == shape.second]
-    peaks = [nearest(shape.layers[-1].end * one) for shape in terms]
-    return [
-        *peaks,
-        *(word for shape in shapes.shapes for word in shape_words(compiled, output, shape)),
-    ]
+    words = [nearest(peak * one) for peak in shapes.peaks]
+    for shape in shapes.shapes:
+        for layer in shape.layers:
+            words += layer_words(shape, layer_integers(layer, compiled.bits), 0)
+    for shapes_here in shapes.stretches:
+        marks = BEGINS_STRETCH
+        for shape in shapes_here:
+            marks |= BEGINS_SET
+            for layer in shape.layers:
+                words += layer_words(shape, layer_integers(layer, compiled.bits), marks)
+                marks = 0
+    return words
 
 
-def shape_words(compiled: CompiledBase, output: IntegerOutput, shape: Shape) -> list[int]:
-    name = compiled.base.outputs[compiled.outputs.index(output)].name
-    out = []
-    for layer in shape.layers:
-        found = layer_integers(layer, compiled.bits, f"output {name}")
-        head = shape.first | shape.second << 8 | found.is_skewed_left << 16
-        out += [head, found.start, found.height, *found.flanks]
-    return out
-
-
-@dataclass(frozen=True)
-class LayerIntegers:
-    start: int  # 2^-bits
-    height: int
-    flanks: tuple[int, ...]  # fuzzy_flanks_t
-    is_skewed_left: bool
-
-
-def layer_integers(layer: Layer, bits: int, name: str) -> LayerIntegers:
-    """UsageError where a coefficient leaves its format."""
-    one = 1 << bits
-    width, narrowing = layer.width
-    m0, m1 = layer.middle
-    start, end = nearest(layer.start * one), nearest(layer.end * one)
-    coefficients = [
-        (width, 26),
-        (narrowing / 2, 28),
-        (m0, 31),
-        (abs(m1) * width / 2, 27),
-        (abs(m1) * narrowing / 3, 29),
-    ]
-    integers = tuple(nearest(value * 2**q) for value, q in coefficients)
-    if max(integers) > UINT32:
-        raise UsageError(f"{name}: a flank of its sets is too flat for its height")
-    if width < Fraction(1, 1024) and layer.start == 0:
-        raise UsageError(
-            f"{name}: a set, or the overlap of two, is narrower than 1/1024 of its universe"
-        )
-    return LayerIntegers(start, end - start, integers, m1 < 0)
+def layer_words(shape: Shape, layer: LayerIntegers, marks: int) -> list[int]:
+    marks |= SKEWED_LEFT if layer.is_skewed_left else 0
+    head = shape.first | shape.second << 8 | marks << 16 | layer.steep << 24
+    return [head, layer.start, layer.height, *layer.flanks]
