@@ -26,6 +26,8 @@ FCL_CASES: list[tuple[Edits, str]] = [
     # Numbers
     ((("0.125", "@1e999"),), "number '1e999', expected one within +-1e+30"),
     ((("0.125", "@nan"),), "found 'nan', expected points"),
+    ((("0.125", "@\u0663"),), "found '\u0663;'"),
+    ((("0.125", "@1-2"),), "found '1-2;'"),
     ((("DEFAULT := 0.5", "DEFAULT := @inf"),), "found 'inf', expected a number"),
     ((("(5, 0)", "(@, 0)"),), "found ',', expected a number"),
     # Sections

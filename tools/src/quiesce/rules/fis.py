@@ -143,7 +143,7 @@ class FisReader:
         for tokens in section.lines:
             stream = Stream(self.source, tokens)
             key = stream.expect_kind(NAME, "'KEY=VALUE'")
-            if re.sub(r"^MF\d+$", "MF", key.text) not in allowed:
+            if re.sub("^MF[0-9]+$", "MF", key.text) not in allowed:
                 words = ", ".join(allowed)
                 raise self.source.error(key, f"no key {key.shown()} here", f"one of {words}")
             if key.text in found:

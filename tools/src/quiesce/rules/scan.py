@@ -18,7 +18,10 @@ UNCLOSED = "unclosed"  # the start of a comment or text without an end
 MAX_NUMBER = 1e30  # magnitude; differences and products of two stay finite
 SHOWN_CHARACTERS = 40
 # "0..25" is a range, not "0." and ".25"; what follows at once must not be part of another number.
-NUMBER_PATTERN = r"[+-]?(?:\d+(?:\.(?!\.)\d*)?|\.\d+)(?:[eE][+-]?\d+)?(?![A-Za-z0-9_+-])(?!\.\d)"
+NUMBER_PATTERN = (
+    r"[+-]?(?:[0-9]+(?:\.(?!\.)[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+    r"(?![A-Za-z0-9_+-])(?!\.[0-9])"
+)
 # Where a format has infinities; only some shapes take them.
 INFINITE_PATTERN = r"[+-]?[Ii]nf(?![A-Za-z0-9_])"
 WORD_PATTERN = r"[A-Za-z_][A-Za-z0-9_]*"
