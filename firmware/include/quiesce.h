@@ -154,7 +154,8 @@ bool quiesce_rules_store_write(quiesce_rules_store_t *store, uint32_t offset, co
 /// one in use where it is. Call it, like the next two, between steps.
 quiesce_rules_verdict_t quiesce_rules_store_commit(quiesce_rules_store_t *store, quiesce_t *self);
 
-/// Goes back to the rules in use before the last commit. A second call changes nothing.
+/// Goes back to the rules in use before the last commit, and gives up what was received since. A
+/// second call changes nothing.
 void quiesce_rules_store_revert(quiesce_rules_store_t *store, quiesce_t *self);
 
 /// The shipped rule base alone, for drawing and checking it: current in mA at a frequency and an

@@ -49,6 +49,7 @@ quiesce_rules_verdict_t quiesce_rules_store_commit(quiesce_rules_store_t *store,
 }
 
 void quiesce_rules_store_revert(quiesce_rules_store_t *store, quiesce_t *self) {
+    store->filled = 0; // the other slot is the spare one from now on
     if (use(store, self, store->previous, QUIESCE_RULES_WORDS) == QUIESCE_RULES_OK) {
         store->in_use = store->previous;
     }
