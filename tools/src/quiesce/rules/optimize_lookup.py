@@ -73,10 +73,15 @@ def lookup_table(found: Sweep) -> str:
         amp_mA, amp_best = found.best(i, amp_left)
         rows.append(
             [
-                f"{place.freq_Hz:g}", f"{place.drive_V:g}", f"{place.amp_um:.1f}",
-                f"{place.accel_rms_mm_s2:.1f}", f"{current_mA / 1000:g}",
-                f"{best.accel_rms_reduction_pct + 0.0:.1f}", f"{best.amp_reduction_pct + 0.0:.1f}",
-                f"{amp_mA / 1000:g}", f"{amp_best.amp_reduction_pct + 0.0:.1f}",
+                f"{place.freq_Hz:g}",
+                f"{place.drive_V:g}",
+                f"{place.amp_um:.1f}",
+                f"{place.accel_rms_mm_s2:.1f}",
+                f"{current_mA / 1000:g}",
+                f"{best.accel_rms_reduction_pct + 0.0:.1f}",
+                f"{best.amp_reduction_pct + 0.0:.1f}",
+                f"{amp_mA / 1000:g}",
+                f"{amp_best.amp_reduction_pct + 0.0:.1f}",
             ]  # fmt: skip
         )
     return format_table(head, rows, left=())

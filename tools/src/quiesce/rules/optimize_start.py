@@ -69,9 +69,7 @@ def best_current_A(found: Sweep, freq_Hz: float) -> float:
 
 def freq_input(freqs_Hz: Sequence[float]) -> Input:
     step_Hz = (freqs_Hz[-1] - freqs_Hz[0]) / (len(freqs_Hz) - 1)
-    return Input(
-        "f", 0.0, freqs_Hz[-1] + step_Hz, chain(FREQ_NAMES[len(freqs_Hz)], freqs_Hz)
-    )
+    return Input("f", 0.0, freqs_Hz[-1] + step_Hz, chain(FREQ_NAMES[len(freqs_Hz)], freqs_Hz))
 
 
 def rms_input(strongest_m_s2: float) -> Input:
