@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from quiesce.errors import UsageError
+from quiesce.rules import files
 from quiesce.rules.files import FORMATS, read_text, write_text
 from quiesce.rules.model import (
     CENTROID,
@@ -190,3 +191,47 @@ def test_one_condition_is_written_without_its_connective() -> None:
     base = replace(TANK, rules=(Rule((Condition(0, 0),), (1,), OR),))
     for format in FORMATS:
         assert difference(base, read_text(write_text(base, format), format, "x")) is None
+
+
+# Comparing
+
+
+def conditions_swapped(base: RuleBase) -> RuleBase:
+    rules = tuple(replace(rule, conditions=rule.conditions[::-1]) for rule in base.rules)
+    return replace(base, rules=rules)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "words"),
+    [
+        (TANK, replace(TANK, name="pond"), "names tank and pond"),
+        (TANK, replace(TANK, inputs=TANK.inputs[:1]), "numbers of variables"),
+        (TANK, renamed(TANK, "height"), "input level"),
+        (TANK, with_set(TANK, CHAIN), "input level"),
+        (TANK, with_output(TANK, method=WEIGHTED_MAX), "output valve"),
+        (TANK, with_output(TANK, maximum=2.0), "output valve"),
+        (TANK, with_output(TANK, terms=TANK.outputs[0].terms[::-1]), "output valve"),
+        (GAPS, with_output(GAPS, default=0.25), "default of output valve"),
+        (GAPS, with_output(GAPS, default=None), "default of output valve"),
+        (TANK, with_output(TANK, default=0.25), None),
+        (TANK, GAPS, "numbers of rules"),
+        (TANK, replace(TANK, rules=TANK.rules[::-1]), "rule 1"),
+        (TANK, replace(TANK, rules=(TANK.rules[0], replace(TANK.rules[1], weight=0.5))), "rule 2"),
+        (TANK, replace(TANK, rules=(TANK.rules[0], replace(TANK.rules[1], connective="and"))),
+         "rule 2"),
+        (TANK, conditions_swapped(TANK), None),
+        (with_set(TANK, FuzzySet("low", ((-1.0, 1.0), (0.0, 1.0), (5.0, 0.0), (6.0, 0.0)))), TANK,
+         None),
+        (with_set(TANK, FuzzySet("low", ((0.0, 0.0), (0.0, 1.0), (5.0, 0.0)))), TANK,
+         "input level"),
+    ],
+)  # fmt: skip
+def test_difference_is_named(one: RuleBase, other: RuleBase, words: str | None) -> None:
+    assert difference(one, other) == words
+    assert (difference(other, one) is None) == (words is None)
+
+
+def test_what_a_writer_loses_is_not_written(monkeypatch) -> None:
+    whole = write_text(TANK, "fcl")
+    monkeypatch.setitem(files.WRITERS, "fcl", lambda base: whole.replace(" WITH 0.75", ""))
+    assert "what is lost: rule 1" in refusal(TANK, "fcl")
