@@ -35,7 +35,9 @@ static const fuzzy_cell_t *find_cell(const fuzzy_table_t *table, uint32_t i, int
 }
 
 static void find_memberships(const fuzzy_table_t *table, const int32_t *input, memberships_t *out) {
-    *out = (memberships_t){{0}};
+    for (uint32_t i = 0; i < 8u * table->inputs; i++) {
+        out->of[i] = 0;
+    }
     for (uint32_t i = 0; i < table->inputs; i++) {
         const fuzzy_cell_t *cell = find_cell(table, i, input[i]);
         const fuzzy_ramp_t *ramp = (const fuzzy_ramp_t *)(const void *)(cell + 1);

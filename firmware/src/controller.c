@@ -16,11 +16,19 @@
 // Whatever a loaded table says, a request stays a current that arithmetic can hold.
 #define RULES_MAX_mA 1000000
 
+// The rule base in use, and what it said last: its inputs change every few ticks only.
+typedef struct {
+    const fuzzy_table_t *table;
+    int32_t input[RULE_INPUTS];
+    int32_t current_mA;
+    uint32_t fired;
+} rules_t;
+
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
 typedef struct {
     quiesce_params_t params;
     signal_chain_t signal;
-    const fuzzy_table_t *rules;      ///< in use
+    rules_t rules;
     const fuzzy_table_t *rules_next; ///< from the next tick on
     const law_t *law;
     law_state_t law_state;
@@ -71,8 +79,7 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
         quiesce_params_default(&c->params);
     }
     signal_chain_init(&c->signal, &c->params);
-    c->rules = shipped_rules();
-    c->rules_next = c->rules;
+    c->rules_next = shipped_rules();
     c->law = law_find(c->params.law);
     c->hold_ticks = (uint32_t)(c->params.track_hold_ms * (c->params.tick_rate_Hz / 100) / 10);
     init_output(c, params, is_accepted);
@@ -120,6 +127,18 @@ static uint32_t rules_fired(const fuzzy_table_t *rules, const int32_t input[RULE
     uint64_t fired = 0;
     (void)fuzzy_fired(rules, input, &fired);
     return (uint32_t)fired;
+}
+
+static void rules_step(rules_t *self, const fuzzy_table_t *table, int32_t freq_uHz,
+                       int32_t rms_um_s2) {
+    if (self->table == table && self->input[0] == freq_uHz && self->input[1] == rms_um_s2) {
+        return;
+    }
+    self->table = table;
+    self->input[0] = freq_uHz;
+    self->input[1] = rms_um_s2;
+    self->current_mA = rules_current_mA(table, self->input);
+    self->fired = rules_fired(table, self->input);
 }
 
 static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample,
@@ -202,10 +221,8 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
 
-    c->rules = c->rules_next;
-    const int32_t fuzzy_in[] = {c->signal.estimator.tone[0].freq_uHz, signal.rms_um_s2};
-    const int32_t fuzzy_mA = rules_current_mA(c->rules, fuzzy_in);
-    const law_in_t law_in = law_input(c, &signal, fuzzy_mA);
+    rules_step(&c->rules, c->rules_next, c->signal.estimator.tone[0].freq_uHz, signal.rms_um_s2);
+    const law_in_t law_in = law_input(c, &signal, c->rules.current_mA);
     const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
 
     supervise(c, in, &signal.sample, signal_in.has_gap);
@@ -221,8 +238,8 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     t->displacement_nm = signal.displacement_nm;
     t->velocity_um_s = motion_velocity_um_s(signal.velocity_um_s_q32);
     t->rms_um_s2 = signal.rms_um_s2;
-    t->rules_fired = rules_fired(c->rules, fuzzy_in);
-    t->current_fuzzy_mA = fuzzy_mA;
+    t->rules_fired = c->rules.fired;
+    t->current_fuzzy_mA = c->rules.current_mA;
     t->current_law_mA = request_mA;
     t->current_cmd_mA = out->current_cmd_mA;
 }
