@@ -41,6 +41,7 @@ enum {
     CASE_GRID_PHYSICAL,
     CASE_GENERAL,
     CASE_FOUR,
+    CASE_LIMITS,
     CASE_ONE,
     RULE_CASES,
 };

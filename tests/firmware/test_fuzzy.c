@@ -102,6 +102,7 @@ static void test_cases_have_the_forms_that_they_are_there_for(void) {
         [CASE_GRID_PHYSICAL] = FUZZY_GRID,
         [CASE_GENERAL] = FUZZY_ANY,
         [CASE_FOUR] = FUZZY_ANY,
+        [CASE_LIMITS] = FUZZY_ANY,
         [CASE_ONE] = FUZZY_ANY,
     };
     for (uint32_t i = 0; i < RULE_CASES; i++) {

@@ -46,7 +46,7 @@ static fuzzy_pair_cell_t *cell(uint32_t input, uint32_t index) {
 // The first cell in which two sets have a slope.
 static fuzzy_pair_cell_t *sloped_cell(void) {
     uint32_t k = 0;
-    while (cell(0, k)->cell.ramps != 2u || cell(0, k)->ramp[0].b == 0) {
+    while (cell(0, k)->cell.ramps < 2u || cell(0, k)->ramp[0].b == 0) {
         k++;
     }
     return cell(0, k);
@@ -160,6 +160,15 @@ static void test_another_magic_is_refused(void) {
     CHANGED(CASE_ONE, FUZZY_TABLE_MAGIC, table()->magic = 0);
 }
 
+static void test_a_header_alone_has_the_size_of_a_table(void) {
+    count = 16;
+    for (uint32_t i = 0; i < count; i++) {
+        words()[i] = rule_cases[CASE_ONE].words[i];
+    }
+    table()->size_words = count;
+    expect(FUZZY_TABLE_CELL);
+}
+
 static void test_every_flipped_bit_is_refused(void) {
     const uint32_t which[] = {CASE_ONE, CASE_MAX_Q15};
     for (uint32_t i = 0; i < 2u; i++) {
@@ -196,6 +205,8 @@ static void test_bits_of_memberships(void) {
     CHANGED(CASE_ONE, FUZZY_TABLE_SHAPE, table()->bits = FUZZY_MIN_BITS - 1u);
     CHANGED(CASE_ONE, FUZZY_TABLE_SHAPE, table()->bits = FUZZY_MAX_BITS + 1u);
     CHANGED(CASE_ONE, FUZZY_TABLE_SHAPE, table()->bits--);
+    CHANGED(CASE_ONE, FUZZY_TABLE_SHAPE, (table()->bits = 15, table()->one = 1u << 15));
+    CHANGED(CASE_ONE, FUZZY_TABLE_SHAPE, (table()->bits = 29, table()->one = 1u << 29));
     CHANGED(CASE_ONE, FUZZY_TABLE_SHAPE, table()->one *= 2u);
     // A partition computes in 32 bits.
     CHANGED(CASE_SUM_20_BITS, FUZZY_TABLE_SHAPE, (table()->bits = 21, table()->one = 1u << 21));
@@ -235,7 +246,38 @@ static void test_cells_cover_all_integers_once(void) {
             cell(1, table()->axis[1].cells - 1u)->cell.last = INT32_MAX - 1);
 }
 
+// The first input with these cells alone, without any set.
+static void make_cells(const int32_t first[], const int32_t last[], uint32_t cells) {
+    load(CASE_GRID_PHYSICAL);
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(cells, table()->axis[0].cells);
+    table()->axis[0].cells = (uint8_t)cells;
+    for (uint32_t k = 0; k < cells; k++) {
+        *cell(0, k) = (fuzzy_pair_cell_t){.cell = {.last = last[k], .first = first[k]}};
+    }
+}
+
+static void test_cells_do_not_run_backwards(void) {
+    make_cells((const int32_t[]){INT32_MIN, 11, 20}, (const int32_t[]){10, 19, INT32_MAX}, 3);
+    expect(FUZZY_TABLE_OK);
+    make_cells((const int32_t[]){INT32_MIN, 11, 6}, (const int32_t[]){10, 5, INT32_MAX}, 3);
+    expect(FUZZY_TABLE_CELL);
+}
+
+static void test_a_slope_reaches_over_31_bits_at_most(void) {
+    make_cells((const int32_t[]){INT32_MIN, 0}, (const int32_t[]){-1, INT32_MAX}, 2);
+    cell(0, 0)->ramp[0].b = 1;
+    expect(FUZZY_TABLE_OK);
+    make_cells((const int32_t[]){INT32_MIN, 1}, (const int32_t[]){0, INT32_MAX}, 2);
+    cell(0, 0)->ramp[0].b = 1;
+    expect(FUZZY_TABLE_CELL);
+}
+
 static void test_ramps_of_a_cell(void) {
+    CHANGED(CASE_GRID_Q15, FUZZY_TABLE_CELL, cell(0, 0)->cell.shift = 32);
+    CHANGED(CASE_GRID_Q15, FUZZY_TABLE_OK, cell(0, 0)->cell.shift = 31);
+    CHANGED(CASE_LIMITS, FUZZY_TABLE_CELL, sloped_cell()->cell.ramps = 8);
+    // What no ramp names is not read where the base has no grid.
+    CHANGED(CASE_ONE, FUZZY_TABLE_OK, cell(0, 0)->ramp[1].set = UINT32_MAX);
     CHANGED(CASE_GRID_Q15, FUZZY_TABLE_CELL, sloped_cell()->cell.ramps = 3);
     CHANGED(CASE_GENERAL, FUZZY_TABLE_CELL, cell(0, 0)->cell.ramps = UINT32_MAX);
     CHANGED(CASE_GRID_Q15, FUZZY_TABLE_CELL, sloped_cell()->cell.shift = 32);
@@ -329,6 +371,7 @@ static void test_sets_of_a_centroid(void) {
             table()->origin = output(0)->origin = INT32_MAX - (int32_t)output(0)->span + 1);
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT, output(0)->term_layers = output(0)->layers + 1u);
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT, output(0)->layers = UINT16_MAX);
+    CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OK, output(0)->layers = (uint16_t)output(0)->term_layers);
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT,
             *(uint32_t *)at(output(0)->terms_offset) = table()->one + 1u);
 }
@@ -346,6 +389,10 @@ static void test_layers_of_a_centroid(void) {
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT, layer(first)->start = table()->one + 1u);
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT, layer(first)->height = table()->one + 1u);
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT, layer(first)->height = UINT32_MAX);
+    CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OK,
+            (layer(first)->start = table()->one, layer(first)->height = 0));
+    CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT,
+            layer(output(0)->term_layers)->second = output(0)->terms);
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT,
             layer(output(0)->term_layers)->first = layer(output(0)->term_layers)->second);
     CHANGED(CASE_OVERLAPS, FUZZY_TABLE_OUTPUT, layer(output(0)->term_layers)->first = UINT8_MAX);
@@ -364,6 +411,7 @@ static void test_weights_and_conditions_of_a_rule(void) {
     CHANGED(CASE_GENERAL, FUZZY_TABLE_RULE, rule(1)->head = (one + 1u) | 2u << 24);
     CHANGED(CASE_GENERAL, FUZZY_TABLE_RULE, rule(1)->head = one);
     CHANGED(CASE_GENERAL, FUZZY_TABLE_RULE, rule(1)->head = one | 9u << 24);
+    CHANGED(CASE_GENERAL, FUZZY_TABLE_OK, rule(1)->head = one | 8u << 24);
     CHANGED(CASE_GENERAL, FUZZY_TABLE_RULE, rule(1)->head = one | 255u << 24);
     CHANGED(CASE_GENERAL, FUZZY_TABLE_RULE, rule(1)->condition[1] = 3u << 3);
     CHANGED(CASE_GENERAL, FUZZY_TABLE_RULE, rule(1)->condition[1] = 15u << 3);
@@ -385,12 +433,15 @@ int main(void) {
     RUN_TEST(test_sizes_that_no_table_has_are_refused);
     RUN_TEST(test_a_size_beyond_the_largest_table_is_refused);
     RUN_TEST(test_another_magic_is_refused);
+    RUN_TEST(test_a_header_alone_has_the_size_of_a_table);
     RUN_TEST(test_every_flipped_bit_is_refused);
     RUN_TEST(test_numbers_of_inputs_and_outputs);
     RUN_TEST(test_bits_of_memberships);
     RUN_TEST(test_numbers_of_rules);
     RUN_TEST(test_places_and_sizes_of_cells);
     RUN_TEST(test_cells_cover_all_integers_once);
+    RUN_TEST(test_cells_do_not_run_backwards);
+    RUN_TEST(test_a_slope_reaches_over_31_bits_at_most);
     RUN_TEST(test_ramps_of_a_cell);
     RUN_TEST(test_memberships_stay_between_0_and_1);
     RUN_TEST(test_the_unnamed_ramp_of_a_grid);

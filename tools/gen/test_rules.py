@@ -73,6 +73,7 @@ def cases() -> list[Case]:
         Case("grid_physical", files["grid"], ["1e-3", "1e-7"], ["0.01", "1e-4", "1e-4"]),
         Case("general", files["general"]),
         Case("four", files["four"], wants_straight=False),
+        Case("limits", files["limits"]),
         Case("one", files["one"], ["1e-6"], ["1e-6"]),
     ]
 
