@@ -22,7 +22,13 @@ BLOCK_FOLDERS = ("sense", "fuzzy", "guard", "law")
 # interface that the folder's files implement.
 SHARED = {
     "spectrum": {"cosine_table.h"},
-    "squeeze_rules": {"fuzzy.h"},
+    # Down to the arithmetic that straight-line rule bases share with the table engine.
+    "fuzzy": {"fuzzy_forms.h", "fuzzy_table.h", "fuzzy_math.h"},
+    "fuzzy_forms": {"fuzzy.h"},
+    "fuzzy_centroid": {"fuzzy_forms.h"},
+    "fuzzy_partition": {"fuzzy_forms.h"},
+    "fuzzy_table": {"fuzzy_math.h"},
+    "rules_*": {"fuzzy_math.h"},
     "law_*": {"law.h"},
 }
 # What the simulation may know of the firmware and the simulated peripherals.
@@ -83,14 +89,19 @@ def headers_in(root: Path, folder: str) -> set[str]:
 
 
 def shared_headers(stem: str) -> set[str]:
-    return SHARED["law_*"] if stem.startswith("law_") else SHARED.get(stem, set())
+    """By the file's name; a key that ends in * is how the name begins."""
+    for key, headers in SHARED.items():
+        if stem == key or (key.endswith("*") and stem.startswith(key[:-1])):
+            return headers
+    return set()
 
 
 def allowed_headers(root: Path, source: Source) -> set[str]:
     """Project headers that a file of the firmware or the HAL may include."""
     own = {f"{source.stem}.h"}
     base = headers_in(root, "firmware/base")
-    blocks = {h for name in BLOCK_FOLDERS for h in headers_in(root, f"firmware/{name}")}
+    folders = (*BLOCK_FOLDERS, "fuzzy/generated")
+    blocks = {h for name in folders for h in headers_in(root, f"firmware/{name}")}
     interface = {f"hal/{name}" for name in headers_in(root, "hal/include/hal")}
     comm = headers_in(root, "firmware/comm") | headers_in(root, "firmware/comm/generated")
     parts = Path(source.path).parts
