@@ -230,11 +230,18 @@ def ordered_shapes(output: Output, low: Fraction, span: Fraction) -> OutputShape
 def require_order(
     output: Output, pair: tuple[int, int], one: Flanks, other: Flanks, levels: list[Fraction]
 ) -> None:
-    inner = [a + (b - a) * share / 3 for a, b in pairwise(levels) for share in (1, 2)]
-    for height in inner:
-        if one.left(height) > other.left(height) or one.right(height) > other.right(height):
-            names = " and ".join(output.terms[index].name for index in pair)
-            raise NotOrdered(f"of sets {names} of output {output.name} one lies inside the other")
+    for start, end in pairwise(levels):
+        for flank, following in ((one.left, other.left), (one.right, other.right)):
+            if is_ever_above(line(start, end, flank), line(start, end, following), end - start):
+                names = " and ".join(output.terms[index].name for index in pair)
+                reason = f"of sets {names} of output {output.name} one lies inside the other"
+                raise NotOrdered(reason)
+
+
+def is_ever_above(one: Line, other: Line, length: Fraction) -> bool:
+    """Whether `one` exceeds `other` at either end: between the ends both are straight."""
+    start, slope = one[0] - other[0], one[1] - other[1]
+    return start > 0 or start + slope * length > 0
 
 
 def stacked_shapes(output: Output, low: Fraction, span: Fraction, reason: str) -> OutputShapes:
