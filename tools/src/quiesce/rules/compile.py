@@ -216,8 +216,10 @@ def make_output(output: Output, form: float | str, default: float) -> IntegerOut
         return centroid_output(output, axis, default_count)
     values = [nearest(axis.position(term.value)) for term in output.terms]
     origin = min(values)
-    if max(values) - origin > MAX_OUTPUT_COUNTS or max(map(abs, values)) > INT32_LIMIT:
+    if max(values) - origin >= MAX_OUTPUT_COUNTS:
         raise UsageError(f"output {output.name}: its singletons span more than 2^24 counts")
+    if not -INT32_LIMIT <= origin <= INT32_LIMIT - MAX_OUTPUT_COUNTS:
+        raise UsageError(f"output {output.name}: its singletons lie too far from 0 for int32")
     terms = tuple(value - origin for value in values)
     return IntegerOutput(output.method, axis, origin, default_count, terms, 0, None)
 

@@ -18,6 +18,7 @@ from quiesce.rules.output_shapes import LayerIntegers, Shape, layer_integers
 MAGIC = 0x31545A46  # "FZT1"
 HEADER_WORDS = 16
 MAX_WORDS = 65535
+MAX_CELLS = 255  # of an input
 GRID_STRIDE = 8
 METHOD = {WEIGHTED_SUM: 0, WEIGHTED_MAX: 1, CENTROID: 2}
 ANY, GRID, PARTITION_SUM, PARTITION_MAX, PARTITION_CENTROID = range(5)
@@ -33,6 +34,12 @@ def table_words(compiled: CompiledBase) -> list[int]:
     if form >= PARTITION_SUM:
         body.add(block_words(compiled, form))
         twins = body.add(twins_words(compiled)) if form == PARTITION_MAX else 0
+    for variable, cells in zip(compiled.base.inputs, compiled.cells, strict=True):
+        if len(cells) > MAX_CELLS:
+            raise UsageError(
+                f"input {variable.name}: its sets bend at too many places, {len(cells)} cells; "
+                f"at most {MAX_CELLS}"
+            )
     axes = [body.add(cells_words(cells)) for cells in compiled.cells]
     rules = body.add([word for rule in compiled.rules for word in rule_words(rule)])
     outputs = [add_output(body, compiled, index) for index in range(len(compiled.outputs))]
