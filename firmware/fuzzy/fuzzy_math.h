@@ -13,9 +13,19 @@ static inline uint32_t fuzzy_max(uint32_t a, uint32_t b) {
     return a > b ? a : b;
 }
 
-/// strength * weight, to nearest.
-static inline uint32_t fuzzy_weighted(uint32_t strength, uint32_t weight_q19) {
-    return (uint32_t)(((uint64_t)strength * weight_q19 + (1u << 18)) >> 19);
+static inline uint64_t fuzzy_max_u64(uint64_t a, uint64_t b) {
+    return a > b ? a : b;
+}
+
+/// A strength of a weighted average: so many bits of the product that sums of them fit 64 bits with
+/// their singletons. Of a base without weights all are the same multiple of the membership.
+static inline uint64_t fuzzy_strength(uint32_t membership, uint32_t weight_q19, uint32_t shift) {
+    return ((uint64_t)membership * weight_q19) >> shift;
+}
+
+/// A strength of a centroid: membership * weight, to nearest.
+static inline uint32_t fuzzy_weighted(uint32_t membership, uint32_t weight_q19) {
+    return (uint32_t)(((uint64_t)membership * weight_q19 + (1u << 18)) >> 19);
 }
 
 /// (a + b * distance) >> 32, floor: a straight line of a cell, its result 0 .. 2^28.
@@ -33,10 +43,10 @@ static inline uint32_t fuzzy_short_quotient(uint64_t numerator, uint32_t denomin
     return (high << 11) + (rest << 11 | ((uint32_t)rounded & 2047u)) / denominator;
 }
 
-/// The same for any denominator above 0 and quotient below 2^32.
-static inline uint32_t fuzzy_quotient(uint64_t numerator, uint32_t denominator) {
-    return denominator <= UINT32_C(1) << 21 && numerator < UINT64_C(1) << 42
-               ? fuzzy_short_quotient(numerator, denominator)
+/// The same for any denominator above 0 and quotient below 2^32; their sum fits 64 bits.
+static inline uint32_t fuzzy_quotient(uint64_t numerator, uint64_t denominator) {
+    return denominator <= UINT64_C(1) << 21 && numerator < UINT64_C(1) << 42
+               ? fuzzy_short_quotient(numerator, (uint32_t)denominator)
                : (uint32_t)((numerator + denominator / 2u) / denominator);
 }
 
@@ -124,7 +134,7 @@ static inline uint32_t fuzzy_wide_centre(fuzzy_wide_sums_t more, fuzzy_wide_sums
     const uint32_t zeros = leading_zeros_u64(area);
     const uint64_t divisor = zeros < 43u ? area >> (43u - zeros) : area << (zeros - 43u);
     const uint64_t scaled = zeros < 43u ? moment >> (43u - zeros) : moment << (zeros - 43u);
-    return fuzzy_min(fuzzy_quotient(2u * scaled * span, (uint32_t)divisor), span);
+    return fuzzy_min(fuzzy_quotient(2u * scaled * span, divisor), span);
 }
 
 #endif

@@ -10,7 +10,7 @@
 #define MAX_VALUE (UINT32_C(1) << 24)
 #define MAX_PARTITION_BITS 20u
 
-// The largest set that each input's cells name: what a grid must have room for.
+// The largest set that each input's cells name: what a partition's grid must have room for.
 typedef struct {
     uint32_t set[FUZZY_MAX_INPUTS];
 } largest_t;
@@ -31,12 +31,11 @@ static bool has_shape(const fuzzy_table_t *table) {
         return false;
     }
     if (table->form > FUZZY_PARTITION_CENTROID ||
-        (table->form != FUZZY_ANY && table->inputs != 2u) ||
-        (is_partition(table) && (table->outputs != 1u || table->bits > MAX_PARTITION_BITS))) {
+        (is_partition(table) &&
+         (table->inputs != 2u || table->outputs != 1u || table->bits > MAX_PARTITION_BITS))) {
         return false;
     }
-    return table->rules != 0 && table->rules <= FUZZY_MAX_RULES &&
-           (uint64_t)table->rules << table->bits <= UINT32_MAX;
+    return table->rules != 0 && table->rules <= FUZZY_MAX_RULES;
 }
 
 // ---- cells --------------------------------------------------------------------------------------
@@ -80,9 +79,7 @@ static bool is_cell_good(const fuzzy_table_t *table, uint32_t i, const fuzzy_cel
         return false;
     }
     const fuzzy_ramp_t *ramp = (const fuzzy_ramp_t *)(const void *)(cell + 1);
-    // A grid reads two ramps, whatever their number.
-    const uint32_t read = table->form != FUZZY_ANY && cell->ramps < 2u ? 2u : cell->ramps;
-    for (uint32_t k = 0; k < read; k++) {
+    for (uint32_t k = 0; k < cell->ramps; k++) {
         if (!is_ramp_good(table, cell, &ramp[k])) {
             return false;
         }
@@ -94,7 +91,7 @@ static bool is_cell_good(const fuzzy_table_t *table, uint32_t i, const fuzzy_cel
 static bool is_axis_good(const fuzzy_table_t *table, uint32_t i, uint32_t *largest) {
     const fuzzy_axis_t axis = table->axis[i];
     if (axis.cells == 0 || axis.stride < PAIR_CELL_WORDS || axis.stride % RAMP_WORDS != 0 ||
-        (table->form != FUZZY_ANY && axis.stride != PAIR_CELL_WORDS) ||
+        (is_partition(table) && axis.stride != PAIR_CELL_WORDS) ||
         !is_inside(table, axis.offset, (uint32_t)axis.cells * axis.stride)) {
         return false;
     }
@@ -169,15 +166,7 @@ static bool is_centroid_good(const fuzzy_table_t *table, const fuzzy_output_t *o
     return true;
 }
 
-static bool is_grid_good(const fuzzy_table_t *table, const fuzzy_output_t *output,
-                         const largest_t *largest) {
-    const uint32_t words = grid_words(largest);
-    return are_below(table, output->grid_terms, words, output->terms) &&
-           (output->method == FUZZY_CENTROID ||
-            are_below(table, output->grid_values, words, MAX_VALUE));
-}
-
-static bool is_output_good(const fuzzy_table_t *table, uint32_t offset, const largest_t *largest) {
+static bool is_output_good(const fuzzy_table_t *table, uint32_t offset) {
     if (!is_inside(table, offset, (uint32_t)(sizeof(fuzzy_output_t) / sizeof(uint32_t)))) {
         return false;
     }
@@ -185,19 +174,16 @@ static bool is_output_good(const fuzzy_table_t *table, uint32_t offset, const la
     if (output->method > FUZZY_CENTROID || output->terms == 0 || output->terms > FUZZY_MAX_TERMS) {
         return false;
     }
-    if (table->form == FUZZY_GRID && !is_grid_good(table, output, largest)) {
-        return false;
-    }
     if (output->method == FUZZY_CENTROID) {
         return is_centroid_good(table, output);
     }
-    return fits_above(output->origin, MAX_VALUE) &&
+    return fits_above(output->origin, MAX_VALUE) && output->fraction <= FUZZY_MAX_FRACTION &&
            are_below(table, output->terms_offset, output->terms, MAX_VALUE);
 }
 
-static bool are_outputs_good(const fuzzy_table_t *table, const largest_t *largest) {
+static bool are_outputs_good(const fuzzy_table_t *table) {
     for (uint32_t i = 0; i < table->outputs; i++) {
-        if (!is_output_good(table, table->output_offset[i], largest)) {
+        if (!is_output_good(table, table->output_offset[i])) {
             return false;
         }
     }
@@ -209,7 +195,8 @@ static bool is_partition_good(const fuzzy_table_t *table, const largest_t *large
     const fuzzy_output_t *output = fuzzy_at(table, table->output_offset[0]);
     const uint32_t words = grid_words(largest) + FUZZY_GRID_STRIDE + 1u;
     const uint32_t method = (uint32_t)table->form - FUZZY_PARTITION_SUM;
-    if (output->method != method || output->origin != table->origin) {
+    if (output->method != method || output->origin != table->origin ||
+        output->fraction != table->fraction || table->bits + table->fraction > MAX_PARTITION_BITS) {
         return false;
     }
     if (output->method == FUZZY_CENTROID) {
@@ -284,8 +271,7 @@ fuzzy_verdict_t fuzzy_table_check(const fuzzy_table_t *table, uint32_t words) {
     if (!are_cells_good(table, &largest)) {
         return FUZZY_TABLE_CELL;
     }
-    if (!are_outputs_good(table, &largest) ||
-        (is_partition(table) && !is_partition_good(table, &largest))) {
+    if (!are_outputs_good(table) || (is_partition(table) && !is_partition_good(table, &largest))) {
         return FUZZY_TABLE_OUTPUT;
     }
     return are_rules_good(table) ? FUZZY_TABLE_OK : FUZZY_TABLE_RULE;

@@ -21,12 +21,16 @@
 #define FUZZY_MAX_TERMS 64u ///< of an output with singletons
 #define FUZZY_MAX_RULES 1024u
 #define FUZZY_MAX_CONDITIONS 8u
+#define FUZZY_MAX_FRACTION 8u
 #define FUZZY_MIN_BITS 16u
 #define FUZZY_MAX_BITS 28u
 #define FUZZY_GRID_STRIDE 8u
 #define FUZZY_NO_TERM 0xFFu
 #define FUZZY_WEIGHT_ONE_q19 (UINT32_C(1) << 19)
 #define FUZZY_WEIGHT_MASK UINT32_C(0xFFFFF)
+/// For fuzzy_strength(): 28 bits of membership and 19 of weight, less what leaves 24 bits for a
+/// singleton and room for so many rules. rules: 1 .. FUZZY_MAX_RULES.
+#define FUZZY_STRENGTH_SHIFT(rules) (8u + 32u - (uint32_t)__builtin_clz(rules))
 
 typedef enum {
     FUZZY_SUM,      ///< weighted average of singletons over the rules
@@ -37,10 +41,10 @@ typedef enum {
 /// What the engine can take for granted.
 typedef enum {
     FUZZY_ANY,
-    FUZZY_GRID, ///< two inputs, two ramps a cell at most, one plain rule for each pair of sets
-    /// A grid with one output, a weighted sum, whose inputs' memberships add up to 1 everywhere,
-    /// in 20 bits at most; neighbouring sets have neighbouring numbers. The values of its grid, a
-    /// row and a column wider than the sets, follow the header.
+    /// Two inputs, whose memberships add up to 1 everywhere, in 20 bits at most, with neighbouring
+    /// numbers for neighbouring sets; one plain rule for each pair of sets; one output, a weighted
+    /// sum. Its values, rows of FUZZY_GRID_STRIDE with one more row and column than there are sets,
+    /// follow the header.
     FUZZY_PARTITION_SUM,
     FUZZY_PARTITION_MAX,      ///< likewise; twins_offset is valid
     FUZZY_PARTITION_CENTROID, ///< likewise; terms follow the header; every set reaches 1
@@ -85,7 +89,9 @@ typedef struct {
     uint32_t output_offset[FUZZY_MAX_OUTPUTS];
     uint32_t one;          ///< 2^bits
     int32_t origin;        ///< of a partition's output
-    uint32_t twins_offset; ///< of a PARTITION_MAX: fuzzy_twins_t, in the order of its values
+    uint16_t twins_offset; ///< of a PARTITION_MAX: fuzzy_twins_t, in the order of its values
+    uint8_t fraction;      ///< of a partition's output
+    uint8_t reserved;
 } fuzzy_table_t;
 
 typedef struct {
@@ -123,10 +129,10 @@ typedef struct {
     int32_t value_default;
     int32_t origin;        ///< least value that the output can take
     uint32_t span;         ///< of a centroid's universe, in counts
-    uint32_t grid_values;  ///< offset: singletons of all pairs of sets, rows of FUZZY_GRID_STRIDE
-    uint32_t grid_terms;   ///< offset: terms, likewise
     uint32_t terms_offset; ///< singletons less the origin; or peaks of the sets, then layers
     uint32_t term_layers;  ///< of the sets themselves; those of overlaps follow; 0: stacked
+    uint32_t fraction;     ///< singletons count 2^-fraction of the output's
+    uint32_t reserved;
 } fuzzy_output_t;
 
 /// Marks of a layer. The last two where sets are stacked: the output is cut where sets begin, end,

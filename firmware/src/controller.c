@@ -244,10 +244,16 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     t->current_cmd_mA = out->current_cmd_mA;
 }
 
+// What the rules said last is forgotten last: the same words may hold another table by now.
+static void use_rules(controller_t *c, const fuzzy_table_t *table) {
+    c->rules_next = table;
+    c->rules.table = NULL;
+}
+
 quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
     controller_t *c = (controller_t *)(void *)self->opaque;
     if (words == NULL) {
-        c->rules_next = shipped_rules();
+        use_rules(c, shipped_rules());
         return QUIESCE_RULES_OK;
     }
     const fuzzy_table_t *table = (const fuzzy_table_t *)(const void *)words;
@@ -258,7 +264,7 @@ quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words
     if (table->inputs != RULE_INPUTS || table->outputs != 1u) {
         return QUIESCE_RULES_FIT;
     }
-    c->rules_next = table;
+    use_rules(c, table);
     return QUIESCE_RULES_OK;
 }
 

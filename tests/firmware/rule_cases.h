@@ -28,8 +28,8 @@ typedef struct {
 enum {
     CASE_SUM_Q15,
     CASE_SUM_PHYSICAL,
-    CASE_SUM_20_BITS,
-    CASE_SUM_18_BITS,
+    CASE_SUM_WIDE,
+    CASE_SUM_FINE,
     CASE_MAX_Q15,
     CASE_MAX_PHYSICAL,
     CASE_CENTROID_Q15,

@@ -89,17 +89,17 @@ static void test_cases_have_the_forms_that_they_are_there_for(void) {
     static const uint8_t form[RULE_CASES] = {
         [CASE_SUM_Q15] = FUZZY_PARTITION_SUM,
         [CASE_SUM_PHYSICAL] = FUZZY_PARTITION_SUM,
-        [CASE_SUM_20_BITS] = FUZZY_PARTITION_SUM,
-        [CASE_SUM_18_BITS] = FUZZY_PARTITION_SUM,
+        [CASE_SUM_WIDE] = FUZZY_PARTITION_SUM,
+        [CASE_SUM_FINE] = FUZZY_PARTITION_SUM,
         [CASE_MAX_Q15] = FUZZY_PARTITION_MAX,
         [CASE_MAX_PHYSICAL] = FUZZY_PARTITION_MAX,
         [CASE_CENTROID_Q15] = FUZZY_PARTITION_CENTROID,
         [CASE_CENTROID_PHYSICAL] = FUZZY_PARTITION_CENTROID,
         [CASE_OVERLAPS] = FUZZY_PARTITION_CENTROID,
-        [CASE_STACKED] = FUZZY_GRID,
+        [CASE_STACKED] = FUZZY_ANY,
         [CASE_SEVEN] = FUZZY_PARTITION_MAX,
-        [CASE_GRID_Q15] = FUZZY_GRID,
-        [CASE_GRID_PHYSICAL] = FUZZY_GRID,
+        [CASE_GRID_Q15] = FUZZY_ANY,
+        [CASE_GRID_PHYSICAL] = FUZZY_ANY,
         [CASE_GENERAL] = FUZZY_ANY,
         [CASE_FOUR] = FUZZY_ANY,
         [CASE_LIMITS] = FUZZY_ANY,
@@ -108,8 +108,8 @@ static void test_cases_have_the_forms_that_they_are_there_for(void) {
     for (uint32_t i = 0; i < RULE_CASES; i++) {
         TEST_ASSERT_EQUAL_MESSAGE(form[i], case_table(&rule_cases[i])->form, rule_cases[i].name);
     }
-    TEST_ASSERT_EQUAL(20, case_table(&rule_cases[CASE_SUM_20_BITS])->bits);
-    TEST_ASSERT_EQUAL(18, case_table(&rule_cases[CASE_SUM_18_BITS])->bits);
+    TEST_ASSERT_EQUAL(18, case_table(&rule_cases[CASE_SUM_WIDE])->bits);
+    TEST_ASSERT_EQUAL(18, case_table(&rule_cases[CASE_SUM_FINE])->bits);
 }
 
 static void test_all_ways_to_share_a_term_occur(void) {

@@ -60,8 +60,8 @@ def cases() -> list[Case]:
     return [
         Case("sum_q15", bases[SUM]),
         Case("sum_physical", bases[SUM], MICRO, ["1e-3"]),
-        Case("sum_20_bits", bases[SUM], outputs=["2e-5"]),
-        Case("sum_18_bits", bases[SUM], outputs=["5e-7"]),
+        Case("sum_wide", bases[SUM], outputs=["2e-5"]),
+        Case("sum_fine", bases[SUM], outputs=["5e-7"]),
         Case("max_q15", bases[MAX]),
         Case("max_physical", bases[MAX], MICRO),
         Case("centroid_q15", bases[CENTROID]),

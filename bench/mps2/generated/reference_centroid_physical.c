@@ -3,7 +3,7 @@
 #include "fuzzy_reference.h"
 
 const uint32_t reference_centroid_physical_table[325] = {
-    0x31545A46u, 0xB1BCDF9Bu, 0x00000145u, 0x04110102u, 0x0C050038u, 0x0C050074u,
+    0x31545A46u, 0xBBAC72D6u, 0x00000145u, 0x03110102u, 0x0C050038u, 0x0C050074u,
     0x00000000u, 0x00000000u, 0x001000B0u, 0x0000013Du, 0x00000000u, 0x00000000u,
     0x00000000u, 0x00020000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000001u,
     0x00000002u, 0x00000003u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
@@ -56,8 +56,8 @@ const uint32_t reference_centroid_physical_table[325] = {
     0x00000000u, 0x00000302u, 0x00000000u, 0x00010000u, 0x01000000u, 0x04000000u,
     0x50000000u, 0x00000000u, 0x00000000u, 0x00000403u, 0x00000000u, 0x00010000u,
     0x01000000u, 0x04000000u, 0x70000000u, 0x00000000u, 0x00000000u, 0x00090502u,
-    0x00000000u, 0x00000000u, 0x00010000u, 0x00000000u, 0x000000F0u, 0x000000F0u,
-    0x00000005u,
+    0x00000000u, 0x00000000u, 0x00010000u, 0x000000F0u, 0x00000005u, 0x00000000u,
+    0x00000000u,
 };
 
 uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
@@ -258,7 +258,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                         return 0;
                     }
                     const uint32_t s1 = fuzzy_max((131072u - m0_1), m0_1);
-                    const uint32_t d2 = (s1 + 131072u - m1_3) == 0 ? 1u : 0;
+                    const uint32_t d2 = (131072u - m1_3) == 0 && s1 == 0 ? 1u : 0;
                     if (d2 != 0) {
                         output[0] = 0;
                     } else {
@@ -285,7 +285,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                     return 0;
                 }
                 const uint32_t s1 = fuzzy_max((131072u - m1_3), m1_3);
-                const uint32_t d2 = (s1 + 131072u - m0_1) == 0 ? 1u : 0;
+                const uint32_t d2 = (131072u - m0_1) == 0 && s1 == 0 ? 1u : 0;
                 if (d2 != 0) {
                     output[0] = 0;
                 } else {
@@ -345,7 +345,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                     }
                     const uint32_t s1 = fuzzy_max((131072u - m1_1), (131072u - m1_1));
                     const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
+                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
                     if (d3 != 0) {
                         output[0] = 0;
                     } else {
@@ -363,7 +363,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                 if (m0_2 + m1_1 <= 131072u) {
                     const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
                     const uint32_t s2 = fuzzy_max(m1_1, m1_1);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
+                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
                     if (d3 != 0) {
                         output[0] = 0;
                     } else {
@@ -404,7 +404,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                 }
                 const uint32_t s1 = fuzzy_max((131072u - m1_2), (131072u - m1_2));
                 const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
+                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
                 if (d3 != 0) {
                     output[0] = 0;
                 } else {
@@ -422,7 +422,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
             if (m0_2 + m1_2 <= 131072u) {
                 const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
                 const uint32_t s2 = fuzzy_max(m1_2, m1_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
+                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
                 if (d3 != 0) {
                     output[0] = 0;
                 } else {
@@ -453,7 +453,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
             if (m0_2 <= m1_3) {
                 if (m0_2 + m1_3 <= 131072u) {
                     const uint32_t s1 = fuzzy_max((131072u - m1_3), m1_3);
-                    const uint32_t d2 = (s1 + m0_2) == 0 ? 1u : 0;
+                    const uint32_t d2 = s1 == 0 && m0_2 == 0 ? 1u : 0;
                     if (d2 != 0) {
                         output[0] = 0;
                     } else {
@@ -482,7 +482,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
             }
             if (m0_2 + m1_3 <= 131072u) {
                 const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t d2 = (s1 + m1_3) == 0 ? 1u : 0;
+                const uint32_t d2 = s1 == 0 && m1_3 == 0 ? 1u : 0;
                 if (d2 != 0) {
                     output[0] = 0;
                 } else {
@@ -663,7 +663,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                     return 0;
                 }
                 const uint32_t s1 = fuzzy_max((131072u - m0_3), m0_3);
-                const uint32_t d2 = (s1 + 131072u - m1_3) == 0 ? 1u : 0;
+                const uint32_t d2 = (131072u - m1_3) == 0 && s1 == 0 ? 1u : 0;
                 if (d2 != 0) {
                     output[0] = 0;
                 } else {
@@ -692,7 +692,7 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                 return 0;
             }
             const uint32_t s1 = fuzzy_max((131072u - m1_3), m1_3);
-            const uint32_t d2 = (s1 + 131072u - m0_3) == 0 ? 1u : 0;
+            const uint32_t d2 = (131072u - m0_3) == 0 && s1 == 0 ? 1u : 0;
             if (d2 != 0) {
                 output[0] = 0;
             } else {

@@ -3,7 +3,7 @@
 #include "fuzzy_reference.h"
 
 const uint32_t reference_max_physical_table[285] = {
-    0x31545A46u, 0x1490A7E0u, 0x0000011Du, 0x03100102u, 0x0C050058u, 0x0C050094u,
+    0x31545A46u, 0x8840F967u, 0x0000011Du, 0x02100102u, 0x0C050058u, 0x0C050094u,
     0x00000000u, 0x00000000u, 0x001000D0u, 0x00000115u, 0x00000000u, 0x00000000u,
     0x00000000u, 0x00010000u, 0x00000000u, 0x00000038u, 0x00000000u, 0x00004000u,
     0x00008000u, 0x0000C000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
@@ -50,7 +50,7 @@ const uint32_t reference_max_physical_table[285] = {
     0x02080000u, 0x00000A03u, 0x00000000u, 0xFFFFFF04u, 0x02080000u, 0x00000B03u,
     0x00000000u, 0xFFFFFF04u, 0x00000000u, 0x00004000u, 0x00008000u, 0x0000C000u,
     0x00010000u, 0x00000501u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000110u,
-    0x00000110u, 0x00000110u, 0x00000000u,
+    0x00000000u, 0x00000000u, 0x00000000u,
 };
 
 uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
@@ -64,16 +64,16 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
         if (x1 <= 9999999) {
             if (x1 <= 5999999) {
                 const uint32_t m1_1 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 2000000u) << 9);
-                output[0] = (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+                output[0] = (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                 return 0;
             }
             const uint32_t m1_2 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 6000000u) << 9);
-            output[0] = 16384 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+            output[0] = 16384 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
             return 0;
         }
         if (x1 <= 14999999) {
             const uint32_t m1_3 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x1 - 10000000u) << 8);
-            output[0] = 32768 + (int32_t)((((16384u * m1_3 + 32768u)) >> 16));
+            output[0] = 32768 + (int32_t)(((16384u * m1_3 + 32768u) >> 16));
             return 0;
         }
         output[0] = 49152;
@@ -83,7 +83,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
         if (x0 <= 7999999) {
             if (x1 <= 1999999) {
                 const uint32_t m0_1 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 3000000u) << 8);
-                output[0] = (int32_t)((((16384u * m0_1 + 32768u)) >> 16));
+                output[0] = (int32_t)(((16384u * m0_1 + 32768u) >> 16));
                 return 0;
             }
             if (x1 <= 9999999) {
@@ -135,7 +135,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                 const uint32_t m1_3 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x1 - 10000000u) << 8);
                 if (m0_1 <= m1_3) {
                     if (m0_1 + m1_3 <= 65536u) {
-                        output[0] = 32768 + (int32_t)((((16384u * m1_3 + 32768u)) >> 16));
+                        output[0] = 32768 + (int32_t)(((16384u * m1_3 + 32768u) >> 16));
                         return 0;
                     }
                     const uint32_t s1 = fuzzy_max((65536u - m0_1), m0_1);
@@ -149,7 +149,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                     return d2;
                 }
                 if (m0_1 + m1_3 <= 65536u) {
-                    output[0] = 32768 + (int32_t)((((16384u * m0_1 + 32768u)) >> 16));
+                    output[0] = 32768 + (int32_t)(((16384u * m0_1 + 32768u) >> 16));
                     return 0;
                 }
                 const uint32_t s1 = fuzzy_max((65536u - m1_3), m1_3);
@@ -189,7 +189,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                 const uint32_t m1_1 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 2000000u) << 9);
                 if (m0_2 <= m1_1) {
                     if (m0_2 + m1_1 <= 65536u) {
-                        output[0] = 16384 + (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+                        output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                         return 0;
                     }
                     const uint32_t s1 = fuzzy_max((65536u - m1_1), (65536u - m1_1));
@@ -215,14 +215,14 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                     }
                     return d3;
                 }
-                output[0] = 16384 + (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+                output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                 return 0;
             }
             const uint32_t m0_2 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 8000000u) << 8);
             const uint32_t m1_2 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 6000000u) << 9);
             if (m0_2 <= m1_2) {
                 if (m0_2 + m1_2 <= 65536u) {
-                    output[0] = 32768 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+                    output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
                     return 0;
                 }
                 const uint32_t s1 = fuzzy_max((65536u - m1_2), (65536u - m1_2));
@@ -248,7 +248,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                 }
                 return d3;
             }
-            output[0] = 32768 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+            output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
             return 0;
         }
         if (x1 <= 14999999) {
@@ -266,7 +266,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                     }
                     return d2;
                 }
-                output[0] = 49152 + (int32_t)((((16384u * m0_2 + 32768u)) >> 16));
+                output[0] = 49152 + (int32_t)(((16384u * m0_2 + 32768u) >> 16));
                 return 0;
             }
             if (m0_2 + m1_3 <= 65536u) {
@@ -280,17 +280,17 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                 }
                 return d2;
             }
-            output[0] = 49152 + (int32_t)((((16384u * m1_3 + 32768u)) >> 16));
+            output[0] = 49152 + (int32_t)(((16384u * m1_3 + 32768u) >> 16));
             return 0;
         }
         const uint32_t m0_2 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 8000000u) << 8);
-        output[0] = 49152 + (int32_t)((((16384u * m0_2 + 32768u)) >> 16));
+        output[0] = 49152 + (int32_t)(((16384u * m0_2 + 32768u) >> 16));
         return 0;
     }
     if (x0 <= 17999999) {
         if (x1 <= 1999999) {
             const uint32_t m0_3 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 13000000u) << 8);
-            output[0] = 16384 + (int32_t)((((16384u * m0_3 + 32768u)) >> 16));
+            output[0] = 16384 + (int32_t)(((16384u * m0_3 + 32768u) >> 16));
             return 0;
         }
         if (x1 <= 9999999) {
@@ -342,7 +342,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
             const uint32_t m1_3 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x1 - 10000000u) << 8);
             if (m0_3 <= m1_3) {
                 if (m0_3 + m1_3 <= 65536u) {
-                    output[0] = 49152 + (int32_t)((((16384u * m1_3 + 32768u)) >> 16));
+                    output[0] = 49152 + (int32_t)(((16384u * m1_3 + 32768u) >> 16));
                     return 0;
                 }
                 const uint32_t s1 = fuzzy_max((65536u - m0_3), m0_3);
@@ -356,7 +356,7 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
                 return d2;
             }
             if (m0_3 + m1_3 <= 65536u) {
-                output[0] = 49152 + (int32_t)((((16384u * m0_3 + 32768u)) >> 16));
+                output[0] = 49152 + (int32_t)(((16384u * m0_3 + 32768u) >> 16));
                 return 0;
             }
             const uint32_t s1 = fuzzy_max((65536u - m1_3), m1_3);
@@ -386,11 +386,11 @@ uint32_t reference_max_physical(const int32_t *input, int32_t *output) {
     if (x1 <= 9999999) {
         if (x1 <= 5999999) {
             const uint32_t m1_1 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 2000000u) << 9);
-            output[0] = 32768 + (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+            output[0] = 32768 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
             return 0;
         }
         const uint32_t m1_2 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 6000000u) << 9);
-        output[0] = 49152 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+        output[0] = 49152 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
         return 0;
     }
     if (x1 <= 14999999) {

@@ -3,7 +3,7 @@
 #include "fuzzy_reference.h"
 
 const uint32_t reference_sum_physical_table[253] = {
-    0x31545A46u, 0x782EE6C5u, 0x000000FDu, 0x02100102u, 0x0C050038u, 0x0C050074u,
+    0x31545A46u, 0x7E14F17Du, 0x000000FDu, 0x01100102u, 0x0C050038u, 0x0C050074u,
     0x00000000u, 0x00000000u, 0x001000B0u, 0x000000F5u, 0x00000000u, 0x00000000u,
     0x00000000u, 0x00010000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00004000u,
     0x00008000u, 0x0000C000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
@@ -44,7 +44,7 @@ const uint32_t reference_sum_physical_table[253] = {
     0x02080000u, 0x00000903u, 0x00000000u, 0xFFFFFF03u, 0x02080000u, 0x00000A03u,
     0x00000000u, 0xFFFFFF04u, 0x02080000u, 0x00000B03u, 0x00000000u, 0xFFFFFF04u,
     0x00000000u, 0x00004000u, 0x00008000u, 0x0000C000u, 0x00010000u, 0x00000500u,
-    0x00000000u, 0x00000000u, 0x00000000u, 0x000000F0u, 0x000000F0u, 0x000000F0u,
+    0x00000000u, 0x00000000u, 0x00000000u, 0x000000F0u, 0x00000000u, 0x00000000u,
     0x00000000u,
 };
 
@@ -59,16 +59,16 @@ uint32_t reference_sum_physical(const int32_t *input, int32_t *output) {
         if (x1 <= 9999999) {
             if (x1 <= 5999999) {
                 const uint32_t m1_1 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 2000000u) << 9);
-                output[0] = (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+                output[0] = (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                 return 0;
             }
             const uint32_t m1_2 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 6000000u) << 9);
-            output[0] = 16384 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+            output[0] = 16384 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
             return 0;
         }
         if (x1 <= 14999999) {
             const uint32_t m1_3 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x1 - 10000000u) << 8);
-            output[0] = 32768 + (int32_t)((((16384u * m1_3 + 32768u)) >> 16));
+            output[0] = 32768 + (int32_t)(((16384u * m1_3 + 32768u) >> 16));
             return 0;
         }
         output[0] = 49152;
@@ -78,7 +78,7 @@ uint32_t reference_sum_physical(const int32_t *input, int32_t *output) {
         if (x0 <= 7999999) {
             if (x1 <= 1999999) {
                 const uint32_t m0_1 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 3000000u) << 8);
-                output[0] = (int32_t)((((16384u * m0_1 + 32768u)) >> 16));
+                output[0] = (int32_t)(((16384u * m0_1 + 32768u) >> 16));
                 return 0;
             }
             if (x1 <= 9999999) {
@@ -221,13 +221,13 @@ uint32_t reference_sum_physical(const int32_t *input, int32_t *output) {
             return 0;
         }
         const uint32_t m0_2 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 8000000u) << 8);
-        output[0] = 49152 + (int32_t)((((16384u * m0_2 + 32768u)) >> 16));
+        output[0] = 49152 + (int32_t)(((16384u * m0_2 + 32768u) >> 16));
         return 0;
     }
     if (x0 <= 17999999) {
         if (x1 <= 1999999) {
             const uint32_t m0_3 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 13000000u) << 8);
-            output[0] = 16384 + (int32_t)((((16384u * m0_3 + 32768u)) >> 16));
+            output[0] = 16384 + (int32_t)(((16384u * m0_3 + 32768u) >> 16));
             return 0;
         }
         if (x1 <= 9999999) {
@@ -306,11 +306,11 @@ uint32_t reference_sum_physical(const int32_t *input, int32_t *output) {
     if (x1 <= 9999999) {
         if (x1 <= 5999999) {
             const uint32_t m1_1 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 2000000u) << 9);
-            output[0] = 32768 + (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+            output[0] = 32768 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
             return 0;
         }
         const uint32_t m1_2 = fuzzy_ramp(INT64_C(2099838988), 137439, ((uint32_t)x1 - 6000000u) << 9);
-        output[0] = 49152 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+        output[0] = 49152 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
         return 0;
     }
     output[0] = 65536;

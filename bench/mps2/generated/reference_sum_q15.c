@@ -3,7 +3,7 @@
 #include "fuzzy_reference.h"
 
 const uint32_t reference_sum_q15_table[253] = {
-    0x31545A46u, 0x0078A818u, 0x000000FDu, 0x02100102u, 0x0C050038u, 0x0C050074u,
+    0x31545A46u, 0x0642BFA0u, 0x000000FDu, 0x01100102u, 0x0C050038u, 0x0C050074u,
     0x00000000u, 0x00000000u, 0x001000B0u, 0x000000F5u, 0x00000000u, 0x00000000u,
     0x00000000u, 0x00010000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00004000u,
     0x00008000u, 0x0000C000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
@@ -44,7 +44,7 @@ const uint32_t reference_sum_q15_table[253] = {
     0x02080000u, 0x00000903u, 0x00000000u, 0xFFFFFF03u, 0x02080000u, 0x00000A03u,
     0x00000000u, 0xFFFFFF04u, 0x02080000u, 0x00000B03u, 0x00000000u, 0xFFFFFF04u,
     0x00000000u, 0x00004000u, 0x00008000u, 0x0000C000u, 0x00010000u, 0x00000500u,
-    0x00000000u, 0x00000000u, 0x00000000u, 0x000000F0u, 0x000000F0u, 0x000000F0u,
+    0x00000000u, 0x00000000u, 0x00000000u, 0x000000F0u, 0x00000000u, 0x00000000u,
     0x00000000u,
 };
 
@@ -59,16 +59,16 @@ uint32_t reference_sum_q15(const int32_t *input, int32_t *output) {
         if (x1 <= 16383) {
             if (x1 <= 9830) {
                 const uint32_t m1_1 = (3758104576u + 163840u * (uint32_t)x1) >> 14;
-                output[0] = (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+                output[0] = (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                 return 0;
             }
             const uint32_t m1_2 = (2684362752u + 163840u * (uint32_t)x1) >> 14;
-            output[0] = 16384 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+            output[0] = 16384 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
             return 0;
         }
         if (x1 <= 24575) {
             const uint32_t m1_3 = (2147491840u + 131072u * (uint32_t)x1) >> 14;
-            output[0] = 32768 + (int32_t)((((16384u * m1_3 + 32768u)) >> 16));
+            output[0] = 32768 + (int32_t)(((16384u * m1_3 + 32768u) >> 16));
             return 0;
         }
         output[0] = 49152;
@@ -78,7 +78,7 @@ uint32_t reference_sum_q15(const int32_t *input, int32_t *output) {
         if (x0 <= 10485) {
             if (x1 <= 3276) {
                 const uint32_t m0_1 = (3650730393u + 163840u * (uint32_t)x0) >> 14;
-                output[0] = (int32_t)((((16384u * m0_1 + 32768u)) >> 16));
+                output[0] = (int32_t)(((16384u * m0_1 + 32768u) >> 16));
                 return 0;
             }
             if (x1 <= 16383) {
@@ -221,13 +221,13 @@ uint32_t reference_sum_q15(const int32_t *input, int32_t *output) {
             return 0;
         }
         const uint32_t m0_2 = (2576988569u + 163840u * (uint32_t)x0) >> 14;
-        output[0] = 49152 + (int32_t)((((16384u * m0_2 + 32768u)) >> 16));
+        output[0] = 49152 + (int32_t)(((16384u * m0_2 + 32768u) >> 16));
         return 0;
     }
     if (x0 <= 23592) {
         if (x1 <= 3276) {
             const uint32_t m0_3 = (1503246745u + 163840u * (uint32_t)x0) >> 14;
-            output[0] = 16384 + (int32_t)((((16384u * m0_3 + 32768u)) >> 16));
+            output[0] = 16384 + (int32_t)(((16384u * m0_3 + 32768u) >> 16));
             return 0;
         }
         if (x1 <= 16383) {
@@ -306,11 +306,11 @@ uint32_t reference_sum_q15(const int32_t *input, int32_t *output) {
     if (x1 <= 16383) {
         if (x1 <= 9830) {
             const uint32_t m1_1 = (3758104576u + 163840u * (uint32_t)x1) >> 14;
-            output[0] = 32768 + (int32_t)((((16384u * m1_1 + 32768u)) >> 16));
+            output[0] = 32768 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
             return 0;
         }
         const uint32_t m1_2 = (2684362752u + 163840u * (uint32_t)x1) >> 14;
-        output[0] = 49152 + (int32_t)((((16384u * m1_2 + 32768u)) >> 16));
+        output[0] = 49152 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
         return 0;
     }
     output[0] = 65536;

@@ -6,7 +6,7 @@
 #include "fuzzy_math.h"
 
 const uint32_t rules_squeeze_2012_table[253] = {
-    0x31545A46u, 0x906716CBu, 0x000000FDu, 0x02100102u, 0x0C050038u, 0x0C050074u,
+    0x31545A46u, 0x965D0173u, 0x000000FDu, 0x01100102u, 0x0C050038u, 0x0C050074u,
     0x00000000u, 0x00000000u, 0x001000B0u, 0x000000F5u, 0x00000000u, 0x00000000u,
     0x00000000u, 0x00010000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
     0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
@@ -47,7 +47,7 @@ const uint32_t rules_squeeze_2012_table[253] = {
     0x02080000u, 0x00000903u, 0x00000000u, 0xFFFFFF04u, 0x02080000u, 0x00000A03u,
     0x00000000u, 0xFFFFFF04u, 0x02080000u, 0x00000B03u, 0x00000000u, 0xFFFFFF04u,
     0x00000000u, 0x000004E2u, 0x000009C4u, 0x00000EA6u, 0x00001388u, 0x00000500u,
-    0x00000000u, 0x00000000u, 0x00000000u, 0x000000F0u, 0x000000F0u, 0x000000F0u,
+    0x00000000u, 0x00000000u, 0x00000000u, 0x000000F0u, 0x00000000u, 0x00000000u,
     0x00000000u,
 };
 
@@ -62,7 +62,7 @@ uint32_t rules_squeeze_2012(const int32_t *input, int32_t *output) {
         if (x0 <= 9999999) {
             if (x1 <= 49999) {
                 const uint32_t m0_1 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 5000000u) << 8);
-                output[0] = (int32_t)((((5000u * m0_1 + 32768u)) >> 16));
+                output[0] = (int32_t)(((5000u * m0_1 + 32768u) >> 16));
                 return 0;
             }
             if (x1 <= 299999) {
@@ -132,7 +132,7 @@ uint32_t rules_squeeze_2012(const int32_t *input, int32_t *output) {
                 return 0;
             }
             const uint32_t m0_1 = fuzzy_ramp(INT64_C(2355838934), 219902, ((uint32_t)x0 - 5000000u) << 8);
-            output[0] = (int32_t)((((5000u * m0_1 + 32768u)) >> 16));
+            output[0] = (int32_t)(((5000u * m0_1 + 32768u) >> 16));
             return 0;
         }
         output[0] = 5000;

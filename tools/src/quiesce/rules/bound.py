@@ -9,12 +9,17 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import product
 
-from quiesce.rules.compile import WEIGHT_ONE, CompiledBase, IntegerRule
+from quiesce.rules.compile import (
+    MEMBERSHIP_ERROR,
+    WEIGHT_ONE,
+    CompiledBase,
+    IntegerRule,
+    singleton_error,
+)
 from quiesce.rules.integer_cells import Cell
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 
-MEMBERSHIP_ERROR = Fraction(3, 4)  # units of 2^-bits (integer_cells.py)
-PRODUCT_ERROR = Fraction(1, 2)
+PRODUCT_ERROR = Fraction(1, 2)  # at most, of the bits that fuzzy_strength() drops
 WEIGHT_ERROR = Fraction(1, 2 * WEIGHT_ONE)
 MAX_COMBINATIONS = 20_000
 
@@ -40,16 +45,10 @@ def output_bound(compiled: CompiledBase, index: int) -> float | None:
             return None
         worst = max(worst, found)
     # The quotient is to nearest, and so are the singletons.
-    rounding = Fraction(1, 2) + singleton_error(compiled, index)
-    return float((worst + rounding) * compiled.outputs[index].axis.lsb)
-
-
-def singleton_error(compiled: CompiledBase, index: int) -> Fraction:
-    output = compiled.outputs[index]
-    return max(
-        abs(output.axis.position(term.value) - (output.origin + integer))
-        for term, integer in zip(compiled.base.outputs[index].terms, output.terms, strict=True)
+    rounding = Fraction(1, 2) + singleton_error(
+        compiled.outputs[index], compiled.base.outputs[index]
     )
+    return float((worst + rounding) * compiled.outputs[index].axis.lsb)
 
 
 def cell_bound(compiled: CompiledBase, index: int, cells: Sequence[Cell]) -> Fraction | None:
@@ -67,7 +66,8 @@ def cell_bound(compiled: CompiledBase, index: int, cells: Sequence[Cell]) -> Fra
         least /= max(shared.count(term) for term in shared)
     if least <= 0:
         return None
-    values = [output.terms[rules[r].conclusions[index]] for r in fired]
+    scale = 2**output.fraction
+    values = [Fraction(output.terms[rules[r].conclusions[index]], scale) for r in fired]
     errors = [strength_error(compiled, rules[r]) for r in fired]
     spread = max(
         sum(e * abs(c - end) for e, c in zip(errors, values, strict=True))

@@ -28,7 +28,7 @@ class CWriter:
     def drop_unused(self, start: int) -> None:
         """Definitions that nothing after them reads, from line `start` on."""
         for index in range(len(self.lines) - 1, start - 1, -1):
-            found = re.match(r" *const uint32_t (\w+) =", self.lines[index])
+            found = re.match(r" *const uint(?:32|64)_t (\w+) =", self.lines[index])
             name = found and re.compile(rf"\b{found[1]}\b")
             if name and not any(name.search(line) for line in self.lines[index + 1 :]):
                 del self.lines[index]

@@ -12,6 +12,7 @@ from quiesce.rules.c_files import header_c, source_c, units_text
 from quiesce.rules.cli_formats import FORMATS_HELP, add_file_options, compiled_from
 from quiesce.rules.compile import CompiledBase
 from quiesce.rules.emit import why_not_straight
+from quiesce.rules.native_build import FIRMWARE_SOURCES
 
 EPILOG = f"""{FORMATS_HELP}
 written, into --out:
@@ -27,11 +28,15 @@ examples:
   quiesce rules compile fan.fis --lsb temperature=0.01 --lsb speed=1 --name fan --out fan
 """
 
-ENGINE = (
-    *(f"fuzzy/{name}" for name in ("fuzzy.h", "fuzzy.c", "fuzzy_table.h", "fuzzy_table.c")),
+ENGINE_HEADERS = (
+    "fuzzy/fuzzy.h",
+    "fuzzy/fuzzy_forms.h",
     "fuzzy/fuzzy_math.h",
-    *(f"base/{name}" for name in ("fixq.h", "crc32.h", "crc32.c")),
+    "fuzzy/fuzzy_table.h",
+    "base/fixq.h",
+    "base/crc32.h",
 )
+ENGINE = (*ENGINE_HEADERS, *FIRMWARE_SOURCES)
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:

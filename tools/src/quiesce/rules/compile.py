@@ -23,14 +23,19 @@ Q15 = "q15"
 Q16 = "q16"
 INT32_LIMIT = 2**31 - 1
 MAX_OUTPUT_COUNTS = 2**24  # of an output's universe
-GENERAL_BITS = 28  # less where many rules might fire at once: sums of strengths fit 32 bits
+GENERAL_BITS = 28
 WEIGHT_ONE = 1 << 19
+MEMBERSHIP_ERROR = Fraction(5, 8)  # units of 2^-bits (integer_cells.py)
 # Where the sum of strengths is known to lie in 1..2: fewer bits, so that 32-bit words and one
 # division do; rules/check.py proves the error that is left.
 PARTITION_BITS = 16
-WIDE_PARTITION_BITS = 20
+WIDE_PARTITION_BITS = 18
+WIDE_PARTITION_FRACTION = 2
+MAX_FRACTION = 8
+MAX_TERM_BITS = 24
 CENTROID_PARTITION_BITS = 17
 MIN_PARTITION_AREA = Fraction(1, 64)
+MAX_NARROW_ERROR = Fraction(9, 8)  # counts
 NARROW_COUNTS = 2**15  # an output's range inside any cell, for PARTITION_BITS
 
 
@@ -51,7 +56,8 @@ class IntegerOutput:
     axis: Axis  # of the output's integers
     origin: int  # the smallest value that it can take
     default: int
-    terms: tuple[int, ...]  # singletons less the origin; places 0.. of a centroid's sets
+    terms: tuple[int, ...]  # singletons less the origin, in 2^-fraction; or places of the sets
+    fraction: int
     span: int  # counts of a centroid's universe, from the origin
     shapes: OutputShapes | None
 
@@ -88,6 +94,11 @@ class CompiledBase:
     def output_lsb(self, index: int) -> float:
         return float(self.outputs[index].axis.lsb)
 
+    @property
+    def strength_shift(self) -> int:
+        """FUZZY_STRENGTH_SHIFT of the firmware."""
+        return 8 + len(self.rules).bit_length()
+
     @cached_property
     def words(self) -> list[int]:
         from quiesce.rules.table import table_words
@@ -120,12 +131,14 @@ def compile_base(
     order = tuple(left_to_right(variable) for variable in base.inputs)
     sorted_base = replace(base, inputs=tuple(map(reordered, base.inputs, order)))
     rules = tuple(integer_rule(rule, order, made) for rule in base.rules)
-    bits = min(GENERAL_BITS, 32 - len(rules).bit_length())
+    bits = GENERAL_BITS
     cells = all_cells(sorted_base, axes, bits)
     is_grid = has_grid(base, rules) and all(len(cell.ramps) <= 2 for axis in cells for cell in axis)
     is_partition = is_grid and len(made) == 1 and has_partition(cells, bits, made[0])
     if is_partition:
-        bits = partition_bits(made[0], cells, rules)
+        bits, fraction = partition_bits(made[0], base.outputs[0], cells, rules)
+        if made[0].method != CENTROID:
+            made = (with_fraction(made[0], base.outputs[0], fraction),)
         cells = all_cells(sorted_base, axes, bits)
     return CompiledBase(
         base, axes, cells, rules, made, bits, is_grid, is_partition, (*base.notes, *notes), order
@@ -214,14 +227,26 @@ def make_output(output: Output, form: float | str, default: float) -> IntegerOut
         raise UsageError(f"output {output.name}: its default does not fit int32")
     if output.method == CENTROID:
         return centroid_output(output, axis, default_count)
-    values = [nearest(axis.position(term.value)) for term in output.terms]
-    origin = min(values)
+    values = [axis.position(term.value) for term in output.terms]
+    origin = floor(min(values))
     if max(values) - origin >= MAX_OUTPUT_COUNTS:
         raise UsageError(f"output {output.name}: its singletons span more than 2^24 counts")
     if not -INT32_LIMIT <= origin <= INT32_LIMIT - MAX_OUTPUT_COUNTS:
         raise UsageError(f"output {output.name}: its singletons lie too far from 0 for int32")
-    terms = tuple(value - origin for value in values)
-    return IntegerOutput(output.method, axis, origin, default_count, terms, 0, None)
+    return with_fraction(
+        IntegerOutput(output.method, axis, origin, default_count, (), 0, 0, None),
+        output,
+        min(MAX_FRACTION, MAX_TERM_BITS - (ceil(max(values)) - origin).bit_length()),
+    )
+
+
+def with_fraction(made: IntegerOutput, output: Output, fraction: int) -> IntegerOutput:
+    """Its singletons in 2^-fraction of a count, as far as one of them needs that."""
+    exact_terms = [made.axis.position(term.value) - made.origin for term in output.terms]
+    while fraction and all((term * 2 ** (fraction - 1)).denominator == 1 for term in exact_terms):
+        fraction -= 1
+    terms = tuple(max(0, nearest(term * 2**fraction)) for term in exact_terms)
+    return replace(made, terms=terms, fraction=fraction)
 
 
 def centroid_output(output: Output, axis: Axis, default: int) -> IntegerOutput:
@@ -230,7 +255,7 @@ def centroid_output(output: Output, axis: Axis, default: int) -> IntegerOutput:
     low = axis.origin + origin * axis.lsb
     shapes = make_shapes(output, low, span * axis.lsb)
     terms = tuple(shapes.order.index(index) for index in range(len(output.terms)))
-    return IntegerOutput(output.method, axis, origin, default, terms, span, shapes)
+    return IntegerOutput(output.method, axis, origin, default, terms, 0, span, shapes)
 
 
 def integer_rule(
@@ -306,18 +331,35 @@ def is_complementary(ramps: Sequence[Ramp], bits: int) -> bool:
 
 
 def partition_bits(
-    output: IntegerOutput, cells: Sequence[Sequence[Cell]], rules: Sequence[IntegerRule]
-) -> int:
-    if output.method == CENTROID:
-        return CENTROID_PARTITION_BITS
+    made: IntegerOutput,
+    output: Output,
+    cells: Sequence[Sequence[Cell]],
+    rules: Sequence[IntegerRule],
+) -> tuple[int, int]:
+    """Bits of membership and of the singletons' fraction: the fewest that keep the error about one
+    count."""
+    if made.method == CENTROID:
+        return CENTROID_PARTITION_BITS, 0
     rule_of = {pair_of(rule): rule for rule in rules}
-    widest = 0
+    plain = with_fraction(made, output, 0)
+    error = MEMBERSHIP_ERROR / 2**PARTITION_BITS
+    rounding = Fraction(1, 2) + singleton_error(plain, output)
     for rows, columns in product(set_pairs(cells[0]), set_pairs(cells[1])):
-        found = [output.terms[rule_of[pair].conclusions[0]] for pair in product(rows, columns)]
-        widest = max(widest, max(found) - min(found))
-    if widest <= NARROW_COUNTS:
-        return PARTITION_BITS
-    return WIDE_PARTITION_BITS if max(output.terms) < 2**22 else PARTITION_BITS + 2
+        found = [plain.terms[rule_of[pair].conclusions[0]] for pair in product(rows, columns)]
+        spread = max(sum(abs(c - end) for c in found) for end in (min(found), max(found)))
+        is_wide = max(found) - min(found) > NARROW_COUNTS
+        if is_wide or rounding + error * spread > MAX_NARROW_ERROR:
+            room = MAX_TERM_BITS - (max(plain.terms) + 1).bit_length()
+            return WIDE_PARTITION_BITS, max(0, min(WIDE_PARTITION_FRACTION, room))
+    return PARTITION_BITS, 0
+
+
+def singleton_error(made: IntegerOutput, output: Output) -> Fraction:
+    """Of their rounding, in counts."""
+    return max(
+        abs(made.axis.position(term.value) - made.origin - Fraction(integer, 2**made.fraction))
+        for term, integer in zip(output.terms, made.terms, strict=True)
+    )
 
 
 def set_pairs(cells: Sequence[Cell]) -> set[tuple[int, ...]]:

@@ -11,7 +11,6 @@ from math import prod
 from quiesce.rules.affine import Affine, Order, constant, maximum, minimum
 from quiesce.rules.c_writer import CWriter, int_text
 from quiesce.rules.compile import (
-    WEIGHT_ONE,
     CompiledBase,
     IntegerRule,
     is_complementary,
@@ -180,34 +179,27 @@ class Leaf:
 
     def write_outputs(self, order: Order) -> None:
         self.writer.names = 0
-        strengths = list(self.strengths(order))
+        fired = list(self.fired(order))
         defaults = [
-            OutputWriter(self.compiled, self.writer, index, order).write(strengths)
+            OutputWriter(self.compiled, self.writer, index, order).write(fired)
             for index in range(len(self.compiled.outputs))
         ]
         self.writer.line(f"return {' | '.join(text for text in defaults if text) or '0'};")
 
-    def strengths(self, order: Order) -> Iterator[tuple[IntegerRule, Affine]]:
-        """Of the rules that can fire here."""
+    def fired(self, order: Order) -> Iterator[tuple[IntegerRule, Affine]]:
+        """Rules that can fire here, with their memberships."""
         for rule in self.compiled.rules:
-            strength = self.rule_strength(rule, order)
-            if not strength.is_zero:
-                yield rule, strength
+            membership = self.rule_membership(rule, order)
+            if not membership.is_zero and rule.weight_q19:
+                yield rule, membership
 
-    def rule_strength(self, rule: IntegerRule, order: Order) -> Affine:
+    def rule_membership(self, rule: IntegerRule, order: Order) -> Affine:
+        """Of all its conditions together, before the weight."""
         values = []
         for index, fuzzy_set, negated in rule.conditions:
             direct = self.memberships.get((index, fuzzy_set), constant(0))
             values.append(direct.complement(self.one) if negated else direct)
-        strength = (maximum if rule.is_or else minimum)(values, order, self.writer.named)
-        return self.weighted(strength, rule.weight_q19)
-
-    def weighted(self, strength: Affine, weight_q19: int) -> Affine:
-        if weight_q19 == WEIGHT_ONE or strength.is_zero:
-            return strength
-        if strength.is_constant:
-            return constant((strength.offset * weight_q19 + WEIGHT_ONE // 2) // WEIGHT_ONE)
-        return self.writer.named(f"fuzzy_weighted({strength.text()}, {weight_q19}u)")
+        return (maximum if rule.is_or else minimum)(values, order, self.writer.named)
 
 
 def ramp_text(index: int, cell: Cell, ramp: Ramp, one: int) -> str:

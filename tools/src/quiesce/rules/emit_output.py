@@ -1,13 +1,17 @@
 """Straight-line C of one output where the cells of all inputs are known."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import TypeVar
 
 from quiesce.rules.affine import Affine, Order, constant, maximum, minimum
 from quiesce.rules.c_writer import CWriter, int_text
-from quiesce.rules.compile import CompiledBase, IntegerRule
+from quiesce.rules.compile import WEIGHT_ONE, CompiledBase, IntegerRule
 from quiesce.rules.integer_cells import nearest
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 from quiesce.rules.output_shapes import LayerIntegers, Shape, layer_integers
+
+Part = TypeVar("Part")
+Fired = tuple[int, int, Affine]  # term, weight, membership of a rule
 
 
 class OutputWriter:
@@ -18,83 +22,80 @@ class OutputWriter:
         self.output = compiled.outputs[index]
         self.one = 1 << compiled.bits
 
-    def write(self, strengths: Sequence[tuple[IntegerRule, Affine]]) -> str:
+    def write(self, rules: Sequence[tuple[IntegerRule, Affine]]) -> str:
         fired = [
-            (rule.conclusions[self.index], strength)
-            for rule, strength in strengths
-            if rule.conclusions[self.index] is not None
+            (term, rule.weight_q19, membership)
+            for rule, membership in rules
+            if (term := rule.conclusions[self.index]) is not None
         ]
         if not fired:
             self.store(int_text(self.output.default))
             return f"{1 << self.index}u"
         if self.output.method == CENTROID:
-            return CentroidWriter(self).write(self.by_term(fired))
-        if self.output.method == WEIGHTED_MAX:
-            fired = list(self.by_term(fired).items())
-        return self.write_average([(strength, self.output.terms[term]) for term, strength in fired])
+            return CentroidWriter(self).write(fired)
+        bound = sum(self.order.upper_bound(membership) for _, _, membership in fired)
+        if bound < 1 << 32 and all(weight == WEIGHT_ONE for _, weight, _ in fired):
+            return self.write_plain(fired)
+        return WideAverageWriter(self).write(fired)
 
-    def by_term(self, fired: Sequence[tuple[int, Affine]]) -> dict[int, Affine]:
-        terms: dict[int, list[Affine]] = {}
-        for term, strength in fired:
-            terms.setdefault(term, []).append(strength)
-        return {
-            term: maximum(found, self.order, self.writer.named)
-            for term, found in sorted(terms.items())
-        }
+    def whole(self, value: int) -> int:
+        """A singleton without its fraction of a count."""
+        return value >> self.output.fraction << self.output.fraction
+
+    def based(self, least: int) -> int:
+        return self.output.origin + (least >> self.output.fraction)
 
     def store(self, text: str) -> None:
         self.writer.line(f"output[{self.index}] = {text};")
 
-    def write_average(self, parts: Sequence[tuple[Affine, int]]) -> str:
+    def write_plain(self, fired: Sequence[Fired]) -> str:
+        """Without weights the memberships are strengths, in 32 bits."""
+        parts = [(membership, self.output.terms[term]) for term, _, membership in fired]
+        if self.output.method == WEIGHTED_MAX:
+            parts = [
+                (maximum(found, self.order, self.writer.named), self.output.terms[term])
+                for term, found in by_term((term, m) for term, _, m in fired).items()
+            ]
         strength = sum_of([part for part, _ in parts])
-        values = [value for _, value in parts]
-        least = min(values)
-        base = self.output.origin + least
-        if max(values) == least:
-            return self.write_guarded(strength, lambda: self.store(int_text(base)))
+        least = self.whole(min(value for _, value in parts))
         weighted = sum_of([part * (value - least) for part, value in parts])
-        high = self.highest(parts, least)
-        return self.write_guarded(
-            strength,
-            lambda: self.store(
-                with_base(base, self.quotient(weighted, strength, parts, high, least))
-            ),
+        base = self.based(least)
+        is_default = "" if self.order.lower_bound(strength) > 0 else f"{strength.text()} == 0"
+        if weighted.is_zero:
+            return self.guarded(is_default, lambda: self.store(int_text(base)))
+        return self.guarded(
+            is_default,
+            lambda: self.store(with_base(base, self.quotient(weighted, strength, parts, least))),
         )
 
-    def highest(self, parts: Sequence[tuple[Affine, int]], least: int) -> int:
-        """A bound of the weighted sum plus half the sum."""
-        weighted = sum_of([part * (value - least) for part, value in parts])
-        strength = sum_of([part for part, _ in parts])
-        return self.order.upper_bound(weighted * 2 + strength) // 2 + 1
-
     def quotient(
-        self,
-        weighted: Affine,
-        strength: Affine,
-        parts: Sequence[tuple[Affine, int]],
-        high: int,
-        least: int,
+        self, weighted: Affine, strength: Affine, parts: Sequence[tuple[Affine, int]], least: int
     ) -> str:
-        is_narrow = high < 1 << 32
-        if strength.is_constant and strength.offset == self.one and is_narrow:
-            bits = self.compiled.bits
-            return f"(({(weighted + constant(self.one // 2)).text()}) >> {bits})"
-        if is_narrow:
+        scaled = strength * (1 << self.output.fraction)
+        high = self.order.upper_bound(weighted * 2 + scaled) // 2 + 1
+        if high < 1 << 32 and scaled == constant(self.one):
+            rounded = (weighted + constant(self.one // 2)).text()
+            return f"({rounded} >> {self.compiled.bits})"
+        if high < 1 << 32:
             name = self.writer.fresh("n")
-            self.writer.line(f"const uint32_t {name} = {strength.text()};")
+            self.writer.line(f"const uint32_t {name} = {scaled.text()};")
             return f"({weighted.text()} + {name} / 2u) / {name}"
+        is_short = high < 1 << 43 and self.order.upper_bound(scaled) <= 1 << 21
         wide = " + ".join(
             f"{part.wide_text()} * {value - least}u" for part, value in parts if value != least
         )
-        return f"fuzzy_quotient({wide}, {strength.text()})"
+        if is_short:
+            return f"fuzzy_short_quotient({wide}, {scaled.text()})"
+        denominator = f"{strength.wide_text()} << {self.output.fraction}"
+        return f"fuzzy_quotient({wide}, {denominator})"
 
-    def write_guarded(self, strength: Affine, write: Callable[[], None]) -> str:
-        """The default where no rule fires; strength: 0 there and only there."""
-        if self.order.lower_bound(strength) > 0:
+    def guarded(self, is_default: str, write: Callable[[], None]) -> str:
+        """is_default: condition for the default, "" for never."""
+        if not is_default:
             write()
             return ""
         flag = self.writer.fresh("d")
-        self.writer.line(f"const uint32_t {flag} = {strength.text()} == 0 ? 1u : 0;")
+        self.writer.line(f"const uint32_t {flag} = {is_default} ? 1u : 0;")
         self.writer.line(f"if ({flag} != 0) {{")
         with self.writer.indented():
             self.store(int_text(self.output.default))
@@ -103,6 +104,60 @@ class OutputWriter:
             write()
         self.writer.line("}")
         return f"{flag} << {self.index}" if self.index else flag
+
+
+class WideAverageWriter:
+    """A weighted average of strengths in 64 bits, as the table engine has it for any base."""
+
+    def __init__(self, output: OutputWriter) -> None:
+        self.output, self.writer = output, output.writer
+        self.shift = output.compiled.strength_shift
+
+    def write(self, fired: Sequence[Fired]) -> str:
+        parts = [(term, self.named(self.strength_text(m, weight))) for term, weight, m in fired]
+        if self.output.output.method == WEIGHTED_MAX:
+            parts = [(term, self.greatest(names)) for term, names in by_term(parts).items()]
+        terms = self.output.output.terms
+        least = self.output.whole(min(terms[term] for term, _ in parts))
+        total = self.named(" + ".join(name for _, name in parts))
+        weighted = " + ".join(
+            f"{name} * {terms[term] - least}u" for term, name in parts if terms[term] != least
+        )
+        base = self.output.based(least)
+        text = (
+            with_base(base, f"fuzzy_quotient({weighted}, {total} << {self.output.output.fraction})")
+            if weighted
+            else int_text(base)
+        )
+        is_default = "" if self.always_fires(fired) else f"{total} == 0"
+        return self.output.guarded(is_default, lambda: self.output.store(text))
+
+    def strength_text(self, membership: Affine, weight: int) -> str:
+        return f"fuzzy_strength({membership.text()}, {weight}u, {self.shift}u)"
+
+    def always_fires(self, fired: Sequence[Fired]) -> bool:
+        return any(
+            self.output.order.lower_bound(membership) * weight >> self.shift > 0
+            for _, weight, membership in fired
+        )
+
+    def greatest(self, names: Sequence[str]) -> str:
+        result = names[0]
+        for name in names[1:]:
+            result = self.named(f"fuzzy_max_u64({result}, {name})")
+        return result
+
+    def named(self, text: str) -> str:
+        name = self.writer.fresh("w")
+        self.writer.line(f"const uint64_t {name} = {text};")
+        return name
+
+
+def by_term(parts: Iterable[tuple[int, Part]]) -> dict[int, list[Part]]:
+    found: dict[int, list[Part]] = {}
+    for term, part in parts:
+        found.setdefault(term, []).append(part)
+    return dict(sorted(found.items()))
 
 
 def sum_of(parts: Sequence[Affine]) -> Affine:
@@ -128,10 +183,24 @@ class CentroidWriter:
         self.wide = "" if self.compiled.is_partition else "wide_"
         self.more = self.less = ""
 
-    def write(self, by_term: dict[int, Affine]) -> str:
-        filled = {rank: self.below_peak(rank, strength) for rank, strength in by_term.items()}
+    def write(self, fired: Sequence[Fired]) -> str:
+        strengths = by_term((term, self.weighted(m, weight)) for term, weight, m in fired)
+        filled = {
+            rank: self.below_peak(rank, maximum(found, self.order, self.writer.named))
+            for rank, found in strengths.items()
+        }
         total = sum_of(list(filled.values()))
-        return self.output.write_guarded(total, lambda: self.write_sums(filled))
+        is_default = ""
+        if self.order.lower_bound(total) <= 0:
+            is_default = " && ".join(f"{strength.text()} == 0" for strength in filled.values())
+        return self.output.guarded(is_default, lambda: self.write_sums(filled))
+
+    def weighted(self, membership: Affine, weight: int) -> Affine:
+        if weight == WEIGHT_ONE:
+            return membership
+        if membership.is_constant:
+            return constant((membership.offset * weight + WEIGHT_ONE // 2) // WEIGHT_ONE)
+        return self.writer.named(f"fuzzy_weighted({membership.text()}, {weight}u)")
 
     def below_peak(self, rank: int, strength: Affine) -> Affine:
         peak = nearest(self.peaks[rank] * (1 << self.bits))

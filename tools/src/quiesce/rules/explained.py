@@ -8,8 +8,8 @@ To first order, with strengths s off by at most e (bound.py):
 
 import numpy as np
 
-from quiesce.rules.bound import singleton_error, strength_error
-from quiesce.rules.compile import CompiledBase
+from quiesce.rules.bound import strength_error
+from quiesce.rules.compile import CompiledBase, singleton_error
 from quiesce.rules.model import CENTROID, WEIGHTED_SUM
 from quiesce.rules.output_shapes import OutputShapes, Shape
 from quiesce.rules.reference import Reference, centroid, term_strengths
@@ -44,9 +44,10 @@ def output_errors(compiled: CompiledBase, index: int, reference: Reference) -> n
         terms = list(range(count))
     if output.method == CENTROID:
         return centroid_errors(compiled, index, strengths, off)
-    values = np.array([compiled.outputs[index].terms[term] for term in terms], dtype=float)
-    values += compiled.outputs[index].origin
-    return average_errors(values, strengths, off, float(singleton_error(compiled, index)))
+    made = compiled.outputs[index]
+    values = np.array([made.terms[term] for term in terms], dtype=float) / 2**made.fraction
+    rounding = float(singleton_error(made, output))
+    return average_errors(values + made.origin, strengths, off, rounding)
 
 
 def average_errors(

@@ -5,7 +5,7 @@ membership is, exactly,
 
     mu = (a + b * ((n - first) << shift)) >> 32        64 bit, floor; 0 <= mu <= 2^bits
 
-which is the real one rounded to nearest, within 3/4 of its unit 2^-bits. A pair of sets that adds
+which is the real one rounded to nearest, within 5/8 of its unit 2^-bits. A pair of sets that adds
 up to 1 adds up to 2^bits exactly. Beyond the universe the memberships of its ends hold, so that
 nothing clamps at run time.
 """

@@ -12,7 +12,13 @@ from quiesce.errors import BenchFailure, UsageError, one_line
 from quiesce.paths import build_folder, root
 
 NATIVE = Path(__file__).parent / "native"
-FIRMWARE_SOURCES = ("fuzzy/fuzzy.c", "fuzzy/fuzzy_table.c", "base/crc32.c")
+FIRMWARE_SOURCES = (
+    "fuzzy/fuzzy.c",
+    "fuzzy/fuzzy_centroid.c",
+    "fuzzy/fuzzy_partition.c",
+    "fuzzy/fuzzy_table.c",
+    "base/crc32.c",
+)
 FLAGS = ("-std=c11", "-O2", "-fno-strict-aliasing", "-Wall", "-Wextra", "-Werror")
 
 

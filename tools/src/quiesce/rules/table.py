@@ -21,7 +21,7 @@ MAX_WORDS = 65535
 MAX_CELLS = 255  # of an input
 GRID_STRIDE = 8
 METHOD = {WEIGHTED_SUM: 0, WEIGHTED_MAX: 1, CENTROID: 2}
-ANY, GRID, PARTITION_SUM, PARTITION_MAX, PARTITION_CENTROID = range(5)
+ANY, PARTITION_SUM, PARTITION_MAX, PARTITION_CENTROID = range(4)
 SKEWED_LEFT, BEGINS_STRETCH, BEGINS_SET = 1, 2, 4
 NONE = 0xFF
 UINT32 = 0xFFFFFFFF
@@ -58,7 +58,8 @@ def table_words(compiled: CompiledBase) -> list[int]:
         rules | len(compiled.rules) << 16,
         *padded(outputs, 4),
     ]
-    quick = [1 << compiled.bits, compiled.outputs[0].origin & UINT32, twins]
+    first = compiled.outputs[0]
+    quick = [1 << compiled.bits, first.origin & UINT32, twins | first.fraction << 16]
     rest = [*header, *quick, *body.words]
     return [MAGIC, crc32(rest), *rest]
 
@@ -103,7 +104,7 @@ def twins_of(terms: Sequence[int]) -> int:
 def form_of(compiled: CompiledBase) -> int:
     """fuzzy_form_t: the most that the engine can take for granted."""
     if not compiled.is_partition:
-        return GRID if compiled.is_grid else ANY
+        return ANY
     return {
         WEIGHTED_SUM: PARTITION_SUM,
         WEIGHTED_MAX: PARTITION_MAX,
@@ -162,34 +163,25 @@ def packed(values: Sequence[int]) -> list[int]:
 
 def add_output(body: Body, compiled: CompiledBase, index: int) -> int:
     output = compiled.outputs[index]
-    # Places beyond the sets are read where a strength is 0.
-    places = grid_terms(compiled, index) if form_of(compiled) == GRID else []
-    grid = [0 if term == NONE else term for term in places]
-    if output.method == CENTROID:
-        values, terms = 0, body.add(grid)
-        data = body.add(centroid_words(compiled, output))
-        assert output.shapes is not None
-        count = len(output.shapes.order)
+    if output.shapes:
         shapes = output.shapes
-        term_layers = sum(len(shape.layers) for shape in shapes.terms)
-        every = (
-            *shapes.shapes,
-            *(shape for shapes_here in shapes.stretches for shape in shapes_here),
+        data = body.add(centroid_words(compiled, output))
+        every = (*shapes.shapes, *(one for stretch in shapes.stretches for one in stretch))
+        count = len(shapes.order)
+        layers, term_layers = (
+            sum(len(shape.layers) for shape in chosen) for chosen in (every, shapes.terms)
         )
-        layers = sum(len(shape.layers) for shape in every)
     else:
-        values = body.add([output.terms[term] for term in grid])
-        terms = body.add(grid)
         data = body.add(output.terms)
         count, layers, term_layers = len(output.terms), 0, 0
     head = METHOD[output.method] | count << 8 | layers << 16
     return body.add(
-        [head, output.default, output.origin, output.span, values, terms, data, term_layers]
+        [head, output.default, output.origin, output.span, data, term_layers, output.fraction, 0]
     )
 
 
 def grid_terms(compiled: CompiledBase, index: int) -> list[int]:
-    """Term of every pair of sets, rows of GRID_STRIDE."""
+    """Of a partition: the term of every pair of sets, rows of GRID_STRIDE."""
     conclusion = {pair_of(rule): rule.conclusions[index] for rule in compiled.rules}
     rows, columns = (len(variable.sets) for variable in compiled.base.inputs)
     grid = [NONE] * (rows * GRID_STRIDE)

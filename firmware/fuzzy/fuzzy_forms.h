@@ -1,0 +1,40 @@
+/// What the files of the table engine share; nothing for the outside.
+#ifndef FUZZY_FORMS_H
+#define FUZZY_FORMS_H
+
+#include "fuzzy.h"
+
+/// distance: fuzzy_distance(); below 2^31 wherever the ramp has a slope.
+static inline uint32_t fuzzy_membership(const fuzzy_ramp_t *ramp, uint32_t distance) {
+    const int64_t a = (int64_t)((uint64_t)(uint32_t)ramp->a_high << 32 | ramp->a_low);
+    return fuzzy_ramp(a, ramp->b, distance);
+}
+
+static inline uint32_t fuzzy_distance(const fuzzy_cell_t *cell, int32_t input) {
+    return ((uint32_t)input - (uint32_t)cell->first) << cell->shift;
+}
+
+static inline const fuzzy_output_t *fuzzy_output_of(const fuzzy_table_t *table, uint32_t index) {
+    return fuzzy_at(table, table->output_offset[index]);
+}
+
+/// How high what lies between two sets that overlap is filled.
+static inline uint32_t fuzzy_between(const fuzzy_layer_t *layer, const uint32_t *strength) {
+    uint32_t most = 0;
+    for (uint32_t i = layer->first + 1u; i < layer->second; i++) {
+        most = fuzzy_max(most, strength[i]);
+    }
+    return most;
+}
+
+/// Centroid of an output of any table. strength: of its terms; cut at their peaks here. Returns 1,
+/// and the default in *value, where all are 0.
+uint32_t fuzzy_any_centroid(const fuzzy_table_t *table, const fuzzy_output_t *output,
+                            uint32_t *strength, int32_t *value);
+
+/// The partitions of fuzzy_form_t, as fuzzy_evaluate().
+uint32_t fuzzy_partition_sum(const fuzzy_table_t *table, const int32_t *input, int32_t *value);
+uint32_t fuzzy_partition_max(const fuzzy_table_t *table, const int32_t *input, int32_t *value);
+uint32_t fuzzy_partition_centroid(const fuzzy_table_t *table, const int32_t *input, int32_t *value);
+
+#endif
