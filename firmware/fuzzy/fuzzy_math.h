@@ -59,7 +59,7 @@ static inline uint32_t fuzzy_fill_height(uint32_t beta, uint32_t start, uint32_t
     return beta <= start ? 0 : fuzzy_min(beta - start, height);
 }
 
-/// One layer of an output set (tools/src/quiesce/rules/output_shapes.py), as shares of the
+/// One layer of an output set (tools/src/quiesce/rules/integers/output_shapes.py), as shares of the
 /// output's span: filled up to beta it has the area beta w, w = width - beta narrowing, and the
 /// moment middle beta w +- beta^2 (skew - beta skew_narrowing).
 typedef struct {

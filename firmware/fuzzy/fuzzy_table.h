@@ -1,5 +1,5 @@
 /// A rule base as a table of 32-bit words: a C constant, or loaded at run time. tools/src/quiesce/
-/// rules/table.py makes it; fuzzy_table_check() says whether it can be trusted.
+/// rules/integers/table.py makes it; fuzzy_table_check() says whether it can be trusted.
 ///
 /// Words: header (fuzzy_table_t), then at the offsets that it gives
 ///   cells    of each input, in ascending order over all of int32: fuzzy_cell_t, then one
@@ -142,7 +142,7 @@ typedef struct {
 #define FUZZY_BEGINS_SET 4u
 
 /// A stretch of the height of a set, or of the overlap of two, in which its flanks are straight
-/// (tools/src/quiesce/rules/output_shapes.py has the equations).
+/// (tools/src/quiesce/rules/integers/output_shapes.py has the equations).
 typedef struct {
     uint8_t first;  ///< term, from left to right
     uint8_t second; ///< the same, or the one that overlaps it

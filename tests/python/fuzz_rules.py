@@ -16,10 +16,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from quiesce.errors import UsageError
-from quiesce.rules import fcl, fis, fll
-from quiesce.rules.files import read_rules, read_text, write_text
+from quiesce.rules.formats import fcl, fis, fll
+from quiesce.rules.formats.files import read_rules, read_text, write_text
+from quiesce.rules.formats.scan import END, NAME, NUMBER, STRING, Source, Token, scan
 from quiesce.rules.model import RuleBase
-from quiesce.rules.scan import END, NAME, NUMBER, STRING, Source, Token, scan
 from rule_files import TEXTS, random_file_base
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -170,8 +170,17 @@ def test_other_command_is_refused(refused, arguments, words) -> None:
 
 @pytest.mark.parametrize(
     "command",
-    [[], ["hil"], ["replay"], ["record"], ["plant"], ["plant", "check"], ["params"], ["rules"],
-     ["rules", "convert"]],
+    [
+        [],
+        ["hil"],
+        ["replay"],
+        ["record"],
+        ["plant"],
+        ["plant", "check"],
+        ["params"],
+        ["rules"],
+        ["rules", "convert"],
+    ],
 )
 def test_help_is_on_stdout(quiesce, command) -> None:
     result = quiesce(*command, "--help")

@@ -33,8 +33,8 @@ from quiesce.fuzzy_random import STYLES, random_base
 from quiesce.fuzzy_reference import MAX, SUM, VARIANTS, Variant, reference_base
 from quiesce.fuzzy_sets import LAYOUTS, PARTITION, input_sets, output_sets
 from quiesce.fuzzy_suite import Budget, judge_base
-from quiesce.rules.compile import compile_base
-from quiesce.rules.files import read_text, write_text
+from quiesce.rules.formats.files import read_text, write_text
+from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.model import CENTROID, METHODS, WEIGHTED_MAX, RuleBase, trapezoid, triangle
 from quiesce.rules.reference import evaluate, input_memberships
 

@@ -18,8 +18,11 @@ def struct_words(name: str) -> list[tuple[str, bool]]:
     words = []
     for kind, field in WORD.findall(body):
         if kind == "quiesce_peak_t":
-            words += [(f"peak{i}_{part}", True)
-                      for i in range(3) for part in ("freq_uHz", "amp_um_s2", "phase_mdeg")]
+            words += [
+                (f"peak{i}_{part}", True)
+                for i in range(3)
+                for part in ("freq_uHz", "amp_um_s2", "phase_mdeg")
+            ]
         else:
             words.append((field, kind == "int32_t"))
     return words
@@ -39,8 +42,9 @@ def test_telemetry_messages_are_the_words_of_the_telemetry_struct():
     assert all(s.start == 0 and s.length == 32 for s in signals)
 
 
-@pytest.mark.parametrize(("signal", "prefix"),
-                         [("state", "QUIESCE_STATE"), ("fault", "QUIESCE_FAULT")])
+@pytest.mark.parametrize(
+    ("signal", "prefix"), [("state", "QUIESCE_STATE"), ("fault", "QUIESCE_FAULT")]
+)
 @pytest.mark.parametrize("message", ["LockstepCommand", "telemetry"])
 def test_value_tables_are_the_enumerations(message, signal, prefix):
     name = f"Telemetry{signal.capitalize()}" if message == "telemetry" else message
@@ -67,5 +71,8 @@ def test_units_match_the_names():
 def test_frames_of_a_tick_carry_at_most_four_bytes():
     for message in DATABASE.messages:
         if message.name.startswith("Telemetry") or message.name in (
-                "LockstepStimulus", "LockstepCurrent", "LockstepCommand"):
+            "LockstepStimulus",
+            "LockstepCurrent",
+            "LockstepCommand",
+        ):
             assert message.length == 4, message.name

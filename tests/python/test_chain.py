@@ -104,8 +104,11 @@ def test_documented_table_is_what_the_command_writes(quiesce, tmp_path: Path) ->
 
 def test_chain_follows_the_corner(quiesce, tmp_path: Path) -> None:
     assert quiesce("chain", "--out", "out", "--set", "dc_cutoff_mHz=1000").returncode == 0
-    row = next(r for r in (tmp_path / "out/conditioning.md").read_text().splitlines()
-               if r.startswith("| 1 |"))
+    row = next(
+        r
+        for r in (tmp_path / "out/conditioning.md").read_text().splitlines()
+        if r.startswith("| 1 |")
+    )
     gain_dB, phase_deg = map(float, row.split("|")[2].split("/"))
     assert gain_dB == pytest.approx(-3.0, abs=0.05)
     assert phase_deg == pytest.approx(45.0, abs=0.3)

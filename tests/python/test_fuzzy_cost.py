@@ -11,7 +11,7 @@ from quiesce.fuzzy_cost import EngineCost, PeerCost
 from quiesce.fuzzy_random import random_base
 from quiesce.fuzzy_reference import CENTROID, MAX, Q15, VARIANTS, Variant, compiled
 from quiesce.fuzzy_tables import engine_table, peer_table
-from quiesce.rules.compile import compile_base
+from quiesce.rules.integers.compile import compile_base
 from quiesce.signal_cost import count
 
 STEPS = 40

@@ -22,7 +22,7 @@ from quiesce.fuzzy_peers import (
 )
 from quiesce.fuzzy_random import random_base
 from quiesce.fuzzy_reference import SUM, reference_base
-from quiesce.rules.files import write_text
+from quiesce.rules.formats.files import write_text
 
 CASES = [make_case(random_base(5, number), 5, 60) for number in range(6)]
 

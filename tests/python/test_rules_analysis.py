@@ -4,10 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from quiesce.rules.analysis import analyse
-from quiesce.rules.coverage import uncovered_regions
-from quiesce.rules.dominance import dominated_rules, outdoes
-from quiesce.rules.findings import (
+from quiesce.rules.analysis.analyse import analyse
+from quiesce.rules.analysis.coverage import uncovered_regions
+from quiesce.rules.analysis.dominance import dominated_rules, outdoes
+from quiesce.rules.analysis.findings import (
     CONTRADICTORY,
     DUPLICATE,
     EMPTY,
@@ -20,6 +20,7 @@ from quiesce.rules.findings import (
     WARNING,
     Finding,
 )
+from quiesce.rules.analysis.monotone import reversals
 from quiesce.rules.model import (
     CENTROID,
     METHODS,
@@ -35,7 +36,6 @@ from quiesce.rules.model import (
     trapezoid,
     triangle,
 )
-from quiesce.rules.monotone import reversals
 from quiesce.rules.reference import evaluate
 from rule_examples import one_input_base, random_base, reference_base
 

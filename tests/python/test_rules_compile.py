@@ -15,12 +15,12 @@ from quiesce.errors import UsageError
 from quiesce.fuzzy_random import random_base
 from quiesce.fuzzy_reference import MAX, SUM, VARIANTS, Variant, compiled, reference_base
 from quiesce.fuzzy_reference import METHODS as REFERENCE_METHODS
-from quiesce.rules.c_files import header_c, source_c
-from quiesce.rules.compile import CompiledBase, compile_base
-from quiesce.rules.emit import NotStraight, straight_line_c, why_not_straight
-from quiesce.rules.engine import STRAIGHT, TABLE, Engine
-from quiesce.rules.explained import explained_errors
-from quiesce.rules.integer_cells import Cell, exact_membership
+from quiesce.rules.integers.c_files import header_c, source_c
+from quiesce.rules.integers.cells import Cell, exact_membership
+from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.emit import NotStraight, straight_line_c, why_not_straight
+from quiesce.rules.integers.engine import STRAIGHT, TABLE, Engine
+from quiesce.rules.integers.explained import explained_errors
 from quiesce.rules.model import (
     CENTROID,
     WEIGHTED_MAX,

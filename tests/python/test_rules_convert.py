@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import run_quiesce
 from quiesce.errors import UsageError
-from quiesce.rules.files import read_text
+from quiesce.rules.formats.files import read_text
 from quiesce.rules.model import (
     RuleBase,
 )

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from quiesce.rules.compare import Grid, compare_outputs, make_grid, matched
 from quiesce.rules.model import (
     METHODS,
     WEIGHTED_MAX,
@@ -19,7 +18,8 @@ from quiesce.rules.model import (
     triangle,
 )
 from quiesce.rules.reference import evaluate
-from quiesce.rules.structure import structural_differences
+from quiesce.rules.views.compare import Grid, compare_outputs, make_grid, matched
+from quiesce.rules.views.structure import structural_differences
 from rule_examples import one_input_base, random_base, reference_base
 
 SINGLETON = ROOT / "bench/rules/reference_singleton.fcl"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from quiesce.errors import UsageError
-from quiesce.rules.files import FORMATS, read_rules, read_text
+from quiesce.rules.formats.files import FORMATS, read_rules, read_text
 from quiesce.rules.model import (
     CENTROID,
     WEIGHTED_MAX,

@@ -3,8 +3,8 @@
 import pytest
 from fuzz_rules import Finding, check, fuzz
 from quiesce.errors import UsageError
-from quiesce.rules import fll, scan, write_fll
-from quiesce.rules.files import FORMATS, read_text
+from quiesce.rules.formats import fll, scan, write_fll
+from quiesce.rules.formats.files import FORMATS, read_text
 from rule_files import FLL, TEXTS
 
 MUTANTS = 3000

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from conftest import run_quiesce
 from quiesce.cli import main
-from quiesce.rules.files import read_text
+from quiesce.rules.formats.files import read_text
 from rule_faults import FCL_CASES, FIS_CASES, FLL_CASES, Edits
 from rule_files import FCL, FIS, TEXTS
 

@@ -12,7 +12,7 @@ import pytest
 from conftest import ROOT, run_quiesce
 from quiesce.bench_exe import Bench
 from quiesce.rule_surface import rule_surface
-from quiesce.rules.files import read_rules
+from quiesce.rules.formats.files import read_rules
 from quiesce.rules.reference import evaluate
 
 FILES = ["best.fcl", "report.html", "report.md", "result.json", "state.json"]
@@ -206,9 +206,7 @@ def test_damaged_state_is_refused_and_kept(recipe, quiesce, tmp_path) -> None:
     (tmp_path / "out").mkdir()
     file = tmp_path / "out/state.json"
     file.write_text('{"schema": "quiesce-rules-optimize", "version": 1, "settings"')
-    result = quiesce(
-        "rules", "optimize", *SHORT, "--start", recipe, "--resume", "--out", "out"
-    )
+    result = quiesce("rules", "optimize", *SHORT, "--start", recipe, "--resume", "--out", "out")
     assert result.returncode == 2 and result.stdout == ""
     assert len(result.stderr.splitlines()) == 1
     assert "state.json is damaged" in result.stderr and "--anew" in result.stderr

@@ -16,8 +16,8 @@ from quiesce.rules.model import (
     Singleton,
     triangle,
 )
-from quiesce.rules.optimize_genes import GAP_SHARE, breakpoints, make_space
-from quiesce.rules.optimize_start import chain
+from quiesce.rules.optimize.genes import GAP_SHARE, breakpoints, make_space
+from quiesce.rules.optimize.start import chain
 
 ALL = ("rules", "sets", "outputs")
 

@@ -9,20 +9,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from quiesce.errors import UsageError
-from quiesce.rules import optimize_state
-from quiesce.rules.optimize_de import DeSettings
-from quiesce.rules.optimize_ga import Coding, GaSettings, roulette_shares
-from quiesce.rules.optimize_methods import make_search
-from quiesce.rules.optimize_nsga2 import (
+from quiesce.rules.optimize import state as optimize_state
+from quiesce.rules.optimize.de import DeSettings
+from quiesce.rules.optimize.ga import Coding, GaSettings, roulette_shares
+from quiesce.rules.optimize.methods import make_search
+from quiesce.rules.optimize.nsga2 import (
     NsgaSettings,
     crowding,
     fronts,
     survivors,
     tournament,
 )
-from quiesce.rules.optimize_objective import Steady
-from quiesce.rules.optimize_run import Limits, Problem, Runner, simplify
-from quiesce.rules.optimize_state import State
+from quiesce.rules.optimize.objective import Steady
+from quiesce.rules.optimize.run import Limits, Problem, Runner, simplify
+from quiesce.rules.optimize.state import State
 
 LEVELS = (5,) * 6 + (1024,) * 3
 TARGET = (0, 4, 2, 3, 1, 4, 700, 20, 333)
@@ -44,7 +44,13 @@ def distance(genome: tuple[int, ...]) -> float:
 
 def steady_of(genome: tuple[int, ...]) -> tuple[Steady, ...]:
     """Two objectives in conflict: distance from the target, and how large the first genes are."""
-    return (Steady(100.0 - distance(genome), 0.0, float(sum(genome[:6])),),)
+    return (
+        Steady(
+            100.0 - distance(genome),
+            0.0,
+            float(sum(genome[:6])),
+        ),
+    )
 
 
 def make_problem(evaluate=steady_of, objectives: int = 1) -> Problem:
@@ -129,9 +135,7 @@ def test_same_seed_same_search_whatever_the_jobs(tmp_path, name) -> None:
 @pytest.mark.parametrize("name", METHODS)
 def test_other_seed_other_search(name) -> None:
     seeds = (3, 4)
-    searches = [
-        make_search(LEVELS, FIRST, METHODS[name], np.random.default_rng(s)) for s in seeds
-    ]
+    searches = [make_search(LEVELS, FIRST, METHODS[name], np.random.default_rng(s)) for s in seeds]
     first, second = (next(search) for search in searches)
     assert first != second
 
@@ -248,9 +252,7 @@ def test_resumed_search_is_the_uninterrupted_one(tmp_path, name) -> None:
 
     objectives = 2 if name == "nsga2" else 1
     known = loaded(parts)
-    resumed = run(
-        parts, name, Limits(12), make_problem(counting, objectives), state=known, jobs=1
-    )
+    resumed = run(parts, name, Limits(12), make_problem(counting, objectives), state=known, jobs=1)
     assert list(resumed.visited.items()) == list(expected.visited.items())
     assert resumed.history == expected.history
     assert resumed.state.digests == expected.state.digests

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from quiesce.errors import UsageError
-from quiesce.rules import files
-from quiesce.rules.files import FORMATS, read_text, write_text
+from quiesce.rules.formats import files
+from quiesce.rules.formats.files import FORMATS, read_text, write_text
+from quiesce.rules.formats.same import difference
 from quiesce.rules.model import (
     CENTROID,
     METHODS,
@@ -24,7 +25,6 @@ from quiesce.rules.model import (
     triangle,
 )
 from quiesce.rules.reference import evaluate
-from quiesce.rules.same import difference
 from rule_examples import random_base, reference_base
 from rule_files import TANK, random_file_base, with_output
 

@@ -10,9 +10,9 @@ from conftest import ROOT
 from matplotlib import image
 from quiesce.errors import UsageError
 from quiesce.rules.model import WEIGHTED_MAX, Rule
-from quiesce.rules.rule_text import rules_text
-from quiesce.rules.surface import evaluate_slice, even_points, make_slice
-from quiesce.rules.visits import Visits, fired_rules, read_visits, visited_cells
+from quiesce.rules.views.rule_text import rules_text
+from quiesce.rules.views.surface import evaluate_slice, even_points, make_slice
+from quiesce.rules.views.visits import Visits, fired_rules, read_visits, visited_cells
 from rule_examples import random_base, reference_base
 
 SINGLETON = ROOT / "bench/rules/reference_singleton.fcl"

@@ -91,12 +91,17 @@ def main() -> int:
     parser.add_argument("--check", action="store_true", help="compare only, exit 1 on a difference")
     args = parser.parse_args()
     outputs = generate_sources(SOURCE.read_bytes())
-    stale = [name for name, text in outputs.items()
-             if not (OUTPUT / name).exists() or (OUTPUT / name).read_text() != text]
+    stale = [
+        name
+        for name, text in outputs.items()
+        if not (OUTPUT / name).exists() or (OUTPUT / name).read_text() != text
+    ]
     if args.check:
         for name in stale:
-            print(f"firmware/comm/generated/{name} does not match quiesce.dbc: "
-                  "run tools/gen/dbc.py", file=sys.stderr)
+            print(
+                f"firmware/comm/generated/{name} does not match quiesce.dbc: run tools/gen/dbc.py",
+                file=sys.stderr,
+            )
         return 1 if stale else 0
     for name in stale:
         (OUTPUT / name).parent.mkdir(exist_ok=True)

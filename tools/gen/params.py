@@ -149,12 +149,17 @@ def main() -> int:
         "firmware/param/param_table.c": table(params, digest),
         "docs/parameters.md": page(params, digest),
     }
-    stale = [name for name, text in outputs.items()
-             if not (ROOT / name).exists() or (ROOT / name).read_text() != text]
+    stale = [
+        name
+        for name, text in outputs.items()
+        if not (ROOT / name).exists() or (ROOT / name).read_text() != text
+    ]
     if args.check:
         for name in stale:
-            print(f"{name} is not what parameters.toml gives: run tools/gen/params.py",
-                  file=sys.stderr)
+            print(
+                f"{name} is not what parameters.toml gives: run tools/gen/params.py",
+                file=sys.stderr,
+            )
         return 1 if stale else 0
     for name in stale:
         (ROOT / name).write_text(outputs[name])

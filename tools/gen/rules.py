@@ -13,9 +13,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/src"))
 
-from quiesce.rules.c_files import header_c, source_c  # noqa: E402
-from quiesce.rules.compile import compile_base  # noqa: E402
-from quiesce.rules.files import read_rules  # noqa: E402
+from quiesce.rules.formats.files import read_rules  # noqa: E402
+from quiesce.rules.integers.c_files import header_c, source_c  # noqa: E402
+from quiesce.rules.integers.compile import compile_base  # noqa: E402
 
 SOURCES = sorted((ROOT / "firmware/fuzzy").glob("*.fcl"))
 TARGET = ROOT / "firmware/fuzzy/generated"

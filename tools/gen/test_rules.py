@@ -19,11 +19,11 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/src"))
 
 from quiesce.fuzzy_reference import CENTROID, MAX, SUM, reference_base  # noqa: E402
-from quiesce.rules.c_files import table_c  # noqa: E402
-from quiesce.rules.compile import CompiledBase, compile_base  # noqa: E402
-from quiesce.rules.emit import straight_line_c, why_not_straight  # noqa: E402
-from quiesce.rules.explained import explained_errors  # noqa: E402
-from quiesce.rules.files import read_rules  # noqa: E402
+from quiesce.rules.formats.files import read_rules  # noqa: E402
+from quiesce.rules.integers.c_files import table_c  # noqa: E402
+from quiesce.rules.integers.compile import CompiledBase, compile_base  # noqa: E402
+from quiesce.rules.integers.emit import straight_line_c, why_not_straight  # noqa: E402
+from quiesce.rules.integers.explained import explained_errors  # noqa: E402
 from quiesce.rules.model import RuleBase  # noqa: E402
 from quiesce.rules.reference import Reference, evaluate  # noqa: E402
 

@@ -36,7 +36,7 @@ from quiesce.fuzzy_tables import (
     peer_table,
     random_table,
 )
-from quiesce.rules.engine import STRAIGHT, TABLE
+from quiesce.rules.integers.engine import STRAIGHT, TABLE
 
 NAME = "fuzzy"
 HELP = "the fuzzy engines: accuracy, instructions, random rule bases, beside their peers"

@@ -64,9 +64,7 @@ def degrees(response: np.ndarray) -> np.ndarray:
     return np.degrees(np.angle(response))
 
 
-def measure_dc_removal(
-    bench: Bench, freq_Hz: float, cutoff_mHz: int, tick_rate_Hz: int
-) -> complex:
+def measure_dc_removal(bench: Bench, freq_Hz: float, cutoff_mHz: int, tick_rate_Hz: int) -> complex:
     """Drives the firmware with a sine and compares accel_um_s2 with what went in."""
     settling_s = SETTLING_TIME_CONSTANTS * 1000.0 / (2.0 * np.pi * cutoff_mHz)
     first = int(np.ceil(settling_s * tick_rate_Hz))
@@ -80,9 +78,7 @@ def measure_dc_removal(
     return fitted(accel_m_s2[first:], turns[first:]) / fitted(sent_m_s2[first:], turns[first:])
 
 
-def conditioned(
-    bench: Bench, counts: np.ndarray, cutoff_mHz: int, tick_rate_Hz: int
-) -> np.ndarray:
+def conditioned(bench: Bench, counts: np.ndarray, cutoff_mHz: int, tick_rate_Hz: int) -> np.ndarray:
     """accel_um_s2 of every tick in m/s2; every other parameter at its default."""
     settings = [f"tick_rate_Hz={tick_rate_Hz}", f"dc_cutoff_mHz={cutoff_mHz}"]
     with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:

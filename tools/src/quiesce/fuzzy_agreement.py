@@ -18,8 +18,8 @@ from quiesce.fuzzy_points import (
 )
 from quiesce.fuzzy_random import RandomBase
 from quiesce.fuzzy_sets import breakpoints
-from quiesce.rules.compile import CompiledBase, compile_base
-from quiesce.rules.engine import STRAIGHT, TABLE, Engine
+from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.engine import STRAIGHT, TABLE, Engine
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM, Output, RuleBase
 from quiesce.rules.reference import evaluate, membership, term_strengths
 

@@ -16,10 +16,10 @@ from quiesce.bench_exe import ending
 from quiesce.errors import BenchFailure, UsageError
 from quiesce.fuzzy_peers import COUNT, FUZZYLITE, built_peer
 from quiesce.fuzzy_reference import CENTROID, METHODS, Q15, SUM, Variant, compiled, reference_base
-from quiesce.rules.emit import straight_line_c
-from quiesce.rules.engine import STRAIGHT, TABLE
-from quiesce.rules.files import write_text
-from quiesce.rules.native_build import build, firmware_sources
+from quiesce.rules.formats.files import write_text
+from quiesce.rules.integers.emit import straight_line_c
+from quiesce.rules.integers.engine import STRAIGHT, TABLE
+from quiesce.rules.integers.native_build import build, firmware_sources
 
 EVALUATIONS = 1000
 SEED = 12345

@@ -15,8 +15,8 @@ from quiesce.cost_images import built_image
 from quiesce.errors import BenchFailure
 from quiesce.fuzzy_reference import FORMATS, VARIANTS, Variant, compiled
 from quiesce.link_map import read_sections
-from quiesce.rules.compile import CompiledBase
-from quiesce.rules.engine import STRAIGHT, TABLE
+from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.engine import STRAIGHT, TABLE
 from quiesce.signal_cost import count
 
 PEER_EVALUATIONS = 1000

@@ -26,8 +26,8 @@ from quiesce.fuzzy_reference import (
     compiled,
     reference_base,
 )
-from quiesce.rules.engine import STRAIGHT, TABLE, Engine
-from quiesce.rules.files import write_text
+from quiesce.rules.formats.files import write_text
+from quiesce.rules.integers.engine import STRAIGHT, TABLE, Engine
 from quiesce.rules.reference import evaluate
 
 ENGINES = (TABLE, STRAIGHT)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.fuzzy_sets import breakpoints
-from quiesce.rules.compile import CompiledBase
+from quiesce.rules.integers.compile import CompiledBase
 from quiesce.rules.model import Input, RuleBase
 from quiesce.rules.reference import evaluate
 

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from quiesce.paths import root
-from quiesce.rules.compile import CompiledBase, compile_base
-from quiesce.rules.files import read_rules
+from quiesce.rules.formats.files import read_rules
+from quiesce.rules.integers.compile import CompiledBase, compile_base
 from quiesce.rules.model import WEIGHTED_MAX, WEIGHTED_SUM, RuleBase
 
 SUM, MAX, CENTROID = "sum", "max", "centroid"

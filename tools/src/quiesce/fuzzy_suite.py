@@ -21,8 +21,8 @@ from quiesce.fuzzy_agreement import (
 from quiesce.fuzzy_peers import Answer, Job, fuzzylite, pyfuzzylite, skfuzzy, skfuzzy_holds
 from quiesce.fuzzy_random import random_base
 from quiesce.progress import Progress
-from quiesce.rules.emit import why_not_straight
-from quiesce.rules.files import write_text
+from quiesce.rules.formats.files import write_text
+from quiesce.rules.integers.emit import why_not_straight
 
 WORKERS = 2
 RESOLUTION = 1000  # samples of the peers' centroids

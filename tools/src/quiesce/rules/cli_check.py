@@ -9,14 +9,14 @@ from dataclasses import asdict
 from typing import Any
 
 from quiesce.errors import EXIT_FAILED, UsageError
-from quiesce.rules.analysis import analyse
-from quiesce.rules.bound import error_bounds
+from quiesce.rules.analysis.analyse import analyse
+from quiesce.rules.analysis.findings import ERROR, Finding
 from quiesce.rules.cli_formats import FORMATS_HELP, add_file_options, compiled_from
-from quiesce.rules.compile import CompiledBase
-from quiesce.rules.emit import why_not_straight
-from quiesce.rules.findings import ERROR, Finding
-from quiesce.rules.walk import MAX_WALKED_POINTS, OutputWalk, Walk, walk
-from quiesce.rules.walk_model import grid_points
+from quiesce.rules.integers.bound import error_bounds
+from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.emit import why_not_straight
+from quiesce.rules.integers.walk import MAX_WALKED_POINTS, OutputWalk, Walk, walk
+from quiesce.rules.integers.walk_model import grid_points
 
 EPILOG = f"""{FORMATS_HELP}
 what is done:

@@ -8,11 +8,11 @@ from pathlib import Path
 from quiesce.atomic import output_files
 from quiesce.errors import UsageError
 from quiesce.paths import root, shown
-from quiesce.rules.c_files import header_c, source_c, units_text
 from quiesce.rules.cli_formats import FORMATS_HELP, add_file_options, compiled_from
-from quiesce.rules.compile import CompiledBase
-from quiesce.rules.emit import why_not_straight
-from quiesce.rules.native_build import FIRMWARE_SOURCES
+from quiesce.rules.integers.c_files import header_c, source_c, units_text
+from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.emit import why_not_straight
+from quiesce.rules.integers.native_build import FIRMWARE_SOURCES
 
 EPILOG = f"""{FORMATS_HELP}
 written, into --out:

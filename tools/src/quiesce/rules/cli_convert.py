@@ -6,7 +6,7 @@ from pathlib import Path
 
 from quiesce.atomic import output_files
 from quiesce.errors import UsageError
-from quiesce.rules.files import FORMATS, format_of, read_rules, write_text
+from quiesce.rules.formats.files import FORMATS, format_of, read_rules, write_text
 
 EPILOG = """examples:
   quiesce rules convert bench/rules/reference_centroid.fcl --to fll

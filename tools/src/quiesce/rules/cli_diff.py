@@ -11,20 +11,20 @@ from typing import Any
 from quiesce.atomic import output_files
 from quiesce.errors import EXIT_FAILED
 from quiesce.paths import build_folder, shown
+from quiesce.rules.analysis.findings import number
 from quiesce.rules.cli_show import add_reading_options, read_with_notes, slice_of
-from quiesce.rules.compare import (
+from quiesce.rules.model import RuleBase
+from quiesce.rules.views.compare import (
     OutputDifference,
     compare_outputs,
     make_grid,
     matched,
 )
-from quiesce.rules.diff_plots import plot_difference
-from quiesce.rules.findings import number
-from quiesce.rules.model import RuleBase
-from quiesce.rules.page import make_page, picture, preformatted
-from quiesce.rules.plots import file_name, save
-from quiesce.rules.structure import structural_differences
-from quiesce.rules.surface import Slice
+from quiesce.rules.views.diff_plots import plot_difference
+from quiesce.rules.views.page import make_page, picture, preformatted
+from quiesce.rules.views.plots import file_name, save
+from quiesce.rules.views.structure import structural_differences
+from quiesce.rules.views.surface import Slice
 
 EPILOG = """examples:
   quiesce rules diff old.fcl new.fcl

@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 from quiesce.errors import UsageError
-from quiesce.rules.compile import Q15, Q16, CompiledBase, compile_base
-from quiesce.rules.files import read_rules
+from quiesce.rules.formats.files import read_rules
+from quiesce.rules.integers.compile import Q15, Q16, CompiledBase, compile_base
 from quiesce.rules.model import RuleBase
 
 # The controller's own: frequency in uHz, RMS acceleration in um/s2, current in mA, from files in

@@ -11,13 +11,13 @@ from quiesce.errors import UsageError
 from quiesce.params import effective_params
 from quiesce.paths import shown
 from quiesce.rules.cli_optimize import stopping_pool
-from quiesce.rules.files import write_text
-from quiesce.rules.optimize_arguments import add_settle, drives_V, freqs_Hz, whole
-from quiesce.rules.optimize_evaluate import ClosedLoop, driver_max_A
-from quiesce.rules.optimize_lookup import Sweep, lookup_json, lookup_table, sweep
-from quiesce.rules.optimize_result import rule_table, set_lines
-from quiesce.rules.optimize_scenarios import plant_file, steady_scenarios
-from quiesce.rules.optimize_start import recipe_base
+from quiesce.rules.formats.files import write_text
+from quiesce.rules.optimize.arguments import add_settle, drives_V, freqs_Hz, whole
+from quiesce.rules.optimize.evaluate import ClosedLoop, driver_max_A
+from quiesce.rules.optimize.lookup import Sweep, lookup_json, lookup_table, sweep
+from quiesce.rules.optimize.result import rule_table, set_lines
+from quiesce.rules.optimize.scenarios import plant_file, steady_scenarios
+from quiesce.rules.optimize.start import recipe_base
 
 FREQS, DRIVES = "5,10,15,20", "0.09,0.1,0.12"
 STEP_mA = 250

@@ -15,20 +15,20 @@ from quiesce.bench_exe import Bench
 from quiesce.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.params import effective_params
 from quiesce.paths import build_folder, shown
-from quiesce.rules import optimize_state
-from quiesce.rules.files import read_rules
-from quiesce.rules.optimize_arguments import add_settle, drives_V, freqs_Hz, whole
-from quiesce.rules.optimize_evaluate import driver_max_A, require_bench_option
-from quiesce.rules.optimize_ga import SELECTIONS
-from quiesce.rules.optimize_genes import RULES, SETS, TUNABLE
-from quiesce.rules.optimize_methods import GA, METHODS, method_settings
-from quiesce.rules.optimize_objective import OBJECTIVES, Objective, parse_weights
-from quiesce.rules.optimize_report import headline, write_report
-from quiesce.rules.optimize_result import Found, result_json, text_sections
-from quiesce.rules.optimize_run import Limits
-from quiesce.rules.optimize_scenarios import plant_file, steady_scenarios
-from quiesce.rules.optimize_session import Session, Task, say, start_from_recipe
-from quiesce.rules.optimize_state import FILE_NAME, unfinished
+from quiesce.rules.formats.files import read_rules
+from quiesce.rules.optimize import state as optimize_state
+from quiesce.rules.optimize.arguments import add_settle, drives_V, freqs_Hz, whole
+from quiesce.rules.optimize.evaluate import driver_max_A, require_bench_option
+from quiesce.rules.optimize.ga import SELECTIONS
+from quiesce.rules.optimize.genes import RULES, SETS, TUNABLE
+from quiesce.rules.optimize.methods import GA, METHODS, method_settings
+from quiesce.rules.optimize.objective import OBJECTIVES, Objective, parse_weights
+from quiesce.rules.optimize.report import headline, write_report
+from quiesce.rules.optimize.result import Found, result_json, text_sections
+from quiesce.rules.optimize.run import Limits
+from quiesce.rules.optimize.scenarios import plant_file, steady_scenarios
+from quiesce.rules.optimize.session import Session, Task, say, start_from_recipe
+from quiesce.rules.optimize.state import FILE_NAME, unfinished
 from quiesce.scenarios import Scenario
 
 STEADY = ("sine_5Hz", "sine_10Hz", "sine_15Hz", "sine_20Hz")

@@ -12,13 +12,13 @@ from quiesce.atomic import output_files
 from quiesce.bench_exe import Bench
 from quiesce.errors import UsageError
 from quiesce.paths import build_folder, shown
-from quiesce.rules.files import read_rules
+from quiesce.rules.formats.files import read_rules
 from quiesce.rules.model import RuleBase
-from quiesce.rules.page import make_page, picture, preformatted
-from quiesce.rules.plots import file_name, plot_memberships, plot_output, save
-from quiesce.rules.rule_text import fired_text, rules_text, summary, visits_text
-from quiesce.rules.surface import Slice, make_slice
-from quiesce.rules.visits import (
+from quiesce.rules.views.page import make_page, picture, preformatted
+from quiesce.rules.views.plots import file_name, plot_memberships, plot_output, save
+from quiesce.rules.views.rule_text import fired_text, rules_text, summary, visits_text
+from quiesce.rules.views.surface import Slice, make_slice
+from quiesce.rules.views.visits import (
     TELEMETRY,
     VALID,
     Fired,

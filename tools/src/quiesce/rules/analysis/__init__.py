@@ -1,0 +1,1 @@
+"""What is wrong with a rule base, found without running it."""

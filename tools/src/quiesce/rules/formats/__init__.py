@@ -1,0 +1,1 @@
+"""Rule files read and written: FCL, FLL, FIS."""

@@ -1,0 +1,1 @@
+"""Searching rule bases on the simulated plant."""

@@ -1,0 +1,153 @@
+"""What a rule base does to the structure: the controller with it in closed loop, on the bench.
+
+The one place that knows how a rule base reaches the bench: compiled to the words of the run-time
+table, in a file, by its option `run --rules`.
+"""
+
+import hashlib
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from quiesce.bench_exe import Bench, setting_options
+from quiesce.errors import UsageError
+from quiesce.hil_metrics import mean_current_A, reduction_pct
+from quiesce.hil_runs import TRACE_COLUMNS, Case, Run
+from quiesce.laws import CONSTANT_BEST, OPEN_LOOP, find
+from quiesce.paths import build_folder
+from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.model import RuleBase
+from quiesce.rules.optimize.objective import Outcome, Steady
+from quiesce.scenarios import Scenario, read_toml
+from quiesce.trace import Trace, read_trace
+
+# A rule base for the controller has Hz and m/s2 in, A out; the controller uHz, um/s2 and mA.
+INPUT_LSB = (1e-6, 1e-6)
+OUTPUT_LSB = (1e-3,)
+
+
+@dataclass(frozen=True)
+class Place:
+    """One steady state of one scenario."""
+
+    scenario: Scenario
+    window: int
+    freq_Hz: float
+    drive_V: float
+    amp_um: float  # at 0 A
+    accel_rms_mm_s2: float  # at 0 A
+
+    @property
+    def label(self) -> str:
+        return f"{self.scenario.name}, {self.freq_Hz:g} Hz"
+
+
+def require_controller_shape(base: RuleBase) -> None:
+    if len(base.inputs) != 2 or len(base.outputs) != 1:
+        raise UsageError(
+            f"{base.name} has {len(base.inputs)} inputs and {len(base.outputs)} outputs; the "
+            "controller's rules have two inputs, frequency (Hz) and RMS acceleration (m/s2), and "
+            "one output, current (A)"
+        )
+
+
+def require_bench_option(bench: Bench) -> None:
+    if "--rules" not in bench.call("--help"):
+        raise UsageError("the bench that is built takes no rules; run ./tools/hil, which builds it")
+
+
+def bench_digest() -> str:
+    """Of the executable, so that results of another build are not taken for those of this one."""
+    exe = build_folder() / "host/sim_hil/quiesce_bench"
+    return hashlib.sha256(exe.read_bytes()).hexdigest()[:16]
+
+
+def driver_max_A(scenarios: Sequence[Scenario]) -> float:
+    """The largest current that any of the plants' drivers gives."""
+    return max(float(read_toml(s.plant_file)["driver"]["max_current_A"]) for s in scenarios)
+
+
+class ClosedLoop:
+    """The scenarios, with their figures at 0 A. Calls may come from several threads."""
+
+    def __init__(
+        self,
+        bench: Bench,
+        scenarios: Sequence[Scenario],
+        settings: Sequence[str] = (),
+        options: Sequence[str] = (),
+    ) -> None:
+        """settings: NAME=VALUE for every run. options: of the bench, such as the noise."""
+        self._bench = bench
+        self._scenarios = scenarios
+        self._settings = settings
+        self._options = options
+        self._at_rest = [self._run(scenario, find(OPEN_LOOP).bench_law) for scenario in scenarios]
+        self.places = [place for run in self._at_rest for place in places_of(run)]
+
+    def with_options(self, options: Sequence[str]) -> "ClosedLoop":
+        """The same under other options of the bench."""
+        return ClosedLoop(self._bench, self._scenarios, self._settings, options)
+
+    def of_rules(self, base: RuleBase) -> Outcome:
+        words = compile_base(base, inputs=list(INPUT_LSB), outputs=list(OUTPUT_LSB)).words
+        with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
+            file = Path(folder) / "rules"
+            file.write_text("".join(f"0x{word:08x}\n" for word in words), encoding="ascii")
+            return self._outcome("fuzzy", ("--rules", str(file)))
+
+    def of_constant(self, current_mA: int) -> Outcome:
+        law = find(CONSTANT_BEST).bench_law
+        return self._outcome(law, setting_options([f"constant_current_mA={current_mA}"]))
+
+    def _outcome(self, law: str, options: Sequence[str]) -> Outcome:
+        found: list[Steady] = []
+        for at_rest in self._at_rest:
+            run = self._run(at_rest.case.scenario, law, options)
+            found += [steady(run, at_rest, i) for i in range(window_count(run))]
+        return tuple(found)
+
+    def _run(self, scenario: Scenario, law: str, options: Sequence[str] = ()) -> Run:
+        words = [
+            "--scenario", str(scenario.file), "--law", law, "--target", "host",
+            *setting_options(self._settings), *self._options, *options,
+        ]  # fmt: skip
+        case = Case(scenario, find(OPEN_LOOP), "host")
+        if len(scenario.windows_s) < 2:
+            return Run(case, self._bench.json("run", *words), {})
+        # The bench gives the mean current of the last window only.
+        with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
+            file = Path(folder) / "trace"
+            figures = self._bench.json("run", *words, "--trace", str(file))
+            trace: Trace = read_trace(file, TRACE_COLUMNS)
+        return Run(case, figures, trace)
+
+
+def window_count(run: Run) -> int:
+    return 2 if run.figures["freq2_hz"] is not None else 1
+
+
+def keys(window: int) -> tuple[str, str, str]:
+    number = "" if window == 0 else "2"
+    return f"freq{number}_hz", f"amp{number}_um", f"accel_rms{number}_mm_s2"
+
+
+def places_of(at_rest: Run) -> list[Place]:
+    found = []
+    for window in range(window_count(at_rest)):
+        freq_Hz, amp_um, accel_mm_s2 = (at_rest.figures[key] for key in keys(window))
+        if not amp_um or not accel_mm_s2:
+            raise UsageError(
+                f"scenario {at_rest.case.scenario.name} does not vibrate at {freq_Hz:g} Hz with "
+                "0 A; nothing can be reduced there"
+            )
+        drive_V = at_rest.figures["drive_V"]
+        found.append(Place(at_rest.case.scenario, window, freq_Hz, drive_V, amp_um, accel_mm_s2))
+    return found
+
+
+def steady(run: Run, at_rest: Run, window: int) -> Steady:
+    _, amp, accel = keys(window)
+    reductions = [reduction_pct(run.figures[key], at_rest.figures[key]) for key in (amp, accel)]
+    return Steady(reductions[0] or 0.0, reductions[1] or 0.0, mean_current_A(run, window))

@@ -1,0 +1,1 @@
+"""Rule bases and their differences drawn and told."""
