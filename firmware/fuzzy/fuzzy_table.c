@@ -202,8 +202,10 @@ static bool is_partition_good(const fuzzy_table_t *table, const largest_t *large
     if (output->method == FUZZY_CENTROID) {
         return are_below(table, HEADER_WORDS, words, output->terms);
     }
-    // Strengths add up to twice `one` at most; fuzzy_short_quotient() takes 43 bits.
-    const uint32_t limit = (uint32_t)((UINT64_C(1) << 42) / table->one);
+    // Strengths add up to twice `one` at most; fuzzy_short_quotient() takes 43 bits, half of what
+    // it divides by included.
+    const uint32_t half = (1u << table->fraction) / 2u;
+    const uint32_t limit = (uint32_t)((UINT64_C(1) << 42) / table->one) - half;
     return are_below(table, HEADER_WORDS, words, fuzzy_min(limit, MAX_VALUE)) &&
            (output->method == FUZZY_SUM || is_inside(table, table->twins_offset, words));
 }

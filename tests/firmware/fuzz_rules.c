@@ -56,9 +56,10 @@ static copy_t new_copy(uint32_t count) {
 }
 
 static uint32_t changed(bytes_t *bytes, uint32_t kind, uint32_t word, uint32_t count) {
-    static const uint32_t special[] = {0,          1,          0xFF,       0xFFFF,
-                                       0x10000,    0x7FFFFFFF, 0x80000000, 0xFFFFFFFF,
-                                       0x00FFFFFF, 0x01000000, 0x10000000, 0x10000001};
+    static const uint32_t special[] = {
+        0,          1,          0xFF,       0xFFFF,     0x10000,    0x003FFFFF, 0x00FFFFFE,
+        0x00FFFFFF, 0x01000000, 0x10000000, 0x10000001, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF,
+    };
     const uint32_t shift = 8u * (kind >> 4 & 3u);
     switch (kind & 7u) {
     case 0:
@@ -88,6 +89,11 @@ static copy_t damaged_case(bytes_t *bytes, const rule_case_t *one) {
         const uint32_t at = take(bytes, 2) % one->count;
         const uint32_t kind = take(bytes, 1);
         copy.words[at] = changed(bytes, kind, copy.words[at], one->count);
+        // The same number in a whole stretch, such as all values of a partition.
+        const uint32_t end = at + ((kind & 8u) != 0 ? take(bytes, 1) : 0);
+        for (uint32_t i = at; i < end && i + 1u < one->count; i++) {
+            copy.words[i + 1u] = copy.words[i];
+        }
     }
     return copy;
 }
@@ -119,15 +125,16 @@ static uint32_t greatest(const uint32_t *values, uint32_t count) {
     return most;
 }
 
-// The largest value above the origin that a table's numbers allow.
+// The largest value above the origin that a table's numbers allow, to nearest.
 static uint32_t range_of(const fuzzy_table_t *table, const fuzzy_output_t *output) {
     if (output->method == FUZZY_CENTROID) {
         return output->span;
     }
-    if (table->form == FUZZY_ANY) {
-        return greatest(fuzzy_at(table, output->terms_offset), output->terms);
-    }
-    return UINT32_C(1) << 24;
+    // A partition has the terms of its rules behind its header, too; nobody compares them.
+    const uint32_t most = table->form == FUZZY_ANY
+                              ? greatest(fuzzy_at(table, output->terms_offset), output->terms)
+                              : (UINT32_C(1) << 24) - 1u;
+    return (most + (1u << output->fraction) / 2u) >> output->fraction;
 }
 
 static void check_outputs(const fuzzy_table_t *table, uint32_t is_default, const int32_t *value) {
@@ -172,6 +179,8 @@ static int32_t edge_of(const fuzzy_table_t *table, uint32_t i, uint32_t *state) 
         return cell->first;
     case 1:
         return cell->last;
+    case 2:
+        return (int32_t)(cell->first + (int64_t)(length / 2u)); // strengths add up to the most
     default:
         return (int32_t)(cell->first + (int64_t)(random_u32(state) % length));
     }

@@ -335,6 +335,45 @@ static void test_values_of_a_partition(void) {
     CHANGED(CASE_CENTROID_Q15, FUZZY_TABLE_OUTPUT, words()[16] = output(0)->terms);
 }
 
+// Everywhere the given value, and, in every cell with two sets, both at 1/2: strengths add up to
+// the most that they can.
+static void make_full_partition(uint32_t value, uint8_t fraction) {
+    load(CASE_SUM_WIDE);
+    table()->fraction = fraction;
+    output(0)->fraction = fraction;
+    for (uint32_t i = 0; i < 5u * FUZZY_GRID_STRIDE; i++) {
+        words()[16u + i] = value;
+    }
+    const int32_t half = (int32_t)(table()->one / 2u);
+    for (uint32_t i = 0; i < 2u; i++) {
+        for (uint32_t k = 0; k < table()->axis[i].cells; k++) {
+            if (cell(i, k)->cell.ramps == 2u) {
+                fuzzy_ramp_t *ramp = cell(i, k)->ramp;
+                ramp[0] = (fuzzy_ramp_t){.a_low = 0, .a_high = half, .set = ramp[0].set};
+                ramp[1] = (fuzzy_ramp_t){.a_low = UINT32_MAX, .a_high = half, .set = ramp[1].set};
+            }
+        }
+    }
+    repair_crc();
+}
+
+static void test_largest_values_of_a_partition_are_averaged(void) {
+    const int32_t input[] = {5000, 5000};
+    for (uint8_t fraction = 0; fraction <= 2u; fraction++) {
+        uint32_t value = 1u << 24;
+        make_full_partition(value, fraction);
+        TEST_ASSERT_EQUAL_INT(FUZZY_TABLE_OUTPUT, verdict());
+        while (verdict() != FUZZY_TABLE_OK) {
+            make_full_partition(--value, fraction);
+        }
+        TEST_ASSERT_GREATER_THAN_UINT32((1u << 24) - 4u, value);
+        int32_t found = -1;
+        TEST_ASSERT_EQUAL_UINT32(0, fuzzy_evaluate(table(), input, &found));
+        const uint32_t to_nearest = (value + (1u << fraction) / 2u) >> fraction;
+        TEST_ASSERT_EQUAL_INT32(table()->origin + (int32_t)to_nearest, found);
+    }
+}
+
 static void test_header_of_a_partition_agrees_with_its_output(void) {
     CHANGED(CASE_SUM_Q15, FUZZY_TABLE_OUTPUT, table()->origin++);
     CHANGED(CASE_SUM_Q15, FUZZY_TABLE_OUTPUT, output(0)->method = FUZZY_MAX);
@@ -431,6 +470,7 @@ int main(void) {
     RUN_TEST(test_places_of_outputs);
     RUN_TEST(test_terms_of_an_output);
     RUN_TEST(test_values_of_a_partition);
+    RUN_TEST(test_largest_values_of_a_partition_are_averaged);
     RUN_TEST(test_header_of_a_partition_agrees_with_its_output);
     RUN_TEST(test_sets_of_a_centroid);
     RUN_TEST(test_steep_flanks);

@@ -229,7 +229,7 @@ def make_output(output: Output, form: float | str, default: float) -> IntegerOut
         return centroid_output(output, axis, default_count)
     values = [axis.position(term.value) for term in output.terms]
     origin = floor(min(values))
-    if max(values) - origin >= MAX_OUTPUT_COUNTS:
+    if ceil(max(values)) - origin >= MAX_OUTPUT_COUNTS:
         raise UsageError(f"output {output.name}: its singletons span more than 2^24 counts")
     if not -INT32_LIMIT <= origin <= INT32_LIMIT - MAX_OUTPUT_COUNTS:
         raise UsageError(f"output {output.name}: its singletons lie too far from 0 for int32")
