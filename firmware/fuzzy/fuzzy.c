@@ -114,13 +114,13 @@ static uint32_t average(const fuzzy_output_t *output, sums_t sums, int32_t *valu
 static uint32_t centroid(const fuzzy_table_t *table, const fuzzy_output_t *output, uint32_t index,
                          const memberships_t *memberships, int32_t *value) {
     const fuzzy_rule_t *rule = rules_of(table);
-    uint32_t strongest[FUZZY_MAX_SETS] = {0};
+    uint64_t strongest[FUZZY_MAX_SETS] = {0};
     for (uint32_t i = 0; i < table->rules; i++) {
         const uint32_t term = rule[i].conclusion[index];
         if (term != FUZZY_NO_TERM) {
             const uint32_t membership = rule_membership(&rule[i], memberships, table->one);
-            strongest[term] =
-                fuzzy_max(strongest[term], fuzzy_weighted(membership, weight_q19(&rule[i])));
+            strongest[term] = fuzzy_max_u64(strongest[term],
+                                            fuzzy_fine_strength(membership, weight_q19(&rule[i])));
         }
     }
     return fuzzy_any_centroid(table, output, strongest, value);

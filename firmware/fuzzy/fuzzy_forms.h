@@ -18,19 +18,10 @@ static inline const fuzzy_output_t *fuzzy_output_of(const fuzzy_table_t *table, 
     return fuzzy_at(table, table->output_offset[index]);
 }
 
-/// How high what lies between two sets that overlap is filled.
-static inline uint32_t fuzzy_between(const fuzzy_layer_t *layer, const uint32_t *strength) {
-    uint32_t most = 0;
-    for (uint32_t i = layer->first + 1u; i < layer->second; i++) {
-        most = fuzzy_max(most, strength[i]);
-    }
-    return most;
-}
-
-/// Centroid of an output of any table. strength: of its terms; cut at their peaks here. Returns 1,
-/// and the default in *value, where all are 0.
+/// Centroid of an output of any table. strength: fuzzy_fine_strength() of its terms; cut at their
+/// peaks here. Returns 1, and the default in *value, where all are 0.
 uint32_t fuzzy_any_centroid(const fuzzy_table_t *table, const fuzzy_output_t *output,
-                            uint32_t *strength, int32_t *value);
+                            uint64_t *strength, int32_t *value);
 
 /// The partitions of fuzzy_form_t, as fuzzy_evaluate().
 uint32_t fuzzy_partition_sum(const fuzzy_table_t *table, const int32_t *input, int32_t *value);

@@ -13,6 +13,10 @@ static inline uint32_t fuzzy_max(uint32_t a, uint32_t b) {
     return a > b ? a : b;
 }
 
+static inline uint64_t fuzzy_min_u64(uint64_t a, uint64_t b) {
+    return a < b ? a : b;
+}
+
 static inline uint64_t fuzzy_max_u64(uint64_t a, uint64_t b) {
     return a > b ? a : b;
 }
@@ -23,9 +27,11 @@ static inline uint64_t fuzzy_strength(uint32_t membership, uint32_t weight_q19, 
     return ((uint64_t)membership * weight_q19) >> shift;
 }
 
-/// A strength of a centroid: membership * weight, to nearest.
-static inline uint32_t fuzzy_weighted(uint32_t membership, uint32_t weight_q19) {
-    return (uint32_t)(((uint64_t)membership * weight_q19 + (1u << 18)) >> 19);
+/// A strength of a centroid: of membership * weight FUZZY_FINE_BITS more than the membership has,
+/// so that sums of areas fit 64 bits.
+#define FUZZY_FINE_BITS 6u
+static inline uint64_t fuzzy_fine_strength(uint32_t membership, uint32_t weight_q19) {
+    return ((uint64_t)membership * weight_q19) >> (19u - FUZZY_FINE_BITS);
 }
 
 /// (a + b * distance) >> 32, floor: a straight line of a cell, its result 0 .. 2^28.
@@ -112,25 +118,32 @@ typedef struct {
     uint64_t moment; ///< 2^-(bits + 25)
 } fuzzy_wide_sums_t;
 
-/// steep: narrowing, skew and skew_narrowing are 2^-steep of their values.
+static inline uint32_t fuzzy_q30(uint64_t beta, uint32_t bits) {
+    return (uint32_t)(bits < 30u ? beta << (30u - bits) : beta >> (bits - 30u));
+}
+
+/// beta: 2^-bits; the sums' units below follow. steep: narrowing, skew and skew_narrowing are
+/// 2^-steep of their values.
 static inline void fuzzy_add_wide_area(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f, uint32_t steep,
-                                       uint32_t bits, uint32_t beta) {
-    const uint32_t narrowed = fuzzy_high_half(beta << (30u - bits), f.narrowing_q28) << steep;
+                                       uint32_t bits, uint64_t beta) {
+    const uint32_t narrowed = fuzzy_high_half(fuzzy_q30(beta, bits), f.narrowing_q28) << steep;
     const uint32_t width_q26 = f.width_q26 - fuzzy_min(narrowed, f.width_q26);
-    sums->area += (uint64_t)beta * width_q26;
-    sums->moment += (uint64_t)beta * fuzzy_high_half(width_q26, f.middle_q31);
+    sums->area += beta * width_q26;
+    sums->moment += beta * fuzzy_high_half(width_q26, f.middle_q31);
 }
 
 static inline void fuzzy_add_wide_skew(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f, uint32_t steep,
-                                       uint32_t bits, uint32_t beta) {
-    sums->moment += (uint64_t)beta * (fuzzy_skew_q25(f, beta << (30u - bits)) << steep);
+                                       uint32_t bits, uint64_t beta) {
+    sums->moment += beta * (fuzzy_skew_q25(f, fuzzy_q30(beta, bits)) << steep);
 }
 
 /// (more - less): moment / area in counts, to nearest, from 21 significant bits. 0 .. span.
 static inline uint32_t fuzzy_wide_centre(fuzzy_wide_sums_t more, fuzzy_wide_sums_t less,
                                          uint32_t span) {
-    const uint64_t area = more.area > less.area ? more.area - less.area : 1u;
-    const uint64_t moment = more.moment > less.moment ? more.moment - less.moment : 0;
+    // Each sum may wrap; their differences do not.
+    const uint64_t area = (int64_t)(more.area - less.area) > 0 ? more.area - less.area : 1u;
+    const uint64_t moment =
+        (int64_t)(more.moment - less.moment) > 0 ? more.moment - less.moment : 0;
     const uint32_t zeros = leading_zeros_u64(area);
     const uint64_t divisor = zeros < 43u ? area >> (43u - zeros) : area << (zeros - 43u);
     const uint64_t scaled = zeros < 43u ? moment >> (43u - zeros) : moment << (zeros - 43u);

@@ -19,6 +19,15 @@ static const fuzzy_pair_cell_t *find_pair(const fuzzy_table_t *table, uint32_t i
     return cell;
 }
 
+// How high what lies between two sets that overlap is filled.
+static uint32_t between(const fuzzy_layer_t *layer, const uint32_t *strength) {
+    uint32_t most = 0;
+    for (uint32_t i = layer->first + 1u; i < layer->second; i++) {
+        most = fuzzy_max(most, strength[i]);
+    }
+    return most;
+}
+
 // Adds a layer, filled as far as a strength above its start goes, to `to`.
 static inline void add_layer(const fuzzy_layer_t *layer, uint32_t bits, uint32_t beta,
                              fuzzy_sums_t *to, fuzzy_sums_t *opposite) {
@@ -56,8 +65,7 @@ static int32_t partition_centre(const fuzzy_table_t *table, const fuzzy_output_t
     }
     for (; layer < end; layer++) {
         const uint32_t upper = fuzzy_min(strength[layer->first], strength[layer->second]);
-        const uint32_t lower =
-            layer->second - layer->first > 1 ? fuzzy_between(layer, strength) : 0;
+        const uint32_t lower = layer->second - layer->first > 1 ? between(layer, strength) : 0;
         if (upper > layer->start && upper > lower) {
             add_layer(layer, bits, upper, &less, &more);
             add_again(layer, bits, lower, &more, &less);

@@ -12,6 +12,7 @@ from quiesce.rules.integers.affine import Affine, Order, constant, maximum, mini
 from quiesce.rules.integers.c_writer import CWriter, int_text
 from quiesce.rules.integers.cells import Cell, Ramp
 from quiesce.rules.integers.compile import (
+    WEIGHT_ONE,
     CompiledBase,
     IntegerRule,
     is_complementary,
@@ -39,6 +40,9 @@ def why_not_straight(compiled: CompiledBase) -> str:
             return (
                 f"{output.shapes.not_ordered}; straight-line C takes sets that follow one another"
             )
+    is_weighted = any(rule.weight_q19 != WEIGHT_ONE for rule in compiled.rules)
+    if is_weighted and any(output.shapes for output in compiled.outputs):
+        return "rules have weights and an output is a centroid; straight-line C takes one of both"
     leaves = prod(len(cells) for cells in compiled.cells)
     if leaves > MAX_LEAVES:
         return f"{leaves} combinations of cells; straight-line C takes {MAX_LEAVES}"

@@ -184,7 +184,7 @@ class CentroidWriter:
         self.more = self.less = ""
 
     def write(self, fired: Sequence[Fired]) -> str:
-        strengths = by_term((term, self.weighted(m, weight)) for term, weight, m in fired)
+        strengths = by_term((term, membership) for term, _, membership in fired)
         filled = {
             rank: self.below_peak(rank, maximum(found, self.order, self.writer.named))
             for rank, found in strengths.items()
@@ -194,13 +194,6 @@ class CentroidWriter:
         if self.order.lower_bound(total) <= 0:
             is_default = " && ".join(f"{strength.text()} == 0" for strength in filled.values())
         return self.output.guarded(is_default, lambda: self.write_sums(filled))
-
-    def weighted(self, membership: Affine, weight: int) -> Affine:
-        if weight == WEIGHT_ONE:
-            return membership
-        if membership.is_constant:
-            return constant((membership.offset * weight + WEIGHT_ONE // 2) // WEIGHT_ONE)
-        return self.writer.named(f"fuzzy_weighted({membership.text()}, {weight}u)")
 
     def below_peak(self, rank: int, strength: Affine) -> Affine:
         peak = nearest(self.peaks[rank] * (1 << self.bits))
