@@ -256,6 +256,8 @@ static void make_cells(const int32_t first[], const int32_t last[], uint32_t cel
 static void test_cells_do_not_run_backwards(void) {
     make_cells((const int32_t[]){INT32_MIN, 11, 20}, (const int32_t[]){10, 19, INT32_MAX}, 3);
     expect(FUZZY_TABLE_OK);
+    make_cells((const int32_t[]){INT32_MIN, 11, 12}, (const int32_t[]){10, 11, INT32_MAX}, 3);
+    expect(FUZZY_TABLE_OK);
     make_cells((const int32_t[]){INT32_MIN, 11, 6}, (const int32_t[]){10, 5, INT32_MAX}, 3);
     expect(FUZZY_TABLE_CELL);
 }
@@ -337,8 +339,10 @@ static void test_values_of_a_partition(void) {
 
 // Everywhere the given value, and, in every cell with two sets, both at 1/2: strengths add up to
 // the most that they can.
-static void make_full_partition(uint32_t value, uint8_t fraction) {
+static void make_full_partition(uint32_t value, uint8_t bits, uint8_t fraction) {
     load(CASE_SUM_WIDE);
+    table()->bits = bits;
+    table()->one = 1u << bits;
     table()->fraction = fraction;
     output(0)->fraction = fraction;
     for (uint32_t i = 0; i < 5u * FUZZY_GRID_STRIDE; i++) {
@@ -347,8 +351,10 @@ static void make_full_partition(uint32_t value, uint8_t fraction) {
     const int32_t half = (int32_t)(table()->one / 2u);
     for (uint32_t i = 0; i < 2u; i++) {
         for (uint32_t k = 0; k < table()->axis[i].cells; k++) {
-            if (cell(i, k)->cell.ramps == 2u) {
-                fuzzy_ramp_t *ramp = cell(i, k)->ramp;
+            fuzzy_ramp_t *ramp = cell(i, k)->ramp;
+            if (cell(i, k)->cell.ramps == 1u) {
+                ramp[0].a_high = 2 * half;
+            } else {
                 ramp[0] = (fuzzy_ramp_t){.a_low = 0, .a_high = half, .set = ramp[0].set};
                 ramp[1] = (fuzzy_ramp_t){.a_low = UINT32_MAX, .a_high = half, .set = ramp[1].set};
             }
@@ -361,10 +367,10 @@ static void test_largest_values_of_a_partition_are_averaged(void) {
     const int32_t input[] = {5000, 5000};
     for (uint8_t fraction = 0; fraction <= 2u; fraction++) {
         uint32_t value = 1u << 24;
-        make_full_partition(value, fraction);
+        make_full_partition(value, 18, fraction);
         TEST_ASSERT_EQUAL_INT(FUZZY_TABLE_OUTPUT, verdict());
         while (verdict() != FUZZY_TABLE_OK) {
-            make_full_partition(--value, fraction);
+            make_full_partition(--value, 18, fraction);
         }
         TEST_ASSERT_GREATER_THAN_UINT32((1u << 24) - 4u, value);
         int32_t found = -1;
@@ -372,6 +378,23 @@ static void test_largest_values_of_a_partition_are_averaged(void) {
         const uint32_t to_nearest = (value + (1u << fraction) / 2u) >> fraction;
         TEST_ASSERT_EQUAL_INT32(table()->origin + (int32_t)to_nearest, found);
     }
+}
+
+static void test_bits_of_a_partition_and_of_its_fraction_are_20_at_most(void) {
+    const uint8_t good[][2] = {{16, 4}, {18, 2}, {20, 0}};
+    for (uint32_t i = 0; i < 3u; i++) {
+        make_full_partition(1000, good[i][0], good[i][1]);
+        TEST_ASSERT_EQUAL_INT(FUZZY_TABLE_OK, verdict());
+        make_full_partition(1000, good[i][0], (uint8_t)(good[i][1] + 1u));
+        TEST_ASSERT_EQUAL_INT(FUZZY_TABLE_OUTPUT, verdict());
+    }
+    make_full_partition(1000, 21, 0);
+    TEST_ASSERT_EQUAL_INT(FUZZY_TABLE_SHAPE, verdict());
+    // Neither header alone says what the fraction is.
+    CHANGED(CASE_SUM_Q15, FUZZY_TABLE_OUTPUT, table()->fraction = 1);
+    CHANGED(CASE_SUM_Q15, FUZZY_TABLE_OUTPUT, output(0)->fraction = 1);
+    CHANGED(CASE_GENERAL, FUZZY_TABLE_OK, output(0)->fraction = FUZZY_MAX_FRACTION);
+    CHANGED(CASE_GENERAL, FUZZY_TABLE_OUTPUT, output(0)->fraction = FUZZY_MAX_FRACTION + 1u);
 }
 
 static void test_header_of_a_partition_agrees_with_its_output(void) {
@@ -471,6 +494,7 @@ int main(void) {
     RUN_TEST(test_terms_of_an_output);
     RUN_TEST(test_values_of_a_partition);
     RUN_TEST(test_largest_values_of_a_partition_are_averaged);
+    RUN_TEST(test_bits_of_a_partition_and_of_its_fraction_are_20_at_most);
     RUN_TEST(test_header_of_a_partition_agrees_with_its_output);
     RUN_TEST(test_sets_of_a_centroid);
     RUN_TEST(test_steep_flanks);
