@@ -18,6 +18,7 @@ centroid                  of max over terms of min(greatest strength of its rule
 and its default where none of its rules fires.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 MAX_INPUTS = 4
@@ -116,21 +117,29 @@ class RuleBase:
     # What a reader approximated or took for granted; each one line for the user.
     notes: tuple[str, ...] = field(default=(), compare=False)
 
-    def rule_text(self, rule: Rule) -> str:
-        """`f IS S AND a IS NOT M THEN I IS Z`, for messages and plots."""
-        word = f" {rule.connective.upper()} "
-        conditions = word.join(
-            f"{self.inputs[c.input].name} IS {'NOT ' if c.negated else ''}"
+    def rule_text(
+        self,
+        rule: Rule,
+        word: Callable[[str], str] = str,
+        joint: str = ", ",
+        number: Callable[[float], str] = "{:g}".format,
+    ) -> str:
+        """`f IS S AND a IS NOT M THEN I IS Z`, as FCL has it behind IF.
+
+        word: of a keyword, such as str.lower; joint: between conclusions; number: of the weight.
+        """
+        conditions = word(f" {rule.connective.upper()} ").join(
+            f"{self.inputs[c.input].name} {word('IS NOT' if c.negated else 'IS')} "
             f"{self.inputs[c.input].sets[c.set].name}"
             for c in rule.conditions
         )
-        conclusions = ", ".join(
-            f"{output.name} IS {output.terms[term].name}"
+        conclusions = joint.join(
+            f"{output.name} {word('IS')} {output.terms[term].name}"
             for output, term in zip(self.outputs, rule.conclusions, strict=True)
             if term is not None
         )
-        weight = "" if rule.weight == 1 else f" WITH {rule.weight:g}"
-        return f"{conditions} THEN {conclusions}{weight}"
+        weight = "" if rule.weight == 1 else f" {word('WITH')} {number(rule.weight)}"
+        return f"{conditions} {word('THEN')} {conclusions}{weight}"
 
 
 def triangle(name: str, left: float, top: float, right: float) -> FuzzySet:

@@ -9,7 +9,6 @@ from quiesce.rules.model import (
     FuzzySet,
     Input,
     Output,
-    Rule,
     RuleBase,
     Singleton,
 )
@@ -88,24 +87,7 @@ def range_line(variable: Input | Output) -> str:
 def rule_block(base: RuleBase) -> str:
     lines = ["RULEBLOCK rules", "    AND : MIN;", "    OR : MAX;", "    ACT : MIN;", ""]
     lines += [
-        f"    RULE {number} : IF {rule_text(base, rule)};"
+        f"    RULE {number} : IF {base.rule_text(rule, number=number_text)};"
         for number, rule in enumerate(base.rules, start=1)
     ]
     return "\n".join([*lines, "END_RULEBLOCK"])
-
-
-def rule_text(base: RuleBase, rule: Rule) -> str:
-    """Behind IF; the weight exactly."""
-    word = f" {rule.connective.upper()} "
-    conditions = word.join(
-        f"{base.inputs[c.input].name} IS {'NOT ' if c.negated else ''}"
-        f"{base.inputs[c.input].sets[c.set].name}"
-        for c in rule.conditions
-    )
-    conclusions = ", ".join(
-        f"{output.name} IS {output.terms[term].name}"
-        for output, term in zip(base.outputs, rule.conclusions, strict=True)
-        if term is not None
-    )
-    weight = "" if rule.weight == 1 else f" WITH {number_text(rule.weight)}"
-    return f"{conditions} THEN {conclusions}{weight}"

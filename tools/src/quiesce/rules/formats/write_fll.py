@@ -7,12 +7,10 @@ from quiesce.rules.formats.scan import check_identifier, number_text
 from quiesce.rules.formats.shapes import FLL_SHAPES
 from quiesce.rules.model import (
     CENTROID,
-    OR,
     WEIGHTED_SUM,
     FuzzySet,
     Input,
     Output,
-    Rule,
     RuleBase,
     Singleton,
 )
@@ -98,22 +96,8 @@ def block_lines(base: RuleBase) -> list[str]:
         "  disjunction: Maximum",
         "  implication: Minimum",
         "  activation: General",
-        *(f"  rule: if {rule_text(base, rule)}" for rule in base.rules),
+        *(
+            f"  rule: if {base.rule_text(rule, str.lower, ' and ', number_text)}"
+            for rule in base.rules
+        ),
     ]
-
-
-def rule_text(base: RuleBase, rule: Rule) -> str:
-    """Behind `if`; the weight exactly."""
-    word = " or " if rule.connective == OR else " and "
-    conditions = word.join(
-        f"{base.inputs[c.input].name} is {'not ' if c.negated else ''}"
-        f"{base.inputs[c.input].sets[c.set].name}"
-        for c in rule.conditions
-    )
-    conclusions = " and ".join(
-        f"{output.name} is {output.terms[term].name}"
-        for output, term in zip(base.outputs, rule.conclusions, strict=True)
-        if term is not None
-    )
-    weight = "" if rule.weight == 1 else f" with {number_text(rule.weight)}"
-    return f"{conditions} then {conclusions}{weight}"
