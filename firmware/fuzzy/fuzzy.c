@@ -44,7 +44,7 @@ static uint32_t rule_membership(const fuzzy_rule_t *rule, const memberships_t *m
     const bool is_or = (rule->head >> 20 & 1u) != 0;
     const uint32_t count = rule->head >> 24;
     uint32_t result = is_or ? 0 : one;
-    for (uint32_t k = 0; k < count; k++) {
+    for (uint32_t k = 0; k < count && (is_or || result != 0); k++) {
         const uint32_t condition = rule->condition[k];
         const uint32_t direct = memberships->of[condition & 31u];
         const uint32_t here = condition >> 7 != 0 ? one - direct : direct;
@@ -60,7 +60,9 @@ static uint32_t weight_q19(const fuzzy_rule_t *rule) {
 static uint64_t strength_of(const fuzzy_table_t *table, const fuzzy_rule_t *rule,
                             const memberships_t *memberships) {
     const uint32_t membership = rule_membership(rule, memberships, table->one);
-    return fuzzy_strength(membership, weight_q19(rule), FUZZY_STRENGTH_SHIFT(table->rules));
+    return membership == 0
+               ? 0
+               : fuzzy_strength(membership, weight_q19(rule), FUZZY_STRENGTH_SHIFT(table->rules));
 }
 
 static void add_singleton(sums_t *sums, uint64_t strength, uint32_t singleton) {
