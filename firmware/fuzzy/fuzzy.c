@@ -57,12 +57,17 @@ static uint32_t weight_q19(const fuzzy_rule_t *rule) {
     return rule->head & FUZZY_WEIGHT_MASK;
 }
 
+static uint32_t weight_exponent(const fuzzy_rule_t *rule) {
+    return FUZZY_EXPONENT_STEP * (rule->head >> 21 & 7u);
+}
+
 static uint64_t strength_of(const fuzzy_table_t *table, const fuzzy_rule_t *rule,
                             const memberships_t *memberships) {
     const uint32_t membership = rule_membership(rule, memberships, table->one);
     return membership == 0
                ? 0
-               : fuzzy_strength(membership, weight_q19(rule), FUZZY_STRENGTH_SHIFT(table->rules));
+               : fuzzy_strength(membership, weight_q19(rule),
+                                FUZZY_STRENGTH_SHIFT(table->rules) + weight_exponent(rule));
 }
 
 static void add_singleton(sums_t *sums, uint64_t strength, uint32_t singleton) {
@@ -121,8 +126,9 @@ static uint32_t centroid(const fuzzy_table_t *table, const fuzzy_output_t *outpu
         const uint32_t term = rule[i].conclusion[index];
         if (term != FUZZY_NO_TERM) {
             const uint32_t membership = rule_membership(&rule[i], memberships, table->one);
-            strongest[term] = fuzzy_max_u64(strongest[term],
-                                            fuzzy_fine_strength(membership, weight_q19(&rule[i])));
+            strongest[term] =
+                fuzzy_max_u64(strongest[term], fuzzy_fine_strength(membership, weight_q19(&rule[i]),
+                                                                   weight_exponent(&rule[i])));
         }
     }
     return fuzzy_any_centroid(table, output, strongest, value);

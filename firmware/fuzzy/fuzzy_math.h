@@ -30,8 +30,9 @@ static inline uint64_t fuzzy_strength(uint32_t membership, uint32_t weight_q19, 
 /// A strength of a centroid: of membership * weight FUZZY_FINE_BITS more than the membership has,
 /// so that sums of areas fit 64 bits.
 #define FUZZY_FINE_BITS 6u
-static inline uint64_t fuzzy_fine_strength(uint32_t membership, uint32_t weight_q19) {
-    return ((uint64_t)membership * weight_q19) >> (19u - FUZZY_FINE_BITS);
+static inline uint64_t fuzzy_fine_strength(uint32_t membership, uint32_t weight_q19,
+                                           uint32_t exponent) {
+    return ((uint64_t)membership * weight_q19) >> (19u - FUZZY_FINE_BITS + exponent);
 }
 
 /// (a + b * distance) >> 32, floor: a straight line of a cell, its result 0 .. 2^28.
@@ -115,7 +116,7 @@ static inline uint32_t fuzzy_centre(fuzzy_sums_t more, fuzzy_sums_t less, uint32
 /// Sums of layers where rules may fire as weakly as they like.
 typedef struct {
     uint64_t area;   ///< 2^-(bits + 26)
-    uint64_t moment; ///< 2^-(bits + 25)
+    uint64_t moment; ///< 2^-(bits + 28)
 } fuzzy_wide_sums_t;
 
 static inline uint32_t fuzzy_q30(uint64_t beta, uint32_t bits) {
@@ -129,12 +130,12 @@ static inline void fuzzy_add_wide_area(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f
     const uint32_t narrowed = fuzzy_high_half(fuzzy_q30(beta, bits), f.narrowing_q28) << steep;
     const uint32_t width_q26 = f.width_q26 - fuzzy_min(narrowed, f.width_q26);
     sums->area += beta * width_q26;
-    sums->moment += beta * fuzzy_high_half(width_q26, f.middle_q31);
+    sums->moment += beta * (fuzzy_high_half(width_q26 << 5, f.middle_q31) >> 2);
 }
 
 static inline void fuzzy_add_wide_skew(fuzzy_wide_sums_t *sums, fuzzy_flanks_t f, uint32_t steep,
                                        uint32_t bits, uint64_t beta) {
-    sums->moment += beta * (fuzzy_skew_q25(f, fuzzy_q30(beta, bits)) << steep);
+    sums->moment += beta * (fuzzy_skew_q25(f, fuzzy_q30(beta, bits)) << steep) * 8u;
 }
 
 /// (more - less): moment / area in counts, to nearest, from 21 significant bits. 0 .. span.
@@ -147,7 +148,7 @@ static inline uint32_t fuzzy_wide_centre(fuzzy_wide_sums_t more, fuzzy_wide_sums
     const uint32_t zeros = leading_zeros_u64(area);
     const uint64_t divisor = zeros < 43u ? area >> (43u - zeros) : area << (zeros - 43u);
     const uint64_t scaled = zeros < 43u ? moment >> (43u - zeros) : moment << (zeros - 43u);
-    return fuzzy_min(fuzzy_quotient(2u * scaled * span, divisor), span);
+    return fuzzy_min(fuzzy_quotient(scaled * span, divisor << 2), span);
 }
 
 #endif

@@ -28,6 +28,7 @@
 #define FUZZY_NO_TERM 0xFFu
 #define FUZZY_WEIGHT_ONE_q19 (UINT32_C(1) << 19)
 #define FUZZY_WEIGHT_MASK UINT32_C(0xFFFFF)
+#define FUZZY_EXPONENT_STEP 3u
 /// For fuzzy_strength(): 28 bits of membership and 19 of weight, less what leaves 24 bits for a
 /// singleton and room for so many rules. rules: 1 .. FUZZY_MAX_RULES.
 #define FUZZY_STRENGTH_SHIFT(rules) (8u + 32u - (uint32_t)__builtin_clz(rules))
@@ -91,7 +92,7 @@ typedef struct {
     int32_t origin;        ///< of a partition's output
     uint16_t twins_offset; ///< of a PARTITION_MAX: fuzzy_twins_t, in the order of its values
     uint8_t fraction;      ///< of a partition's output
-    uint8_t reserved;
+    uint8_t units;         ///< 1: uHz and um/s2 to mA; 0: any other
 } fuzzy_table_t;
 
 typedef struct {
@@ -114,7 +115,8 @@ typedef struct {
     fuzzy_ramp_t ramp[2];
 } fuzzy_pair_cell_t;
 
-/// head: weight Q19 in bits 0..19, "or" bit 20, number of conditions from bit 24.
+/// head: weight Q19 in bits 0..19, "or" bit 20, in bits 21..23 by how many times
+/// FUZZY_EXPONENT_STEP bits the weight is smaller, number of conditions from bit 24.
 /// condition: set | input << 3 | negated << 7.
 typedef struct {
     uint32_t head;

@@ -13,6 +13,7 @@
 
 // Frequency in uHz, RMS acceleration in um/s2; one output, mA.
 #define RULE_INPUTS 2u
+#define RULE_UNITS 1u
 // Whatever a loaded table says, a request stays a current that arithmetic can hold.
 #define RULES_MAX_mA 1000000
 
@@ -261,7 +262,7 @@ quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words
     if (verdict != FUZZY_TABLE_OK) {
         return (quiesce_rules_verdict_t)verdict;
     }
-    if (table->inputs != RULE_INPUTS || table->outputs != 1u) {
+    if (table->inputs != RULE_INPUTS || table->outputs != 1u || table->units != RULE_UNITS) {
         return QUIESCE_RULES_FIT;
     }
     use_rules(c, table);

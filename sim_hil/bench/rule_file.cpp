@@ -28,8 +28,8 @@ const char *reason(quiesce_rules_verdict_t verdict) {
     case QUIESCE_RULES_OUTPUT:
         return "a term is out of range";
     case QUIESCE_RULES_FIT:
-        return "the controller's rules have two inputs, frequency and RMS acceleration, and one "
-               "output, current";
+        return "the controller's rules have two inputs, frequency in uHz and RMS acceleration in "
+               "um/s2, and one output, current in mA; compile them with --controller";
     }
     return "unknown reason";
 }

@@ -162,7 +162,7 @@ const Damage kDamages[] = {
     {"cell", [] { return changed(kAxis, 0); }, "a membership is out of range"},
     {"rule", [] { return changed(kRules, 16u << 16); }, "a rule names what is not there"},
     {"output", [] { return changed(kOrigin, 1); }, "a term is out of range"},
-    {"fit", [] { return hex(of_one_input()); }, "have two inputs, frequency and RMS acceleration"},
+    {"fit", [] { return hex(of_one_input()); }, "have two inputs, frequency in uHz"},
 };
 
 class DamagedRuleFile : public testing::TestWithParam<Damage> {};

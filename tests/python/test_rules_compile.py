@@ -441,3 +441,58 @@ def test_c_is_a_function_of_the_base() -> None:
     one, other = (compile_base(reference_base(MAX)) for _ in range(2))
     assert source_c(one, "a", "") == source_c(other, "a", "")
     assert "a_table[" in header_c(one, "a", "") and "uint32_t a(" in header_c(one, "a", "")
+
+
+def one_input_base(weights: tuple[float, float]) -> RuleBase:
+    falling = FuzzySet("a", ((0.0, 1.0), (1.0, 0.0)))
+    rising = FuzzySet("b", ((0.0, 0.0), (1.0, 1.0)))
+    output = Output("y", 0, 5, (Singleton("l", 0.3), Singleton("h", 4.9)), WEIGHTED_SUM, 0.0)
+    rules = tuple(
+        Rule((Condition(0, index),), (index,), weight=weight)
+        for index, weight in enumerate(weights)
+    )
+    return RuleBase("weights", (Input("x", 0, 1, (falling, rising)),), (output,), rules)
+
+
+@pytest.mark.parametrize(
+    "weights", [(0.05, 0.03), (1e-3, 3e-4), (1e-5, 1.3e-5), (1, 1e-5), (9e-7, 1), (2e-9, 1e-9)]
+)
+def test_small_weights_keep_their_ratio(weights: tuple[float, float]) -> None:
+    base = one_input_base(weights)
+    compiled = compile_base(base)
+    points = np.arange(32769, dtype=np.int32)
+    answers = [Engine(compiled, kind).evaluate([points])[0] for kind in (TABLE, STRAIGHT)]
+    exact = evaluate(base, [compiled.input_value(0, points)]).outputs[0]
+    assert np.array_equal(*answers)
+    error = np.abs(compiled.output_value(0, answers[0][0]) - exact)
+    assert error.max() < 0.7 * compiled.output_lsb(0)
+
+
+def test_a_weight_too_small_for_the_integers_is_refused() -> None:
+    with pytest.raises(UsageError, match="too small"):
+        compile_base(one_input_base((1.0, 1e-13)))
+
+
+def test_an_input_that_no_rule_asks_for_compiles_without_warnings() -> None:
+    base = one_input_base((1.0, 1.0))
+    unused = Input("idle", 0, 1, base.inputs[0].sets)
+    compiled = compile_base(replace(base, inputs=(*base.inputs, unused)))
+    points = np.arange(0, 32769, 77, dtype=np.int32)
+    answers = [
+        Engine(compiled, kind).evaluate([points, points[::-1]])[0] for kind in (TABLE, STRAIGHT)
+    ]
+    assert np.array_equal(*answers)
+
+
+def test_a_universe_of_nearly_all_int32_compiles() -> None:
+    base = one_input_base((1.0, 1.0))
+    wide = Input("x", -2000.0, 2000.0, (
+        FuzzySet("a", ((-2000.0, 1.0), (2000.0, 0.0))),
+        FuzzySet("b", ((-2000.0, 0.0), (2000.0, 1.0))),
+    ))  # fmt: skip
+    compiled = compile_base(replace(base, inputs=(wide,)), inputs=[1e-6])
+    points = np.array([-(2**31), -2 * 10**9, -1, 0, 1, 2 * 10**9, 2**31 - 1], dtype=np.int32)
+    answers = [Engine(compiled, kind).evaluate([points])[0] for kind in (TABLE, STRAIGHT)]
+    exact = evaluate(replace(base, inputs=(wide,)), [compiled.input_value(0, points)]).outputs[0]
+    assert np.array_equal(*answers)
+    assert np.abs(compiled.output_value(0, answers[0][0]) - exact).max() < compiled.output_lsb(0)

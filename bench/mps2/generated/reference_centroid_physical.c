@@ -343,40 +343,38 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                         output[0] = (int32_t)(fuzzy_centre(more1, less2, 65536u));
                         return 0;
                     }
-                    const uint32_t s1 = fuzzy_max((131072u - m1_1), (131072u - m1_1));
-                    const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
+                    const uint32_t d2 = (131072u - m1_1) == 0 && s1 == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        fuzzy_sums_t more4 = {0, 0};
-                        fuzzy_sums_t less5 = {0, 0};
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s2 << 13);
-                        const uint32_t s6 = fuzzy_min(s1, s2);
-                        const uint32_t s7 = fuzzy_min(s6, (65536u));
-                        fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s7 << 13);
-                        output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                        fuzzy_sums_t more3 = {0, 0};
+                        fuzzy_sums_t less4 = {0, 0};
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, (131072u - m1_1) << 13);
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
+                        const uint32_t s5 = fuzzy_min((131072u - m1_1), s1);
+                        const uint32_t s6 = fuzzy_min(s5, (65536u));
+                        fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s6 << 13);
+                        output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                     }
-                    return d3;
+                    return d2;
                 }
                 if (m0_2 + m1_1 <= 131072u) {
                     const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
-                    const uint32_t s2 = fuzzy_max(m1_1, m1_1);
-                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t d2 = s1 == 0 && m1_1 == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        fuzzy_sums_t more4 = {0, 0};
-                        fuzzy_sums_t less5 = {0, 0};
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s2 << 13);
-                        const uint32_t s6 = fuzzy_min(s1, s2);
-                        const uint32_t s7 = fuzzy_min(s6, (65536u));
-                        fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s7 << 13);
-                        output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                        fuzzy_sums_t more3 = {0, 0};
+                        fuzzy_sums_t less4 = {0, 0};
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, m1_1 << 13);
+                        const uint32_t s5 = fuzzy_min(s1, m1_1);
+                        const uint32_t s6 = fuzzy_min(s5, (65536u));
+                        fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s6 << 13);
+                        output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                     }
-                    return d3;
+                    return d2;
                 }
                 fuzzy_sums_t more1 = {0, 0};
                 fuzzy_sums_t less2 = {0, 0};
@@ -402,40 +400,38 @@ uint32_t reference_centroid_physical(const int32_t *input, int32_t *output) {
                     output[0] = (int32_t)(fuzzy_centre(more1, less2, 65536u));
                     return 0;
                 }
-                const uint32_t s1 = fuzzy_max((131072u - m1_2), (131072u - m1_2));
-                const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
+                const uint32_t d2 = (131072u - m1_2) == 0 && s1 == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    fuzzy_sums_t more4 = {0, 0};
-                    fuzzy_sums_t less5 = {0, 0};
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s2 << 13);
-                    const uint32_t s6 = fuzzy_min(s1, s2);
-                    const uint32_t s7 = fuzzy_min(s6, (65536u));
-                    fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s7 << 13);
-                    output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                    fuzzy_sums_t more3 = {0, 0};
+                    fuzzy_sums_t less4 = {0, 0};
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, (131072u - m1_2) << 13);
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s1 << 13);
+                    const uint32_t s5 = fuzzy_min((131072u - m1_2), s1);
+                    const uint32_t s6 = fuzzy_min(s5, (65536u));
+                    fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s6 << 13);
+                    output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                 }
-                return d3;
+                return d2;
             }
             if (m0_2 + m1_2 <= 131072u) {
                 const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t s2 = fuzzy_max(m1_2, m1_2);
-                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t d2 = s1 == 0 && m1_2 == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    fuzzy_sums_t more4 = {0, 0};
-                    fuzzy_sums_t less5 = {0, 0};
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s2 << 13);
-                    const uint32_t s6 = fuzzy_min(s1, s2);
-                    const uint32_t s7 = fuzzy_min(s6, (65536u));
-                    fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s7 << 13);
-                    output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                    fuzzy_sums_t more3 = {0, 0};
+                    fuzzy_sums_t less4 = {0, 0};
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, m1_2 << 13);
+                    const uint32_t s5 = fuzzy_min(s1, m1_2);
+                    const uint32_t s6 = fuzzy_min(s5, (65536u));
+                    fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s6 << 13);
+                    output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                 }
-                return d3;
+                return d2;
             }
             fuzzy_sums_t more1 = {0, 0};
             fuzzy_sums_t less2 = {0, 0};

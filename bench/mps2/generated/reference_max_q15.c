@@ -192,28 +192,26 @@ uint32_t reference_max_q15(const int32_t *input, int32_t *output) {
                         output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                         return 0;
                     }
-                    const uint32_t s1 = fuzzy_max((65536u - m1_1), (65536u - m1_1));
-                    const uint32_t s2 = fuzzy_max((65536u - m0_2), m0_2);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
+                    const uint32_t d2 = (s1 + 65536u - m1_1) == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        const uint32_t n4 = (s1 + s2);
-                        output[0] = 16384 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                        const uint32_t n3 = (s1 + 65536u - m1_1);
+                        output[0] = 16384 + (int32_t)(((16384u * s1) + n3 / 2u) / n3);
                     }
-                    return d3;
+                    return d2;
                 }
                 if (m0_2 + m1_1 <= 65536u) {
                     const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
-                    const uint32_t s2 = fuzzy_max(m1_1, m1_1);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t d2 = (s1 + m1_1) == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        const uint32_t n4 = (s1 + s2);
-                        output[0] = 16384 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                        const uint32_t n3 = (s1 + m1_1);
+                        output[0] = 16384 + (int32_t)(((16384u * m1_1) + n3 / 2u) / n3);
                     }
-                    return d3;
+                    return d2;
                 }
                 output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                 return 0;
@@ -225,28 +223,26 @@ uint32_t reference_max_q15(const int32_t *input, int32_t *output) {
                     output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
                     return 0;
                 }
-                const uint32_t s1 = fuzzy_max((65536u - m1_2), (65536u - m1_2));
-                const uint32_t s2 = fuzzy_max((65536u - m0_2), m0_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
+                const uint32_t d2 = (s1 + 65536u - m1_2) == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    const uint32_t n4 = (s1 + s2);
-                    output[0] = 32768 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                    const uint32_t n3 = (s1 + 65536u - m1_2);
+                    output[0] = 32768 + (int32_t)(((16384u * s1) + n3 / 2u) / n3);
                 }
-                return d3;
+                return d2;
             }
             if (m0_2 + m1_2 <= 65536u) {
                 const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
-                const uint32_t s2 = fuzzy_max(m1_2, m1_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t d2 = (s1 + m1_2) == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    const uint32_t n4 = (s1 + s2);
-                    output[0] = 32768 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                    const uint32_t n3 = (s1 + m1_2);
+                    output[0] = 32768 + (int32_t)(((16384u * m1_2) + n3 / 2u) / n3);
                 }
-                return d3;
+                return d2;
             }
             output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
             return 0;

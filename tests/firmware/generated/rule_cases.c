@@ -374,9 +374,9 @@ static const rule_point_t case_sum_q15_points[] = {
 };
 
 static const uint32_t case_sum_physical_table[253] = {
-    0x31545A46u, 0x8A752D62u, 0x000000FDu, 0x01100102u, 0x0C050038u, 0x0C050074u,
+    0x31545A46u, 0xB050A9DEu, 0x000000FDu, 0x01100102u, 0x0C050038u, 0x0C050074u,
     0x00000000u, 0x00000000u, 0x001000B0u, 0x000000F5u, 0x00000000u, 0x00000000u,
-    0x00000000u, 0x00010000u, 0x00000000u, 0x00000000u, 0x00000000u, 0x000004E2u,
+    0x00000000u, 0x00010000u, 0x00000000u, 0x01000000u, 0x00000000u, 0x000004E2u,
     0x000009C4u, 0x00000EA6u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
     0x000004E2u, 0x000009C4u, 0x00000EA6u, 0x00000EA6u, 0x00000000u, 0x00000000u,
     0x00000000u, 0x00000000u, 0x000004E2u, 0x000009C4u, 0x00000EA6u, 0x00001388u,
@@ -1595,28 +1595,26 @@ static uint32_t case_max_q15(const int32_t *input, int32_t *output) {
                         output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                         return 0;
                     }
-                    const uint32_t s1 = fuzzy_max((65536u - m1_1), (65536u - m1_1));
-                    const uint32_t s2 = fuzzy_max((65536u - m0_2), m0_2);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
+                    const uint32_t d2 = (s1 + 65536u - m1_1) == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        const uint32_t n4 = (s1 + s2);
-                        output[0] = 16384 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                        const uint32_t n3 = (s1 + 65536u - m1_1);
+                        output[0] = 16384 + (int32_t)(((16384u * s1) + n3 / 2u) / n3);
                     }
-                    return d3;
+                    return d2;
                 }
                 if (m0_2 + m1_1 <= 65536u) {
                     const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
-                    const uint32_t s2 = fuzzy_max(m1_1, m1_1);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t d2 = (s1 + m1_1) == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        const uint32_t n4 = (s1 + s2);
-                        output[0] = 16384 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                        const uint32_t n3 = (s1 + m1_1);
+                        output[0] = 16384 + (int32_t)(((16384u * m1_1) + n3 / 2u) / n3);
                     }
-                    return d3;
+                    return d2;
                 }
                 output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                 return 0;
@@ -1628,28 +1626,26 @@ static uint32_t case_max_q15(const int32_t *input, int32_t *output) {
                     output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
                     return 0;
                 }
-                const uint32_t s1 = fuzzy_max((65536u - m1_2), (65536u - m1_2));
-                const uint32_t s2 = fuzzy_max((65536u - m0_2), m0_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
+                const uint32_t d2 = (s1 + 65536u - m1_2) == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    const uint32_t n4 = (s1 + s2);
-                    output[0] = 32768 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                    const uint32_t n3 = (s1 + 65536u - m1_2);
+                    output[0] = 32768 + (int32_t)(((16384u * s1) + n3 / 2u) / n3);
                 }
-                return d3;
+                return d2;
             }
             if (m0_2 + m1_2 <= 65536u) {
                 const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
-                const uint32_t s2 = fuzzy_max(m1_2, m1_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t d2 = (s1 + m1_2) == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    const uint32_t n4 = (s1 + s2);
-                    output[0] = 32768 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                    const uint32_t n3 = (s1 + m1_2);
+                    output[0] = 32768 + (int32_t)(((16384u * m1_2) + n3 / 2u) / n3);
                 }
-                return d3;
+                return d2;
             }
             output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
             return 0;
@@ -2054,28 +2050,26 @@ static uint32_t case_max_physical(const int32_t *input, int32_t *output) {
                         output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                         return 0;
                     }
-                    const uint32_t s1 = fuzzy_max((65536u - m1_1), (65536u - m1_1));
-                    const uint32_t s2 = fuzzy_max((65536u - m0_2), m0_2);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
+                    const uint32_t d2 = (s1 + 65536u - m1_1) == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        const uint32_t n4 = (s1 + s2);
-                        output[0] = 16384 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                        const uint32_t n3 = (s1 + 65536u - m1_1);
+                        output[0] = 16384 + (int32_t)(((16384u * s1) + n3 / 2u) / n3);
                     }
-                    return d3;
+                    return d2;
                 }
                 if (m0_2 + m1_1 <= 65536u) {
                     const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
-                    const uint32_t s2 = fuzzy_max(m1_1, m1_1);
-                    const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t d2 = (s1 + m1_1) == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        const uint32_t n4 = (s1 + s2);
-                        output[0] = 16384 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                        const uint32_t n3 = (s1 + m1_1);
+                        output[0] = 16384 + (int32_t)(((16384u * m1_1) + n3 / 2u) / n3);
                     }
-                    return d3;
+                    return d2;
                 }
                 output[0] = 16384 + (int32_t)(((16384u * m1_1 + 32768u) >> 16));
                 return 0;
@@ -2087,28 +2081,26 @@ static uint32_t case_max_physical(const int32_t *input, int32_t *output) {
                     output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
                     return 0;
                 }
-                const uint32_t s1 = fuzzy_max((65536u - m1_2), (65536u - m1_2));
-                const uint32_t s2 = fuzzy_max((65536u - m0_2), m0_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
+                const uint32_t d2 = (s1 + 65536u - m1_2) == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    const uint32_t n4 = (s1 + s2);
-                    output[0] = 32768 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                    const uint32_t n3 = (s1 + 65536u - m1_2);
+                    output[0] = 32768 + (int32_t)(((16384u * s1) + n3 / 2u) / n3);
                 }
-                return d3;
+                return d2;
             }
             if (m0_2 + m1_2 <= 65536u) {
                 const uint32_t s1 = fuzzy_max((65536u - m0_2), m0_2);
-                const uint32_t s2 = fuzzy_max(m1_2, m1_2);
-                const uint32_t d3 = (s1 + s2) == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t d2 = (s1 + m1_2) == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    const uint32_t n4 = (s1 + s2);
-                    output[0] = 32768 + (int32_t)(((16384u * s2) + n4 / 2u) / n4);
+                    const uint32_t n3 = (s1 + m1_2);
+                    output[0] = 32768 + (int32_t)(((16384u * m1_2) + n3 / 2u) / n3);
                 }
-                return d3;
+                return d2;
             }
             output[0] = 32768 + (int32_t)(((16384u * m1_2 + 32768u) >> 16));
             return 0;
@@ -2664,40 +2656,38 @@ static uint32_t case_centroid_q15(const int32_t *input, int32_t *output) {
                         output[0] = (int32_t)(fuzzy_centre(more1, less2, 65536u));
                         return 0;
                     }
-                    const uint32_t s1 = fuzzy_max((131072u - m1_1), (131072u - m1_1));
-                    const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
+                    const uint32_t d2 = (131072u - m1_1) == 0 && s1 == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        fuzzy_sums_t more4 = {0, 0};
-                        fuzzy_sums_t less5 = {0, 0};
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s2 << 13);
-                        const uint32_t s6 = fuzzy_min(s1, s2);
-                        const uint32_t s7 = fuzzy_min(s6, (65536u));
-                        fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s7 << 13);
-                        output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                        fuzzy_sums_t more3 = {0, 0};
+                        fuzzy_sums_t less4 = {0, 0};
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, (131072u - m1_1) << 13);
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
+                        const uint32_t s5 = fuzzy_min((131072u - m1_1), s1);
+                        const uint32_t s6 = fuzzy_min(s5, (65536u));
+                        fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s6 << 13);
+                        output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                     }
-                    return d3;
+                    return d2;
                 }
                 if (m0_2 + m1_1 <= 131072u) {
                     const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
-                    const uint32_t s2 = fuzzy_max(m1_1, m1_1);
-                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t d2 = s1 == 0 && m1_1 == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        fuzzy_sums_t more4 = {0, 0};
-                        fuzzy_sums_t less5 = {0, 0};
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s2 << 13);
-                        const uint32_t s6 = fuzzy_min(s1, s2);
-                        const uint32_t s7 = fuzzy_min(s6, (65536u));
-                        fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s7 << 13);
-                        output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                        fuzzy_sums_t more3 = {0, 0};
+                        fuzzy_sums_t less4 = {0, 0};
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, m1_1 << 13);
+                        const uint32_t s5 = fuzzy_min(s1, m1_1);
+                        const uint32_t s6 = fuzzy_min(s5, (65536u));
+                        fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s6 << 13);
+                        output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                     }
-                    return d3;
+                    return d2;
                 }
                 fuzzy_sums_t more1 = {0, 0};
                 fuzzy_sums_t less2 = {0, 0};
@@ -2723,40 +2713,38 @@ static uint32_t case_centroid_q15(const int32_t *input, int32_t *output) {
                     output[0] = (int32_t)(fuzzy_centre(more1, less2, 65536u));
                     return 0;
                 }
-                const uint32_t s1 = fuzzy_max((131072u - m1_2), (131072u - m1_2));
-                const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
+                const uint32_t d2 = (131072u - m1_2) == 0 && s1 == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    fuzzy_sums_t more4 = {0, 0};
-                    fuzzy_sums_t less5 = {0, 0};
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s2 << 13);
-                    const uint32_t s6 = fuzzy_min(s1, s2);
-                    const uint32_t s7 = fuzzy_min(s6, (65536u));
-                    fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s7 << 13);
-                    output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                    fuzzy_sums_t more3 = {0, 0};
+                    fuzzy_sums_t less4 = {0, 0};
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, (131072u - m1_2) << 13);
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s1 << 13);
+                    const uint32_t s5 = fuzzy_min((131072u - m1_2), s1);
+                    const uint32_t s6 = fuzzy_min(s5, (65536u));
+                    fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s6 << 13);
+                    output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                 }
-                return d3;
+                return d2;
             }
             if (m0_2 + m1_2 <= 131072u) {
                 const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t s2 = fuzzy_max(m1_2, m1_2);
-                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t d2 = s1 == 0 && m1_2 == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    fuzzy_sums_t more4 = {0, 0};
-                    fuzzy_sums_t less5 = {0, 0};
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s2 << 13);
-                    const uint32_t s6 = fuzzy_min(s1, s2);
-                    const uint32_t s7 = fuzzy_min(s6, (65536u));
-                    fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s7 << 13);
-                    output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                    fuzzy_sums_t more3 = {0, 0};
+                    fuzzy_sums_t less4 = {0, 0};
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, m1_2 << 13);
+                    const uint32_t s5 = fuzzy_min(s1, m1_2);
+                    const uint32_t s6 = fuzzy_min(s5, (65536u));
+                    fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s6 << 13);
+                    output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                 }
-                return d3;
+                return d2;
             }
             fuzzy_sums_t more1 = {0, 0};
             fuzzy_sums_t less2 = {0, 0};
@@ -3492,40 +3480,38 @@ static uint32_t case_centroid_physical(const int32_t *input, int32_t *output) {
                         output[0] = (int32_t)(fuzzy_centre(more1, less2, 65536u));
                         return 0;
                     }
-                    const uint32_t s1 = fuzzy_max((131072u - m1_1), (131072u - m1_1));
-                    const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
+                    const uint32_t d2 = (131072u - m1_1) == 0 && s1 == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        fuzzy_sums_t more4 = {0, 0};
-                        fuzzy_sums_t less5 = {0, 0};
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s2 << 13);
-                        const uint32_t s6 = fuzzy_min(s1, s2);
-                        const uint32_t s7 = fuzzy_min(s6, (65536u));
-                        fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s7 << 13);
-                        output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                        fuzzy_sums_t more3 = {0, 0};
+                        fuzzy_sums_t less4 = {0, 0};
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, (131072u - m1_1) << 13);
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
+                        const uint32_t s5 = fuzzy_min((131072u - m1_1), s1);
+                        const uint32_t s6 = fuzzy_min(s5, (65536u));
+                        fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s6 << 13);
+                        output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                     }
-                    return d3;
+                    return d2;
                 }
                 if (m0_2 + m1_1 <= 131072u) {
                     const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
-                    const uint32_t s2 = fuzzy_max(m1_1, m1_1);
-                    const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                    if (d3 != 0) {
+                    const uint32_t d2 = s1 == 0 && m1_1 == 0 ? 1u : 0;
+                    if (d2 != 0) {
                         output[0] = 0;
                     } else {
-                        fuzzy_sums_t more4 = {0, 0};
-                        fuzzy_sums_t less5 = {0, 0};
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
-                        fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s2 << 13);
-                        const uint32_t s6 = fuzzy_min(s1, s2);
-                        const uint32_t s7 = fuzzy_min(s6, (65536u));
-                        fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s7 << 13);
-                        output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                        fuzzy_sums_t more3 = {0, 0};
+                        fuzzy_sums_t less4 = {0, 0};
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 536870912u, 0u, 0u}, s1 << 13);
+                        fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, m1_1 << 13);
+                        const uint32_t s5 = fuzzy_min(s1, m1_1);
+                        const uint32_t s6 = fuzzy_min(s5, (65536u));
+                        fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 805306368u, 0u, 0u}, s6 << 13);
+                        output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                     }
-                    return d3;
+                    return d2;
                 }
                 fuzzy_sums_t more1 = {0, 0};
                 fuzzy_sums_t less2 = {0, 0};
@@ -3551,40 +3537,38 @@ static uint32_t case_centroid_physical(const int32_t *input, int32_t *output) {
                     output[0] = (int32_t)(fuzzy_centre(more1, less2, 65536u));
                     return 0;
                 }
-                const uint32_t s1 = fuzzy_max((131072u - m1_2), (131072u - m1_2));
-                const uint32_t s2 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
+                const uint32_t d2 = (131072u - m1_2) == 0 && s1 == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    fuzzy_sums_t more4 = {0, 0};
-                    fuzzy_sums_t less5 = {0, 0};
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s2 << 13);
-                    const uint32_t s6 = fuzzy_min(s1, s2);
-                    const uint32_t s7 = fuzzy_min(s6, (65536u));
-                    fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s7 << 13);
-                    output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                    fuzzy_sums_t more3 = {0, 0};
+                    fuzzy_sums_t less4 = {0, 0};
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, (131072u - m1_2) << 13);
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s1 << 13);
+                    const uint32_t s5 = fuzzy_min((131072u - m1_2), s1);
+                    const uint32_t s6 = fuzzy_min(s5, (65536u));
+                    fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s6 << 13);
+                    output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                 }
-                return d3;
+                return d2;
             }
             if (m0_2 + m1_2 <= 131072u) {
                 const uint32_t s1 = fuzzy_max((131072u - m0_2), m0_2);
-                const uint32_t s2 = fuzzy_max(m1_2, m1_2);
-                const uint32_t d3 = s1 == 0 && s2 == 0 ? 1u : 0;
-                if (d3 != 0) {
+                const uint32_t d2 = s1 == 0 && m1_2 == 0 ? 1u : 0;
+                if (d2 != 0) {
                     output[0] = 0;
                 } else {
-                    fuzzy_sums_t more4 = {0, 0};
-                    fuzzy_sums_t less5 = {0, 0};
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
-                    fuzzy_add_area(&more4, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, s2 << 13);
-                    const uint32_t s6 = fuzzy_min(s1, s2);
-                    const uint32_t s7 = fuzzy_min(s6, (65536u));
-                    fuzzy_add_area(&less5, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s7 << 13);
-                    output[0] = (int32_t)(fuzzy_centre(more4, less5, 65536u));
+                    fuzzy_sums_t more3 = {0, 0};
+                    fuzzy_sums_t less4 = {0, 0};
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1073741824u, 0u, 0u}, s1 << 13);
+                    fuzzy_add_area(&more3, (fuzzy_flanks_t){33554432u, 67108864u, 1610612736u, 0u, 0u}, m1_2 << 13);
+                    const uint32_t s5 = fuzzy_min(s1, m1_2);
+                    const uint32_t s6 = fuzzy_min(s5, (65536u));
+                    fuzzy_add_area(&less4, (fuzzy_flanks_t){16777216u, 67108864u, 1342177280u, 0u, 0u}, s6 << 13);
+                    output[0] = (int32_t)(fuzzy_centre(more3, less4, 65536u));
                 }
-                return d3;
+                return d2;
             }
             fuzzy_sums_t more1 = {0, 0};
             fuzzy_sums_t less2 = {0, 0};
@@ -4220,23 +4204,22 @@ static uint32_t case_overlaps(const int32_t *input, int32_t *output) {
                 fuzzy_add_area(&less2, (fuzzy_flanks_t){13421773u, 71582788u, 429496730u, 1789570u, 12725829u}, fuzzy_fill_height(m1_1, 32768u, 49152u) << 13);
                 fuzzy_add_skew(&more1, (fuzzy_flanks_t){13421773u, 71582788u, 429496730u, 1789570u, 12725829u}, fuzzy_fill_height(m1_1, 32768u, 49152u) << 13);
                 const uint32_t s5 = fuzzy_min((131072u - m0_1), m0_1);
-                const uint32_t s6 = fuzzy_max(m1_1, m1_1);
-                if (s5 > s6) {
-                    const uint32_t s7 = fuzzy_min(s5, (37449u));
-                    fuzzy_add_area(&less2, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s7 << 13);
-                    fuzzy_add_skew(&more1, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s7 << 13);
-                    const uint32_t s8 = fuzzy_min(s6, (37449u));
-                    fuzzy_add_area(&more1, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s8 << 13);
-                    fuzzy_add_skew(&less2, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s8 << 13);
+                if (s5 > m1_1) {
+                    const uint32_t s6 = fuzzy_min(s5, (37449u));
+                    fuzzy_add_area(&less2, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s6 << 13);
+                    fuzzy_add_skew(&more1, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s6 << 13);
+                    const uint32_t s7 = fuzzy_min(m1_1, (37449u));
+                    fuzzy_add_area(&more1, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s7 << 13);
+                    fuzzy_add_skew(&less2, (fuzzy_flanks_t){13421773u, 93952410u, 644245094u, 671089u, 6263494u}, s7 << 13);
                 }
-                const uint32_t s9 = fuzzy_min(m1_1, (32768u));
-                fuzzy_add_area(&less2, (fuzzy_flanks_t){26843546u, 67108864u, 644245094u, 1342177u, 4473924u}, s9 << 13);
-                fuzzy_add_skew(&more1, (fuzzy_flanks_t){26843546u, 67108864u, 644245094u, 1342177u, 4473924u}, s9 << 13);
+                const uint32_t s8 = fuzzy_min(m1_1, (32768u));
+                fuzzy_add_area(&less2, (fuzzy_flanks_t){26843546u, 67108864u, 644245094u, 1342177u, 4473924u}, s8 << 13);
+                fuzzy_add_skew(&more1, (fuzzy_flanks_t){26843546u, 67108864u, 644245094u, 1342177u, 4473924u}, s8 << 13);
                 fuzzy_add_area(&less2, (fuzzy_flanks_t){18454938u, 67108864u, 617401549u, 922747u, 4473924u}, fuzzy_fill_height(m1_1, 32768u, 72090u) << 13);
                 fuzzy_add_skew(&more1, (fuzzy_flanks_t){18454938u, 67108864u, 617401549u, 922747u, 4473924u}, fuzzy_fill_height(m1_1, 32768u, 72090u) << 13);
-                const uint32_t s10 = fuzzy_min(m1_1, (95325u));
-                fuzzy_add_area(&less2, (fuzzy_flanks_t){26843546u, 73819750u, 858993459u, 671089u, 2460658u}, s10 << 13);
-                fuzzy_add_skew(&less2, (fuzzy_flanks_t){26843546u, 73819750u, 858993459u, 671089u, 2460658u}, s10 << 13);
+                const uint32_t s9 = fuzzy_min(m1_1, (95325u));
+                fuzzy_add_area(&less2, (fuzzy_flanks_t){26843546u, 73819750u, 858993459u, 671089u, 2460658u}, s9 << 13);
+                fuzzy_add_skew(&less2, (fuzzy_flanks_t){26843546u, 73819750u, 858993459u, 671089u, 2460658u}, s9 << 13);
                 output[0] = (int32_t)(fuzzy_centre(more1, less2, 10000u));
                 return 0;
             }
@@ -6159,7 +6142,7 @@ static const rule_point_t case_grid_physical_points[] = {
 };
 
 static const uint32_t case_general_table[378] = {
-    0x31545A46u, 0xF594386Eu, 0x0000017Au, 0x001C0203u, 0x100B0010u, 0x0C0300C0u,
+    0x31545A46u, 0x4C7BF0D6u, 0x0000017Au, 0x001C0203u, 0x100B0010u, 0x0C0300C0u,
     0x0C0500E4u, 0x00000000u, 0x00050120u, 0x00000137u, 0x00000172u, 0x00000000u,
     0x00000000u, 0x10000000u, 0x00000000u, 0x00070000u, 0xFFFFFFFFu, 0x80000000u,
     0x00000000u, 0x00000001u, 0x80000000u, 0x10000000u, 0x00000000u, 0x00000000u,
@@ -6209,7 +6192,7 @@ static const uint32_t case_general_table[378] = {
     0x00000000u, 0x00000001u, 0x00000000u, 0x00000000u, 0x00000000u, 0x00000000u,
     0x02080000u, 0x00000800u, 0x00000000u, 0xFFFF0000u, 0x0212CCCDu, 0x00001103u,
     0x00000000u, 0xFFFFFF01u, 0x02080000u, 0x00009009u, 0x00000000u, 0xFFFF0202u,
-    0x03073333u, 0x00100801u, 0x00000000u, 0xFFFF01FFu, 0x0200020Cu, 0x00000209u,
+    0x03073333u, 0x00100801u, 0x00000000u, 0xFFFF01FFu, 0x02641893u, 0x00000209u,
     0x00000000u, 0xFFFFFF00u, 0x00000000u, 0x00544AEDu, 0x00800000u, 0x00000300u,
     0x00006A25u, 0x00000000u, 0x00000000u, 0x00000134u, 0x00000000u, 0x00000007u,
     0x00000000u, 0x10000000u, 0x0E666666u, 0x10000000u, 0x00010000u, 0x00000000u,
@@ -6231,59 +6214,59 @@ static const rule_point_t case_general_points[] = {
     {{13107, 8192, 2147483647, 0}, 0u, {2828269795, 429493453, 0, 0}, {32925, 73473, 0, 0}},
     {{18022, INT32_MIN, -1, 0}, 0u, {2828393097, 1503238554, 0, 0}, {32906, 71827, 0, 0}},
     {{18023, 24575, 0, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{14745, 2147483647, 13653, 0}, 0u, {4291105364, 3364384932, 0, 0}, {37017, 71553, 0, 0}},
-    {{11468, 8192, 32768, 0}, 0u, {2083811365, 403237202, 0, 0}, {34419, 73729, 0, 0}},
+    {{14745, 2147483647, 13653, 0}, 0u, {4291105364, 3364384932, 0, 0}, {32940, 71553, 0, 0}},
+    {{11468, 8192, 32768, 0}, 0u, {2083811365, 403237202, 0, 0}, {34422, 73729, 0, 0}},
     {{6554, 24575, 20479, 0}, 3u, {1780840098, 3865470566, 0, 0}, {0, 0, 0, 0}},
     {{16383, 8193, INT32_MIN, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{0, 8193, -1, 0}, 3u, {1780840098, 3865470566, 0, 0}, {0, 0, 0, 0}},
     {{21300, INT32_MIN, INT32_MIN, 0}, 0u, {2828393097, 1503238554, 0, 0}, {32906, 71339, 0, 0}},
     {{2147483647, 8193, 32768, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{22938, 24576, 32767, 0}, 0u, {3913005313, 3364391049, 0, 0}, {36454, 71553, 0, 0}},
+    {{22938, 24576, 32767, 0}, 0u, {3913005313, 3364391049, 0, 0}, {33701, 71553, 0, 0}},
     {{16384, 24575, 13653, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{21299, 8192, 20480, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{32767, INT32_MIN, 20479, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{-1, 24576, 32767, 0}, 0u, {3914767277, 3364391049, 0, 0}, {33678, 71553, 0, 0}},
-    {{14746, 2147483647, 2147483647, 0}, 0u, {3912136194, 3364391049, 0, 0}, {36452, 71553, 0, 0}},
+    {{-1, 24576, 32767, 0}, 0u, {3914767277, 3364391049, 0, 0}, {33680, 71553, 0, 0}},
+    {{14746, 2147483647, 2147483647, 0}, 0u, {3912136194, 3364391049, 0, 0}, {33700, 71553, 0, 0}},
     {{22937, 8192, 20480, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{32768, 24576, -1, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{23473, 3682, 3181, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{30587, 19889, 5942, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{18636, 487, 8757, 0}, 0u, {2828393097, 1503238554, 0, 0}, {32906, 71426, 0, 0}},
     {{20288, 16884, 14799, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{2928, 31798, 12469, 0}, 0u, {4294126998, 3341496928, 0, 0}, {37413, 71473, 0, 0}},
+    {{2928, 31798, 12469, 0}, 0u, {4294126998, 3341496928, 0, 0}, {32943, 71473, 0, 0}},
     {{136, 13840, 8750, 0}, 3u, {1780840098, 3865470566, 0, 0}, {0, 0, 0, 0}},
     {{3093, 11972, 9781, 0}, 3u, {1780840098, 3865470566, 0, 0}, {0, 0, 0, 0}},
     {{16438, 16500, 2135, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{23334, 19653, 27597, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{27750, 8222, 30844, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{858, 26878, 3063, 0}, 0u, {4293964950, 3100234849, 0, 0}, {51254, 71017, 0, 0}},
+    {{858, 26878, 3063, 0}, 0u, {4293964950, 3100234849, 0, 0}, {33058, 71017, 0, 0}},
     {{18696, 16367, 12171, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{17914, 16399, 989, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{15274, 30847, 21353, 0}, 0u, {4250862890, 3364391049, 0, 0}, {38192, 71553, 0, 0}},
+    {{15274, 30847, 21353, 0}, 0u, {4250862890, 3364391049, 0, 0}, {34267, 71553, 0, 0}},
     {{22937, 23810, 30281, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{7691, 4793, 29202, 0}, 0u, {1061970983, 348460752, 0, 0}, {35469, 74473, 0, 0}},
-    {{24278, 32573, 30995, 0}, 0u, {3913242284, 3364391049, 0, 0}, {36455, 71553, 0, 0}},
+    {{7691, 4793, 29202, 0}, 0u, {1061970983, 348460752, 0, 0}, {35474, 74473, 0, 0}},
+    {{24278, 32573, 30995, 0}, 0u, {3913242284, 3364391049, 0, 0}, {33701, 71553, 0, 0}},
     {{9592, 10493, 7882, 0}, 3u, {1780840098, 3865470566, 0, 0}, {0, 0, 0, 0}},
     {{17832, 11575, 19532, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{13337, 2154, 5411, 0}, 1u, {1780840098, 1503238554, 0, 0}, {0, 71657, 0, 0}},
     {{23910, 17149, 7767, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{8560, 5527, 31282, 0}, 0u, {1329401368, 360207160, 0, 0}, {35106, 74279, 0, 0}},
+    {{8560, 5527, 31282, 0}, 0u, {1329401368, 360207160, 0, 0}, {35111, 74279, 0, 0}},
     {{17074, 937, 24707, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
-    {{8672, 31240, 32767, 0}, 0u, {3913232976, 3364391049, 0, 0}, {36455, 71553, 0, 0}},
-    {{8022, 29517, 26946, 0}, 0u, {4065193443, 3364391049, 0, 0}, {37198, 71553, 0, 0}},
+    {{8672, 31240, 32767, 0}, 0u, {3913232976, 3364391049, 0, 0}, {33701, 71553, 0, 0}},
+    {{8022, 29517, 26946, 0}, 0u, {4065193443, 3364391049, 0, 0}, {33936, 71553, 0, 0}},
     {{27080, 21956, 897, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{5021, 16644, 6774, 0}, 3u, {1780840098, 3865470566, 0, 0}, {0, 0, 0, 0}},
     {{24231, 8986, 4645, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{5732, 2636, 19834, 0}, 0u, {0, 324429715, 0, 0}, {32906, 74976, 0, 0}},
-    {{16582, 31008, 15947, 0}, 0u, {4160237566, 3364391049, 0, 0}, {37697, 71553, 0, 0}},
+    {{16582, 31008, 15947, 0}, 0u, {4160237566, 3364391049, 0, 0}, {34100, 71553, 0, 0}},
     {{15932, 1010, 11748, 0}, 0u, {2828393097, 1503238554, 0, 0}, {32906, 71259, 0, 0}},
-    {{569, 29398, 3069, 0}, 0u, {4294303817, 3100413000, 0, 0}, {51221, 71017, 0, 0}},
-    {{19768, 29549, 23946, 0}, 0u, {3982300568, 3364391049, 0, 0}, {36787, 71553, 0, 0}},
+    {{569, 29398, 3069, 0}, 0u, {4294303817, 3100413000, 0, 0}, {33057, 71017, 0, 0}},
+    {{19768, 29549, 23946, 0}, 0u, {3982300568, 3364391049, 0, 0}, {33805, 71553, 0, 0}},
     {{27226, 12917, 3003, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{25389, 16827, 18416, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{22368, 2338, 3490, 0}, 0u, {2828393097, 1503238554, 0, 0}, {32906, 71224, 0, 0}},
-    {{20501, 31031, 3543, 0}, 0u, {3495134636, 3114412433, 0, 0}, {39939, 71035, 0, 0}},
-    {{13552, 25050, 12141, 0}, 0u, {4290975910, 3334767211, 0, 0}, {37528, 71452, 0, 0}},
+    {{20501, 31031, 3543, 0}, 0u, {3495134636, 3114412433, 0, 0}, {34086, 71035, 0, 0}},
+    {{13552, 25050, 12141, 0}, 0u, {4290975910, 3334767211, 0, 0}, {32944, 71452, 0, 0}},
     {{17042, 2192, 29000, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
     {{21920, 24132, 30968, 0}, 2u, {2828393097, 3865470566, 0, 0}, {32906, 0, 0, 0}},
 };
@@ -6479,65 +6462,65 @@ static const rule_point_t case_limits_points[] = {
     {{16384, 2147483647, 0, 0}, 0u, {3981792597, 0, 0, 0}, {32939, 0, 0, 0}},
     {{16383, 0, 0, 0}, 0u, {2092307962, 0, 0, 0}, {33299, 0, 0, 0}},
     {{9830, 32768, 0, 0}, 0u, {3981792597, 0, 0, 0}, {32939, 0, 0, 0}},
-    {{9831, 0, 0, 0}, 0u, {2065036538, 0, 0, 0}, {33313, 0, 0, 0}},
-    {{6554, 0, 0, 0}, 0u, {2069508920, 0, 0, 0}, {33363, 0, 0, 0}},
+    {{9831, 0, 0, 0}, 0u, {2065036538, 0, 0, 0}, {33314, 0, 0, 0}},
+    {{6554, 0, 0, 0}, 0u, {2069508920, 0, 0, 0}, {33364, 0, 0, 0}},
     {{0, 32767, 0, 0}, 0u, {3980744533, 0, 0, 0}, {33023, 0, 0, 0}},
     {{26215, 32767, 0, 0}, 0u, {3980460967, 0, 0, 0}, {33046, 0, 0, 0}},
     {{13108, 32768, 0, 0}, 0u, {3981792597, 0, 0, 0}, {32939, 0, 0, 0}},
     {{19661, 32767, 0, 0}, 0u, {3979975512, 0, 0, 0}, {33085, 0, 0, 0}},
-    {{29492, INT32_MIN, 0, 0}, 0u, {2068546293, 0, 0, 0}, {33808, 0, 0, 0}},
+    {{29492, INT32_MIN, 0, 0}, 0u, {2068546293, 0, 0, 0}, {33809, 0, 0, 0}},
     {{6553, 2147483647, 0, 0}, 0u, {3981792597, 0, 0, 0}, {32939, 0, 0, 0}},
     {{-1, 32768, 0, 0}, 0u, {3981792597, 0, 0, 0}, {32939, 0, 0, 0}},
     {{INT32_MIN, 32767, 0, 0}, 0u, {3980744533, 0, 0, 0}, {33023, 0, 0, 0}},
-    {{2147483647, 0, 0, 0}, 0u, {2151211918, 0, 0, 0}, {34116, 0, 0, 0}},
-    {{3277, INT32_MIN, 0, 0}, 0u, {1996299166, 0, 0, 0}, {33469, 0, 0, 0}},
-    {{19660, -1, 0, 0}, 0u, {2002404317, 0, 0, 0}, {33354, 0, 0, 0}},
-    {{3276, INT32_MIN, 0, 0}, 0u, {1996263599, 0, 0, 0}, {33467, 0, 0, 0}},
+    {{2147483647, 0, 0, 0}, 0u, {2151211918, 0, 0, 0}, {34118, 0, 0, 0}},
+    {{3277, INT32_MIN, 0, 0}, 0u, {1996299166, 0, 0, 0}, {33470, 0, 0, 0}},
+    {{19660, -1, 0, 0}, 0u, {2002404317, 0, 0, 0}, {33355, 0, 0, 0}},
+    {{3276, INT32_MIN, 0, 0}, 0u, {1996263599, 0, 0, 0}, {33468, 0, 0, 0}},
     {{13107, 2147483647, 0, 0}, 0u, {3981792597, 0, 0, 0}, {32939, 0, 0, 0}},
-    {{29491, INT32_MIN, 0, 0}, 0u, {2068532348, 0, 0, 0}, {33809, 0, 0, 0}},
-    {{26214, -1, 0, 0}, 0u, {2072251945, 0, 0, 0}, {33590, 0, 0, 0}},
-    {{32768, -1, 0, 0}, 0u, {2151211918, 0, 0, 0}, {34116, 0, 0, 0}},
-    {{32767, -1, 0, 0}, 0u, {2151176178, 0, 0, 0}, {34117, 0, 0, 0}},
-    {{4486, 24342, 0, 0}, 0u, {2208116225, 0, 0, 0}, {34008, 0, 0, 0}},
-    {{637, 22778, 0, 0}, 0u, {2179127322, 0, 0, 0}, {34090, 0, 0, 0}},
-    {{21880, 20555, 0, 0}, 0u, {2138231771, 0, 0, 0}, {33641, 0, 0, 0}},
-    {{17605, 29555, 0, 0}, 0u, {2379777414, 0, 0, 0}, {34647, 0, 0, 0}},
-    {{31639, 25986, 0, 0}, 0u, {2404440135, 0, 0, 0}, {34349, 0, 0, 0}},
-    {{31566, 2716, 0, 0}, 0u, {2113942540, 0, 0, 0}, {33981, 0, 0, 0}},
-    {{32748, 28853, 0, 0}, 0u, {2658746183, 0, 0, 0}, {34700, 0, 0, 0}},
-    {{6908, 18713, 0, 0}, 0u, {2174711214, 0, 0, 0}, {33589, 0, 0, 0}},
-    {{29464, 31586, 0, 0}, 0u, {3097540586, 0, 0, 0}, {34949, 0, 0, 0}},
-    {{7945, 14086, 0, 0}, 0u, {2085093663, 0, 0, 0}, {33457, 0, 0, 0}},
-    {{15949, 3945, 0, 0}, 0u, {2060987293, 0, 0, 0}, {33310, 0, 0, 0}},
-    {{31940, 22566, 0, 0}, 0u, {2309854482, 0, 0, 0}, {34142, 0, 0, 0}},
-    {{22530, 27396, 0, 0}, 0u, {2237493966, 0, 0, 0}, {34196, 0, 0, 0}},
-    {{2502, 18344, 0, 0}, 0u, {2054886445, 0, 0, 0}, {33784, 0, 0, 0}},
-    {{1819, 7650, 0, 0}, 0u, {1967636489, 0, 0, 0}, {33598, 0, 0, 0}},
-    {{22449, 32487, 0, 0}, 0u, {3566836815, 0, 0, 0}, {34327, 0, 0, 0}},
-    {{25302, 12801, 0, 0}, 0u, {2128088078, 0, 0, 0}, {33569, 0, 0, 0}},
-    {{20851, 27873, 0, 0}, 0u, {2248956121, 0, 0, 0}, {34248, 0, 0, 0}},
-    {{7938, 13987, 0, 0}, 0u, {2083853421, 0, 0, 0}, {33455, 0, 0, 0}},
+    {{29491, INT32_MIN, 0, 0}, 0u, {2068532348, 0, 0, 0}, {33811, 0, 0, 0}},
+    {{26214, -1, 0, 0}, 0u, {2072251945, 0, 0, 0}, {33591, 0, 0, 0}},
+    {{32768, -1, 0, 0}, 0u, {2151211918, 0, 0, 0}, {34118, 0, 0, 0}},
+    {{32767, -1, 0, 0}, 0u, {2151176178, 0, 0, 0}, {34119, 0, 0, 0}},
+    {{4486, 24342, 0, 0}, 0u, {2208116225, 0, 0, 0}, {34011, 0, 0, 0}},
+    {{637, 22778, 0, 0}, 0u, {2179127322, 0, 0, 0}, {34092, 0, 0, 0}},
+    {{21880, 20555, 0, 0}, 0u, {2138231771, 0, 0, 0}, {33642, 0, 0, 0}},
+    {{17605, 29555, 0, 0}, 0u, {2379777414, 0, 0, 0}, {34650, 0, 0, 0}},
+    {{31639, 25986, 0, 0}, 0u, {2404440135, 0, 0, 0}, {34351, 0, 0, 0}},
+    {{31566, 2716, 0, 0}, 0u, {2113942540, 0, 0, 0}, {33983, 0, 0, 0}},
+    {{32748, 28853, 0, 0}, 0u, {2658746183, 0, 0, 0}, {34703, 0, 0, 0}},
+    {{6908, 18713, 0, 0}, 0u, {2174711214, 0, 0, 0}, {33591, 0, 0, 0}},
+    {{29464, 31586, 0, 0}, 0u, {3097540586, 0, 0, 0}, {34953, 0, 0, 0}},
+    {{7945, 14086, 0, 0}, 0u, {2085093663, 0, 0, 0}, {33458, 0, 0, 0}},
+    {{15949, 3945, 0, 0}, 0u, {2060987293, 0, 0, 0}, {33311, 0, 0, 0}},
+    {{31940, 22566, 0, 0}, 0u, {2309854482, 0, 0, 0}, {34145, 0, 0, 0}},
+    {{22530, 27396, 0, 0}, 0u, {2237493966, 0, 0, 0}, {34198, 0, 0, 0}},
+    {{2502, 18344, 0, 0}, 0u, {2054886445, 0, 0, 0}, {33785, 0, 0, 0}},
+    {{1819, 7650, 0, 0}, 0u, {1967636489, 0, 0, 0}, {33599, 0, 0, 0}},
+    {{22449, 32487, 0, 0}, 0u, {3566836815, 0, 0, 0}, {34329, 0, 0, 0}},
+    {{25302, 12801, 0, 0}, 0u, {2128088078, 0, 0, 0}, {33570, 0, 0, 0}},
+    {{20851, 27873, 0, 0}, 0u, {2248956121, 0, 0, 0}, {34251, 0, 0, 0}},
+    {{7938, 13987, 0, 0}, 0u, {2083853421, 0, 0, 0}, {33456, 0, 0, 0}},
     {{18443, 2021, 0, 0}, 0u, {2033141219, 0, 0, 0}, {33334, 0, 0, 0}},
-    {{29624, 1444, 0, 0}, 0u, {2070925845, 0, 0, 0}, {33817, 0, 0, 0}},
-    {{22122, 1865, 0, 0}, 0u, {2015414486, 0, 0, 0}, {33422, 0, 0, 0}},
-    {{75, 5432, 0, 0}, 0u, {1941508480, 0, 0, 0}, {33694, 0, 0, 0}},
-    {{9757, 17565, 0, 0}, 0u, {2104458375, 0, 0, 0}, {33500, 0, 0, 0}},
-    {{30308, 29004, 0, 0}, 0u, {2537586797, 0, 0, 0}, {34680, 0, 0, 0}},
-    {{18522, 7090, 0, 0}, 0u, {2029873613, 0, 0, 0}, {33359, 0, 0, 0}},
-    {{28419, 22876, 0, 0}, 0u, {2252038771, 0, 0, 0}, {33958, 0, 0, 0}},
-    {{12874, 15206, 0, 0}, 0u, {2021478165, 0, 0, 0}, {33424, 0, 0, 0}},
-    {{6012, 7095, 0, 0}, 0u, {2035594011, 0, 0, 0}, {33415, 0, 0, 0}},
-    {{21628, 19463, 0, 0}, 0u, {2121230776, 0, 0, 0}, {33598, 0, 0, 0}},
-    {{29740, 29436, 0, 0}, 0u, {2566180455, 0, 0, 0}, {34747, 0, 0, 0}},
-    {{14694, 31175, 0, 0}, 0u, {2729056018, 0, 0, 0}, {35057, 0, 0, 0}},
-    {{3019, 4628, 0, 0}, 0u, {1942459145, 0, 0, 0}, {33516, 0, 0, 0}},
+    {{29624, 1444, 0, 0}, 0u, {2070925845, 0, 0, 0}, {33819, 0, 0, 0}},
+    {{22122, 1865, 0, 0}, 0u, {2015414486, 0, 0, 0}, {33423, 0, 0, 0}},
+    {{75, 5432, 0, 0}, 0u, {1941508480, 0, 0, 0}, {33695, 0, 0, 0}},
+    {{9757, 17565, 0, 0}, 0u, {2104458375, 0, 0, 0}, {33501, 0, 0, 0}},
+    {{30308, 29004, 0, 0}, 0u, {2537586797, 0, 0, 0}, {34683, 0, 0, 0}},
+    {{18522, 7090, 0, 0}, 0u, {2029873613, 0, 0, 0}, {33360, 0, 0, 0}},
+    {{28419, 22876, 0, 0}, 0u, {2252038771, 0, 0, 0}, {33960, 0, 0, 0}},
+    {{12874, 15206, 0, 0}, 0u, {2021478165, 0, 0, 0}, {33425, 0, 0, 0}},
+    {{6012, 7095, 0, 0}, 0u, {2035594011, 0, 0, 0}, {33416, 0, 0, 0}},
+    {{21628, 19463, 0, 0}, 0u, {2121230776, 0, 0, 0}, {33600, 0, 0, 0}},
+    {{29740, 29436, 0, 0}, 0u, {2566180455, 0, 0, 0}, {34751, 0, 0, 0}},
+    {{14694, 31175, 0, 0}, 0u, {2729056018, 0, 0, 0}, {35061, 0, 0, 0}},
+    {{3019, 4628, 0, 0}, 0u, {1942459145, 0, 0, 0}, {33517, 0, 0, 0}},
     {{15435, 1212, 0, 0}, 0u, {2086260549, 0, 0, 0}, {33297, 0, 0, 0}},
-    {{5090, 13893, 0, 0}, 0u, {2045587130, 0, 0, 0}, {33552, 0, 0, 0}},
-    {{29634, 11461, 0, 0}, 0u, {2071108441, 0, 0, 0}, {33818, 0, 0, 0}},
-    {{6832, 25329, 0, 0}, 0u, {2376322342, 0, 0, 0}, {33896, 0, 0, 0}},
-    {{22224, 849, 0, 0}, 0u, {2016052295, 0, 0, 0}, {33425, 0, 0, 0}},
-    {{20417, 1907, 0, 0}, 0u, {2017585470, 0, 0, 0}, {33373, 0, 0, 0}},
-    {{15147, 22142, 0, 0}, 0u, {2049713361, 0, 0, 0}, {33688, 0, 0, 0}},
+    {{5090, 13893, 0, 0}, 0u, {2045587130, 0, 0, 0}, {33554, 0, 0, 0}},
+    {{29634, 11461, 0, 0}, 0u, {2071108441, 0, 0, 0}, {33820, 0, 0, 0}},
+    {{6832, 25329, 0, 0}, 0u, {2376322342, 0, 0, 0}, {33898, 0, 0, 0}},
+    {{22224, 849, 0, 0}, 0u, {2016052295, 0, 0, 0}, {33426, 0, 0, 0}},
+    {{20417, 1907, 0, 0}, 0u, {2017585470, 0, 0, 0}, {33374, 0, 0, 0}},
+    {{15147, 22142, 0, 0}, 0u, {2049713361, 0, 0, 0}, {33689, 0, 0, 0}},
 };
 
 static const uint32_t case_one_table[115] = {
@@ -6621,15 +6604,15 @@ static uint32_t case_one(const int32_t *input, int32_t *output) {
 static const rule_point_t case_one_points[] = {
     {{2000000, 0, 0, 0}, 0u, {65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{1000000, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
-    {{4999999, 0, 0, 0}, 0u, {87381332120, 0, 0, 0}, {46800, 0, 0, 0}},
-    {{5000000, 0, 0, 0}, 0u, {87381333333, 0, 0, 0}, {46800, 0, 0, 0}},
+    {{4999999, 0, 0, 0}, 0u, {87381332120, 0, 0, 0}, {46827, 0, 0, 0}},
+    {{5000000, 0, 0, 0}, 0u, {87381333333, 0, 0, 0}, {46827, 0, 0, 0}},
     {{999999, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
     {{INT32_MIN, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-5000001, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{1999999, 0, 0, 0}, 0u, {65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-5000000, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-1000000, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
-    {{2147483647, 0, 0, 0}, 0u, {87381333333, 0, 0, 0}, {46800, 0, 0, 0}},
+    {{2147483647, 0, 0, 0}, 0u, {87381333333, 0, 0, 0}, {46827, 0, 0, 0}},
     {{-1913416, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-238642, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
     {{-2243953, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
@@ -6639,35 +6622,35 @@ static const rule_point_t case_one_points[] = {
     {{-2814297, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-131771, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
     {{1554232, 0, 0, 0}, 0u, {65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
-    {{2887749, 0, 0, 0}, 0u, {81178294087, 0, 0, 0}, {57151, 0, 0, 0}},
+    {{2887749, 0, 0, 0}, 0u, {81178294087, 0, 0, 0}, {57198, 0, 0, 0}},
     {{1628313, 0, 0, 0}, 0u, {65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
-    {{4641215, 0, 0, 0}, 0u, {86897701244, 0, 0, 0}, {48011, 0, 0, 0}},
-    {{3130297, 0, 0, 0}, 0u, {82660261139, 0, 0, 0}, {55699, 0, 0, 0}},
+    {{4641215, 0, 0, 0}, 0u, {86897701244, 0, 0, 0}, {48040, 0, 0, 0}},
+    {{3130297, 0, 0, 0}, 0u, {82660261139, 0, 0, 0}, {55743, 0, 0, 0}},
     {{1651876, 0, 0, 0}, 0u, {65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-318952, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
     {{-4750719, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-32710, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
     {{-555948, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
-    {{3745352, 0, 0, 0}, 0u, {85044097492, 0, 0, 0}, {52019, 0, 0, 0}},
+    {{3745352, 0, 0, 0}, 0u, {85044097492, 0, 0, 0}, {52056, 0, 0, 0}},
     {{701500, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
     {{-2053648, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
-    {{3467305, 0, 0, 0}, 0u, {84142117719, 0, 0, 0}, {53606, 0, 0, 0}},
+    {{3467305, 0, 0, 0}, 0u, {84142117719, 0, 0, 0}, {53647, 0, 0, 0}},
     {{-3884928, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-2088993, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-4942144, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-4977376, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
-    {{4358827, 0, 0, 0}, 0u, {86434563691, 0, 0, 0}, {49106, 0, 0, 0}},
+    {{4358827, 0, 0, 0}, 0u, {86434563691, 0, 0, 0}, {49138, 0, 0, 0}},
     {{-1808650, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
-    {{2988374, 0, 0, 0}, 0u, {81848047028, 0, 0, 0}, {56574, 0, 0, 0}},
+    {{2988374, 0, 0, 0}, 0u, {81848047028, 0, 0, 0}, {56620, 0, 0, 0}},
     {{-1134675, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
-    {{3118651, 0, 0, 0}, 0u, {82598664133, 0, 0, 0}, {55772, 0, 0, 0}},
+    {{3118651, 0, 0, 0}, 0u, {82598664133, 0, 0, 0}, {55817, 0, 0, 0}},
     {{283296, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
     {{-4527818, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-4234444, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-3849404, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{-1118678, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
-    {{3112530, 0, 0, 0}, 0u, {82565953596, 0, 0, 0}, {55811, 0, 0, 0}},
-    {{4712533, 0, 0, 0}, 0u, {87002178624, 0, 0, 0}, {47755, 0, 0, 0}},
+    {{3112530, 0, 0, 0}, 0u, {82565953596, 0, 0, 0}, {55855, 0, 0, 0}},
+    {{4712533, 0, 0, 0}, 0u, {87002178624, 0, 0, 0}, {47784, 0, 0, 0}},
     {{-3811291, 0, 0, 0}, 0u, {-65536000000, 0, 0, 0}, {32768, 0, 0, 0}},
     {{489263, 0, 0, 0}, 1u, {0, 0, 0, 0}, {0, 0, 0, 0}},
 };

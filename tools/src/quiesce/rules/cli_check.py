@@ -68,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     progress = WalkProgress()
     walked = walk(compiled, args.jobs, 0 if args.quick else MAX_WALKED_POINTS, progress.report)
     bounds = error_bounds(compiled)
-    problems = failures(findings, walked, args.max_error)
+    problems = failures(findings, walked, bounds, args.max_error)
     if args.json:
         print(json.dumps(report(compiled, findings, walked, bounds, problems), indent=2))
     else:
@@ -98,14 +98,23 @@ class WalkProgress:
         )
 
 
-def failures(findings: list[Finding], walked: Walk, max_error: float | None) -> list[str]:
+def failures(
+    findings: list[Finding],
+    walked: Walk,
+    bounds: list[float | None],
+    max_error: float | None,
+) -> list[str]:
     problems = []
     errors = sum(finding.severity == ERROR for finding in findings)
     if errors:
         problems.append(f"{errors} finding{'s are errors' if errors > 1 else ' is an error'}")
     if walked.engines_differ > 0:
         problems.append(f"the engines differ at {walked.engines_differ:,} points")
-    for output in walked.outputs:
+    for output, bound in zip(walked.outputs, bounds, strict=True):
+        if bound is not None and output.unit_error > bound:
+            problems.append(f"{output.name} is off by more than its proved bound")
+        if bound is not None and output.default_differs:
+            problems.append(f"{output.name} has its default at points where rules fire")
         if max_error is not None and output.unit_error > max_error:
             problems.append(f"{output.name} is off by {output.unit_error:.3g}, above {max_error:g}")
     return problems

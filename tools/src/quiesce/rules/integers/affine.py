@@ -161,6 +161,8 @@ def extreme(
 ) -> Affine:
     kept: list[Affine] = []
     for value in values:
+        if value in kept:
+            continue
         kept = [other for other in kept if order.is_less(value, other) is not wants_less]
         if not any(order.is_less(other, value) is wants_less for other in kept):
             kept.append(value)

@@ -19,7 +19,7 @@ from quiesce.rules.integers.compile import (
 )
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 
-PRODUCT_ERROR = Fraction(1, 2)  # at most, of the bits that fuzzy_strength() drops
+PRODUCT_ERROR = Fraction(1)  # at most, of the bits that fuzzy_strength() drops
 WEIGHT_ERROR = Fraction(1, 2 * WEIGHT_ONE)
 MAX_COMBINATIONS = 20_000
 
@@ -100,12 +100,12 @@ def strengths(
             one - memberships[i].get(s, 0) if negated else memberships[i].get(s, 0)
             for i, s, negated in rule.conditions
         ]
-        found.append(Fraction(min(values) * rule.weight_q19, WEIGHT_ONE))
+        found.append(Fraction(min(values) * rule.weight_q19, WEIGHT_ONE << rule.exponent))
     return found
 
 
 def strength_error(compiled: CompiledBase, rule: IntegerRule) -> Fraction:
-    if rule.weight_q19 == WEIGHT_ONE:
+    if rule.is_full:
         return MEMBERSHIP_ERROR
     one = 1 << compiled.bits
-    return MEMBERSHIP_ERROR + PRODUCT_ERROR + WEIGHT_ERROR * one
+    return MEMBERSHIP_ERROR + PRODUCT_ERROR + WEIGHT_ERROR * one / 2**rule.exponent

@@ -1,7 +1,7 @@
 """Lines of C as they are written: nesting, fresh names, branches that come to the same."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from quiesce.rules.integers.affine import Affine
@@ -26,12 +26,20 @@ class CWriter:
         return f"{prefix}{self.names}"
 
     def drop_unused(self, start: int) -> None:
-        """Definitions that nothing after them reads, from line `start` on."""
+        """Definitions that nothing after them in their block reads, from line `start` on."""
         for index in range(len(self.lines) - 1, start - 1, -1):
-            found = re.match(r" *const uint(?:32|64)_t (\w+) =", self.lines[index])
-            name = found and re.compile(rf"\b{found[1]}\b")
-            if name and not any(name.search(line) for line in self.lines[index + 1 :]):
+            found = re.match(r" *const u?int(?:32|64)_t (\w+) =", self.lines[index])
+            if found and not any(
+                re.search(rf"\b{found[1]}\b", line) for line in self.rest_of_block(index)
+            ):
                 del self.lines[index]
+
+    def rest_of_block(self, index: int) -> Iterator[str]:
+        depth = indentation(self.lines[index])
+        for line in self.lines[index + 1 :]:
+            if indentation(line) < depth:
+                return
+            yield line
 
     def named(self, text: str) -> Affine:
         """A C variable with this value."""
@@ -73,3 +81,7 @@ class Indent:
 
 def int_text(value: int) -> str:
     return "INT32_MIN" if value == -(2**31) else str(value)
+
+
+def indentation(line: str) -> int:
+    return len(line) - len(line.lstrip())

@@ -107,6 +107,8 @@ def integer_spans(variable: Input, axis: Axis, low: int, high: int) -> list[tupl
     starts = {low}
     for start, is_alone in edges.items():
         starts |= {start, start + 1} if is_alone else {start}
+    # No cell is wider than its offset's format.
+    starts |= {low + (high - low) * part // 4 for part in (1, 2, 3) if high - low >= 2**30}
     inside = sorted(start for start in starts if low <= start <= high)
     return [
         (start, following - 1)

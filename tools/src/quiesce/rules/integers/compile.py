@@ -25,9 +25,12 @@ INT32_LIMIT = 2**31 - 1
 MAX_OUTPUT_COUNTS = 2**24  # of an output's universe
 GENERAL_BITS = 28
 WEIGHT_ONE = 1 << 19
-MEMBERSHIP_ERROR = Fraction(5, 8)  # units of 2^-bits (integer_cells.py)
+EXPONENT_STEP = 3
+MAX_EXPONENT = 7 * EXPONENT_STEP
+MIN_WEIGHT = 1 << 9  # so that its rounding stays below a thousandth of it
+MEMBERSHIP_ERROR = Fraction(5, 8)  # units of 2^-bits (cells.py)
 # Where the sum of strengths is known to lie in 1..2: fewer bits, so that 32-bit words and one
-# division do; rules/check.py proves the error that is left.
+# division do; bound.py tells the error that is left.
 PARTITION_BITS = 16
 WIDE_PARTITION_BITS = 18
 WIDE_PARTITION_FRACTION = 2
@@ -48,6 +51,12 @@ class IntegerRule:
     conclusions: tuple[int | None, ...]
     is_or: bool
     weight_q19: int
+    exponent: int  # the weight is 2^-exponent of that
+
+    @property
+    def is_full(self) -> bool:
+        """Without a weight."""
+        return self.weight_q19 == WEIGHT_ONE and self.exponent == 0
 
 
 @dataclass(frozen=True)
@@ -93,6 +102,14 @@ class CompiledBase:
 
     def output_lsb(self, index: int) -> float:
         return float(self.outputs[index].axis.lsb)
+
+    @property
+    def is_for_controller(self) -> bool:
+        """From uHz and um/s2 to mA, if the file has Hz, m/s2 and A."""
+        inputs = [(axis.origin, axis.lsb) for axis in self.axes]
+        outputs = [(output.axis.origin, output.axis.lsb) for output in self.outputs]
+        micro, milli = Fraction(1, 10**6), Fraction(1, 1000)
+        return inputs == [(0, micro)] * 2 and outputs == [(0, milli)]
 
     @property
     def strength_shift(self) -> int:
@@ -269,8 +286,24 @@ def integer_rule(
         tuple((c.input, order[c.input].index(c.set), c.negated) for c in rule.conditions),
         conclusions,
         rule.connective != AND and len(rule.conditions) > 1,
-        nearest(exact(rule.weight) * WEIGHT_ONE),
+        *weight_integers(rule.weight),
     )
+
+
+def weight_integers(weight: float) -> tuple[int, int]:
+    """Mantissa in 2^-19 and exponent: weight = mantissa * 2^-(19 + exponent)."""
+    exponent, scaled = 0, exact(weight) * WEIGHT_ONE
+    while exponent < MAX_EXPONENT and scaled * 2**EXPONENT_STEP <= WEIGHT_ONE:
+        exponent += EXPONENT_STEP
+        scaled *= 2**EXPONENT_STEP
+    if weight == 0:
+        return 0, 0
+    if scaled < MIN_WEIGHT:
+        raise UsageError(
+            f"a rule's weight of {weight:g} is too small for its integers; at least "
+            f"{MIN_WEIGHT / (WEIGHT_ONE << MAX_EXPONENT):.1g}, or 0"
+        )
+    return nearest(scaled), exponent
 
 
 def has_grid(base: RuleBase, rules: Sequence[IntegerRule]) -> bool:
@@ -286,7 +319,7 @@ def pair_of(rule: IntegerRule) -> tuple[int, int] | None:
     """The sets of both inputs, where the rule is a plain one of a grid."""
     is_plain = (
         not rule.is_or
-        and rule.weight_q19 == WEIGHT_ONE
+        and rule.is_full
         and len(rule.conditions) == 2
         and {c[0] for c in rule.conditions} == {0, 1}
         and not any(c[2] for c in rule.conditions)

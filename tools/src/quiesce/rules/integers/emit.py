@@ -5,14 +5,14 @@ rules that can fire there are left, with constants for all that is constant. The
 of the table engine, bit for bit. NotStraight says why a base has no such form.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from math import prod
 
 from quiesce.rules.integers.affine import Affine, Order, constant, maximum, minimum
-from quiesce.rules.integers.c_writer import CWriter, int_text
+from quiesce.rules.integers.c_writer import INDENT, CWriter, int_text
 from quiesce.rules.integers.cells import Cell, Ramp
 from quiesce.rules.integers.compile import (
-    WEIGHT_ONE,
     CompiledBase,
     IntegerRule,
     is_complementary,
@@ -40,7 +40,7 @@ def why_not_straight(compiled: CompiledBase) -> str:
             return (
                 f"{output.shapes.not_ordered}; straight-line C takes sets that follow one another"
             )
-    is_weighted = any(rule.weight_q19 != WEIGHT_ONE for rule in compiled.rules)
+    is_weighted = not all(rule.is_full for rule in compiled.rules)
     if is_weighted and any(output.shapes for output in compiled.outputs):
         return "rules have weights and an output is a centroid; straight-line C takes one of both"
     leaves = prod(len(cells) for cells in compiled.cells)
@@ -60,6 +60,9 @@ def straight_line_c(compiled: CompiledBase, name: str) -> str:
         for index, variable in enumerate(compiled.base.inputs):
             writer.line(f"const int32_t x{index} = input[{index}]; // {variable.name}")
         Tree(compiled, writer).cells(0, ())
+        writer.drop_unused(1)
+        if not any(re.search(r"\binput\b", line) for line in writer.lines[1:]):
+            writer.lines.insert(1, INDENT + "(void)input;")
     writer.line("}")
     return "\n".join(writer.lines) + "\n"
 

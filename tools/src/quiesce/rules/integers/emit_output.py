@@ -6,12 +6,12 @@ from typing import TypeVar
 from quiesce.rules.integers.affine import Affine, Order, constant, maximum, minimum
 from quiesce.rules.integers.c_writer import CWriter, int_text
 from quiesce.rules.integers.cells import nearest
-from quiesce.rules.integers.compile import WEIGHT_ONE, CompiledBase, IntegerRule
+from quiesce.rules.integers.compile import CompiledBase, IntegerRule
 from quiesce.rules.integers.output_shapes import LayerIntegers, Shape, layer_integers
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 
 Part = TypeVar("Part")
-Fired = tuple[int, int, Affine]  # term, weight, membership of a rule
+Fired = tuple[int, IntegerRule, Affine]  # term, rule, its membership
 
 
 class OutputWriter:
@@ -24,7 +24,7 @@ class OutputWriter:
 
     def write(self, rules: Sequence[tuple[IntegerRule, Affine]]) -> str:
         fired = [
-            (term, rule.weight_q19, membership)
+            (term, rule, membership)
             for rule, membership in rules
             if (term := rule.conclusions[self.index]) is not None
         ]
@@ -34,7 +34,7 @@ class OutputWriter:
         if self.output.method == CENTROID:
             return CentroidWriter(self).write(fired)
         bound = sum(self.order.upper_bound(membership) for _, _, membership in fired)
-        if bound < 1 << 32 and all(weight == WEIGHT_ONE for _, weight, _ in fired):
+        if bound < 1 << 32 and all(rule.is_full for _, rule, _ in fired):
             return self.write_plain(fired)
         return WideAverageWriter(self).write(fired)
 
@@ -114,7 +114,7 @@ class WideAverageWriter:
         self.shift = output.compiled.strength_shift
 
     def write(self, fired: Sequence[Fired]) -> str:
-        parts = [(term, self.named(self.strength_text(m, weight))) for term, weight, m in fired]
+        parts = [(term, self.named(self.strength_text(rule, m))) for term, rule, m in fired]
         if self.output.output.method == WEIGHTED_MAX:
             parts = [(term, self.greatest(names)) for term, names in by_term(parts).items()]
         terms = self.output.output.terms
@@ -132,13 +132,16 @@ class WideAverageWriter:
         is_default = "" if self.always_fires(fired) else f"{total} == 0"
         return self.output.guarded(is_default, lambda: self.output.store(text))
 
-    def strength_text(self, membership: Affine, weight: int) -> str:
-        return f"fuzzy_strength({membership.text()}, {weight}u, {self.shift}u)"
+    def strength_text(self, rule: IntegerRule, membership: Affine) -> str:
+        shift = self.shift + rule.exponent
+        return f"fuzzy_strength({membership.text()}, {rule.weight_q19}u, {shift}u)"
 
     def always_fires(self, fired: Sequence[Fired]) -> bool:
         return any(
-            self.output.order.lower_bound(membership) * weight >> self.shift > 0
-            for _, weight, membership in fired
+            self.output.order.lower_bound(membership) * rule.weight_q19
+            >> (self.shift + rule.exponent)
+            > 0
+            for _, rule, membership in fired
         )
 
     def greatest(self, names: Sequence[str]) -> str:

@@ -11,7 +11,13 @@ from itertools import product
 
 from quiesce.errors import UsageError
 from quiesce.rules.integers.cells import Cell, nearest
-from quiesce.rules.integers.compile import CompiledBase, IntegerOutput, IntegerRule, pair_of
+from quiesce.rules.integers.compile import (
+    EXPONENT_STEP,
+    CompiledBase,
+    IntegerOutput,
+    IntegerRule,
+    pair_of,
+)
 from quiesce.rules.integers.output_shapes import LayerIntegers, Shape, layer_integers
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM
 
@@ -59,7 +65,11 @@ def table_words(compiled: CompiledBase) -> list[int]:
         *padded(outputs, 4),
     ]
     first = compiled.outputs[0]
-    quick = [1 << compiled.bits, first.origin & UINT32, twins | first.fraction << 16]
+    quick = [
+        1 << compiled.bits,
+        first.origin & UINT32,
+        twins | first.fraction << 16 | int(compiled.is_for_controller) << 24,
+    ]
     rest = [*header, *quick, *body.words]
     return [MAGIC, crc32(rest), *rest]
 
@@ -148,7 +158,8 @@ def cells_words(cells: Sequence[Cell]) -> list[int]:
 def rule_words(rule: IntegerRule) -> list[int]:
     conditions = [(i << 3 | fuzzy_set | negated << 7) for i, fuzzy_set, negated in rule.conditions]
     conclusions = [NONE if term is None else term for term in rule.conclusions]
-    head = rule.weight_q19 | rule.is_or << 20 | len(conditions) << 24
+    steps = rule.exponent // EXPONENT_STEP
+    head = rule.weight_q19 | rule.is_or << 20 | steps << 21 | len(conditions) << 24
     return [
         head,
         *packed(padded(conditions, 8)),

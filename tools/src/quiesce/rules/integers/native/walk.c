@@ -68,10 +68,24 @@ static double membership(const model_set_t *set, double x) {
     return mu;
 }
 
+// An integer that stands on a breakpoint may miss it in double.
+static double at_breakpoint(int i, double x) {
+    const model_input_t *input = &model_inputs[i];
+    const double near = 1e-12 * (input->maximum - input->minimum);
+    for (int s = 0; s < input->sets; s++) {
+        for (int k = 0; k < input->set[s].count; k++) {
+            if (fabs(x - input->set[s].points[k].x) < near) {
+                return input->set[s].points[k].x;
+            }
+        }
+    }
+    return x;
+}
+
 static double input_value(int i, int64_t n) {
     const double x =
         ((double)n * model_inputs[i].lsb_up) / model_inputs[i].lsb_down + model_inputs[i].origin;
-    return smaller(larger(x, model_inputs[i].minimum), model_inputs[i].maximum);
+    return at_breakpoint(i, smaller(larger(x, model_inputs[i].minimum), model_inputs[i].maximum));
 }
 
 static double *tabled[FUZZY_MAX_INPUTS]; // memberships of all points where they are few
