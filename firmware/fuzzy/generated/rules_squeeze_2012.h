@@ -10,10 +10,18 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// For fuzzy_evaluate(): the words of a fuzzy_table_t.
 extern const uint32_t rules_squeeze_2012_table[253];
 
 /// The same as straight-line C: a fuzzy_function_t.
 uint32_t rules_squeeze_2012(const int32_t *input, int32_t *output);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -28,6 +28,14 @@ examples:
   quiesce rules compile fan.fis --lsb temperature=0.01 --lsb speed=1 --name fan --out fan
 """
 
+RESERVED = frozenset(
+    "alignas alignof and asm auto bool break case catch char class const constexpr continue "
+    "default delete do double else enum explicit export extern false float for friend goto if "
+    "inline int long main mutable namespace new noexcept not nullptr operator or private protected "
+    "public register restrict return short signed sizeof static static_assert struct switch template "
+    "this throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t "
+    "while xor".split()
+)
 ENGINE_HEADERS = (
     "fuzzy/fuzzy.h",
     "fuzzy/fuzzy_forms.h",
@@ -57,8 +65,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     name = args.name or re.sub(r"\W", "_", args.file.stem)
-    if not re.fullmatch(r"[A-Za-z_]\w*", name):
-        raise UsageError(f"--name {name}: a C name, please")
+    if args.file.is_dir():
+        raise UsageError(f"{args.file}: a folder, not a rule file")
+    if not re.fullmatch(r"[A-Za-z]\w*", name) or name in RESERVED or name.startswith("fuzzy_"):
+        raise UsageError(f"--name {name}: a name that C and C++ leave free, please")
     compiled = compiled_from(args)
     out = args.out or root() / "build/rules" / name
     files = made_files(compiled, name)

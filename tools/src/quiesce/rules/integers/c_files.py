@@ -44,8 +44,10 @@ def header_c(compiled: CompiledBase, name: str, banner: str) -> str:
     return (
         f"{banner}/// Rule base {compiled.base.name} in integers (fuzzy.h):\n{units}"
         f"#ifndef {guard}\n#define {guard}\n\n#include <stdint.h>\n\n"
+        '#ifdef __cplusplus\nextern "C" {\n#endif\n\n'
         "/// For fuzzy_evaluate(): the words of a fuzzy_table_t.\n"
-        f"extern const uint32_t {name}_table[{len(compiled.words)}];\n{straight}\n#endif\n"
+        f"extern const uint32_t {name}_table[{len(compiled.words)}];\n{straight}\n"
+        "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
     )
 
 
