@@ -28,13 +28,14 @@ examples:
   quiesce rules compile fan.fis --lsb temperature=0.01 --lsb speed=1 --name fan --out fan
 """
 
+# Keywords of C and C++ that a function cannot have for its name.
 RESERVED = frozenset(
     "alignas alignof and asm auto bool break case catch char class const constexpr continue "
     "default delete do double else enum explicit export extern false float for friend goto if "
-    "inline int long main mutable namespace new noexcept not nullptr operator or private protected "
-    "public register restrict return short signed sizeof static static_assert struct switch template "
-    "this throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t "
-    "while xor".split()
+    "inline int long main mutable namespace new noexcept not nullptr operator or private "
+    "protected public register restrict return short signed sizeof static static_assert "
+    "struct switch template this throw true try typedef typeid typename union unsigned using "
+    "virtual void volatile wchar_t while xor".split()
 )
 ENGINE_HEADERS = (
     "fuzzy/fuzzy.h",
