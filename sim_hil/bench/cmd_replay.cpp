@@ -71,7 +71,7 @@ Plan plan_from(const Arguments &arguments, std::size_t ticks) {
         static_cast<std::size_t>(record_ticks),
         static_cast<std::size_t>(arguments.integer("from-tick", 0, record_ticks - 1).value_or(0)),
         static_cast<std::size_t>(arguments.integer("every", 1, record_ticks).value_or(1)),
-        TickColumns(arguments.text("columns"))};
+        TickColumns({"t_s", "accel_counts", "flags"}, arguments.text("columns"))};
 }
 
 /// What the sensor delivers for one count of the file.
@@ -89,8 +89,10 @@ void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t ti
         link.exchange(stimulus, reply);
         out.digest.add(reply);
         if (tick == next_row) {
-            plan.columns.put(static_cast<double>(tick) / tick_rate_Hz, stimulus, reply.telemetry,
-                             out.trace);
+            plan.columns.put({static_cast<double>(tick) / tick_rate_Hz,
+                              static_cast<double>(stimulus.accel_counts),
+                              static_cast<double>(stimulus.flags)},
+                             reply.telemetry, out.trace);
             next_row += plan.every;
         }
     }

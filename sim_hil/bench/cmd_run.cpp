@@ -10,7 +10,7 @@
 #include "metrics.h"
 #include "param_options.h"
 #include "run_options.h"
-#include "trace.h"
+#include "trace_observer.h"
 
 namespace quiesce {
 
@@ -63,14 +63,20 @@ void add_counts(Json &out, const std::optional<InstructionCounts> &counts) {
     out["instr_worst"] = counts ? Json(counts->worst) : Json(nullptr);
 }
 
-/// Runs it repeat times and returns the result with the fastest time.
-Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repeat) {
+/// Runs it repeat times and returns the result with the fastest time. trace: records the last run;
+/// none where it is null.
+Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repeat,
+                  TraceObserver *trace) {
     Json out;
     RunTiming best{};
     for (std::int64_t i = 0; i < repeat; ++i) {
         MetricsObserver metrics(setup);
         DigestObserver digest;
-        const RunTiming timing = run_scenario(setup, link, {&metrics, &digest});
+        std::vector<TickObserver *> observers = {&metrics, &digest};
+        if (trace != nullptr && i + 1 == repeat) {
+            observers.push_back(trace);
+        }
+        const RunTiming timing = run_scenario(setup, link, observers);
         if (i == 0 || timing.wall_s < best.wall_s) {
             best = timing;
         }
@@ -82,25 +88,29 @@ Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repe
     return out;
 }
 
-/// Once more for the trace, so that recording is not part of the time above.
-void record_trace(const RunSetup &setup, ControllerLink &link, const std::string &file) {
-    TraceObserver observer;
-    run_scenario(setup, link, {&observer});
-    observer.trace().write(file);
+std::optional<TraceObserver> trace_from(const Arguments &arguments, std::int64_t ticks) {
+    if (!arguments.text("trace")) {
+        return std::nullopt;
+    }
+    return TraceObserver(arguments.text("columns"),
+                         arguments.integer("every", 1, ticks).value_or(1));
 }
 
 } // namespace
 
 int cmd_run(const std::vector<std::string> &words) {
     const Arguments arguments(
-        "run", words, options({run_option_names(), target_option_names(), {"trace", "repeat"}}));
+        "run", words,
+        options(
+            {run_option_names(), target_option_names(), {"trace", "columns", "every", "repeat"}}));
     arguments.require_no_positional();
     const RunSetup setup = run_setup(arguments);
     const std::int64_t repeat = arguments.integer("repeat", 1, 1000000).value_or(1);
     const std::unique_ptr<ControllerLink> link = target_link(arguments);
-    Json out = repeated_run(setup, *link, repeat);
-    if (const auto file = arguments.text("trace")) {
-        record_trace(setup, *link, *file);
+    std::optional<TraceObserver> trace = trace_from(arguments, setup.tick_count());
+    Json out = repeated_run(setup, *link, repeat, trace ? &*trace : nullptr);
+    if (trace) {
+        trace->trace().write(arguments.required("trace"));
     }
     add_counts(out, link->finish());
     std::cout << out.dump() << '\n';

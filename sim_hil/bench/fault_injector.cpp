@@ -1,18 +1,50 @@
 #include "fault_injector.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace quiesce {
 
-bool FaultInjector::is_active(const InjectedFault &fault, double time_s) const {
-    // Half a microsecond keeps a tick that begins at start_s inside whatever the rounding.
-    constexpr double kSlack_s = 5e-7;
+namespace {
+
+/// Half a microsecond keeps a tick that begins at a fault's start inside it whatever the rounding.
+constexpr double kSlack_s = 5e-7;
+
+bool is_active(const InjectedFault &fault, double time_s) {
     const double since_s = time_s - fault.start_s + kSlack_s;
     return since_s >= 0.0 && since_s < fault.duration_s;
 }
 
-void FaultInjector::apply(double time_s, lockstep_stimulus_t &stimulus) {
+} // namespace
+
+FaultInjector::FaultInjector(const std::vector<InjectedFault> &faults,
+                             std::int32_t full_scale_counts)
+    : faults_(faults), full_scale_counts_(full_scale_counts) {
+    std::stable_sort(
+        faults_.begin(), faults_.end(),
+        [](const InjectedFault &a, const InjectedFault &b) { return a.start_s < b.start_s; });
+    double last_end_s = -std::numeric_limits<double>::infinity();
     for (const InjectedFault &fault : faults_) {
-        if (is_active(fault, time_s)) {
-            apply(fault.kind, stimulus);
+        last_end_s = std::max(last_end_s, fault.start_s + fault.duration_s);
+        last_end_s_.push_back(last_end_s);
+    }
+}
+
+std::pair<FaultInjector::Position, FaultInjector::Position>
+FaultInjector::around(double time_s) const {
+    const auto end = std::upper_bound(
+        faults_.begin(), faults_.end(), time_s + kSlack_s,
+        [](double now_s, const InjectedFault &fault) { return now_s < fault.start_s; });
+    const auto over = std::lower_bound(last_end_s_.begin(), last_end_s_.end(), time_s);
+    const auto begin = faults_.begin() + (over - last_end_s_.begin());
+    return {std::min<Position>(begin, end), end};
+}
+
+void FaultInjector::apply(double time_s, lockstep_stimulus_t &stimulus) {
+    const auto [begin, end] = around(time_s);
+    for (auto fault = begin; fault != end; ++fault) {
+        if (is_active(*fault, time_s)) {
+            apply(fault->kind, stimulus);
         }
     }
     last_counts_ = stimulus.accel_counts;
@@ -49,14 +81,15 @@ void FaultInjector::apply(FaultKind kind, lockstep_stimulus_t &stimulus) const {
 
 ActuatorFault FaultInjector::actuator(double time_s) const {
     ActuatorFault state = ActuatorFault::none;
-    for (const InjectedFault &fault : faults_) {
-        if (!is_active(fault, time_s)) {
+    const auto [begin, end] = around(time_s);
+    for (auto fault = begin; fault != end; ++fault) {
+        if (!is_active(*fault, time_s)) {
             continue;
         }
-        if (fault.kind == FaultKind::coil_open) {
+        if (fault->kind == FaultKind::coil_open) {
             return ActuatorFault::coil_open;
         }
-        if (fault.kind == FaultKind::driver_stuck) {
+        if (fault->kind == FaultKind::driver_stuck) {
             state = ActuatorFault::driver_stuck;
         }
     }

@@ -3,6 +3,7 @@
 #define QUIESCE_FAULT_INJECTOR_H
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "firmware.h"
@@ -14,8 +15,7 @@ namespace quiesce {
 class FaultInjector {
   public:
     /// full_scale_counts: of the accelerometer.
-    FaultInjector(const std::vector<InjectedFault> &faults, std::int32_t full_scale_counts)
-        : faults_(faults), full_scale_counts_(full_scale_counts) {}
+    FaultInjector(const std::vector<InjectedFault> &faults, std::int32_t full_scale_counts);
 
     /// Alters the stimulus of the tick that begins at time_s.
     void apply(double time_s, lockstep_stimulus_t &stimulus);
@@ -24,10 +24,14 @@ class FaultInjector {
     ActuatorFault actuator(double time_s) const;
 
   private:
-    bool is_active(const InjectedFault &fault, double time_s) const;
+    using Position = std::vector<InjectedFault>::const_iterator;
+
+    /// The few faults, of perhaps thousands, that can be active at time_s, and some that are not.
+    std::pair<Position, Position> around(double time_s) const;
     void apply(FaultKind kind, lockstep_stimulus_t &stimulus) const;
 
-    std::vector<InjectedFault> faults_;
+    std::vector<InjectedFault> faults_; ///< by start; as given where two start together
+    std::vector<double> last_end_s_;    ///< of each fault and all before it
     std::int32_t full_scale_counts_;
     std::int32_t last_counts_ = 0; ///< of the last sample that reached the controller
 };

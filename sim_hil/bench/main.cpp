@@ -30,7 +30,7 @@ const Entry kCommands[] = {
     {"run",
      "--scenario FILE --law NAME [--plant FILE] [--set NAME=VALUE]... [--target T] [--image ELF] "
      "[--plugin SO] [--rules FILE] [--seed N] [--noise-mg X] [--dt-us N] [--trace FILE] "
-     "[--repeat N]",
+     "[--columns NAME,NAME...] [--every N] [--repeat N]",
      quiesce::cmd_run},
     {"scenario-check", "FILE", quiesce::cmd_scenario_check},
     {"uart-rate", "--image ELF --echo-image ELF [--exchanges N]", quiesce::cmd_uart_rate},

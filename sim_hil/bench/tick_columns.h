@@ -1,7 +1,8 @@
-/// Columns of a trace without a plant: time, stimulus and telemetry of a tick, all or some of them.
+/// Columns of a trace: values of its own, then the telemetry of a tick; all or some of them.
 #ifndef QUIESCE_TICK_COLUMNS_H
 #define QUIESCE_TICK_COLUMNS_H
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,17 +13,19 @@ namespace quiesce {
 
 class TickColumns {
   public:
-    /// list: names separated by commas; all columns without it. Throws InputError, naming what
-    /// there is, for a name that is none of them.
-    explicit TickColumns(const std::optional<std::string> &list);
+    /// own: names of the columns before the telemetry. list: names separated by commas; all columns
+    /// without it. Throws InputError, naming what there is, for a name that is none of them.
+    TickColumns(std::vector<std::string> own, const std::optional<std::string> &list);
 
     std::vector<std::string> names() const;
 
-    /// Appends one row.
-    void put(double time_s, const lockstep_stimulus_t &stimulus,
-             const quiesce_telemetry_t &telemetry, Trace &trace) const;
+    /// Appends one row. own: the values, in the order of their names.
+    void put(std::initializer_list<double> own, const quiesce_telemetry_t &telemetry,
+             Trace &trace) const;
 
   private:
+    std::size_t own_count_;
+    std::vector<std::string> all_names_;
     std::vector<std::size_t> chosen_; ///< indices into all names
 };
 

@@ -45,19 +45,4 @@ void Trace::write(const std::string &file) const {
     }
 }
 
-TraceObserver::TraceObserver()
-    : trace_(with_telemetry_columns(
-          {"t_s", "x5_um", "a5_mm_s2", "coil_A", "force_mN", "accel_counts", "flags"})) {}
-
-void TraceObserver::on_tick(const TickRecord &record) {
-    trace_.put(record.time_s);
-    trace_.put(1e6 * record.truth.displacement_m);
-    trace_.put(1e3 * record.truth.accel_m_s2);
-    trace_.put(record.truth.coil_A);
-    trace_.put(1e3 * record.truth.damper_force_N);
-    trace_.put(record.stimulus.accel_counts);
-    trace_.put(record.stimulus.flags);
-    trace_.put_telemetry(record.reply.telemetry);
-}
-
 } // namespace quiesce

@@ -34,19 +34,6 @@ double telemetry_value(const quiesce_telemetry_t &telemetry, std::size_t index);
 /// names followed by every telemetry field's name.
 std::vector<std::string> with_telemetry_columns(std::vector<std::string> names);
 
-/// Records a closed-loop run: true motion, coil, force, stimulus, telemetry.
-class TraceObserver final : public TickObserver {
-  public:
-    TraceObserver();
-
-    void on_tick(const TickRecord &record) override;
-
-    const Trace &trace() const { return trace_; }
-
-  private:
-    Trace trace_;
-};
-
 } // namespace quiesce
 
 #endif

@@ -218,6 +218,26 @@ TEST(CommandLine, replay_writes_the_chosen_ticks_of_each_record) {
     EXPECT_EQ(values, expected);
 }
 
+TEST(CommandLine, run_writes_the_chosen_columns_and_ticks) {
+    const std::string file =
+        (std::filesystem::temp_directory_path() / ("quiesce_run_" + std::to_string(::getpid())))
+            .string();
+    const std::string run = "run --scenario sim_hil/scenarios/sine_10Hz.toml --law off --trace ";
+    ASSERT_EQ(bench(run + file + " --columns t_s,tick --every 2000").exit_code, 0);
+    std::ifstream in(file, std::ios::binary);
+    std::string head;
+    std::getline(in, head);
+    std::vector<double> values(8);
+    in.read(reinterpret_cast<char *>(values.data()), 8 * sizeof(double));
+    std::filesystem::remove(file);
+    EXPECT_EQ(nlohmann::json::parse(head)["rows"], 4);
+    EXPECT_EQ(values, (std::vector<double>{0.0, 1, 2.0, 2001, 4.0, 4001, 6.0, 6001}));
+    EXPECT_NE(bench(run + file + " --columns warp").output.find("no column 'warp'"),
+              std::string::npos);
+    EXPECT_EQ(bench(run + file + " --every 0").exit_code, 2);
+    EXPECT_FALSE(std::filesystem::exists(file));
+}
+
 TEST(CommandLine, replay_takes_the_least_count_for_a_missing_sample) {
     std::vector<std::int32_t> counts = lively(50, 7);
     counts[20] = counts[21] = INT32_MIN;

@@ -62,4 +62,20 @@ TEST(FaultInjector, actuator_faults_reach_the_actuator) {
     EXPECT_EQ(injector.actuator(4.5), ActuatorFault::none);
 }
 
+TEST(FaultInjector, order_and_overlap_do_not_matter) {
+    FaultInjector injector({{FaultKind::estop, 5.0, 1.0},
+                            {FaultKind::disable, 0.0, 4.0},
+                            {FaultKind::dropout, 1.0, 0.1},
+                            {FaultKind::saturate, 2.0, 0.5}},
+                           kFullScale);
+    for (int tick = 0; tick < 7000; ++tick) {
+        const double time_s = static_cast<double>(tick) / 1000.0;
+        const lockstep_stimulus_t found = applied(injector, time_s, 1);
+        EXPECT_EQ((found.flags & LOCKSTEP_ESTOP) != 0, tick >= 5000 && tick < 6000) << tick;
+        EXPECT_EQ((found.flags & LOCKSTEP_ENABLE) == 0, tick < 4000) << tick;
+        EXPECT_EQ((found.flags & LOCKSTEP_FRESH) == 0, tick >= 1000 && tick < 1100) << tick;
+        EXPECT_EQ(found.accel_counts == kFullScale, tick >= 2000 && tick < 2500) << tick;
+    }
+}
+
 } // namespace
