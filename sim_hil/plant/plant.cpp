@@ -9,14 +9,6 @@ namespace quiesce {
 
 namespace {
 
-double dot(const Eigen::VectorXd &shape, const double *modal) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < shape.size(); ++i) {
-        sum += shape[i] * modal[i];
-    }
-    return sum;
-}
-
 [[noreturn]] void stop(double now_s, const std::string &why) {
     std::ostringstream message;
     message << "the simulation stopped at t = " << now_s << " s: " << why;
@@ -26,13 +18,11 @@ double dot(const Eigen::VectorXd &shape, const double *modal) {
 } // namespace
 
 Plant::Plant(const PlantModel &model, const Excitation &excitation, int tick_rate_Hz)
-    : structure_(model.structure), damper_(model.damper), excitation_(&excitation),
-      driver_(model.driver), steps_(steps_per_tick(model, 1.0 / tick_rate_Hz)),
+    : equations_(model), excitation_(&excitation), driver_(model.driver),
+      steps_(steps_per_tick(model, 1.0 / tick_rate_Hz)),
       step_rate_Hz_(static_cast<double>(tick_rate_Hz * steps_)), step_s_(1.0 / step_rate_Hz_),
-      half_step_coil_(model.coil, 0.5 * step_s_),
-      rk4_(2 * static_cast<std::size_t>(structure_.mode_count()) + damper_->state_count()),
-      y_(2 * static_cast<std::size_t>(structure_.mode_count()) + damper_->state_count(), 0.0),
-      k1_(y_.size(), 0.0), excitation_now_(excitation.at(0.0)),
+      half_step_coil_(model.coil, 0.5 * step_s_), rk4_(equations_.state_count()),
+      y_(equations_.state_count(), 0.0), k1_(y_.size(), 0.0), excitation_now_(excitation.at(0.0)),
       substeps_(static_cast<std::size_t>(steps_)) {
     observe();
 }
@@ -47,40 +37,10 @@ void Plant::command(double current_A, ActuatorFault fault) {
     }
 }
 
-void Plant::rates(const Drive &drive, const std::vector<double> &y, std::vector<double> &out) {
-    const auto count = static_cast<std::size_t>(structure_.mode_count());
-    const double *eta = y.data();
-    const double *eta_rate = eta + count;
-    double *accel = out.data() + count;
-    damper_force_N_ = damper_->force_N(
-        {dot(structure_.at_damper, eta_rate), dot(structure_.at_damper, eta), drive.current_A},
-        eta_rate + count, accel + count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto mode = static_cast<Eigen::Index>(i);
-        out[i] = eta_rate[i];
-        accel[i] = structure_.at_force[mode] * drive.force_N -
-                   structure_.at_damper[mode] * damper_force_N_ -
-                   structure_.damping_1_s(mode, mode) * eta_rate[i] -
-                   structure_.omega2_rad2_s2[mode] * eta[i];
-    }
-    if (structure_.is_proportional) {
-        return;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t j = 0; j < count; ++j) {
-            accel[i] -= i == j ? 0.0
-                               : structure_.damping_1_s(static_cast<Eigen::Index>(i),
-                                                        static_cast<Eigen::Index>(j)) *
-                                     eta_rate[j];
-        }
-    }
-}
-
 void Plant::observe() {
-    const auto count = static_cast<std::size_t>(structure_.mode_count());
-    rates({excitation_now_.force_N, coil_A_}, y_, k1_);
-    truth_ = {dot(structure_.at_sensor, y_.data()), dot(structure_.at_sensor, k1_.data() + count),
-              coil_A_, damper_force_N_, excitation_now_.phase_cycles};
+    damper_force_N_ = equations_.rates(excitation_now_.force_N, coil_A_, y_, k1_);
+    truth_ = {equations_.displacement_m(y_), equations_.accel_m_s2(k1_), coil_A_, damper_force_N_,
+              excitation_now_.phase_cycles};
 }
 
 void Plant::step() {
@@ -88,12 +48,13 @@ void Plant::step() {
     const double end_s = time_s(start + 1.0);
     const Excitation::Sample end = excitation_->sample(segment_, end_s);
     Drive stage[3] = {};
-    stage[1] = {excitation_->sample(segment_, time_s(start + 0.5)).force_N,
-                half_step_coil_.step(coil_A_, driver_A_)};
-    stage[2] = {end.force_N, half_step_coil_.step(stage[1].current_A, driver_A_)};
+    const Excitation::Sample middle = excitation_->sample(segment_, time_s(start + 0.5));
+    stage[1] = {middle.force_N, middle.base_accel_m_s2, half_step_coil_.step(coil_A_, driver_A_)};
+    stage[2] = {end.force_N, end.base_accel_m_s2,
+                half_step_coil_.step(stage[1].current_A, driver_A_)};
     rk4_.step(y_, k1_, step_s_,
               [&](int at, const std::vector<double> &y, std::vector<double> &out) {
-                  rates(stage[at], y, out);
+                  equations_.rates(stage[at].force_N, stage[at].current_A, y, out);
               });
     coil_A_ = stage[2].current_A;
     ++step_count_;
@@ -119,8 +80,7 @@ void Plant::check_motion() const {
         stop(now_s, "it diverged; choose a smaller integration.max_step_us in the plant file or "
                     "--dt-us");
     }
-    const double position_m = dot(structure_.at_damper, y_.data());
-    if (position_m <= damper_->lowest_position_m()) {
+    if (equations_.is_closed(y_)) {
         stop(now_s, "the damper closed to the end of its range; reduce shaker.drive_V or check "
                     "the damper's gap");
     }

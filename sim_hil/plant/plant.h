@@ -1,6 +1,7 @@
 /// The plant in motion: structure, damper, coil and excitation, integrated tick by tick.
 ///
 ///   eta'' + damping eta' + omega2 eta = at_force F_e(t) - at_damper F_d(v_d, x_d, I)
+///                                       - base_participation a_g(t)
 ///   I follows the driver's output with the coil's lag
 ///
 /// Classical Runge-Kutta with a fixed step that divides the tick; time is n / rate, never
@@ -14,6 +15,7 @@
 
 #include "coil.h"
 #include "current_driver.h"
+#include "equations.h"
 #include "excitation.h"
 #include "plant_model.h"
 #include "rk4.h"
@@ -22,11 +24,12 @@ namespace quiesce {
 
 /// True values at one instant.
 struct PlantTruth {
-    double displacement_m; ///< at the sensor
-    double accel_m_s2;     ///< at the sensor
+    double displacement_m; ///< at the sensor, relative to the base
+    double accel_m_s2;     ///< at the sensor, absolute: what an accelerometer reads
     double coil_A;
-    double damper_force_N; ///< resisting force at the damper
-    double phase_cycles;   ///< of the excitation, not wrapped
+    double damper_force_N;      ///< resisting force at the damper
+    double phase_cycles;        ///< of the excitation, not wrapped
+    double damper_velocity_m_s; ///< of its moving end, > 0 opens it
 };
 
 /// What can be wrong between command and coil.
@@ -58,17 +61,16 @@ class Plant {
   private:
     struct Drive {
         double force_N;
+        double base_accel_m_s2;
         double current_A;
     };
 
-    void rates(const Drive &drive, const std::vector<double> &y, std::vector<double> &out);
     double time_s(double steps) const { return steps / step_rate_Hz_; }
     void step();
     void observe();
     void check_motion() const;
 
-    Structure structure_;
-    std::shared_ptr<const Damper> damper_;
+    Equations equations_;
     const Excitation *excitation_;
     CurrentDriver driver_;
     std::int64_t steps_;  ///< in a tick

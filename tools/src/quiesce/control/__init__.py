@@ -1,0 +1,1 @@
+"""Control laws: bounds, tables, the plant behind them, and how it is identified."""
