@@ -17,9 +17,10 @@ void print_modes(const Structure &structure) {
         const double omega = std::sqrt(structure.omega2_rad2_s2[i]);
         const double ratio = omega > 0.0 ? 0.5 * structure.damping_1_s(i, i) / omega : 0.0;
         std::printf("  mode %d: %.4g Hz, damping %.3g %%, shape at force %.4g, damper %.4g, "
-                    "sensor %.4g kg^-1/2\n",
+                    "sensor %.4g kg^-1/2, base %.4g kg^1/2\n",
                     static_cast<int>(i) + 1, omega / kTwoPi, 100.0 * ratio, structure.at_force[i],
-                    structure.at_damper[i], structure.at_sensor[i]);
+                    structure.at_damper[i], structure.at_sensor[i],
+                    structure.base_participation[i]);
     }
     if (!structure.is_proportional) {
         std::printf("  damping couples the modes: simulated with the full matrix\n");

@@ -22,32 +22,58 @@ Json or_null(const std::optional<double> &value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
-/// Excitation frequency in the middle of the window.
-double window_freq_Hz(const RunSetup &setup, const Window &window) {
-    const Excitation excitation = make_excitation(setup.scenario, setup.plant.shaker);
-    return excitation.at(0.5 * (window.start_s + window.end_s)).freq_Hz;
+/// What was measured in one window, by name; freq_hz is the excitation's in its middle.
+Json window_json(const Window &window, const WindowMetrics &measured,
+                 const Excitation &excitation) {
+    const std::optional<double> amplitude_m = measured.amplitude_m();
+    return {{"start_s", window.start_s},
+            {"end_s", window.end_s},
+            {"freq_hz", excitation.at(0.5 * (window.start_s + window.end_s)).freq_Hz},
+            {"amp_um", amplitude_m ? Json(1e6 * *amplitude_m) : Json(nullptr)},
+            {"disp_rms_um", 1e6 * measured.displacement_rms_m()},
+            {"peak_disp_um", 1e6 * measured.peak_displacement_m()},
+            {"accel_rms_mm_s2", 1e3 * measured.accel_rms_m_s2()},
+            {"mean_current_A", measured.mean_current_A()},
+            {"damper_work_J", measured.damper_work_J()}};
 }
 
-void add_window(Json &out, const RunSetup &setup, const RunMetrics &metrics, std::size_t index,
-                const std::string &number) {
-    const bool exists = index < metrics.windows.size();
-    out["freq" + number + "_hz"] =
-        exists ? Json(window_freq_Hz(setup, setup.scenario.windows[index])) : Json(nullptr);
-    out["amp" + number + "_um"] =
-        exists ? Json(1e6 * metrics.windows[index].amplitude_m()) : Json(nullptr);
-    out["accel_rms" + number + "_mm_s2"] =
-        exists ? Json(1e3 * metrics.windows[index].accel_rms_m_s2()) : Json(nullptr);
+Json windows_json(const RunSetup &setup, const RunMetrics &metrics) {
+    const Excitation excitation = make_excitation(setup.scenario, setup.plant.shaker);
+    Json out = Json::array();
+    for (std::size_t i = 0; i < metrics.windows.size(); ++i) {
+        out.push_back(window_json(setup.scenario.windows[i], metrics.windows[i], excitation));
+    }
+    return out;
+}
+
+/// The figures of a window once more beside those of the run: amp_um of the first window, amp2_um
+/// of the second.
+void add_window(Json &out, const Json &windows, std::size_t index) {
+    const std::string number = index == 0 ? "" : std::to_string(index + 1);
+    for (const auto &[name, unit] : {std::pair<const char *, const char *>{"freq", "_hz"},
+                                     {"amp", "_um"},
+                                     {"accel_rms", "_mm_s2"},
+                                     {"disp_rms", "_um"},
+                                     {"peak_disp", "_um"}}) {
+        out[name + number + unit] =
+            index < windows.size() ? windows[index][std::string(name) + unit] : Json(nullptr);
+    }
 }
 
 Json run_json(const RunSetup &setup, const std::string &target, const RunMetrics &metrics,
               const DigestObserver &digest) {
+    const Json windows = windows_json(setup, metrics);
     Json out = {
         {"scenario", setup.scenario.name}, {"law", law_label(setup.params)}, {"target", target}};
-    add_window(out, setup, metrics, 0, "");
-    add_window(out, setup, metrics, 1, "2");
+    add_window(out, windows, 0);
+    add_window(out, windows, 1);
     out["mean_current_A"] = metrics.windows.back().mean_current_A();
     out["rms_disp_um"] = 1e6 * metrics.rms_displacement_m;
+    out["damper_work_J"] = metrics.windows.back().damper_work_J();
+    out["transient_peak_disp_um"] =
+        metrics.transient_peak_m ? Json(1e6 * *metrics.transient_peak_m) : Json(nullptr);
     out["settle_s"] = or_null(metrics.settle_s);
+    out["windows"] = windows;
     out["faults"] = digest.fault_count();
     out["faults_seen"] = digest.faults_seen();
     out["distinct_commands"] = digest.distinct_commands();

@@ -4,6 +4,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "plant_file.h"
+#include "run_options.h"
 #include "scenario.h"
 
 namespace quiesce {
@@ -13,11 +14,12 @@ int cmd_scenario_check(const std::vector<std::string> &words) {
     const std::string file = arguments.only_positional("FILE");
     const Scenario scenario = load_scenario(file);
     const PlantModel plant = load_plant(scenario.plant_file);
+    require_base(scenario, plant);
     std::printf("%s: scenario %s is valid\n", file.c_str(), scenario.name.c_str());
     std::printf("  plant %s, %g s, seed %llu\n", plant.name.c_str(), scenario.duration_s,
                 static_cast<unsigned long long>(scenario.seed));
     for (const SegmentSpec &segment : scenario.segments) {
-        std::printf("  %g Hz to %g Hz\n", segment.start_freq_Hz, segment.end_freq_Hz);
+        std::printf("  %s\n", segment.summary.c_str());
     }
     std::printf("  %zu injected faults, %zu measurement windows%s\n", scenario.faults.size(),
                 scenario.windows.size(), scenario.transient ? ", one transient" : "");

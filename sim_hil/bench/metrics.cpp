@@ -28,13 +28,21 @@ void WindowMetrics::add(double time_s, const PlantTruth &truth) {
         return;
     }
     const Integrand now = {truth.accel_m_s2 * truth.accel_m_s2,
-                           truth.displacement_m * truth.displacement_m, truth.coil_A};
+                           truth.displacement_m * truth.displacement_m, truth.coil_A,
+                           -truth.damper_force_N * truth.damper_velocity_m_s};
+    const double distance_m = std::abs(truth.displacement_m);
     if (time_s <= window_.start_s + kSlack_s) {
         start_cycles_ = truth.phase_cycles;
+        peak_m_ = distance_m;
     } else {
+        peak_m_ = std::max(peak_m_, distance_m);
+        is_periodic_ = is_periodic_ && truth.phase_cycles > phase_cycles_;
+        duration_s_ += time_s - time_s_;
         accumulate(now);
         track_cycle(truth);
     }
+    time_s_ = time_s;
+    phase_cycles_ = truth.phase_cycles;
     last_ = now;
 }
 
@@ -43,6 +51,7 @@ void WindowMetrics::accumulate(const Integrand &now) {
     sum_.accel_square += 0.5 * (last_.accel_square + now.accel_square);
     sum_.displacement_square += 0.5 * (last_.displacement_square + now.displacement_square);
     sum_.current_A += 0.5 * (last_.current_A + now.current_A);
+    sum_.damper_power_W += 0.5 * (last_.damper_power_W + now.damper_power_W);
 }
 
 void WindowMetrics::track_cycle(const PlantTruth &truth) {
@@ -65,7 +74,10 @@ void WindowMetrics::close_cycle() {
     }
 }
 
-double WindowMetrics::amplitude_m() const {
+std::optional<double> WindowMetrics::amplitude_m() const {
+    if (!is_periodic_) {
+        return std::nullopt;
+    }
     WindowMetrics whole = *this;
     const bool is_whole = cycle_.last_cycles - (cycle_.number - 1.0) >= kWholeCycle;
     if (is_whole || cycle_count_ == 0.0) {
@@ -84,6 +96,10 @@ double WindowMetrics::displacement_rms_m() const {
 
 double WindowMetrics::mean_current_A() const {
     return sum_.current_A / step_count_;
+}
+
+double WindowMetrics::damper_work_J() const {
+    return sum_.damper_power_W / step_count_ * duration_s_;
 }
 
 std::optional<double> settling_time_s(const std::vector<double> &squares, double sample_s,
@@ -134,8 +150,9 @@ void MetricsObserver::on_steps(double start_s, double step_s,
 }
 
 RunMetrics MetricsObserver::result() const {
-    RunMetrics out{windows_, windows_.back().displacement_rms_m(), std::nullopt};
+    RunMetrics out{windows_, windows_.back().displacement_rms_m(), std::nullopt, std::nullopt};
     if (transient_) {
+        out.transient_peak_m = after_transient_.peak_displacement_m();
         out.rms_displacement_m = after_transient_.displacement_rms_m();
         out.settle_s =
             settling_time_s(accel_squares_, tick_s_, transient_->start_s, kSettleWindow_s,

@@ -1,8 +1,11 @@
 /// What a run is judged by, from true values at every integration step.
 ///
-///   amplitude   mean over the excitation's whole cycles of half the peak-to-peak displacement
+///   amplitude   mean over the excitation's whole cycles of half the peak-to-peak displacement;
+///               nothing where the excitation has no one frequency in some of the window
+///   peak        largest distance from rest
 ///   accel RMS   root mean square of the acceleration
-///   current     mean coil current in the last window
+///   current     mean coil current
+///   work        done by the damper on the structure, < 0 where it dissipates
 ///   settling    from the transient's start until the 0.2 s trailing RMS of the acceleration stays
 ///               within 5 % of its RMS over the last window
 #ifndef QUIESCE_METRICS_H
@@ -22,10 +25,12 @@ class WindowMetrics {
 
     void add(double time_s, const PlantTruth &truth);
 
-    double amplitude_m() const;
+    std::optional<double> amplitude_m() const;
     double accel_rms_m_s2() const;
     double displacement_rms_m() const;
+    double peak_displacement_m() const { return peak_m_; }
     double mean_current_A() const;
+    double damper_work_J() const;
 
   private:
     struct Cycle {
@@ -41,6 +46,7 @@ class WindowMetrics {
         double accel_square;
         double displacement_square;
         double current_A;
+        double damper_power_W;
     };
 
     void accumulate(const Integrand &now);
@@ -48,11 +54,16 @@ class WindowMetrics {
     void close_cycle();
 
     Window window_;
+    double time_s_ = 0.0; ///< of the last sample
+    double phase_cycles_ = 0.0;
+    bool is_periodic_ = true; ///< the phase has gone on in every step
+    double peak_m_ = 0.0;
     double start_cycles_ = 0.0;
     Cycle cycle_;
     double half_peaks_sum_m_ = 0.0;
     double cycle_count_ = 0.0;
     double step_count_ = 0.0;
+    double duration_s_ = 0.0;
     Integrand last_{};
     Integrand sum_{};
 };
@@ -66,7 +77,8 @@ std::optional<double> settling_time_s(const std::vector<double> &squares, double
 
 struct RunMetrics {
     std::vector<WindowMetrics> windows;
-    double rms_displacement_m;      ///< of the last window, or of the transient where there is one
+    double rms_displacement_m; ///< of the last window, or of the transient where there is one
+    std::optional<double> transient_peak_m;
     std::optional<double> settle_s; ///< only with a transient that settles
 };
 

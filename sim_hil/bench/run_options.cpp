@@ -38,6 +38,13 @@ void apply_overrides(const Arguments &arguments, RunSetup &setup) {
 
 } // namespace
 
+void require_base(const Scenario &scenario, const PlantModel &plant) {
+    if (moves_base(scenario) && plant.structure.base_participation.isZero(0.0)) {
+        throw InputError("scenario " + scenario.name + ": a record shakes the base, but plant " +
+                         plant.name + " has no base_participation to feel it with");
+    }
+}
+
 const std::vector<std::string> &run_option_names() {
     static const std::vector<std::string> names = {"scenario", "plant",    "law",  "set",
                                                    "seed",     "noise-mg", "dt-us"};
@@ -77,6 +84,7 @@ RunSetup run_setup(const Arguments &arguments) {
     RunSetup setup{};
     setup.scenario = load_scenario(arguments.required("scenario"));
     setup.plant = load_plant(arguments.text("plant").value_or(setup.scenario.plant_file));
+    require_base(setup.scenario, setup.plant);
     quiesce_params_default(&setup.params);
     fit_to_sensor(setup.params, setup.plant.sensor);
     arguments.required("law");

@@ -19,6 +19,9 @@ const std::vector<std::string> &target_option_names();
 /// Concatenation of option lists.
 std::vector<std::string> options(std::initializer_list<std::vector<std::string>> lists);
 
+/// Throws InputError where the scenario shakes a base that the plant does not have.
+void require_base(const Scenario &scenario, const PlantModel &plant);
+
 /// Loads scenario and plant and applies every override. Throws InputError.
 RunSetup run_setup(const Arguments &arguments);
 

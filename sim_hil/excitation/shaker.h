@@ -18,20 +18,24 @@ struct ShakerParams {
 class Shaker {
   public:
     explicit Shaker(const ShakerParams &params)
-        : inv_corner_s_(params.corner_Hz > 0.0 ? 1.0 / params.corner_Hz : 0.0) {
+        : params_(params), inv_corner_s_(params.corner_Hz > 0.0 ? 1.0 / params.corner_Hz : 0.0) {
         const double ref = params.ref_freq_Hz * inv_corner_s_;
-        flat_force_N_ = params.drive_V * params.gain_N_V * std::sqrt(1.0 + ref * ref);
+        flat_ratio_ = std::sqrt(1.0 + ref * ref);
     }
 
     /// Force amplitude at this frequency.
-    double amplitude_N(double freq_Hz) const {
+    double amplitude_N(double freq_Hz) const { return amplitude_N(freq_Hz, params_.drive_V); }
+
+    /// The same for a drive of its own.
+    double amplitude_N(double freq_Hz, double drive_V) const {
         const double ratio = freq_Hz * inv_corner_s_;
-        return flat_force_N_ / std::sqrt(1.0 + ratio * ratio);
+        return drive_V * params_.gain_N_V * flat_ratio_ / std::sqrt(1.0 + ratio * ratio);
     }
 
   private:
+    ShakerParams params_;
     double inv_corner_s_;
-    double flat_force_N_ = 0.0; ///< amplitude far below the corner
+    double flat_ratio_ = 1.0; ///< force far below the corner over force at ref_freq_Hz
 };
 
 } // namespace quiesce

@@ -2,18 +2,19 @@
 #ifndef QUIESCE_SINE_SEGMENT_H
 #define QUIESCE_SINE_SEGMENT_H
 
-#include "segment.h"
+#include "swept_segment.h"
 
 namespace quiesce {
 
-class SineSegment final : public Segment {
+class SineSegment final : public SweptSegment {
   public:
-    explicit SineSegment(double freq_Hz) : freq_Hz_(freq_Hz) {}
+    SineSegment(const ShakerParams &shaker, double freq_Hz)
+        : SweptSegment(shaker), freq_Hz_(freq_Hz) {}
 
+  private:
     double freq_Hz(double /*time_s*/) const override { return freq_Hz_; }
     double phase_cycles(double time_s) const override { return freq_Hz_ * time_s; }
 
-  private:
     double freq_Hz_;
 };
 

@@ -15,7 +15,7 @@ double dot(const Eigen::VectorXd &shape, const double *modal) {
 } // namespace
 
 double Equations::rates(double force_N, double current_A, const std::vector<double> &y,
-                        std::vector<double> &out) const {
+                        std::vector<double> &out, double base_accel_m_s2) const {
     const auto count = static_cast<std::size_t>(structure_.mode_count());
     const double *eta = y.data();
     const double *eta_rate = eta + count;
@@ -29,7 +29,8 @@ double Equations::rates(double force_N, double current_A, const std::vector<doub
         accel[i] = structure_.at_force[mode] * force_N -
                    structure_.at_damper[mode] * damper_force_N -
                    structure_.damping_1_s(mode, mode) * eta_rate[i] -
-                   structure_.omega2_rad2_s2[mode] * eta[i];
+                   structure_.omega2_rad2_s2[mode] * eta[i] -
+                   structure_.base_participation[mode] * base_accel_m_s2;
     }
     if (structure_.is_proportional) {
         return damper_force_N;
@@ -49,8 +50,13 @@ double Equations::displacement_m(const std::vector<double> &y) const {
     return dot(structure_.at_sensor, y.data());
 }
 
-double Equations::accel_m_s2(const std::vector<double> &rates) const {
-    return dot(structure_.at_sensor, rates.data() + structure_.mode_count());
+double Equations::accel_m_s2(const std::vector<double> &rates, double base_accel_m_s2) const {
+    return dot(structure_.at_sensor, rates.data() + structure_.mode_count()) +
+           structure_.base_at_sensor * base_accel_m_s2;
+}
+
+double Equations::damper_velocity_m_s(const std::vector<double> &y) const {
+    return dot(structure_.at_damper, y.data() + structure_.mode_count());
 }
 
 bool Equations::is_closed(const std::vector<double> &y) const {

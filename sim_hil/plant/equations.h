@@ -1,6 +1,7 @@
 /// The plant's equations of motion, without coil, excitation or clock.
 ///
 ///   eta'' + damping eta' + omega2 eta = at_force F_e - at_damper F_d(v_d, x_d, I)
+///                                       - base_participation a_g
 ///
 /// State: eta, eta', the damper's own states.
 #ifndef QUIESCE_EQUATIONS_H
@@ -25,10 +26,13 @@ class Equations {
 
     /// Writes the rates of state y, both of state_count() elements, and returns the damper's force.
     double rates(double force_N, double current_A, const std::vector<double> &y,
-                 std::vector<double> &out) const;
+                 std::vector<double> &out, double base_accel_m_s2 = 0.0) const;
 
+    /// At the sensor: relative to the base, and absolute.
     double displacement_m(const std::vector<double> &y) const;
-    double accel_m_s2(const std::vector<double> &rates) const;
+    double accel_m_s2(const std::vector<double> &rates, double base_accel_m_s2 = 0.0) const;
+
+    double damper_velocity_m_s(const std::vector<double> &y) const;
 
     /// The damper's ends have come to the end of its range.
     bool is_closed(const std::vector<double> &y) const;

@@ -38,9 +38,14 @@ void Plant::command(double current_A, ActuatorFault fault) {
 }
 
 void Plant::observe() {
-    damper_force_N_ = equations_.rates(excitation_now_.force_N, coil_A_, y_, k1_);
-    truth_ = {equations_.displacement_m(y_), equations_.accel_m_s2(k1_), coil_A_, damper_force_N_,
-              excitation_now_.phase_cycles};
+    const double base_accel_m_s2 = excitation_now_.base_accel_m_s2;
+    damper_force_N_ = equations_.rates(excitation_now_.force_N, coil_A_, y_, k1_, base_accel_m_s2);
+    truth_ = {equations_.displacement_m(y_),
+              equations_.accel_m_s2(k1_, base_accel_m_s2),
+              coil_A_,
+              damper_force_N_,
+              excitation_now_.phase_cycles,
+              equations_.damper_velocity_m_s(y_)};
 }
 
 void Plant::step() {
@@ -54,7 +59,8 @@ void Plant::step() {
                 half_step_coil_.step(stage[1].current_A, driver_A_)};
     rk4_.step(y_, k1_, step_s_,
               [&](int at, const std::vector<double> &y, std::vector<double> &out) {
-                  equations_.rates(stage[at].force_N, stage[at].current_A, y, out);
+                  equations_.rates(stage[at].force_N, stage[at].current_A, y, out,
+                                   stage[at].base_accel_m_s2);
               });
     coil_A_ = stage[2].current_A;
     ++step_count_;

@@ -18,6 +18,7 @@ Structure read_modes(TomlTable &section) {
         mode.at_force = table.number("at_force", kShape);
         mode.at_damper = table.number("at_damper", kShape);
         mode.at_sensor = table.number("at_sensor", kShape);
+        mode.base_participation = table.number("base_participation", {-1e6, 1e6, "kg^1/2"}, 0.0);
         table.reject_unknown_keys();
         modes.push_back(mode);
     }
@@ -53,6 +54,10 @@ Structure read_matrices(TomlTable &section) {
     matrices.force = read_vector(section, "force", count);
     matrices.damper = read_vector(section, "damper", count);
     matrices.sensor = read_vector(section, "sensor", count);
+    matrices.base = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(count));
+    if (section.has("base")) {
+        matrices.base = read_vector(section, "base", count);
+    }
     matrices.mass_kg = read_matrix(section, "mass_kg", count);
     matrices.damping_N_s_m = read_matrix(section, "damping_N_s_m", count);
     matrices.stiffness_N_m = read_matrix(section, "stiffness_N_m", count);

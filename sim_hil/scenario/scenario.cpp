@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 
-#include "chirp_segment.h"
-#include "sine_segment.h"
 #include "toml_table.h"
 
 namespace quiesce {
 
 namespace {
 
-constexpr Range kFrequency = {1e-3, 1e4, "Hz"};
+constexpr std::size_t kMostWindows = 8;
 constexpr double kLongest_s = 1e5;
 
 /// In the order of FaultKind.
@@ -38,21 +35,7 @@ InjectedFault read_fault(TomlTable &table, double end_s) {
     return fault;
 }
 
-SegmentSpec read_segment(TomlTable &table, bool is_last) {
-    SegmentSpec segment{};
-    const std::string kind = table.choice("kind", {"sine", "chirp"});
-    const Range duration = {1e-3, kLongest_s, "s"};
-    segment.start_freq_Hz = table.number("freq_Hz", kFrequency);
-    segment.end_freq_Hz =
-        kind == "chirp" ? table.number("end_freq_Hz", kFrequency) : segment.start_freq_Hz;
-    const bool may_be_open = kind == "sine" && is_last;
-    segment.duration_s = may_be_open ? table.number("duration_s", duration, kLongest_s)
-                                     : table.number("duration_s", duration);
-    table.reject_unknown_keys();
-    return segment;
-}
-
-std::vector<SegmentSpec> read_segments(TomlTable &root, double end_s) {
+std::vector<SegmentSpec> read_segments(TomlTable &root, const std::string &folder, double end_s) {
     std::vector<TomlTable> tables = root.tables("segment");
     if (tables.empty()) {
         root.fail("segment", "expected at least one table [[segment]]: what shakes the structure");
@@ -60,7 +43,7 @@ std::vector<SegmentSpec> read_segments(TomlTable &root, double end_s) {
     std::vector<SegmentSpec> segments;
     double covered_s = 0.0;
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        segments.push_back(read_segment(tables[i], i + 1 == tables.size()));
+        segments.push_back(read_segment(tables[i], folder, i + 1 == tables.size()));
         covered_s += segments.back().duration_s;
     }
     if (covered_s < end_s * (1.0 - 1e-9)) {
@@ -83,8 +66,9 @@ std::vector<Window> read_windows(TomlTable &root, double end_s) {
     for (TomlTable &table : root.tables("window")) {
         windows.push_back(read_window(table, end_s));
     }
-    if (windows.size() > 2) {
-        root.fail("window", "expected at most two tables [[window]]");
+    if (windows.size() > kMostWindows) {
+        root.fail("window",
+                  "expected at most " + std::to_string(kMostWindows) + " tables [[window]]");
     }
     if (windows.empty()) {
         constexpr double kDefault_s = 2.0;
@@ -106,20 +90,17 @@ std::optional<Transient> read_transient(TomlTable &root, double end_s) {
     return transient;
 }
 
-std::string beside(const std::string &file, const std::string &relative) {
-    return (std::filesystem::path(file).parent_path() / relative).lexically_normal().string();
-}
-
 } // namespace
 
 Scenario load_scenario(const std::string &file) {
     const TomlFile toml(file, "quiesce-scenario", 1);
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     TomlTable root = toml.root();
     root.text("schema");
     root.integer("version", 1, 1);
     Scenario scenario{};
     scenario.name = root.text("name");
-    scenario.plant_file = beside(file, root.text("plant"));
+    scenario.plant_file = (folder / root.text("plant")).lexically_normal().string();
     scenario.duration_s = root.number("duration_s", {0.1, kLongest_s, "s"});
     if (root.has("drive_V")) {
         scenario.drive_V = root.number("drive_V", {0.0, 1e6, "V"});
@@ -129,7 +110,7 @@ Scenario load_scenario(const std::string &file) {
     }
     scenario.seed = static_cast<std::uint64_t>(root.integer("seed", 0, INT64_MAX, 1));
     scenario.feed_current = root.boolean("feed_current", false);
-    scenario.segments = read_segments(root, scenario.duration_s);
+    scenario.segments = read_segments(root, folder.string(), scenario.duration_s);
     for (TomlTable &table : root.tables("fault")) {
         scenario.faults.push_back(read_fault(table, scenario.duration_s));
     }
@@ -139,16 +120,15 @@ Scenario load_scenario(const std::string &file) {
     return scenario;
 }
 
+bool moves_base(const Scenario &scenario) {
+    return std::any_of(scenario.segments.begin(), scenario.segments.end(),
+                       [](const SegmentSpec &segment) { return segment.moves_base; });
+}
+
 Excitation make_excitation(const Scenario &scenario, const ShakerParams &shaker) {
-    Excitation excitation(shaker);
+    Excitation excitation;
     for (const SegmentSpec &spec : scenario.segments) {
-        if (spec.start_freq_Hz == spec.end_freq_Hz) {
-            excitation.append(std::make_unique<SineSegment>(spec.start_freq_Hz), spec.duration_s);
-        } else {
-            excitation.append(std::make_unique<ChirpSegment>(spec.start_freq_Hz, spec.end_freq_Hz,
-                                                             spec.duration_s),
-                              spec.duration_s);
-        }
+        excitation.append(spec.make(shaker), spec.duration_s);
     }
     return excitation;
 }

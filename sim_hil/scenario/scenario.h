@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "excitation.h"
+#include "segment_section.h"
 
 namespace quiesce {
 
@@ -42,12 +43,6 @@ struct Transient {
     double disp_end_s; ///< RMS displacement is taken from start_s to here
 };
 
-struct SegmentSpec {
-    double start_freq_Hz;
-    double end_freq_Hz; ///< = start_freq_Hz for a sine
-    double duration_s;
-};
-
 struct Scenario {
     std::string name;
     std::string plant_file; ///< relative paths resolved against the scenario's own folder
@@ -58,13 +53,16 @@ struct Scenario {
     bool feed_current; ///< the controller gets the measured coil current
     std::vector<SegmentSpec> segments;
     std::vector<InjectedFault> faults;
-    std::vector<Window> windows; ///< one, or two for a step
+    std::vector<Window> windows; ///< 1 .. 8
     std::optional<Transient> transient;
 };
 
 /// Reads TOML, schema "quiesce-scenario" version 1 (docs/plant.md has the table of keys). Throws
 /// InputError naming file, line, key, what is wrong and what is allowed.
 Scenario load_scenario(const std::string &file);
+
+/// Some segment shakes the base.
+bool moves_base(const Scenario &scenario);
 
 /// The scenario's excitation on this shaker.
 Excitation make_excitation(const Scenario &scenario, const ShakerParams &shaker);

@@ -44,9 +44,14 @@ bool is_diagonal(const Eigen::MatrixXd &matrix) {
 
 Structure structure_from_modes(const std::vector<Mode> &modes) {
     const auto count = static_cast<Eigen::Index>(modes.size());
-    Structure out{Eigen::VectorXd(count), Eigen::MatrixXd::Zero(count, count),
-                  Eigen::VectorXd(count), Eigen::VectorXd(count),
-                  Eigen::VectorXd(count), true};
+    Structure out{Eigen::VectorXd(count),
+                  Eigen::MatrixXd::Zero(count, count),
+                  Eigen::VectorXd(count),
+                  Eigen::VectorXd(count),
+                  Eigen::VectorXd(count),
+                  Eigen::VectorXd(count),
+                  1.0,
+                  true};
     for (Eigen::Index i = 0; i < count; ++i) {
         const Mode &mode = modes[static_cast<std::size_t>(i)];
         const double omega = kTwoPi * mode.freq_Hz;
@@ -55,6 +60,7 @@ Structure structure_from_modes(const std::vector<Mode> &modes) {
         out.at_force(i) = mode.at_force;
         out.at_damper(i) = mode.at_damper;
         out.at_sensor(i) = mode.at_sensor;
+        out.base_participation(i) = mode.base_participation;
     }
     return out;
 }
@@ -77,6 +83,8 @@ Structure structure_from_matrices(const Matrices &matrices, Eigen::Index mode_co
             shapes.transpose() * matrices.force,
             shapes.transpose() * matrices.damper,
             shapes.transpose() * matrices.sensor,
+            shapes.transpose() * matrices.mass_kg * matrices.base,
+            matrices.sensor.dot(matrices.base),
             is_diagonal(damping)};
 }
 

@@ -1,7 +1,8 @@
 /// A linear structure in modal coordinates, with one excitation point, one damper and one sensor.
 ///
-///   eta'' + damping eta' + omega2 eta = at_force F_e - at_damper F_d
-///   displacement at a point = at_point . eta
+///   eta'' + damping eta' + omega2 eta = at_force F_e - at_damper F_d - base_participation a_g
+///   displacement at a point = at_point . eta          relative to the base
+///   acceleration at the sensor = at_sensor . eta'' + base_at_sensor a_g          absolute
 ///
 /// Modes are mass-normalised. The damping matrix is diagonal where damping is proportional; where
 /// it is not, it is kept in full, so that M/C/K structures are simulated without approximation
@@ -21,7 +22,9 @@ struct Structure {
     Eigen::VectorXd at_force;       ///< mode shapes in kg^-1/2
     Eigen::VectorXd at_damper;
     Eigen::VectorXd at_sensor;
-    bool is_proportional; ///< damping_1_s is diagonal
+    Eigen::VectorXd base_participation; ///< kg^1/2: modal force per base acceleration a_g
+    double base_at_sensor;              ///< how the sensor moves with the base: 1, all of it
+    bool is_proportional;               ///< damping_1_s is diagonal
 
     Eigen::Index mode_count() const { return omega2_rad2_s2.size(); }
 };
@@ -32,11 +35,14 @@ struct Mode {
     double at_force; ///< mass-normalised shape, kg^-1/2
     double at_damper;
     double at_sensor;
+    double base_participation = 0.0; ///< shape . mass . base, kg^1/2
 };
 
 Structure structure_from_modes(const std::vector<Mode> &modes);
 
-/// n degrees of freedom: M q'' + C q' + K q = force F_e - damper F_d, sensor reads sensor . q.
+/// n degrees of freedom, relative to the base:
+///
+///   M q'' + C q' + K q = force F_e - damper F_d - M base a_g          sensor reads sensor . q
 struct Matrices {
     Eigen::MatrixXd mass_kg;
     Eigen::MatrixXd damping_N_s_m;
@@ -44,6 +50,7 @@ struct Matrices {
     Eigen::VectorXd force;
     Eigen::VectorXd damper;
     Eigen::VectorXd sensor;
+    Eigen::VectorXd base; ///< motion of each degree of freedom when the base moves by 1
 };
 
 /// Keeps the mode_count lowest modes (1 .. n). Throws InputError unless all three matrices are

@@ -44,7 +44,7 @@ struct Reductions {
 Reductions reductions(const RunSetup &setup) {
     const WindowMetrics open = run_constant(setup, 0).windows.back();
     const WindowMetrics constant = run_constant(setup, kMaxCurrent_mA).windows.back();
-    return {100.0 * (1.0 - constant.amplitude_m() / open.amplitude_m()),
+    return {100.0 * (1.0 - constant.amplitude_m().value() / open.amplitude_m().value()),
             100.0 * (1.0 - constant.accel_rms_m_s2() / open.accel_rms_m_s2())};
 }
 
@@ -64,7 +64,7 @@ class SteadySine : public testing::TestWithParam<Reference> {};
 
 TEST_P(SteadySine, open_loop_is_within_1_percent) {
     const RunMetrics open = run_constant(quiet_setup(GetParam().scenario), 0);
-    EXPECT_NEAR(1e6 * open.windows[0].amplitude_m() / GetParam().open_amp_um, 1.0, 0.01);
+    EXPECT_NEAR(1e6 * open.windows[0].amplitude_m().value() / GetParam().open_amp_um, 1.0, 0.01);
     EXPECT_NEAR(1e3 * open.windows[0].accel_rms_m_s2() / GetParam().open_accel_rms_mm_s2, 1.0,
                 0.01);
     EXPECT_EQ(open.windows[0].mean_current_A(), 0.0);
@@ -103,8 +103,8 @@ TEST(FrequencyStep, settles_like_the_reference) {
     EXPECT_NEAR(constant.settle_s.value(), 0.27, 0.01);
     EXPECT_NEAR(1e6 * open.rms_displacement_m, 24.88, 0.05);
     EXPECT_NEAR(1e6 * constant.rms_displacement_m, 13.71, 0.05);
-    EXPECT_NEAR(1e6 * open.windows[0].amplitude_m(), 151.4, 1.5);
-    EXPECT_NEAR(1e6 * open.windows[1].amplitude_m(), 14.6, 0.15);
+    EXPECT_NEAR(1e6 * open.windows[0].amplitude_m().value(), 151.4, 1.5);
+    EXPECT_NEAR(1e6 * open.windows[1].amplitude_m().value(), 14.6, 0.15);
 }
 
 TEST(PaperSign, is_not_what_the_plant_uses) {

@@ -11,9 +11,13 @@ namespace {
 using quiesce::ChirpSegment;
 using quiesce::Excitation;
 using quiesce::Shaker;
+using quiesce::ShakerParams;
 using quiesce::SineSegment;
 
 constexpr double kTwoPi = 6.28318530717958647692;
+
+/// 1 N at every frequency.
+constexpr ShakerParams kUnit = {1.0, 10.0, 0.0, 1.0};
 
 TEST(Shaker, gain_is_exact_at_its_reference_and_rolls_off) {
     const Shaker shaker({2.96, 10.0, 5.4, 0.1});
@@ -30,9 +34,9 @@ TEST(Shaker, without_corner_is_flat) {
 }
 
 TEST(Excitation, phase_is_continuous_over_a_frequency_step) {
-    Excitation excitation({1.0, 10.0, 0.0, 1.0});
-    excitation.append(std::make_unique<SineSegment>(9.3), 1.234);
-    excitation.append(std::make_unique<SineSegment>(20.0), 10.0);
+    Excitation excitation;
+    excitation.append(std::make_unique<SineSegment>(kUnit, 9.3), 1.234);
+    excitation.append(std::make_unique<SineSegment>(kUnit, 20.0), 10.0);
     const double before = excitation.sample(0, 1.234).phase_cycles;
     const double after = excitation.sample(1, 1.234).phase_cycles;
     EXPECT_NEAR(before, 9.3 * 1.234, 1e-12);
@@ -43,17 +47,17 @@ TEST(Excitation, phase_is_continuous_over_a_frequency_step) {
 }
 
 TEST(Excitation, a_segment_includes_its_start_and_not_its_end) {
-    Excitation excitation({1.0, 10.0, 0.0, 1.0});
-    excitation.append(std::make_unique<SineSegment>(10.0), 4.0);
-    excitation.append(std::make_unique<SineSegment>(20.0), 4.0);
+    Excitation excitation;
+    excitation.append(std::make_unique<SineSegment>(kUnit, 10.0), 4.0);
+    excitation.append(std::make_unique<SineSegment>(kUnit, 20.0), 4.0);
     EXPECT_EQ(excitation.segment_at(0.0), 0u);
     EXPECT_EQ(excitation.segment_at(4.0), 1u);
     EXPECT_EQ(excitation.segment_at(100.0), 1u) << "the last one goes on";
 }
 
 TEST(Excitation, chirp_phase_is_the_integral_of_its_frequency) {
-    Excitation excitation({1.0, 10.0, 0.0, 1.0});
-    excitation.append(std::make_unique<ChirpSegment>(5.0, 10.0, 8.0), 8.0);
+    Excitation excitation;
+    excitation.append(std::make_unique<ChirpSegment>(kUnit, 5.0, 10.0, 8.0), 8.0);
     double integral = 0.0;
     constexpr double kStep_s = 1e-3;
     for (int i = 0; i < 8000; ++i) {

@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
+#include "impulse_segment.h"
 #include "input_error.h"
 #include "plant_file.h"
+#include "record_segment.h"
 #include "sine_segment.h"
 #include "viscous.h"
 
@@ -25,8 +28,8 @@ using quiesce::PlantTruth;
 constexpr double kTwoPi = 6.28318530717958647692;
 
 Excitation sine(const PlantModel &model, double freq_Hz) {
-    Excitation excitation(model.shaker);
-    excitation.append(std::make_unique<quiesce::SineSegment>(freq_Hz), 1e5);
+    Excitation excitation;
+    excitation.append(std::make_unique<quiesce::SineSegment>(model.shaker, freq_Hz), 1e5);
     return excitation;
 }
 
@@ -39,6 +42,7 @@ Matrices coupled_matrices() {
     out.force = Eigen::Vector2d(1.0, 0.0);
     out.damper = Eigen::Vector2d(-1.0, 1.0);
     out.sensor = Eigen::Vector2d(0.0, 1.0);
+    out.base = Eigen::Vector2d::Ones();
     return out;
 }
 
@@ -204,6 +208,60 @@ TEST(Plant, stops_when_the_integration_diverges) {
             }
         },
         quiesce::InputError);
+}
+
+PlantTruth after(const PlantModel &model, const Excitation &excitation, int ticks) {
+    Plant plant(model, excitation, 1000);
+    for (int tick = 0; tick < ticks; ++tick) {
+        plant.advance();
+    }
+    return plant.truth();
+}
+
+Excitation record(std::vector<quiesce::RecordPoint> points) {
+    Excitation excitation;
+    excitation.append(std::make_unique<quiesce::RecordSegment>(std::move(points), 1.0, 1.0), 1e5);
+    return excitation;
+}
+
+TEST(Plant, a_slow_ramp_of_the_bases_acceleration_bends_it_like_a_static_load) {
+    // After 60 s of ramp nothing rings any more. K q = -M base a, less what the ramp's velocity
+    // adds through the damping: K q' = -M base a' is constant.
+    const PlantModel model = coupled_plant();
+    const Matrices m = coupled_matrices();
+    constexpr double kEnd_m_s2 = 2.0;
+    const PlantTruth truth =
+        after(model, record({{0.0, 0.0}, {60.0, kEnd_m_s2}, {61.0, 0.0}}), 60000);
+    const Eigen::Vector2d load = -m.mass_kg * m.base;
+    const Eigen::Vector2d velocity = m.stiffness_N_m.ldlt().solve(load) * (kEnd_m_s2 / 60.0);
+    const Eigen::Matrix2d damping = m.damping_N_s_m + 0.5 * m.damper * m.damper.transpose();
+    const Eigen::Vector2d static_m =
+        m.stiffness_N_m.ldlt().solve(Eigen::Vector2d(load * kEnd_m_s2 - damping * velocity));
+    EXPECT_NEAR(truth.displacement_m, static_m[1], 1e-9);
+    EXPECT_NEAR(truth.accel_m_s2, kEnd_m_s2, 1e-6) << "the sensor rides on the base";
+}
+
+TEST(Plant, a_base_that_jumps_is_felt_at_once_by_the_sensor_alone) {
+    // Free masses, the base not part of them: they stay where they are in space.
+    PlantModel model = coupled_plant();
+    Matrices matrices = coupled_matrices();
+    matrices.stiffness_N_m.setZero();
+    matrices.damping_N_s_m.setZero();
+    model.structure = quiesce::structure_from_matrices(matrices, 2);
+    const PlantTruth truth = after(model, record({{0.0, 3.0}, {1e3, 3.0}}), 1000);
+    EXPECT_NEAR(truth.displacement_m, -0.5 * 3.0, 1e-9) << "the base moves away below";
+    EXPECT_NEAR(truth.accel_m_s2, 0.0, 1e-9) << "at rest in space";
+}
+
+TEST(Plant, an_impulse_sets_a_free_mass_in_motion) {
+    PlantModel model = coupled_plant();
+    constexpr double kMass_kg = 2.5;
+    const double shape = 1.0 / std::sqrt(kMass_kg);
+    model.structure = quiesce::structure_from_modes({{0.001, 0.0, shape, shape, shape}});
+    model.damper = std::make_shared<quiesce::Viscous>(quiesce::ViscousParams{0.0, 0.0, 1.0});
+    Excitation excitation;
+    excitation.append(std::make_unique<quiesce::ImpulseSegment>(0.05, 0.004), 1e5);
+    EXPECT_NEAR(after(model, excitation, 100).damper_velocity_m_s, 0.05 / kMass_kg, 2e-5);
 }
 
 TEST(Plant, steps_divide_the_tick) {

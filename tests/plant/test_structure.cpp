@@ -25,6 +25,7 @@ Matrices chain() {
     out.force = Vector2d(1.0, 0.0);
     out.damper = Vector2d(-1.0, 1.0);
     out.sensor = Vector2d(0.0, 1.0);
+    out.base = Vector2d::Ones();
     return out;
 }
 
@@ -47,6 +48,20 @@ TEST(Structure, matrices_give_the_known_modes_of_a_chain) {
     EXPECT_NEAR(structure.at_damper[0], 0.0, 1e-12) << "both masses move alike in mode 1";
     EXPECT_NEAR(std::abs(structure.at_force[0]), 0.5, 1e-12) << "1/sqrt(total mass)";
     EXPECT_NEAR(structure.at_force[1] * structure.at_sensor[1], -0.25, 1e-12);
+}
+
+TEST(Structure, base_participation_comes_from_mass_and_influence) {
+    Matrices matrices = chain();
+    Structure structure = quiesce::structure_from_matrices(matrices, 2);
+    // Both masses of 2 kg move with the base: all of it is felt by mode 1, where both move alike.
+    EXPECT_NEAR(std::abs(structure.base_participation[0]), 2.0, 1e-12);
+    EXPECT_NEAR(structure.base_participation[1], 0.0, 1e-12);
+    EXPECT_NEAR(structure.base_participation[0] * structure.at_sensor[0], 1.0, 1e-12);
+    EXPECT_EQ(structure.base_at_sensor, 1.0);
+    matrices.base = Vector2d(0.0, 0.5);
+    structure = quiesce::structure_from_matrices(matrices, 2);
+    EXPECT_NEAR(structure.base_participation.squaredNorm(), 2.0 * 0.25, 1e-12);
+    EXPECT_EQ(structure.base_at_sensor, 0.5);
 }
 
 TEST(Structure, fewer_modes_keep_the_lowest) {

@@ -1,0 +1,28 @@
+/// The [[segment]] sections of a scenario: one line in segment_section.cpp adds a kind.
+#ifndef QUIESCE_SEGMENT_SECTION_H
+#define QUIESCE_SEGMENT_SECTION_H
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "segment.h"
+#include "shaker.h"
+#include "toml_table.h"
+
+namespace quiesce {
+
+struct SegmentSpec {
+    std::string summary; ///< for people
+    double duration_s;
+    bool moves_base;
+    std::function<std::unique_ptr<Segment>(const ShakerParams &shaker)> make;
+};
+
+/// Reads a segment, and what it refers to. folder: where its relative paths start. is_last: it may
+/// go on for ever, where its kind allows that. Throws InputError naming what is wrong.
+SegmentSpec read_segment(TomlTable &section, const std::string &folder, bool is_last);
+
+} // namespace quiesce
+
+#endif
