@@ -6,8 +6,9 @@
 namespace quiesce {
 
 struct CoilParams {
-    double rise_s; ///< time constant towards a larger current, >= 0 (0: no lag)
-    double fall_s; ///< towards a smaller one, >= 0
+    double rise_s;          ///< time constant towards a larger current, >= 0 (0: no lag)
+    double fall_s;          ///< towards a smaller one, >= 0
+    double remanence = 0.0; ///< width of its play, part of the driver's full scale
 };
 
 class Coil {

@@ -35,9 +35,17 @@ int cmd_plant_check(const std::vector<std::string> &words) {
     const PlantModel model = load_plant(file);
     std::printf("%s: plant %s is valid\n", file.c_str(), model.name.c_str());
     print_modes(model.structure);
-    std::printf("  damper: at most %.4g N s/m at %g A; coil %g/%g ms rise/fall\n",
+    std::printf("  damper: at most %.4g N s/m at %g A; coil %g/%g ms rise/fall, "
+                "%g %% remanence\n",
                 model.damper->stiffest_N_s_m(model.driver.max_current_A),
-                model.driver.max_current_A, 1e3 * model.coil.rise_s, 1e3 * model.coil.fall_s);
+                model.driver.max_current_A, 1e3 * model.coil.rise_s, 1e3 * model.coil.fall_s,
+                100.0 * model.coil.remanence);
+    if (model.damper->stiffest_N_m(model.driver.max_current_A) > 0.0) {
+        std::printf("  damper: a stiffness of %.4g N/m at 0 A, %.4g N/m at %g A\n",
+                    model.damper->stiffest_N_m(0.0),
+                    model.damper->stiffest_N_m(model.driver.max_current_A),
+                    model.driver.max_current_A);
+    }
     std::printf("  sensor: +-%g g, %d bits, %g mg noise; drive %g V; integration step %g us "
                 "(at most %.0f us)\n",
                 model.sensor.full_scale_g, model.sensor.bits, model.sensor.noise_mg,

@@ -30,6 +30,9 @@ class Damper {
     /// step must cope with.
     virtual double stiffest_N_s_m(double current_A) const = 0;
 
+    /// The same for d force / d position (N/m).
+    virtual double stiffest_N_m(double /*current_A*/) const { return 0.0; }
+
     /// Positions at or below this are outside the model (plates that touch).
     virtual double lowest_position_m() const = 0;
 };

@@ -1,6 +1,7 @@
 #include "damper_section.h"
 
 #include "squeeze_biviscosity.h"
+#include "switched_stiffness.h"
 #include "viscous.h"
 
 namespace quiesce {
@@ -34,6 +35,16 @@ std::shared_ptr<const Damper> read_viscous(TomlTable &section) {
     return std::make_shared<Viscous>(params);
 }
 
+std::shared_ptr<const Damper> read_switched_stiffness(TomlTable &section) {
+    SwitchedStiffnessParams params{};
+    params.base_N_s_m = section.number("base_N_s_m", {0.0, 1e9, "N s/m"});
+    params.per_A_N_s_m = section.number("per_A_N_s_m", {0.0, 1e9, "N s/m per A"});
+    params.base_N_m = section.number("base_N_m", {0.0, 1e9, "N/m"});
+    params.per_A_N_m = section.number("per_A_N_m", {0.0, 1e9, "N/m per A"});
+    params.stroke_m = section.number("stroke_m", {1e-9, 100.0, "m"});
+    return std::make_shared<SwitchedStiffness>(params);
+}
+
 struct Model {
     const char *name;
     std::shared_ptr<const Damper> (*read)(TomlTable &section);
@@ -41,6 +52,7 @@ struct Model {
 
 const Model kModels[] = {
     {"squeeze_biviscosity", read_squeeze_biviscosity},
+    {"switched_stiffness", read_switched_stiffness},
     {"viscous", read_viscous},
 };
 

@@ -21,7 +21,8 @@ Plant::Plant(const PlantModel &model, const Excitation &excitation, int tick_rat
     : equations_(model), excitation_(&excitation), driver_(model.driver),
       steps_(steps_per_tick(model, 1.0 / tick_rate_Hz)),
       step_rate_Hz_(static_cast<double>(tick_rate_Hz * steps_)), step_s_(1.0 / step_rate_Hz_),
-      half_step_coil_(model.coil, 0.5 * step_s_), rk4_(equations_.state_count()),
+      half_step_coil_(model.coil, 0.5 * step_s_),
+      remanence_(model.coil.remanence * model.driver.max_current_A), rk4_(equations_.state_count()),
       y_(equations_.state_count(), 0.0), k1_(y_.size(), 0.0), excitation_now_(excitation.at(0.0)),
       substeps_(static_cast<std::size_t>(steps_)) {
     observe();
@@ -33,13 +34,15 @@ void Plant::command(double current_A, ActuatorFault fault) {
     }
     if (fault == ActuatorFault::coil_open && coil_A_ != 0.0) {
         coil_A_ = 0.0;
+        effective_A_ = remanence_.step(effective_A_, coil_A_);
         observe();
     }
 }
 
 void Plant::observe() {
     const double base_accel_m_s2 = excitation_now_.base_accel_m_s2;
-    damper_force_N_ = equations_.rates(excitation_now_.force_N, coil_A_, y_, k1_, base_accel_m_s2);
+    damper_force_N_ =
+        equations_.rates(excitation_now_.force_N, effective_A_, y_, k1_, base_accel_m_s2);
     truth_ = {equations_.displacement_m(y_),
               equations_.accel_m_s2(k1_, base_accel_m_s2),
               coil_A_,
@@ -48,21 +51,28 @@ void Plant::observe() {
               equations_.damper_velocity_m_s(y_)};
 }
 
+/// Half a step later.
+Plant::Drive Plant::drive_after(const Drive &before, const Excitation::Sample &excitation) const {
+    const double coil_A = half_step_coil_.step(before.coil_A, driver_A_);
+    return {excitation.force_N, excitation.base_accel_m_s2, coil_A,
+            remanence_.step(before.effective_A, coil_A)};
+}
+
 void Plant::step() {
     const auto start = static_cast<double>(step_count_);
     const double end_s = time_s(start + 1.0);
     const Excitation::Sample end = excitation_->sample(segment_, end_s);
     Drive stage[3] = {};
-    const Excitation::Sample middle = excitation_->sample(segment_, time_s(start + 0.5));
-    stage[1] = {middle.force_N, middle.base_accel_m_s2, half_step_coil_.step(coil_A_, driver_A_)};
-    stage[2] = {end.force_N, end.base_accel_m_s2,
-                half_step_coil_.step(stage[1].current_A, driver_A_)};
+    stage[0] = {excitation_now_.force_N, excitation_now_.base_accel_m_s2, coil_A_, effective_A_};
+    stage[1] = drive_after(stage[0], excitation_->sample(segment_, time_s(start + 0.5)));
+    stage[2] = drive_after(stage[1], end);
     rk4_.step(y_, k1_, step_s_,
               [&](int at, const std::vector<double> &y, std::vector<double> &out) {
-                  equations_.rates(stage[at].force_N, stage[at].current_A, y, out,
+                  equations_.rates(stage[at].force_N, stage[at].effective_A, y, out,
                                    stage[at].base_accel_m_s2);
               });
-    coil_A_ = stage[2].current_A;
+    coil_A_ = stage[2].coil_A;
+    effective_A_ = stage[2].effective_A;
     ++step_count_;
     // A new segment's force may differ from what the old one ended with.
     const std::size_t segment = excitation_->segment_at(end_s);

@@ -2,7 +2,7 @@
 ///
 ///   eta'' + damping eta' + omega2 eta = at_force F_e(t) - at_damper F_d(v_d, x_d, I)
 ///                                       - base_participation a_g(t)
-///   I follows the driver's output with the coil's lag
+///   I follows the driver's output with the coil's lag, and the coil's current with remanence
 ///
 /// Classical Runge-Kutta with a fixed step that divides the tick; time is n / rate, never
 /// accumulated. Error budget (docs/plant.md): the default longest step of 500 us keeps every
@@ -18,15 +18,16 @@
 #include "equations.h"
 #include "excitation.h"
 #include "plant_model.h"
+#include "remanence.h"
 #include "rk4.h"
 
 namespace quiesce {
 
 /// True values at one instant.
 struct PlantTruth {
-    double displacement_m; ///< at the sensor, relative to the base
-    double accel_m_s2;     ///< at the sensor, absolute: what an accelerometer reads
-    double coil_A;
+    double displacement_m;      ///< at the sensor, relative to the base
+    double accel_m_s2;          ///< at the sensor, absolute: what an accelerometer reads
+    double coil_A;              ///< what a current sensor reads; the damper's may lag behind it
     double damper_force_N;      ///< resisting force at the damper
     double phase_cycles;        ///< of the excitation, not wrapped
     double damper_velocity_m_s; ///< of its moving end, > 0 opens it
@@ -62,10 +63,12 @@ class Plant {
     struct Drive {
         double force_N;
         double base_accel_m_s2;
-        double current_A;
+        double coil_A;
+        double effective_A;
     };
 
     double time_s(double steps) const { return steps / step_rate_Hz_; }
+    Drive drive_after(const Drive &before, const Excitation::Sample &excitation) const;
     void step();
     void observe();
     void check_motion() const;
@@ -77,11 +80,13 @@ class Plant {
     double step_rate_Hz_; ///< an integer, so that step counts over it are exact times
     double step_s_;
     Coil half_step_coil_;
+    Remanence remanence_;
     Rk4 rk4_;
     std::vector<double> y_;  ///< eta, eta', damper states
     std::vector<double> k1_; ///< their rates now
     double driver_A_ = 0.0;
     double coil_A_ = 0.0;
+    double effective_A_ = 0.0; ///< current whose field the damper sees
     double damper_force_N_ = 0.0;
     std::size_t segment_ = 0; ///< of the excitation, now
     Excitation::Sample excitation_now_;

@@ -22,6 +22,7 @@ CoilParams read_coil(TomlTable section) {
     CoilParams params{};
     params.rise_s = section.number("rise_s", {0.0, 10.0, "s"});
     params.fall_s = section.number("fall_s", {0.0, 10.0, "s"}, params.rise_s);
+    params.remanence = section.number("remanence", {0.0, 0.5, "of driver.max_current_A"}, 0.0);
     section.reject_unknown_keys();
     return params;
 }

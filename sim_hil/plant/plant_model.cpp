@@ -9,7 +9,10 @@ double longest_safe_step_s(const PlantModel &model) {
     const Structure &structure = model.structure;
     const double slope_N_s_m = std::max(model.damper->stiffest_N_s_m(0.0),
                                         model.damper->stiffest_N_s_m(model.driver.max_current_A));
-    const double omega = std::sqrt(structure.omega2_rad2_s2.maxCoeff());
+    const double stiffness_N_m = std::max(model.damper->stiffest_N_m(0.0),
+                                          model.damper->stiffest_N_m(model.driver.max_current_A));
+    const double omega = std::sqrt(structure.omega2_rad2_s2.maxCoeff() +
+                                   stiffness_N_m * structure.at_damper.squaredNorm());
     const double rate_1_s =
         omega + structure.damping_1_s.norm() + slope_N_s_m * structure.at_damper.squaredNorm();
     return 0.9 / rate_1_s;

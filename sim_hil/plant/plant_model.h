@@ -27,7 +27,7 @@ struct PlantModel {
 };
 
 /// Longest integration step that follows the model's fastest rate (undamped modes, damping, the
-/// damper's stiffest slope): a third of what keeps the method stable.
+/// damper's steepest slopes): a third of what keeps the method stable.
 double longest_safe_step_s(const PlantModel &model);
 
 /// Integration steps in one tick of tick_s: the fewest that are no longer than max_step_s.

@@ -14,6 +14,7 @@
 #include "plant_file.h"
 #include "record_segment.h"
 #include "sine_segment.h"
+#include "switched_stiffness.h"
 #include "viscous.h"
 
 namespace {
@@ -55,11 +56,12 @@ PlantModel coupled_plant() {
 }
 
 /// Amplitude at the sensor for 1 N, from the complex equations of motion.
-double closed_form_amplitude_m(double freq_Hz, double damper_N_s_m) {
+double closed_form_amplitude_m(double freq_Hz, double damper_N_s_m, double damper_N_m = 0.0) {
     const Matrices m = coupled_matrices();
     const double omega = kTwoPi * freq_Hz;
     const Eigen::MatrixXcd dynamic =
-        (m.stiffness_N_m - omega * omega * m.mass_kg).cast<std::complex<double>>() +
+        (m.stiffness_N_m + damper_N_m * m.damper * m.damper.transpose() - omega * omega * m.mass_kg)
+            .cast<std::complex<double>>() +
         std::complex<double>(0.0, omega) *
             (m.damping_N_s_m + damper_N_s_m * m.damper * m.damper.transpose());
     const Eigen::VectorXcd motion =
@@ -176,6 +178,50 @@ TEST(Plant, open_coil_carries_no_current_and_stuck_driver_keeps_it) {
     EXPECT_EQ(plant.truth().coil_A, 0.0);
     plant.advance();
     EXPECT_EQ(plant.truth().coil_A, 0.0);
+}
+
+TEST(Plant, remanence_keeps_force_when_the_current_is_gone) {
+    PlantModel model = coupled_plant();
+    model.coil = {0.005, 0.005, 0.05};
+    const Excitation excitation = sine(model, 5.0);
+    Plant plant(model, excitation, 1000);
+    const auto coefficient_N_s_m = [&plant] {
+        return plant.truth().damper_force_N / plant.truth().damper_velocity_m_s;
+    };
+    for (int tick = 0; tick < 2000; ++tick) {
+        plant.command(tick < 1000 ? 4.0 : 0.0, ActuatorFault::none);
+        plant.advance();
+        if (tick == 999) {
+            EXPECT_NEAR(coefficient_N_s_m(), 0.5 + 2.0 * 4.0, 0.01);
+        }
+    }
+    EXPECT_NEAR(plant.truth().coil_A, 0.0, 1e-9) << "what is measured is the coil's current";
+    EXPECT_NEAR(coefficient_N_s_m(), 0.5 + 2.0 * 0.05 * 5.0, 1e-9) << "5 % of 5 A stay";
+    plant.command(4.0, ActuatorFault::none);
+    plant.advance();
+    plant.command(0.0, ActuatorFault::coil_open);
+    EXPECT_NEAR(coefficient_N_s_m(), 0.5 + 2.0 * 0.05 * 5.0, 1e-9) << "an open coil, too";
+}
+
+TEST(Plant, switched_stiffness_at_a_constant_current_is_a_spring) {
+    PlantModel model = coupled_plant();
+    model.damper = std::make_shared<quiesce::SwitchedStiffness>(
+        quiesce::SwitchedStiffnessParams{0.5, 2.0, 200.0, 100.0, 1.0});
+    const double current_A = quiesce::CurrentDriver(model.driver).output_A(1.5);
+    for (const double freq_Hz : {3.0, 5.2, 7.1}) {
+        const double expected =
+            closed_form_amplitude_m(freq_Hz, 0.5 + 2.0 * current_A, 200.0 + 100.0 * current_A);
+        EXPECT_NEAR(simulated_amplitude_m(model, freq_Hz, current_A) / expected, 1.0, 5e-4)
+            << freq_Hz << " Hz";
+    }
+}
+
+TEST(Plant, a_stiffness_in_the_damper_shortens_the_safe_step) {
+    PlantModel model = coupled_plant();
+    const double without_s = quiesce::longest_safe_step_s(model);
+    model.damper = std::make_shared<quiesce::SwitchedStiffness>(
+        quiesce::SwitchedStiffnessParams{0.5, 2.0, 0.0, 1e6, 1.0});
+    EXPECT_LT(quiesce::longest_safe_step_s(model), 0.1 * without_s);
 }
 
 TEST(Plant, stops_where_the_plates_touch) {
