@@ -4,21 +4,34 @@ from dataclasses import dataclass
 
 from quiesce.control.periodic import Drive, Orbit, solve
 
+# Far more than any other term gains by going beyond a limit; the amplitude's limit comes first.
+ACCEL_PENALTY = 5.0
+AMP_PENALTY = 200.0
+
 
 @dataclass(frozen=True)
 class Goal:
-    """Minimise  amp A/A0 + accel a/a0 + current I/Imax  with a/a0 at most accel_limit.
+    """Minimise  amp A/A0 + accel a/a0 + current I/Imax  within limits of A/A0 and a/a0.
 
     A: half peak-to-peak displacement, a: RMS acceleration, A0 and a0 the same at 0 A, I: mean
-    current.
+    current. Where not both limits can be kept, the amplitude's is.
     """
 
     amp: float = 1.0
     accel: float = 0.0
     current: float = 0.0
-    accel_limit: float | None = None
+    amp_limit: float = float("inf")
+    accel_limit: float = float("inf")
 
-    PENALTY = 5.0  # of a/a0 beyond its limit: far more than any gain in amplitude can pay
+    def cost(self, amp: float, accel: float, current: float) -> float:
+        """Of figures relative to 0 A and to the full current."""
+        return (
+            self.amp * amp
+            + self.accel * accel
+            + self.current * current
+            + AMP_PENALTY * max(0.0, amp - self.amp_limit)
+            + ACCEL_PENALTY * max(0.0, accel - self.accel_limit)
+        )
 
 
 AMP = Goal()
@@ -46,15 +59,8 @@ class Reference:
         return 100.0 * (1.0 - self.accel_ratio(orbit))
 
     def cost(self, goal: Goal, orbit: Orbit) -> float:
-        """The goal's sum, with a steep penalty beyond the limit."""
-        accel = self.accel_ratio(orbit)
-        beyond = 0.0 if goal.accel_limit is None else max(0.0, accel - goal.accel_limit)
-        return (
-            goal.amp * self.amp_ratio(orbit)
-            + goal.accel * accel
-            + goal.current * orbit.mean_current_A / self.drive.plant.max_current_A
-            + goal.PENALTY * beyond
-        )
+        current = orbit.mean_current_A / self.drive.plant.max_current_A
+        return goal.cost(self.amp_ratio(orbit), self.accel_ratio(orbit), current)
 
 
 def reference(drive: Drive) -> Reference:
