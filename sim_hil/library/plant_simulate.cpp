@@ -22,9 +22,10 @@ class TickSegment final : public Segment {
 
     ExcitationSample sample(double time_s, double start_cycles) const override {
         const double tick = time_s * drive_.tick_rate_Hz;
-        const auto last = static_cast<double>(drive_.ticks - 1);
+        // The last stretch goes on: its slope holds at the last tick, too.
+        const auto last = static_cast<double>(drive_.ticks - 2);
         const auto at = static_cast<std::size_t>(std::clamp(std::floor(tick), 0.0, last));
-        const std::size_t next = std::min(at + 1, drive_.ticks - 1);
+        const std::size_t next = at + 1;
         const double part = tick - static_cast<double>(at);
         const double slope = drive_.phase_cycles[next] - drive_.phase_cycles[at];
         const double cycles = drive_.phase_cycles[at] + part * slope;
@@ -42,8 +43,8 @@ class TickSegment final : public Segment {
 
 void simulate(const PlantModel &model, const quiesce_drive &drive,
               const quiesce_response &response) {
-    if (drive.tick_rate_Hz < 1 || drive.tick_rate_Hz > 1000000 || drive.ticks < 1) {
-        throw InputError("simulation: expected 1 to 1000000 ticks a second and one tick or more");
+    if (drive.tick_rate_Hz < 1 || drive.tick_rate_Hz > 1000000 || drive.ticks < 2) {
+        throw InputError("simulation: expected 1 to 1000000 ticks a second and 2 ticks or more");
     }
     ShakerParams shaker = model.shaker;
     shaker.drive_V = 1.0;

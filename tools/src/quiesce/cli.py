@@ -15,6 +15,7 @@ from quiesce import (
     cmd_record,
     cmd_replay,
     cmd_rules,
+    cmd_sweep,
 )
 from quiesce.errors import (
     EXIT_BAD_INPUT,
@@ -33,6 +34,7 @@ COMMANDS = (
     cmd_params,
     cmd_chain,
     cmd_rules,
+    cmd_sweep,
     cmd_bench,
 )
 
@@ -42,6 +44,7 @@ EPILOG = """examples:
   quiesce plant check my_plant.toml             is my own plant file right?
   quiesce params                                every parameter of the controller
   quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
+  quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
   quiesce bench signal --check                  the sensing chain's figures and goals
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,
