@@ -52,6 +52,15 @@ typedef struct {
     bool fault_reset;         ///< operator acknowledges a latched fault (acts on its rising edge)
 } quiesce_in_t;
 
+/// What the adaptation of law phase is doing.
+typedef enum {
+    QUIESCE_ADAPT_WAITING = 0,   ///< for a lock, for the end of a fault, or switched off
+    QUIESCE_ADAPT_MEASURING = 1, ///< how the vibration is without a trial's change
+    QUIESCE_ADAPT_TRYING = 2,    ///< a trial's change is in effect
+    QUIESCE_ADAPT_CHECKING = 3,  ///< back again: is it as it was?
+    QUIESCE_ADAPT_RESTING = 4,   ///< nothing is left to gain
+} quiesce_adapt_state_t;
+
 /// One sinusoidal component of the acceleration: amp x cos(phase).
 typedef struct {
     int32_t freq_uHz;
@@ -84,6 +93,13 @@ typedef struct {
     int32_t current_fuzzy_mA;            ///< the rule base's own output
     int32_t current_law_mA;              ///< what the law requests
     int32_t current_cmd_mA;              ///< what leaves the guard
+    uint32_t lock_is_on;                 ///< law phase has locked on to the dominant component
+    uint32_t adapt_state;                ///< quiesce_adapt_state_t
+    uint32_t adapt_trials;               ///< finished since init, saturating
+    uint32_t adapt_gains;                ///< of them that were kept, saturating
+    int32_t trim_on_mdeg;   ///< change of the pulse in effect: its first edge, later is positive
+    int32_t trim_off_mdeg;  ///< and its last edge
+    int32_t trim_level_q15; ///< and its level as a factor: 32768 is 1
 } quiesce_telemetry_t;
 
 /// One tick's output.

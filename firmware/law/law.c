@@ -3,10 +3,9 @@
 #include <stddef.h>
 
 static const law_t *const laws[] = {
-    [QUIESCE_LAW_OFF] = &law_off,
-    [QUIESCE_LAW_CONSTANT] = &law_constant,
-    [QUIESCE_LAW_FUZZY] = &law_fuzzy,
-    [QUIESCE_LAW_FUZZY_SELFTUNE] = &law_fuzzy_selftune,
+    [QUIESCE_LAW_OFF] = &law_off,     [QUIESCE_LAW_CONSTANT] = &law_constant,
+    [QUIESCE_LAW_FUZZY] = &law_fuzzy, [QUIESCE_LAW_FUZZY_SELFTUNE] = &law_fuzzy_selftune,
+    [QUIESCE_LAW_PHASE] = &law_phase,
 };
 
 const law_t *law_find(int32_t index) {

@@ -5,7 +5,16 @@
 #define LAW_H
 
 #include "fixq.h"
+#include "law_phase.h"
 #include "quiesce_params.h"
+
+/// The component that is locked on to.
+typedef struct {
+    bool is_on;
+    uint32_t phase_turn;          ///< of its acceleration, a = amp x cos(phase), at this tick
+    uint32_t step_turn;           ///< a tick
+    const harmonic_sums_t *cycle; ///< a cycle whose sums became known in this tick, else NULL
+} law_lock_t;
 
 typedef struct {
     int64_t velocity_um_s_q32;
@@ -13,11 +22,14 @@ typedef struct {
     int32_t freq_uHz;   ///< last dominant frequency
     bool freq_is_valid; ///< or was, less than track_hold_ms ago
     int32_t base_mA;    ///< the rule base's current, or unlock_current_mA while freq is not valid
+    law_lock_t lock;    ///< off for laws that do not use it
+    bool is_output_on;  ///< in the last tick: what was requested passed the guard
 } law_in_t;
 
 /// State of any law: caller-owned, cleared by reset.
 typedef struct {
     int64_t current_mA_q20;
+    law_phase_t phase;
 } law_state_t;
 
 /// Request in mA, 0 .. params->max_current_mA + whatever the guard will clip.
@@ -27,12 +39,14 @@ typedef int32_t (*law_step_t)(law_state_t *state, const quiesce_params_t *params
 typedef struct {
     const char *name; ///< its label in parameters.toml
     law_step_t step;
+    bool uses_lock;
 } law_t;
 
 extern const law_t law_off;
 extern const law_t law_constant;
 extern const law_t law_fuzzy;
 extern const law_t law_fuzzy_selftune;
+extern const law_t law_phase;
 
 /// Law by the value of parameter law. Returns NULL iff there is none.
 const law_t *law_find(int32_t index);

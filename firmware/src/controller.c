@@ -7,6 +7,7 @@
 #include "fuzzy.h"
 #include "guard.h"
 #include "law.h"
+#include "phase_squeeze_2012.h"
 #include "rules_squeeze_2012.h"
 #include "signal_chain.h"
 #include "supervisor.h"
@@ -51,6 +52,10 @@ static const fuzzy_table_t *shipped_rules(void) {
     return (const fuzzy_table_t *)(const void *)rules_squeeze_2012_table;
 }
 
+static const phase_table_t *shipped_pulses(void) {
+    return (const phase_table_t *)(const void *)phase_squeeze_2012_table;
+}
+
 static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
     guard_init(&self->guard, &(guard_cfg_t){
@@ -82,6 +87,7 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
     signal_chain_init(&c->signal, &c->params);
     c->rules_next = shipped_rules();
     c->law = law_find(c->params.law);
+    law_phase_init(&c->law_state.phase, &c->params, shipped_pulses());
     c->hold_ticks = (uint32_t)(c->params.track_hold_ms * (c->params.tick_rate_Hz / 100) / 10);
     init_output(c, params, is_accepted);
     return is_accepted;
@@ -164,12 +170,21 @@ static law_in_t law_input(const controller_t *self, const signal_chain_out_t *si
                           int32_t fuzzy_mA) {
     // A short doubt must not make the command jump: that would itself change the vibration.
     const bool is_known = self->signal.estimator.age_ticks <= self->hold_ticks;
+    const lock_in_t *lock = &self->signal.lock;
     return (law_in_t){
         .velocity_um_s_q32 = signal->velocity_um_s_q32,
         .accel_um_s2 = signal->sample.accel_um_s2,
         .freq_uHz = self->signal.estimator.tone[0].freq_uHz,
         .freq_is_valid = is_known,
         .base_mA = is_known ? fuzzy_mA : self->params.unlock_current_mA,
+        .lock =
+            {
+                .is_on = lock->is_locked,
+                .phase_turn = lock->phase_turn,
+                .step_turn = lock->step_turn,
+                .cycle = lock->has_cycle ? &lock->last : NULL,
+            },
+        .is_output_on = supervisor_allows_output(&self->supervisor),
     };
 }
 
@@ -199,12 +214,29 @@ static void report_components(const signal_chain_t *signal, quiesce_telemetry_t 
     }
 }
 
+// Half turns Q16 in thousandths of a degree.
+static int32_t half_turn_mdeg(int32_t half_turn_q16) {
+    return half_turn_q16 * 5625 / 2048;
+}
+
+static void report_phase(const controller_t *self, quiesce_telemetry_t *t) {
+    const law_phase_t *phase = &self->law_state.phase;
+    t->lock_is_on = self->signal.lock.is_locked ? 1u : 0u;
+    t->adapt_state = (uint32_t)phase->adapt.state;
+    t->adapt_trials = phase->adapt.trials;
+    t->adapt_gains = phase->adapt.gains;
+    t->trim_on_mdeg = half_turn_mdeg(phase->trim.value[ADAPT_ON_EDGE]);
+    t->trim_off_mdeg = half_turn_mdeg(phase->trim.value[ADAPT_OFF_EDGE]);
+    t->trim_level_q15 = 32768 + phase->trim.value[ADAPT_LEVEL];
+}
+
 static void report(const controller_t *self, quiesce_telemetry_t *t) {
     t->state = (uint32_t)self->supervisor.state;
     t->fault = (uint32_t)self->supervisor.fault;
     t->fault_count = self->supervisor.fault_count;
     t->bad_sample_count = self->bad_sample_count;
     report_components(&self->signal, t);
+    report_phase(self, t);
 }
 
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
@@ -215,6 +247,7 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
         .accel_counts = in->accel_counts,
         .is_fresh = in->accel_is_fresh,
         .has_gap = is_tick_lost(c, in->tick),
+        .wants_lock = c->law->uses_lock,
     };
     signal_chain_out_t signal;
     signal_chain_step(&c->signal, &signal_in, &signal);

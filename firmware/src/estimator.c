@@ -13,6 +13,7 @@ enum {
     STEADY_AMP_FRACTION = 3, // .. and of the amplitude
     CALM_s = 2,              // without a contradiction, before a longer window is tried again
     PURE_Q16 = 52429,        // 80 %: share of the energy that one component must explain
+    THIRD_FRACTION = 100,    // a third harmonic is within 1 % of three times the fundamental
 };
 
 // Samples whose filters still remember what was before.
@@ -309,6 +310,18 @@ static predictor_rest_t rest_of(const estimator_t *self) {
     };
 }
 
+// Whether a and b are more than a / fraction apart.
+static bool differs(uint32_t a, uint32_t b, uint32_t fraction) {
+    return (a > b ? a - b : b - a) > a / fraction;
+}
+
+// One component, alone or with the third harmonic that a sticking damper adds to it.
+static bool is_one_motion(const tracker_t *tracker) {
+    const uint32_t third = 3u * tracker->tone[0].turn;
+    return tracker->tones == 1u ||
+           (tracker->tones == 2u && !differs(third, tracker->tone[1].turn, THIRD_FRACTION));
+}
+
 // What the longest window tells about the shorter ones and the next. One component, and what it
 // leaves unexplained is not a drift either: then it may only wander.
 static void judge_window(estimator_t *self) {
@@ -317,13 +330,8 @@ static void judge_window(estimator_t *self) {
     self->is_drifting = self->has_drift && !is_missing && fit->bend_um_s2 > fit->residual_um_s2 / 2;
     // Where a drift does not explain what is missing, none needs to be tried the next time.
     self->is_drift_futile &= is_missing;
-    self->is_pure = self->tracker.tones == 1u && fit->explained_q16 >= PURE_Q16 &&
+    self->is_pure = is_one_motion(&self->tracker) && fit->explained_q16 >= PURE_Q16 &&
                     !self->has_drift && (!is_missing || self->is_drift_futile);
-}
-
-// Whether a and b are more than a / fraction apart.
-static bool differs(uint32_t a, uint32_t b, uint32_t fraction) {
-    return (a > b ? a - b : b - a) > a / fraction;
 }
 
 static void publish(estimator_t *self) {

@@ -2,6 +2,8 @@
 
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
+    YOUNG_CYCLES = 2,
+    ELSEWHERE_DIVISOR = 32,    // a lock 3 % off the dominant component is on something else
 };
 
 void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
@@ -32,6 +34,7 @@ void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
                                      });
     displacement_reset(&self->displacement);
     motion_init(&self->motion, rate_Hz, p->velocity_cutoff_mHz);
+    lock_in_init(&self->lock, rate_Hz);
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
@@ -67,6 +70,30 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, bool 
     return displacement_step(&self->displacement, estimator_phase_turn(&self->estimator, 0));
 }
 
+static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {
+    const uint32_t apart =
+        lock->step_turn > step_turn ? lock->step_turn - step_turn : step_turn - lock->step_turn;
+    return !lock->is_locked || apart > step_turn / ELSEWHERE_DIVISOR;
+}
+
+// Locks on to what the estimator trusts, and holds on to it by itself.
+static void hold_on(signal_chain_t *self, const condition_out_t *sample, bool has_gap) {
+    if (sample->is_fault || has_gap) {
+        lock_in_release(&self->lock);
+    }
+    lock_in_step(&self->lock, sample->raw_um_s2, sample->flag == CONDITION_GOOD);
+    const predictor_tone_t *tone = &self->estimator.predictor.tone[0];
+    if (!estimator_is_valid(&self->estimator)) {
+        // A young lock does not know yet what to expect.
+        if (self->lock.cycles < YOUNG_CYCLES) {
+            lock_in_release(&self->lock);
+        }
+    } else if (self->estimator.has_published && is_elsewhere(&self->lock, tone->step_turn)) {
+        lock_in_acquire(&self->lock, tone->phase_turn, tone->step_turn,
+                        self->estimator.tone[0].amp_um_s2, sample->raw_um_s2 - sample->accel_um_s2);
+    }
+}
+
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal_chain_out_t *out) {
     condition_step(&self->condition, in->accel_counts, in->is_fresh, &out->sample);
     if (out->sample.is_fault) {
@@ -76,5 +103,8 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal
     }
     out->rms_um_s2 = rms_step(&self->rms, out->sample.accel_um_s2);
     out->displacement_nm = follow(self, &out->sample, in->has_gap);
+    if (in->wants_lock) {
+        hold_on(self, &out->sample, in->has_gap);
+    }
     out->velocity_um_s_q32 = motion_step(&self->motion, out->sample.accel_um_s2);
 }

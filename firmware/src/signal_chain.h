@@ -1,10 +1,12 @@
-/// The sensing half of the controller, wired: condition, rms, estimator, displacement, motion.
+/// The sensing half of the controller, wired: condition, rms, estimator, displacement, motion and,
+/// for laws that use it, the lock on the dominant component.
 #ifndef SIGNAL_CHAIN_H
 #define SIGNAL_CHAIN_H
 
 #include "condition.h"
 #include "displacement.h"
 #include "estimator.h"
+#include "lock_in.h"
 #include "motion.h"
 #include "quiesce_params.h"
 #include "rms.h"
@@ -15,12 +17,14 @@ typedef struct {
     estimator_t estimator;
     displacement_t displacement;
     motion_t motion;
+    lock_in_t lock;
 } signal_chain_t;
 
 typedef struct {
     int32_t accel_counts; ///< ignored unless is_fresh
     bool is_fresh;
-    bool has_gap; ///< ticks were lost before this one
+    bool has_gap;    ///< ticks were lost before this one
+    bool wants_lock; ///< the dominant component is to be locked on to
 } signal_chain_in_t;
 
 typedef struct {

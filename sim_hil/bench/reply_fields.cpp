@@ -39,6 +39,13 @@ constexpr WordField kTelemetry[] = {
     {"current_fuzzy_mA", kSigned},
     {"current_law_mA", kSigned},
     {"current_cmd_mA", kSigned},
+    {"lock_is_on", kUnsigned},
+    {"adapt_state", kUnsigned},
+    {"adapt_trials", kUnsigned},
+    {"adapt_gains", kUnsigned},
+    {"trim_on_mdeg", kSigned},
+    {"trim_off_mdeg", kSigned},
+    {"trim_level_q15", kSigned},
 };
 static_assert(sizeof kTelemetry / sizeof kTelemetry[0] * 4 == sizeof(quiesce_telemetry_t));
 static_assert(QUIESCE_PEAKS == 3);

@@ -1,0 +1,259 @@
+#include "adapt.h"
+
+#include <stddef.h>
+
+enum {
+    EDGE_STEP_q16 = 4369,      // 12 degrees
+    LEVEL_STEP_q15 = 4915,     // 15 %
+    SHRINK_LAST = 2,           // to 3 degrees and 2.5 %
+    GAIN_q20 = 2097,           // 0.2 %: less is not worth a move
+    DISTURBED_q20 = 20972,     // 2 %
+    CLEARLY_WORSE_q20 = 10486, // 1 %
+    DRIFT_DIVISOR = 50,        // of the frequency: 2 %
+    DIRECTIONS = 2,
+};
+
+void adapt_init(adapt_t *self, const adapt_cfg_t *cfg) {
+    *self = (adapt_t){.cfg = *cfg, .direction = 1};
+}
+
+static void wait_for(adapt_t *self, adapt_state_t state, uint32_t ticks) {
+    self->state = state;
+    self->ticks = ticks;
+    self->is_collecting = false;
+    self->stage = 0;
+    self->sums = (harmonic_sums_t){0};
+}
+
+void adapt_pause(adapt_t *self) {
+    wait_for(self, ADAPT_WAITING, 0);
+}
+
+static bool has_moved(const adapt_t *self, uint32_t freq_mHz) {
+    const uint32_t change =
+        freq_mHz > self->freq_mHz ? freq_mHz - self->freq_mHz : self->freq_mHz - freq_mHz;
+    return change > self->freq_mHz / DRIFT_DIVISOR;
+}
+
+// The search starts anew, with large steps, where the vibration is another one.
+static void begin(adapt_t *self, const adapt_in_t *in) {
+    if (has_moved(self, in->freq_mHz)) {
+        self->shrink = 0;
+        self->barren = 0;
+        self->failures = 0;
+        self->freq_mHz = in->freq_mHz;
+    }
+    wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
+}
+
+// (to - from) / from in Q20, limited to a sixteenth, to 2^-11 of itself; one 32-bit division.
+static int32_t relative_q20(uint32_t from, uint32_t to) {
+    const uint32_t up = (uint32_t)__builtin_clz(from | 1u);
+    const int64_t change = ((int64_t)to - from) * (INT64_C(1) << up);
+    const int32_t limited_change = (int32_t)clamp_i64(change, -(1 << 28), 1 << 28);
+    return limited_change / (int32_t)(((from | 1u) << up) >> 20);
+}
+
+static int32_t cost_q20(adapt_effect_t from, adapt_effect_t to, uint32_t accel_weight_q8) {
+    return relative_q20(from.reach_um_s2, to.reach_um_s2) +
+           ((relative_q20(from.rms_um_s2, to.rms_um_s2) * (int32_t)accel_weight_q8) >> 8);
+}
+
+static int32_t step_of(const adapt_t *self) {
+    const int32_t largest = self->coordinate == ADAPT_LEVEL ? LEVEL_STEP_q15 : EDGE_STEP_q16;
+    return self->direction * (largest >> self->shrink);
+}
+
+static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t value) {
+    return coordinate == ADAPT_LEVEL ? clamp_i32(value, -cfg->level_limit_q15, 0)
+                                     : clamp_i32(value, -cfg->edge_limit_q16, cfg->edge_limit_q16);
+}
+
+static bool has_room(const adapt_t *self) {
+    const int32_t now = self->trim[self->index].value[self->coordinate];
+    return limited(&self->cfg, self->coordinate, now + step_of(self)) != now;
+}
+
+static void next_coordinate(adapt_t *self) {
+    self->failures = 0;
+    self->coordinate = (self->coordinate + 1u) % ADAPT_COORDINATES;
+    self->barren++;
+    if (self->barren < ADAPT_COORDINATES) {
+        return;
+    }
+    self->barren = 0;
+    self->is_exhausted = self->shrink == SHRINK_LAST;
+    self->shrink += self->shrink < SHRINK_LAST ? 1u : 0u;
+}
+
+// One direction gains nothing: the other one, then the next coordinate.
+static void fail(adapt_t *self) {
+    self->direction = -self->direction;
+    self->failures++;
+    if (self->failures >= DIRECTIONS) {
+        next_coordinate(self);
+    }
+}
+
+static void try_next(adapt_t *self) {
+    for (uint32_t i = 0; i < DIRECTIONS * ADAPT_COORDINATES && !has_room(self); i++) {
+        fail(self);
+    }
+    if (self->is_exhausted) {
+        self->is_exhausted = false;
+        wait_for(self, ADAPT_RESTING, self->cfg.rest_ticks);
+    } else {
+        wait_for(self, ADAPT_TRYING, self->cfg.settle_ticks);
+    }
+}
+
+static void keep(adapt_t *self) {
+    for (uint32_t i = self->index; i <= self->index + 1u && i < ADAPT_POINTS; i++) {
+        int16_t *value = &self->trim[i].value[self->coordinate];
+        *value = (int16_t)limited(&self->cfg, self->coordinate, *value + step_of(self));
+    }
+    self->gains = increment_sat_u32(self->gains);
+    self->barren = 0;
+    self->failures = 0;
+    self->before = self->trial;
+}
+
+// The trial lies between two measurements without its change.
+static void judge(adapt_t *self, uint32_t accel_weight_q8) {
+    const adapt_effect_t after = self->effect;
+    const int32_t drift_q20 = relative_q20(self->before.reach_um_s2, after.reach_um_s2);
+    self->trials = increment_sat_u32(self->trials);
+    if (abs_i32(drift_q20) > DISTURBED_q20) {
+        self->before = after;
+    } else if (cost_q20(after, self->trial, accel_weight_q8) < -GAIN_q20 &&
+               cost_q20(self->before, self->trial, accel_weight_q8) < -GAIN_q20) {
+        keep(self);
+    } else {
+        self->before = after;
+        fail(self);
+    }
+}
+
+static void conclude(adapt_t *self, uint32_t accel_weight_q8) {
+    switch (self->state) {
+    case ADAPT_TRYING:
+        self->trial = self->effect;
+        if (cost_q20(self->before, self->trial, accel_weight_q8) <= CLEARLY_WORSE_q20) {
+            wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
+            return;
+        }
+        self->trials = increment_sat_u32(self->trials);
+        fail(self);
+        break;
+    case ADAPT_CHECKING:
+        judge(self, accel_weight_q8);
+        break;
+    default:
+        self->before = self->effect;
+        break;
+    }
+    try_next(self);
+}
+
+static int32_t amp_um_s2(const adapt_t *self, uint32_t cos, uint32_t sin) {
+    return (int32_t)harmonic_amp_um_s2(self->parts.um_s2[cos], self->parts.um_s2[sin]);
+}
+
+static uint32_t peak_turn(const adapt_t *self, uint32_t cos, uint32_t sin) {
+    return harmonic_peak_turn(self->parts.um_s2[cos], self->parts.um_s2[sin]);
+}
+
+// Half peak-to-peak of the displacement, times (2 pi f)^2: the third harmonic counts a ninth.
+static void start_search(adapt_t *self) {
+    const uint32_t third_turn = peak_turn(self, HARMONIC_COS3, HARMONIC_SIN3);
+    harmonic_span_start(&self->span, self->first_um_s2, self->third_um_s2 / 9,
+                        3u * self->peak_turn - third_turn);
+}
+
+// One stage a tick. Returns true iff the effect is complete.
+static bool work(adapt_t *self) {
+    const uint32_t stage = self->stage;
+    self->stage++;
+    if (stage <= HARMONIC_PRODUCTS) {
+        self->parts.um_s2[stage - 1u] = harmonic_part_um_s2(&self->sums, stage - 1u);
+        return false;
+    }
+    switch (stage - HARMONIC_PRODUCTS) {
+    case 1:
+        self->first_um_s2 = amp_um_s2(self, HARMONIC_COS1, HARMONIC_SIN1);
+        return false;
+    case 2:
+        self->third_um_s2 = amp_um_s2(self, HARMONIC_COS3, HARMONIC_SIN3);
+        return false;
+    case 3:
+        self->peak_turn = peak_turn(self, HARMONIC_COS1, HARMONIC_SIN1);
+        return false;
+    case 4:
+        start_search(self);
+        return false;
+    case 5:
+        self->effect.rms_um_s2 = harmonic_rms_um_s2(&self->sums);
+        return false;
+    default:
+        return harmonic_span_step(&self->span);
+    }
+}
+
+// Whole cycles, from the first one that began after the vibration had settled.
+static void collect(adapt_t *self, const harmonic_sums_t *cycle) {
+    if (!self->is_collecting) {
+        self->is_collecting = true;
+        return;
+    }
+    harmonic_sums_add(&self->sums, cycle);
+    self->stage = self->sums.ticks >= self->cfg.measure_ticks ? 1u : 0u;
+}
+
+static void measure(adapt_t *self, const adapt_in_t *in) {
+    if (self->stage != 0) {
+        if (work(self)) {
+            self->effect.reach_um_s2 = (uint32_t)self->span.largest;
+            conclude(self, in->accel_weight_q8);
+        }
+    } else if (in->cycle != NULL) {
+        collect(self, in->cycle);
+    }
+}
+
+void adapt_step(adapt_t *self, const adapt_in_t *in) {
+    self->index = in->index;
+    if (!in->may_try) {
+        adapt_pause(self);
+    } else if (self->state == ADAPT_WAITING || has_moved(self, in->freq_mHz)) {
+        begin(self, in);
+    } else if (self->ticks > 0) {
+        self->ticks--;
+    } else if (self->state == ADAPT_RESTING) {
+        begin(self, in);
+    } else {
+        measure(self, in);
+    }
+}
+
+adapt_trim_t adapt_trim_at(const adapt_t *self, uint32_t index, uint32_t part_q16) {
+    adapt_trim_t trim;
+    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
+        const int32_t from = self->trim[index].value[i];
+        const int32_t to = self->trim[index + 1u].value[i];
+        trim.value[i] = (int16_t)(from + (((to - from) * (int32_t)(part_q16 >> 1)) >> 15));
+    }
+    if (self->state == ADAPT_TRYING) {
+        const int32_t tried = trim.value[self->coordinate] + step_of(self);
+        trim.value[self->coordinate] = (int16_t)limited(&self->cfg, self->coordinate, tried);
+    }
+    return trim;
+}
+
+bool adapt_is_allowed(const adapt_cfg_t *cfg, const adapt_trim_t *trim) {
+    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
+        if (limited(cfg, i, trim->value[i]) != trim->value[i]) {
+            return false;
+        }
+    }
+    return true;
+}

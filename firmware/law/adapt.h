@@ -1,0 +1,110 @@
+/// Adapts pulses to the plant by trying: move an edge or the level a little, wait until the
+/// vibration has settled, measure, go back, measure again; keep what lowers the cost against both.
+///
+///   cost = relative change of half peak-to-peak displacement
+///          + accel_weight x relative change of RMS acceleration
+///
+/// from the fundamental and the third harmonic (the fundamental alone misleads: a sticking damper's
+/// optimum cuts the peak, not the fundamental) over whole cycles. Both are relative changes, so the
+/// unit does not matter and neither does a calibration.
+///
+/// What is learnt is kept for each point of the pulse table; it is bounded by adapt_cfg_t, and can
+/// be frozen, cleared, taken out and put back. A trial is given up, and nothing learnt, when the
+/// lock is lost, a fault is present, the frequency moves by 2 %, or the two measurements around it
+/// differ by more than 2 %: then something else has changed.
+///
+/// Formats: edges in half turns Q16 (364 is one degree), level as a factor Q15; accelerations
+/// um/s2. Bounded: a few instructions a tick, 300 at most at the end of a cycle, spread over
+/// several ticks.
+#ifndef ADAPT_H
+#define ADAPT_H
+
+#include "harmonics.h"
+
+#define ADAPT_POINTS 64u
+
+/// What is changed.
+enum { ADAPT_ON_EDGE, ADAPT_OFF_EDGE, ADAPT_LEVEL, ADAPT_COORDINATES };
+
+/// Change of a pulse. Zero: none.
+typedef struct {
+    int16_t
+        value[ADAPT_COORDINATES]; ///< edges: half turns Q16, later is positive; level: Q15, <= 0
+} adapt_trim_t;
+
+typedef struct {
+    uint32_t settle_ticks;  ///< before a measurement
+    uint32_t measure_ticks; ///< at least so long, in whole cycles
+    uint32_t rest_ticks;    ///< between trials once nothing is left to gain
+    int32_t edge_limit_q16;
+    int32_t level_limit_q15; ///< most that the level may be lowered
+} adapt_cfg_t;
+
+typedef enum {
+    ADAPT_WAITING = 0,   ///< for a lock, or for the end of a fault
+    ADAPT_MEASURING = 1, ///< how it is without a change
+    ADAPT_TRYING = 2,    ///< a trial's change is in effect
+    ADAPT_CHECKING = 3,  ///< back again: is it as it was?
+    ADAPT_RESTING = 4,   ///< nothing left to gain
+} adapt_state_t;
+
+/// What a measurement says.
+typedef struct {
+    uint32_t reach_um_s2; ///< half peak-to-peak displacement x (2 pi f)^2
+    uint32_t rms_um_s2;
+} adapt_effect_t;
+
+typedef struct {
+    adapt_cfg_t cfg;
+    adapt_trim_t trim[ADAPT_POINTS]; ///< learnt
+    adapt_state_t state;
+    uint32_t ticks;       ///< left to settle or rest
+    bool is_collecting;   ///< whole cycles are added up
+    harmonic_sums_t sums; ///< so far
+    uint32_t stage;       ///< of the work on them, a division or a root a tick; 0: none
+    harmonic_parts_t parts;
+    int32_t first_um_s2; ///< amplitudes of fundamental and third harmonic
+    int32_t third_um_s2;
+    uint32_t peak_turn; ///< where the fundamental is largest
+    harmonic_span_t span;
+    adapt_effect_t effect; ///< that comes out
+    adapt_effect_t before; ///< without the trial's change
+    adapt_effect_t trial;  ///< with it
+    uint32_t coordinate;   ///< tried
+    int32_t direction;     ///< 1 or -1
+    uint32_t failures;     ///< of this coordinate with this step
+    uint32_t barren;       ///< coordinates in a row without a gain
+    uint32_t shrink;       ///< steps are the largest >> shrink
+    bool is_exhausted;     ///< the smallest steps gain nothing
+    uint32_t index;        ///< of the point below the frequency when the trial began
+    uint32_t freq_mHz;     ///< then
+    uint32_t trials;       ///< finished, saturating
+    uint32_t gains;        ///< of them that lowered the cost, saturating
+} adapt_t;
+
+/// One tick's view of the vibration.
+typedef struct {
+    bool may_try; ///< locked, settled on, no fault, not frozen
+    uint32_t freq_mHz;
+    uint32_t index; ///< of the table's point below it
+    uint32_t accel_weight_q8;
+    const harmonic_sums_t *cycle; ///< of a cycle that ended in this tick, else NULL
+} adapt_in_t;
+
+/// Nothing learnt.
+void adapt_init(adapt_t *self, const adapt_cfg_t *cfg);
+
+/// Gives a trial up; what was learnt stays.
+void adapt_pause(adapt_t *self);
+
+/// One tick.
+void adapt_step(adapt_t *self, const adapt_in_t *in);
+
+/// What is learnt between points index and index + 1, part_q16 of the way (0 .. 65536), with the
+/// trial's change where one is in effect.
+adapt_trim_t adapt_trim_at(const adapt_t *self, uint32_t index, uint32_t part_q16);
+
+/// Whether a trim lies within the limits.
+bool adapt_is_allowed(const adapt_cfg_t *cfg, const adapt_trim_t *trim);
+
+#endif

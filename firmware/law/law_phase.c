@@ -1,0 +1,96 @@
+#include "law_phase.h"
+
+#include <stddef.h>
+
+#include "law.h"
+
+enum { WHOLE_q16 = 65536 };
+
+static uint32_t ticks_of(int32_t time_ms, int32_t tick_rate_Hz) {
+    return (uint32_t)(time_ms * (tick_rate_Hz / 100) / 10);
+}
+
+void law_phase_init(law_phase_t *self, const quiesce_params_t *p, const phase_table_t *table) {
+    const uint32_t blend_ticks = ticks_of(p->phase_blend_ms, p->tick_rate_Hz);
+    const uint32_t setting = (uint32_t)p->phase_setting;
+    *self = (law_phase_t){
+        .table = table,
+        .points = phase_table_points(table, setting),
+        .point_count = table->points[setting],
+        .blend_step_q16 = WHOLE_q16 / (blend_ticks + 1u) + 1u,
+    };
+    adapt_init(&self->adapt,
+               &(adapt_cfg_t){
+                   .settle_ticks = ticks_of(p->adapt_settle_ms, p->tick_rate_Hz),
+                   .measure_ticks = ticks_of(p->adapt_measure_ms, p->tick_rate_Hz),
+                   .rest_ticks = ticks_of(p->adapt_rest_ms, p->tick_rate_Hz),
+                   .edge_limit_q16 = (int32_t)((int64_t)p->adapt_edge_limit_mdeg * 65536 / 180000),
+                   .level_limit_q15 = p->adapt_level_limit_pct * 32768 / 100,
+               });
+}
+
+static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
+    const int32_t width_q16 =
+        (int32_t)pulse->width_q16 + trim->value[ADAPT_OFF_EDGE] - trim->value[ADAPT_ON_EDGE];
+    pulse->on_q16 = (uint32_t)((int32_t)pulse->on_q16 + trim->value[ADAPT_ON_EDGE]) & 0xFFFFu;
+    pulse->width_q16 = (uint32_t)clamp_i32(width_q16, 0, (int32_t)PHASE_WIDTH_ALL);
+    const int32_t level_mA = pulse->level_mA + ((pulse->level_mA * trim->value[ADAPT_LEVEL]) >> 15);
+    pulse->level_mA = level_mA > pulse->floor_mA ? level_mA : pulse->floor_mA;
+}
+
+// Frequency, pulse and trim of the cycle that has begun.
+static void refresh(law_phase_t *self, const quiesce_params_t *params, uint32_t step_turn) {
+    const uint64_t per_tick = (uint64_t)step_turn * (uint32_t)params->tick_rate_Hz;
+    self->freq_mHz = (uint32_t)((per_tick * 1000u) >> 32);
+    self->place = phase_place(self->points, self->point_count, self->freq_mHz);
+    self->pulse = phase_pulse_at(self->points, self->place);
+    self->trim = params->adapt == QUIESCE_ADAPT_OFF
+                     ? (adapt_trim_t){{0}}
+                     : adapt_trim_at(&self->adapt, self->place.index, self->place.part_q16);
+    trim_pulse(&self->pulse, &self->trim);
+    self->is_stale = false;
+}
+
+static void let_go(law_phase_t *self) {
+    self->blend_q16 = 0;
+    self->is_stale = true;
+    adapt_pause(&self->adapt);
+}
+
+static int32_t blended(law_phase_t *self, int32_t from_mA, int32_t to_mA) {
+    const uint32_t next_q16 = self->blend_q16 + self->blend_step_q16;
+    self->blend_q16 = next_q16 < WHOLE_q16 ? next_q16 : WHOLE_q16;
+    return from_mA + (int32_t)(((int64_t)(to_mA - from_mA) * self->blend_q16) >> 16);
+}
+
+static void adapt(law_phase_t *self, const quiesce_params_t *params, const law_in_t *in) {
+    adapt_step(&self->adapt, &(adapt_in_t){
+                                 .may_try = params->adapt == QUIESCE_ADAPT_ON && !self->is_frozen &&
+                                            self->blend_q16 == WHOLE_q16,
+                                 .freq_mHz = self->freq_mHz,
+                                 .index = self->place.index,
+                                 .accel_weight_q8 = self->pulse.accel_weight_q8,
+                                 .cycle = in->lock.cycle,
+                             });
+}
+
+static int32_t step(law_state_t *state, const quiesce_params_t *params, const law_in_t *in) {
+    law_phase_t *self = &state->phase;
+    if (!in->lock.is_on || !in->is_output_on) {
+        let_go(self);
+        return params->unlock_current_mA;
+    }
+    if (self->is_stale) {
+        refresh(self, params, in->lock.step_turn);
+    }
+    self->is_stale = in->lock.cycle != NULL;
+    adapt(self, params, in);
+    // What is requested now acts during the next tick. Half turns: the current repeats twice a
+    // cycle.
+    const uint32_t start_turn = (in->lock.phase_turn + in->lock.step_turn) << 1;
+    const int32_t pulse_mA =
+        phase_pulse_current_mA(&self->pulse, start_turn, in->lock.step_turn << 1);
+    return blended(self, params->unlock_current_mA, pulse_mA);
+}
+
+const law_t law_phase = {"phase", step, true};

@@ -1,0 +1,136 @@
+#include "phase_table.h"
+
+#include <stddef.h>
+
+#include "crc32.h"
+
+enum { HEADER_WORDS = 5, POINT_WORDS = 3 };
+
+_Static_assert(sizeof(phase_point_t) == 4u * POINT_WORDS, "words on the wire");
+_Static_assert(offsetof(phase_table_t, point) == 4u * HEADER_WORDS, "words on the wire");
+
+static bool are_points_good(const phase_point_t *points, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (points[i].floor_mA > points[i].level_mA ||
+            (i > 0 && points[i].freq_mHz <= points[i - 1u].freq_mHz)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool has_shape(const phase_table_t *table) {
+    uint32_t points = 0;
+    for (uint32_t i = 0; i < PHASE_TABLE_SETTINGS; i++) {
+        if (table->points[i] < PHASE_TABLE_MIN_POINTS ||
+            table->points[i] > PHASE_TABLE_MAX_POINTS) {
+            return false;
+        }
+        points += table->points[i];
+    }
+    return table->words == HEADER_WORDS + POINT_WORDS * points;
+}
+
+phase_table_verdict_t phase_table_check(const uint32_t *words, uint32_t count) {
+    const phase_table_t *table = (const phase_table_t *)(const void *)words;
+    if (count < HEADER_WORDS || count > PHASE_TABLE_MAX_WORDS) {
+        return PHASE_TABLE_SIZE;
+    }
+    if (table->magic != PHASE_TABLE_MAGIC) {
+        return PHASE_TABLE_MAGIC_WRONG;
+    }
+    if (table->words != count) {
+        return PHASE_TABLE_SIZE;
+    }
+    if (crc32_words(&words[2], count - 2u) != table->crc) {
+        return PHASE_TABLE_CRC;
+    }
+    if (!has_shape(table)) {
+        return PHASE_TABLE_SHAPE;
+    }
+    for (uint32_t i = 0; i < PHASE_TABLE_SETTINGS; i++) {
+        if (!are_points_good(phase_table_points(table, i), table->points[i])) {
+            return PHASE_TABLE_POINT;
+        }
+    }
+    return PHASE_TABLE_OK;
+}
+
+const phase_point_t *phase_table_points(const phase_table_t *table, uint32_t setting) {
+    return &table->point[setting == 0 ? 0 : table->points[0]];
+}
+
+phase_place_t phase_place(const phase_point_t *points, uint32_t count, uint32_t freq_mHz) {
+    uint32_t low = 0;
+    uint32_t high = count - 1u;
+    while (high - low > 1u) {
+        const uint32_t middle = (low + high) / 2u;
+        if (points[middle].freq_mHz <= freq_mHz) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    const uint32_t below = points[low].freq_mHz;
+    const uint32_t above = points[high].freq_mHz;
+    if (freq_mHz <= below) {
+        return (phase_place_t){low, 0};
+    }
+    if (freq_mHz >= above) {
+        return (phase_place_t){low, 65536};
+    }
+    return (phase_place_t){low, ((freq_mHz - below) << 16) / (above - below)};
+}
+
+static uint32_t between(uint32_t from, int32_t change, uint32_t part_q16) {
+    return from + (uint32_t)(int32_t)(((int64_t)change * part_q16) >> 16);
+}
+
+phase_pulse_t phase_pulse_at(const phase_point_t *points, phase_place_t place) {
+    const phase_point_t *a = &points[place.index];
+    const phase_point_t *b = &points[place.index + 1u];
+    const uint32_t part = place.part_q16;
+    // As 16 bits the difference is the shorter way round.
+    const int32_t turn = (int16_t)(uint16_t)(b->centre_q16 - a->centre_q16);
+    const uint32_t centre_q16 = between(a->centre_q16, turn, part);
+    const uint32_t width_q16 = between(a->width_q16, b->width_q16 - a->width_q16, part);
+    return (phase_pulse_t){
+        .on_q16 = (centre_q16 - width_q16 / 2u) & 0xFFFFu,
+        .width_q16 = width_q16,
+        .level_mA = (int32_t)between(a->level_mA, b->level_mA - a->level_mA, part),
+        .floor_mA = (int32_t)between(a->floor_mA, b->floor_mA - a->floor_mA, part),
+        .accel_weight_q8 =
+            between(a->accel_weight_q8, b->accel_weight_q8 - a->accel_weight_q8, part),
+    };
+}
+
+static uint64_t at_least_0(uint64_t from, uint64_t to) {
+    return to > from ? to - from : 0;
+}
+
+// How much of start .. start + length lies in 0 .. width, circular over 2^32: all but the gaps.
+static uint32_t covered(uint32_t start, uint32_t length, uint32_t width) {
+    const uint64_t turn = UINT64_C(1) << 32;
+    const uint64_t end = (uint64_t)start + length;
+    const uint64_t gap = at_least_0(start > width ? start : width, end < turn ? end : turn) +
+                         at_least_0(turn + width, end);
+    return length - (uint32_t)gap;
+}
+
+int32_t phase_pulse_current_mA(const phase_pulse_t *pulse, uint32_t start_turn,
+                               uint32_t length_turn) {
+    if (pulse->width_q16 >= PHASE_WIDTH_ALL) {
+        return pulse->level_mA;
+    }
+    const uint32_t start = start_turn - (pulse->on_q16 << 16);
+    const uint32_t on = covered(start, length_turn, pulse->width_q16 << 16);
+    if (on == 0) {
+        return pulse->floor_mA;
+    }
+    if (on == length_turn) {
+        return pulse->level_mA;
+    }
+    const uint32_t part_q16 = on / ((length_turn >> 16) + 1u);
+    const int64_t height_mA = pulse->level_mA - pulse->floor_mA;
+    return pulse->floor_mA + (int32_t)((height_mA * part_q16) >> 16);
+}

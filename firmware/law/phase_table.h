@@ -1,0 +1,80 @@
+/// Pulses over frequency: when, within half a cycle of the vibration, current flows. A table of
+/// 32-bit words, made by `quiesce tune`; phase_table_check says whether it can be trusted.
+///
+/// Phases are those of the displacement's fundamental, x = X cos(psi); the current repeats after
+/// half a cycle, so they are told modulo half a turn, in half turns Q16 (65536 is 180 degrees).
+/// They are phases of the command: it leads the coil's lag already.
+#ifndef PHASE_TABLE_H
+#define PHASE_TABLE_H
+
+#include "fixq.h"
+
+#define PHASE_TABLE_MAGIC UINT32_C(0x31485051)
+#define PHASE_TABLE_SETTINGS 2u
+#define PHASE_TABLE_MIN_POINTS 2u
+#define PHASE_TABLE_MAX_POINTS 64u
+#define PHASE_TABLE_MAX_WORDS (5u + 3u * PHASE_TABLE_SETTINGS * PHASE_TABLE_MAX_POINTS)
+#define PHASE_WIDTH_ALL 65535u ///< no gap: one current throughout
+
+typedef struct {
+    uint16_t freq_mHz;
+    uint16_t level_mA;
+    uint16_t centre_q16;
+    uint16_t width_q16;
+    uint16_t floor_mA;        ///< between pulses, <= level_mA
+    uint16_t accel_weight_q8; ///< what a relative change of RMS acceleration counts against one of
+                              ///< displacement when the pulse is adapted
+} phase_point_t;
+
+typedef struct {
+    uint32_t magic;
+    uint32_t crc; ///< of all words after it
+    uint32_t words;
+    uint16_t points[PHASE_TABLE_SETTINGS];
+    uint32_t unlock_current_mA; ///< best constant current of the plant that it was made for
+    phase_point_t point[];      ///< of the first setting, then of the next one, rising freq_mHz
+} phase_table_t;
+
+typedef enum {
+    PHASE_TABLE_OK = 0,
+    PHASE_TABLE_SIZE = 1,
+    PHASE_TABLE_MAGIC_WRONG = 2,
+    PHASE_TABLE_CRC = 3,
+    PHASE_TABLE_SHAPE = 4, ///< numbers of points
+    PHASE_TABLE_POINT = 5, ///< frequencies that do not rise, a floor above its level
+} phase_table_verdict_t;
+
+/// Whether count words are a table; nothing else reads a table that has not passed.
+phase_table_verdict_t phase_table_check(const uint32_t *words, uint32_t count);
+
+/// Points of a setting.
+const phase_point_t *phase_table_points(const phase_table_t *table, uint32_t setting);
+
+/// Where a frequency lies between two points.
+typedef struct {
+    uint32_t index;    ///< of the point below it, 0 .. points - 2
+    uint32_t part_q16; ///< of the way to the next one, 0 .. 65536
+} phase_place_t;
+
+/// Place of a frequency among count points, at an end where it lies beyond. At most 7 comparisons
+/// and a division.
+phase_place_t phase_place(const phase_point_t *points, uint32_t count, uint32_t freq_mHz);
+
+/// A pulse: on from its first edge to its last one.
+typedef struct {
+    uint32_t on_q16; ///< modulo 65536
+    uint32_t width_q16;
+    int32_t level_mA;
+    int32_t floor_mA;
+    uint32_t accel_weight_q8;
+} phase_pulse_t;
+
+/// Linear between the two points; the centre the shorter way round.
+phase_pulse_t phase_pulse_at(const phase_point_t *points, phase_place_t place);
+
+/// Mean current of a pulse over the phases from start_turn, length_turn long (half turns Q32,
+/// 0 < length < 2^31), mA.
+int32_t phase_pulse_current_mA(const phase_pulse_t *pulse, uint32_t start_turn,
+                               uint32_t length_turn);
+
+#endif
