@@ -1,0 +1,142 @@
+"""`quiesce bench control`: a control law in closed loop, against constants, bound and goals."""
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from quiesce import control_broadband, control_plots, control_tables
+from quiesce.bench_exe import Bench
+from quiesce.bench_report import Report
+from quiesce.bench_signal import seed_number
+from quiesce.control_cost import Counted
+from quiesce.control_figures import all_figures, context_of
+from quiesce.control_law_file import law_options, table_bytes
+from quiesce.control_optima import load_optima
+from quiesce.control_rig import Plant, Rig, default_plant_file, make_judged, read_plant
+from quiesce.control_ruler import Ruler
+from quiesce.control_suite import FULL, QUICK, Order, Results, measure_all, measure_cost
+from quiesce.control_variants import energy_plants
+from quiesce.errors import UsageError, one_line
+from quiesce.paths import shown
+from quiesce.reference import load_reference
+
+NAME = "control"
+HELP = "a control law in closed loop: steady, steps, other plants, other inputs, safety, cost"
+DESCRIPTION = """Measure a control law in closed loop with the firmware's own code: steady sines
+over the band, steps, plants that its table was not made for, inputs that no table is made for,
+faults and wrong signs, instructions. Beside it stand the best constant current, the fuzzy law, and
+the best that any current can do (cached; 'quiesce tune --help' tells how to compute it anew)."""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--seed", type=seed_number, default=1, metavar="N", help="(%(default)s)")
+    parser.add_argument("--law", default="phase", help="the law to judge (%(default)s)")
+    parser.add_argument(
+        "--plant", type=Path, metavar="FILE", help="plant file (the published plant)"
+    )
+    parser.add_argument(
+        "--table", type=Path, metavar="FILE", help="phase law file, for law phase (the shipped one)"
+    )
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE",
+        help="parameter of the judged law, repeatable",
+    )  # fmt: skip
+    parser.add_argument(
+        "--data", type=Path, metavar="DIR",
+        help="folder of the earthquakes (../shared/data/earthquake beside the project)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--no-cost", action="store_true",
+        help="do not run the image: no instruction counts, no comparison with the host",
+    )  # fmt: skip
+
+
+def count_cost(rig: Rig, args: argparse.Namespace) -> tuple[list[Counted], list[str]]:
+    """What the image did, and why it could not."""
+    if args.no_cost:
+        return [], ["the image: left out with --no-cost"]
+    try:
+        return measure_cost(rig, args.quick), []
+    except UsageError as error:
+        return [], [f"the image: {one_line(error)}"]
+
+
+def tables(ruler: Ruler, results: Results, counted: list[Counted]) -> list[str]:
+    reference = load_reference() if ruler.is_published else None
+    t = control_tables
+    out = [
+        t.point_table(results.points, ruler, reference),
+        t.sweep_table(results.points, ruler),
+        t.step_table(results.steps),
+        t.robust_table(results.cells),
+        t.cell_table("the plants farthest from their bound", t.worst_cells(results.cells)),
+        t.cell_table("other coils, without a goal", results.extra_cells),
+        t.broadband_table(results.inputs),
+        t.chirp_table(results.chirp[0], ruler),
+        t.work_table(results.work, results.inverted),
+        t.day_table(results.day[0]),
+    ]
+    if counted:
+        out.append(t.cost_table(counted))
+    if ruler.own_under():
+        out.append(t.ruler_table(ruler))
+    return out
+
+
+def plot(folder: Path, ruler: Ruler, results: Results) -> None:
+    control_plots.plot_sweep(folder, results.points, ruler)
+    control_plots.plot_robust(folder, results.cells)
+    control_plots.plot_steps(folder, results.steps)
+    control_plots.plot_broadband(folder, results.inputs)
+    control_plots.plot_chirp(folder, results.chirp[0])
+    control_plots.plot_adaptation(folder, results.trajectories)
+
+
+def measure(args: argparse.Namespace, folder: Path) -> Report:
+    data = control_broadband.find_folder(args.data)
+    bench = Bench()
+    plant = read_plant(bench, args.plant or default_plant_file())
+    judged, params = make_judged(bench, args.law, args.set)
+    with tempfile.TemporaryDirectory(prefix="quiesce-control-") as scratch:
+        options = law_options(args.law, args.table, Path(scratch))
+        rig = Rig(bench, plant, judged.with_options(options), params, args.seed, Path(scratch))
+        return measure_on(rig, args, folder, data)
+
+
+def measure_on(rig: Rig, args: argparse.Namespace, folder: Path, data: Path) -> Report:
+    words = table_bytes(args.law, args.table)
+    optima, absent = load_optima(rig)
+    ruler = Ruler(rig.plant, optima)
+    missing = control_broadband.absent_earthquakes(rig, data)
+    order = Order(
+        size=QUICK if args.quick else FULL,
+        seed=args.seed,
+        data=None if missing else data,
+        energy_plants=energy_plants(rig),
+    )
+    results = measure_all(rig, ruler, order)
+    for point in results.points:
+        ruler.learn(point.freq_Hz, point.found())
+    counted, absent_cost = count_cost(rig, args)
+    figures = all_figures(rig, ruler, results, counted, words, not missing)
+    plot(folder, ruler, results)
+    facts = facts_of(rig.plant, args)
+    print(f"{rig.run_count} runs", file=sys.stderr)
+    return Report(
+        NAME,
+        figures,
+        context_of(ruler, results, counted, facts),
+        tables(ruler, results, counted),
+        [*absent, *missing, *absent_cost],
+    )
+
+
+def facts_of(plant: Plant, args: argparse.Namespace) -> dict[str, object]:
+    return {
+        "law": args.law,
+        "plant": shown(plant.file),
+        "settings": list(args.set),
+        "seed": args.seed,
+        "quick": args.quick,
+    }

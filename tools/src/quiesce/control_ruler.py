@@ -1,0 +1,126 @@
+"""What a law is measured against: the best that is known to be attainable.
+
+The bound of a plant at a frequency is the best of its own optimal control (cached, committed), of
+what any law has reached in this run, and, for the published plant, of the published table. It is a
+best value found, not a proof, so that a law that goes beyond it raises it.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from quiesce.control_rig import Plant, Reduction
+from quiesce.control_variants import Variation
+from quiesce.reference import Reference, load_reference
+
+
+@dataclass(frozen=True)
+class Bound:
+    """Reductions in %, each figure alone; None where not known."""
+
+    amp_pct: float | None = None
+    accel_pct: float | None = None
+    balanced_amp_pct: float | None = None  # with acceleration no worse than at 0 A
+
+    def raised(self, other: "Bound") -> "Bound":
+        return Bound(*(best(pair) for pair in zip(values(self), values(other), strict=True)))
+
+
+def values(bound: Bound) -> tuple[float | None, ...]:
+    return (bound.amp_pct, bound.accel_pct, bound.balanced_amp_pct)
+
+
+def best(candidates: Iterable[float | None]) -> float | None:
+    return max((one for one in candidates if one is not None), default=None)
+
+
+def reached(found: Sequence[Reduction]) -> Bound:
+    """What laws have shown to be possible."""
+    return Bound(
+        best(one.amp_pct for one in found),
+        best(one.accel_pct for one in found),
+        best(one.amp_pct for one in found if one.accel_pct >= 0.0),
+    )
+
+
+def published(plant: Plant) -> dict[float, Bound]:
+    """The table for the published plant at its drive; empty for any other."""
+    reference: Reference = load_reference()
+    if not reference.covers(plant.file, plant.drive_V):
+        return {}
+    return {freq_Hz: Bound(*pair) for freq_Hz, pair in reference.bounds.items()}
+
+
+@dataclass(frozen=True)
+class Optima:
+    """Own optimal control, from the cache."""
+
+    nominal: dict[float, Bound]  # by frequency
+    varied_amp_pct: dict[tuple[Variation, float], float]
+
+
+class Ruler:
+    """Bounds of one plant and of its variations."""
+
+    def __init__(self, plant: Plant, optima: Optima) -> None:
+        self._optima = optima
+        self._published = published(plant)
+        self._reached: dict[float, Bound] = {}
+
+    @property
+    def is_published(self) -> bool:
+        """The plant that the published figures and goals are about."""
+        return bool(self._published)
+
+    def learn(self, freq_Hz: float, found: Sequence[Reduction]) -> None:
+        """Runs on the plant as it is. A bound needs an optimum or the table: what laws reached
+        raises it but is none by itself."""
+        self._reached[freq_Hz] = reached(found)
+
+    def bound(self, freq_Hz: float) -> Bound:
+        own = self._optima.nominal.get(freq_Hz, Bound())
+        known = own.raised(self._published.get(freq_Hz, Bound()))
+        raised = known.raised(self._reached.get(freq_Hz, Bound()))
+        pairs = zip(values(known), values(raised), strict=True)
+        return Bound(*(None if base is None else top for base, top in pairs))
+
+    def varied_amp_pct(
+        self, variation: Variation, freq_Hz: float, found_pct: float
+    ) -> float | None:
+        own = self._optima.varied_amp_pct.get((variation, freq_Hz))
+        return None if own is None else max(own, found_pct)
+
+    def amp_grid(self, band_Hz: tuple[float, float]) -> tuple[list[float], list[float]] | None:
+        """Frequencies and amplitude bounds that cover a band; None where they do not."""
+        freqs_Hz = sorted({*self._optima.nominal, *self._published})
+        known = [(f, self.bound(f).amp_pct) for f in freqs_Hz]
+        grid = [(f, pct) for f, pct in known if pct is not None]
+        if not grid or grid[0][0] > band_Hz[0] or grid[-1][0] < band_Hz[1]:
+            return None
+        return [f for f, _ in grid], [pct for _, pct in grid]
+
+    def own_under(self) -> list[dict[str, Any]]:
+        """Own optimal control beside the published table, where both are known."""
+        rows = []
+        for freq_Hz, table in sorted(self._published.items()):
+            own = self._optima.nominal.get(freq_Hz)
+            if own is None or own.amp_pct is None or own.accel_pct is None:
+                continue
+            assert table.amp_pct is not None and table.accel_pct is not None
+            under = max(table.amp_pct - own.amp_pct, table.accel_pct - own.accel_pct)
+            rows.append(
+                {
+                    "freq_Hz": freq_Hz,
+                    "own": asdict(own),
+                    "published": asdict(table),
+                    "under_pts": under,
+                }
+            )
+        return rows
+
+    def worst_under_pts(self) -> float | None:
+        """None unless every frequency of the table has an own optimum."""
+        rows = self.own_under()
+        if not rows or len(rows) < len(self._published):
+            return None
+        return max(row["under_pts"] for row in rows)
