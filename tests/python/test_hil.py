@@ -74,6 +74,21 @@ def metrics(quick) -> dict:
 # The run
 
 
+def test_excitation_without_one_frequency_is_judged_by_rms(build: Path, tmp_path: Path) -> None:
+    options = ["--target", "host", "--law", "fuzzy", "--law", "constant_best", "--quick"]
+    result = run_quiesce(
+        tmp_path, "hil", "--scenario", "two_tones", *options, "--json", "--out", "report"
+    )
+    assert result.returncode == 0, result.stderr
+    assert "RMS displacement 45.8 um" in result.stderr
+    rows = {row["law"]: row for row in json.loads(result.stdout)["runs"]}
+    assert rows["fuzzy"]["freq_hz"] == 0.0
+    open_um, ours_um = rows["open_loop"]["rms_disp_um"], rows["fuzzy"]["rms_disp_um"]
+    assert rows["fuzzy"]["amp_reduction_pct"] == pytest.approx(
+        100.0 * (1.0 - ours_um / open_um), abs=1e-3
+    )
+
+
 def test_quick_run_succeeds_with_table_and_progress(quick) -> None:
     result, _ = quick
     assert result.returncode == 0, result.stderr

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.hil_runs import Run
+from quiesce.hil_runs import Run, displacement_um
 from quiesce.laws import OPEN_LOOP
 from quiesce.reference import Published, Reference
 
@@ -16,6 +16,8 @@ class Row:
     """One steady state of one run; the fields are those of metrics.json's `runs`.
 
     A step has two: settle_s and rms_disp_um then describe the transition and stand in both.
+    Where the excitation has no one frequency, freq_hz is 0 and the reduction of the amplitude is
+    that of the RMS displacement.
     """
 
     scenario: str
@@ -73,6 +75,10 @@ class Result:
         return not self.differing and not (self.trace_equal and self.trace_equal["mismatches"])
 
 
+def excitation_text(freq_Hz: float) -> str:
+    return f"{freq_Hz:g} Hz" if freq_Hz > 0.0 else "no one frequency"
+
+
 def reduction_pct(value: float | None, open_loop: float | None) -> float | None:
     if value is None or not open_loop:
         return None
@@ -99,7 +105,9 @@ def make_row(run: Run, open_loop: Run, reference: Reference | None, window: int)
         law=run.case.law.name,
         target=run.case.target,
         freq_hz=freq_Hz,
-        amp_reduction_pct=reduction_pct(ours[f"amp{number}_um"], base[f"amp{number}_um"]),
+        amp_reduction_pct=reduction_pct(
+            displacement_um(ours, number), displacement_um(base, number)
+        ),
         accel_rms_reduction_pct=reduction_pct(
             ours[f"accel_rms{number}_mm_s2"], base[f"accel_rms{number}_mm_s2"]
         ),
@@ -133,7 +141,7 @@ def make_rows(runs: Sequence[Run], reference: Reference) -> tuple[list[Row], lis
 def find_beside(row: Row, open_loop: Run, reference: Reference | None, window: int) -> Beside:
     number = "" if window == 0 else "2"
     base = OpenLoop(
-        open_loop.figures[f"amp{number}_um"],
+        displacement_um(open_loop.figures, number),
         open_loop.figures[f"accel_rms{number}_mm_s2"],
         reference.simulated_for(row.scenario, OPEN_LOOP, row.freq_hz) if reference else {},
     )

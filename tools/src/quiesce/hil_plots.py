@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from quiesce import laws
-from quiesce.hil_metrics import Result, amplitude_spectrum
-from quiesce.hil_runs import ConstantSearch, Run
+from quiesce.hil_metrics import Result, amplitude_spectrum, excitation_text, reduction_pct
+from quiesce.hil_runs import ConstantSearch, Run, displacement_um
 from quiesce.plot_style import COLORS, pyplot, svg_of
 from quiesce.rule_surface import RuleSurface, visited_cells
 
 PERIODS_SHOWN = 3
+BROADBAND_SHOWN_s = 2.0
 STEP_BEFORE_s, STEP_AFTER_s = 0.4, 1.4
 SPECTRUM_TOP_Hz = 60.0
 # Drawn in this order, ever thinner, so that of equal curves all stay visible.
@@ -104,7 +105,7 @@ def draw_reductions(axis: Any, rows: Sequence[Any], key: str, bound_key: str) ->
         if bound is not None:
             axis.hlines(bound, x - width / 2, x + width / 2, color="black", linewidth=1.6,
                         label=once("bound"))  # fmt: skip
-    axis.set_xticks(range(len(freqs)), [f"{freq:g} Hz" for freq in freqs])
+    axis.set_xticks(range(len(freqs)), [excitation_text(freq) for freq in freqs])
     axis.grid(axis="x", visible=False)
 
 
@@ -121,7 +122,8 @@ def plot_steady(runs: Sequence[Run]) -> str:
     )
     for column, name in zip(axes.T, names, strict=True):
         for law, run in one_run_a_law(runs, name).items():
-            span_s = PERIODS_SHOWN / run.figures["freq_hz"]
+            freq_Hz = run.figures["freq_hz"]
+            span_s = PERIODS_SHOWN / freq_Hz if freq_Hz > 0.0 else BROADBAND_SHOWN_s
             time_s = run.trace["t_s"] - run.trace["t_s"][-1]
             last = time_s > -span_s
             for axis, (key, scale, _) in zip(column, columns, strict=True):
@@ -215,9 +217,12 @@ def plot_searches(searches: Sequence[ConstantSearch]) -> str:
     figure, axes = pyplot().subplots(1, 2, figsize=(11, 3.0), sharex=True)
     for search in steady:
         current_A = [mA / 1000.0 for mA in search.current_mA]
-        for axis, key in zip(axes, ("amp_um", "accel_rms_mm_s2"), strict=True):
-            values = np.array([figures[key] for figures in search.figures])
-            axis.plot(current_A, 100.0 * (1.0 - values / values[0]), marker="o", markersize=3,
+        found = search.figures
+        displacements = [displacement_um(figures) for figures in found]
+        accelerations = [figures["accel_rms_mm_s2"] for figures in found]
+        for axis, values in zip(axes, (displacements, accelerations), strict=True):
+            reductions = [reduction_pct(value, values[0]) for value in values]
+            axis.plot(current_A, reductions, marker="o", markersize=3,
                       label=search.scenario.name)  # fmt: skip
     for axis, title in zip(axes, ("displacement amplitude", "RMS acceleration"), strict=True):
         axis.set_title(title)

@@ -39,6 +39,13 @@ class Run:
     trace: Trace
 
 
+def displacement_um(figures: dict[str, Any], number: str = "") -> float:
+    """Of the first window, or with number "2" of the second: its amplitude, or its RMS where the
+    excitation has no one frequency."""
+    amplitude = figures[f"amp{number}_um"]
+    return figures[f"disp_rms{number}_um"] if amplitude is None else amplitude
+
+
 @dataclass(frozen=True)
 class ConstantSearch:
     """Figures over a grid of constant currents, and the best of them.
@@ -51,7 +58,8 @@ class ConstantSearch:
     figures: list[dict[str, Any]]
 
     def displacement_um(self, index: int) -> float:
-        return self.figures[index]["rms_disp_um" if self.scenario.is_step else "amp_um"]
+        figures = self.figures[index]
+        return figures["rms_disp_um"] if self.scenario.is_step else displacement_um(figures)
 
     @property
     def best_mA(self) -> int:
@@ -160,9 +168,10 @@ class Runner:
 
 
 def headline(figures: dict[str, Any]) -> str:
-    text = f"amplitude {figures['amp_um']:.1f} um"
-    if figures["amp2_um"] is not None:
-        text += f", then {figures['amp2_um']:.1f} um"
+    kind = "RMS displacement" if figures["amp_um"] is None else "amplitude"
+    text = f"{kind} {displacement_um(figures):.1f} um"
+    if figures["disp_rms2_um"] is not None:
+        text += f", then {displacement_um(figures, '2'):.1f} um"
     if figures["instr_median"] is not None:
         text += f", {figures['instr_median']} instructions a tick, at most {figures['instr_worst']}"
     return text

@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import groupby
 
 from quiesce import laws
-from quiesce.hil_metrics import Beside, OpenLoop, Result, Row
+from quiesce.hil_metrics import Beside, OpenLoop, Result, Row, excitation_text
 from quiesce.reference import Published
 
 HEAD_1 = (
@@ -101,7 +101,7 @@ def groups(result: Result) -> Iterator[tuple[str, list[tuple[Row, Beside]]]]:
     for (scenario, freq_hz), members in groupby(pairs, key=lambda pair: group_key(pair[0])):
         group = list(members)
         base = group[0][1].open_loop
-        yield f"{scenario}, {freq_hz:g} Hz: {open_loop_text(base)}", group
+        yield f"{scenario}, {excitation_text(freq_hz)}: {open_loop_text(base)}", group
 
 
 def open_loop_text(base: OpenLoop) -> str:
