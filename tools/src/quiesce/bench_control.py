@@ -12,7 +12,7 @@ from quiesce.bench_signal import seed_number
 from quiesce.control_cost import Counted
 from quiesce.control_figures import all_figures, context_of
 from quiesce.control_law_file import law_options, table_bytes
-from quiesce.control_optima import load_optima
+from quiesce.control_optima import COMMAND, load_optima
 from quiesce.control_rig import Plant, Rig, default_plant_file, make_judged, read_plant
 from quiesce.control_ruler import Ruler
 from quiesce.control_suite import FULL, QUICK, Order, Results, measure_all, measure_cost
@@ -26,7 +26,7 @@ HELP = "a control law in closed loop: steady, steps, other plants, other inputs,
 DESCRIPTION = """Measure a control law in closed loop with the firmware's own code: steady sines
 over the band, steps, plants that its table was not made for, inputs that no table is made for,
 faults and wrong signs, instructions. Beside it stand the best constant current, the fuzzy law, and
-the best that any current can do (cached; 'quiesce tune --help' tells how to compute it anew)."""
+the best that any current can do, from docs/bounds."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -38,6 +38,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--table", type=Path, metavar="FILE", help="phase law file, for law phase (the shipped one)"
     )
+    parser.add_argument(
+        "--bounds", type=Path, action="append", default=[], metavar="FILE",
+        help="bounds of a plant of your own, beside those in docs/bounds; repeatable",
+    )  # fmt: skip
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="parameter of the judged law, repeatable",
@@ -106,11 +110,11 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
 
 def measure_on(rig: Rig, args: argparse.Namespace, folder: Path, data: Path) -> Report:
     words = table_bytes(args.law, args.table)
-    optima, absent = load_optima(rig)
-    ruler = Ruler(rig.plant, optima)
+    size = QUICK if args.quick else FULL
+    ruler = Ruler(rig.plant, load_optima(args.bounds), size.sweep_Hz)
     missing = control_broadband.absent_earthquakes(rig, data)
     order = Order(
-        size=QUICK if args.quick else FULL,
+        size=size,
         seed=args.seed,
         data=None if missing else data,
         energy_plants=energy_plants(rig),
@@ -128,8 +132,24 @@ def measure_on(rig: Rig, args: argparse.Namespace, folder: Path, data: Path) -> 
         figures,
         context_of(ruler, results, counted, facts),
         tables(ruler, results, counted),
-        [*absent, *missing, *absent_cost],
+        [*absent_bounds(ruler, rig.plant, results), *missing, *absent_cost],
     )
+
+
+def absent_bounds(ruler: Ruler, plant: Plant, results: Results) -> list[str]:
+    command = f"{COMMAND} OUT.json --plant {shown(plant.file)}"
+    lacking_Hz = ruler.lacking_Hz()
+    lacking = sum(cell.bound_amp_pct is None for cell in results.cells)
+    lines = []
+    if lacking_Hz:
+        freqs = ", ".join(f"{freq_Hz:g}" for freq_Hz in lacking_Hz)
+        lines.append(f"no stored bound of the plant at {freqs} Hz: {command}")
+    if lacking:
+        lines.append(
+            f"no stored bound of {lacking} of {len(results.cells)} other plants and "
+            f"frequencies: {command} --robustness"
+        )
+    return lines
 
 
 def facts_of(plant: Plant, args: argparse.Namespace) -> dict[str, object]:

@@ -6,7 +6,7 @@ import numpy as np
 
 CONVERGED = 0.02  # share of the final amplitude
 SECOND_s = 1.0
-SETTLED_SECONDS = 10  # the final amplitude is that of the last so many
+SETTLED_SECONDS = 10  # amplitudes are averaged over so many
 
 
 def reduction_pct(value: float, open_loop: float) -> float:
@@ -45,19 +45,15 @@ def second_amplitudes(time_s: np.ndarray, values: np.ndarray, freq_Hz: float) ->
     return sums[count > 0] / count[count > 0]
 
 
-def final_amplitude(amplitudes: np.ndarray) -> float:
-    """Median of the last seconds: a trial of the adaptation at the very end is not the result."""
-    return float(np.median(amplitudes[-SETTLED_SECONDS:]))
-
-
 def converge_s(amplitudes: np.ndarray) -> float:
-    """Time from which the amplitude stays within 2 % above its final value; a value a second.
+    """Time from which the amplitude is within 2 % of its final value, or below.
 
-    Trials of the adaptation are small and part of it; a second that is better than the final one
-    does not count against it.
+    amplitudes: of each second. Over 10 s from that time on, and any later time, so that a trial of
+    the adaptation, which lasts one or two, is not taken for what it has reached.
     """
-    final = final_amplitude(amplitudes)
-    late = np.flatnonzero(amplitudes > (1.0 + CONVERGED) * final)
+    seconds = min(SETTLED_SECONDS, len(amplitudes))
+    means = np.convolve(amplitudes, np.full(seconds, 1.0 / seconds), mode="valid")
+    late = np.flatnonzero(means > (1.0 + CONVERGED) * means[-1])
     return float(late[-1] + 1) * SECOND_s if late.size else 0.0
 
 

@@ -96,7 +96,7 @@ def measure_cell(
         shipped_amp_pct=amp_pct(shipped.figures),
         constant_A=best_A,
         constant_amp_pct=constants[best_A],
-        bound_amp_pct=ruler.varied_amp_pct(variation, freq_Hz, found),
+        bound_amp_pct=ruler.amp_pct_of(plant, freq_Hz, found),
         converge_s=converge_s(over_time),
         dither_loss_pct=dither_loss_pct(over_time, base["amp_um"]),
     )

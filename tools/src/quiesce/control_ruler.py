@@ -9,9 +9,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from quiesce.control_optima import Optima
 from quiesce.control_rig import Plant, Reduction
-from quiesce.control_variants import Variation
 from quiesce.reference import Reference, load_reference
+
+# Stored figures are rounded to 0.001; a limit of 0 may read as a little less.
+ROUNDING_pct = 1e-3
+STORED = ("amp_red_pct", "accel_red_pct", "mean_current_A")
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,7 @@ def reached(found: Sequence[Reduction]) -> Bound:
     return Bound(
         best(one.amp_pct for one in found),
         best(one.accel_pct for one in found),
-        best(one.amp_pct for one in found if one.accel_pct >= 0.0),
+        best(one.amp_pct for one in found if one.accel_pct >= -ROUNDING_pct),
     )
 
 
@@ -51,20 +55,21 @@ def published(plant: Plant) -> dict[float, Bound]:
     return {freq_Hz: Bound(*pair) for freq_Hz, pair in reference.bounds.items()}
 
 
-@dataclass(frozen=True)
-class Optima:
-    """Own optimal control, from the cache."""
-
-    nominal: dict[float, Bound]  # by frequency
-    varied_amp_pct: dict[tuple[Variation, float], float]
+def stored(optima: Optima, plant: Plant, freq_Hz: float) -> Bound:
+    """A current that is best for one figure shows what is possible of the others, too."""
+    found = optima.reductions(plant.file, freq_Hz).values()
+    return reached([Reduction(*(one[key] for key in STORED)) for one in found])
 
 
 class Ruler:
     """Bounds of one plant and of its variations."""
 
-    def __init__(self, plant: Plant, optima: Optima) -> None:
+    def __init__(self, plant: Plant, optima: Optima, freqs_Hz: Sequence[float]) -> None:
+        """freqs_Hz: of the bench; the published table's are looked up as well."""
         self._optima = optima
         self._published = published(plant)
+        wanted = sorted({*freqs_Hz, *self._published})
+        self._own = {freq_Hz: stored(optima, plant, freq_Hz) for freq_Hz in wanted}
         self._reached: dict[float, Bound] = {}
 
     @property
@@ -78,33 +83,35 @@ class Ruler:
         self._reached[freq_Hz] = reached(found)
 
     def bound(self, freq_Hz: float) -> Bound:
-        own = self._optima.nominal.get(freq_Hz, Bound())
+        own = self._own.get(freq_Hz, Bound())
         known = own.raised(self._published.get(freq_Hz, Bound()))
         raised = known.raised(self._reached.get(freq_Hz, Bound()))
         pairs = zip(values(known), values(raised), strict=True)
         return Bound(*(None if base is None else top for base, top in pairs))
 
-    def varied_amp_pct(
-        self, variation: Variation, freq_Hz: float, found_pct: float
-    ) -> float | None:
-        own = self._optima.varied_amp_pct.get((variation, freq_Hz))
+    def amp_pct_of(self, plant: Plant, freq_Hz: float, found_pct: float) -> float | None:
+        """Bound of another plant, where what was found is not better."""
+        own = stored(self._optima, plant, freq_Hz).amp_pct
         return None if own is None else max(own, found_pct)
 
     def amp_grid(self, band_Hz: tuple[float, float]) -> tuple[list[float], list[float]] | None:
         """Frequencies and amplitude bounds that cover a band; None where they do not."""
-        freqs_Hz = sorted({*self._optima.nominal, *self._published})
-        known = [(f, self.bound(f).amp_pct) for f in freqs_Hz]
-        grid = [(f, pct) for f, pct in known if pct is not None]
+        known = [(freq_Hz, self.bound(freq_Hz).amp_pct) for freq_Hz in sorted(self._own)]
+        grid = [(freq_Hz, pct) for freq_Hz, pct in known if pct is not None]
         if not grid or grid[0][0] > band_Hz[0] or grid[-1][0] < band_Hz[1]:
             return None
-        return [f for f, _ in grid], [pct for _, pct in grid]
+        return [freq_Hz for freq_Hz, _ in grid], [pct for _, pct in grid]
+
+    def lacking_Hz(self) -> list[float]:
+        """Frequencies without own optimal control."""
+        return [freq_Hz for freq_Hz, own in self._own.items() if own.amp_pct is None]
 
     def own_under(self) -> list[dict[str, Any]]:
         """Own optimal control beside the published table, where both are known."""
         rows = []
         for freq_Hz, table in sorted(self._published.items()):
-            own = self._optima.nominal.get(freq_Hz)
-            if own is None or own.amp_pct is None or own.accel_pct is None:
+            own = self._own[freq_Hz]
+            if own.amp_pct is None or own.accel_pct is None:
                 continue
             assert table.amp_pct is not None and table.accel_pct is not None
             under = max(table.amp_pct - own.amp_pct, table.accel_pct - own.accel_pct)
