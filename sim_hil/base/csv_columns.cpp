@@ -38,6 +38,16 @@ std::string without_byte_order_mark(const std::string &line) {
     return line.rfind("\xEF\xBB\xBF", 0) == 0 ? line.substr(3) : line;
 }
 
+[[noreturn]] void fail_no_column(const std::string &file, const std::string &name,
+                                 const std::vector<std::string> &header) {
+    std::string message = "no column '" + name + "'; there are: ";
+    for (std::size_t i = 0; i < header.size(); ++i) {
+        message += i == 0 ? "" : ", ";
+        message += header[i];
+    }
+    fail(file, 1, message);
+}
+
 /// Where each name stands in the header.
 std::vector<std::size_t> positions(const std::string &file, const std::vector<std::string> &header,
                                    const std::vector<std::string> &names) {
@@ -45,11 +55,7 @@ std::vector<std::size_t> positions(const std::string &file, const std::vector<st
     for (const std::string &name : names) {
         const auto found = std::find(header.begin(), header.end(), name);
         if (found == header.end()) {
-            std::string known;
-            for (const std::string &each : header) {
-                known += (known.empty() ? "" : ", ") + each;
-            }
-            fail(file, 1, "no column '" + name + "'; there are: " + known);
+            fail_no_column(file, name, header);
         }
         out.push_back(static_cast<std::size_t>(found - header.begin()));
     }

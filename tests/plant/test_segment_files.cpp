@@ -1,8 +1,11 @@
 /// Segments as scenario files describe them, and the recordings that they name.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "file_mistakes.h"
 #include "scenario.h"
@@ -133,6 +136,27 @@ TEST(RecordFile, may_have_an_absolute_path) {
     const TemporaryFile csv("t_s,a_g\n0,1\n1,1\n", ".csv");
     const TemporaryFile file(record_text(csv.path()));
     EXPECT_EQ(make_excitation(load_scenario(file.path()), kUnit).at(0.5).base_accel_m_s2, 1.0);
+}
+
+TEST(RecordFile, measured_earthquakes_load_with_their_peaks) {
+    const std::string folder =
+        std::filesystem::absolute("../shared/data/earthquake").lexically_normal().string();
+    if (!std::filesystem::exists(folder)) {
+        GTEST_SKIP() << "recordings are not beside the project";
+    }
+    const std::pair<const char *, double> records[] = {{"el_centro_1940_ns", 3.42},
+                                                       {"kobe_1995", 6.33}};
+    for (const auto &[name, peak_m_s2] : records) {
+        std::string text = record_text(folder + "/" + name + ".csv");
+        text.replace(text.find("a_g"), 3, "acc_m_s2");
+        const TemporaryFile file(text);
+        const quiesce::Excitation excitation = make_excitation(load_scenario(file.path()), kUnit);
+        double found_m_s2 = 0.0;
+        for (int i = 0; i < 60000; ++i) {
+            found_m_s2 = std::max(found_m_s2, std::abs(excitation.at(i * 1e-3).base_accel_m_s2));
+        }
+        EXPECT_NEAR(found_m_s2, peak_m_s2, 0.005) << name;
+    }
 }
 
 TEST(RecordFile, that_is_not_there_is_named_with_the_scenarios_line) {
