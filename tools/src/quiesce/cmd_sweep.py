@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from quiesce.atomic import output_files
-from quiesce.control.identify import identify
 from quiesce.control.sweep import SweepPlan, Timeline, dwell_s, timeline, write_csv
 from quiesce.errors import UsageError
 from quiesce.paths import build_folder, shown
@@ -199,6 +198,9 @@ def write_plan(args: argparse.Namespace) -> int:
 
 
 def run_identify(args: argparse.Namespace) -> int:
+    # Imported late: scipy is slow, and no other command needs it.
+    from quiesce.control.identify import identify
+
     if args.modal_mass <= 0.0:
         raise UsageError("--modal-mass: expected more than 0 kg")
     out = args.out or build_folder() / "sweep" / args.identify.stem

@@ -92,6 +92,8 @@ def read_base(
             f"{shown(file)}: driver.max_current_A = {table['driver']['max_current_A']} A, but "
             f"{ref_current_A:g} A were recorded; name a base plant with your driver's range"
         )
+    # A recording without current leaves the base plant's damper as it is.
+    ref_current_A = ref_current_A or float(table["driver"]["max_current_A"])
     return Base(file, table, modal_mass_kg, ref_current_A, is_damper_at_sensor)
 
 

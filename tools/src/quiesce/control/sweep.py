@@ -37,7 +37,7 @@ class SweepPlan:
     dwell_Hz: tuple[float, ...] = (5.0, 8.0, 12.0, 18.0)
     dwell_drive_V: float = 0.1
     max_current_A: float = 5.0
-    hold_s: float = 1.5
+    hold_s: float = 1.0
     rest_s: float = 2.0
 
     def __post_init__(self) -> None:
