@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from quiesce import bench_control, cli, control_broadband, control_robust, control_safety
+from quiesce.bench_exe import Bench
 from quiesce.control.variant import Variant
 from quiesce.control_cost import Counted, added_worst_instr
 from quiesce.control_measures import (
@@ -142,7 +143,7 @@ def test_added_instructions_compare_the_worst_of_all_scenarios() -> None:
 
 def test_scenario_is_a_file_of_the_bench(build: Path, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setenv("QUIESCE_BUILD", str(build))
-    bench = bench_control.Bench()
+    bench = Bench()
     fault = ("dropout", 1.0, 0.5)
     for scenario in (
         steady(5.0, 8.0, drive_V=0.12),
@@ -346,14 +347,26 @@ def test_any_law_on_any_plant_can_be_judged(bench, tmp_path: Path) -> None:
 
 def test_laws_without_adaptation_take_no_settings_of_it(build: Path, monkeypatch) -> None:
     monkeypatch.setenv("QUIESCE_BUILD", str(build))
-    judged, _ = make_judged(bench_control.Bench(), "fuzzy", ["rms_window_ms=400"])
+    bench, plant = Bench(), published_plant()
+    judged, _ = make_judged(bench, "fuzzy", ["rms_window_ms=400"], plant)
     assert judged.control("displacement") == judged.control("balanced", "off")
-    judged, params = make_judged(bench_control.Bench(), "phase", [])
+    judged, params = make_judged(bench, "phase", [], plant)
     words = judged.control("balanced", "off").words()
     assert "phase_setting=balanced" in words and "adapt=off" in words
     assert params["unlock_current_mA"] == 5000
     with pytest.raises(UsageError, match="magic"):
-        make_judged(bench_control.Bench(), "magic", [])
+        make_judged(bench, "magic", [], plant)
+
+
+def test_controller_fits_the_plant_s_driver_and_coil(build: Path, monkeypatch) -> None:
+    monkeypatch.setenv("QUIESCE_BUILD", str(build))
+    small = Plant(Path("p.toml"), 2.0, 0.5, 0.012)
+    settings = ["unlock_current_mA=1500"]
+    params = make_judged(Bench(), "phase", settings, small)[1]
+    assert params["max_current_mA"] == 2000 and params["constant_current_mA"] == 2000
+    assert params["unlock_current_mA"] == 1500 and params["current_lag_ms"] == 12
+    large = Plant(Path("p.toml"), 8.0, 0.5, 0.005)
+    assert make_judged(Bench(), "phase", [], large)[1]["max_current_mA"] == 5000
 
 
 @pytest.mark.parametrize(

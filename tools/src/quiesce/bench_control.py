@@ -101,7 +101,7 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
     data = control_broadband.find_folder(args.data)
     bench = Bench()
     plant = read_plant(bench, args.plant or default_plant_file())
-    judged, params = make_judged(bench, args.law, args.set)
+    judged, params = make_judged(bench, args.law, args.set, plant)
     with tempfile.TemporaryDirectory(prefix="quiesce-control-") as scratch:
         options = law_options(args.law, args.table, Path(scratch))
         rig = Rig(bench, plant, judged.with_options(options), params, args.seed, Path(scratch))

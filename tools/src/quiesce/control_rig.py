@@ -220,15 +220,25 @@ class Rig:
             pool.shutdown()
 
 
-def make_judged(bench: Bench, law: str, settings: Sequence[str]) -> tuple[Judged, dict[str, int]]:
+def fitted(plant: Plant, params: dict[str, int]) -> list[str]:
+    """Settings without which the controller does not fit the plant's driver and coil."""
+    full_mA = round(1e3 * plant.max_current_A)
+    names = ("max_current_mA", "constant_current_mA", "unlock_current_mA", "safe_current_mA")
+    limits = [f"{name}={full_mA}" for name in names if params[name] > full_mA]
+    return [f"current_lag_ms={round(1e3 * plant.coil_rise_s)}", *limits]
+
+
+def make_judged(
+    bench: Bench, law: str, settings: Sequence[str], plant: Plant
+) -> tuple[Judged, dict[str, int]]:
     """The law, and the parameters that it runs with. UsageError where there is no such law."""
     known = {param["name"]: param for param in bench.json("params")}
     laws = known["law"]["labels"]
     if law not in laws:
         raise UsageError(f"--law {law}: no such law; there are: {', '.join(laws)}")
-    adapts = law == "phase"
-    params = effective_params(bench, settings)
-    return Judged(law, tuple(settings), (), adapts), params
+    chosen = [*fitted(plant, effective_params(bench, [])), *settings]
+    params = effective_params(bench, chosen)
+    return Judged(law, tuple(chosen), (), adapts=law == "phase"), params
 
 
 def grid_A(highest_A: float, step_A: float) -> list[float]:

@@ -142,7 +142,8 @@ class Day:
 
     @property
     def lost_pts(self) -> float:
-        return self.undisturbed_amp_pct - self.amp_pct
+        """All of it where the controller does not run any more."""
+        return self.undisturbed_amp_pct - (self.amp_pct if self.final_state_is_run else 0.0)
 
     def row(self) -> dict[str, Any]:
         return {
