@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from quiesce import bench_control, cli, control_broadband, control_robust, control_safety
 from quiesce.bench_exe import Bench
+from quiesce.control import bound_store
 from quiesce.control.variant import Variant
 from quiesce.control_cost import Counted, added_worst_instr
 from quiesce.control_measures import (
@@ -24,11 +25,12 @@ from quiesce.control_measures import (
     second_amplitudes,
 )
 from quiesce.control_optima import Optima, load_optima
-from quiesce.control_rig import Plant, Reduction, default_plant_file, grid_A, make_judged
+from quiesce.control_rig import Plant, Reduction, Rig, default_plant_file, grid_A, make_judged
 from quiesce.control_ruler import Bound, Ruler, reached
 from quiesce.control_scenarios import Scenario, frozen, scaled, steady, step, two_tones
 from quiesce.control_steady import Point, judge_sweep
 from quiesce.control_suite import Size
+from quiesce.control_variants import varied_plant
 from quiesce.errors import UsageError
 
 FIGURES = [
@@ -248,6 +250,30 @@ def test_own_bound_is_judged_over_the_whole_table() -> None:
     assert Ruler(published_plant(), Known(own), []).worst_under_pts() < 0.0
     own[20.0] = {"amp": (26.0, 20.0)}
     assert Ruler(published_plant(), Known(own), []).worst_under_pts() == pytest.approx(1.8)
+
+
+def test_other_plants_have_their_own_bound() -> None:
+    ruler = Ruler(published_plant(), Known({5.0: {"amp": (14.0, 0.0)}}), [])
+    other = replace(published_plant(), file=Path("other.toml"))
+    assert ruler.amp_pct_of(other, 5.0, 13.0) == 14.0
+    assert ruler.amp_pct_of(other, 5.0, 14.5) == 14.5
+    assert ruler.amp_pct_of(other, 10.0, 14.5) is None
+
+
+def test_other_plants_are_those_whose_bounds_are_stored(
+    build: Path, tmp_path: Path, monkeypatch
+) -> None:
+    monkeypatch.setenv("QUIESCE_BUILD", str(build))
+    plant = published_plant()
+    judged, params = make_judged(Bench(), "constant", [], plant)
+    rig = Rig(Bench(), plant, judged, params, 1, tmp_path)
+    variations = control_robust.GOAL_VARIATIONS[::7]
+    mine = {bound_store.case_key(varied_plant(rig, one).file, 5.0) for one in variations}
+    stored = [case for case in bound_store.robust_cases(plant.file) if case.freq_Hz == 5.0]
+    for case in stored[::7]:
+        bound_store.write_variant(case.plant, case.variant, tmp_path / "theirs.toml")
+        mine.discard(bound_store.case_key(tmp_path / "theirs.toml", 5.0))
+    assert len(variations) == len(stored[::7]) and not mine
 
 
 def test_balanced_bound_needs_acceleration_no_worse() -> None:

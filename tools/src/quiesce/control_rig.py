@@ -168,6 +168,17 @@ class Rig:
             mine.set_exception(error)
         return mine.result()
 
+    def run_once(
+        self,
+        scenario: Scenario,
+        control: Control,
+        plant: Plant,
+        columns: Sequence[str],
+        every: int = 1,
+    ) -> Run:
+        """As run, but nobody else will ask: hundreds of long traces are not kept."""
+        return self._run(scenario, control, plant, columns, every)
+
     def _run(
         self, scenario: Scenario, control: Control, plant: Plant, columns: Sequence[str], every: int
     ) -> Run:

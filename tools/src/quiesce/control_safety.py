@@ -167,7 +167,7 @@ def measure_day(rig: Rig, seed: int, duration_s: float) -> Day:
     scenario = day(seed, duration_s)
     control = rig.judged.control(BALANCED).with_settings("current_check=on")
     columns = DAY_COLUMNS if rig.judged.adapts else ("t_s", "state", "fault_count")
-    run = rig.run(scenario, control, columns=columns, every=DAY_EVERY_ticks)
+    run = rig.run_once(scenario, control, rig.plant, columns, DAY_EVERY_ticks)
     trace = run.trace
     assert trace is not None
     base = rig.run(steady(DAY_FREQS_Hz[0], SHIPPED_s), OPEN_LOOP).figures["amp_um"]
