@@ -12,6 +12,7 @@ from quiesce.control.identify_fit import (
     Fit,
     best_damper,
     fit_all,
+    modes_of,
     start_values,
 )
 from quiesce.control.identify_modes import SweepModel, find_modes
@@ -45,11 +46,11 @@ def say(message: str) -> None:
 
 
 def fitted(
-    recording: SweepRecording, base: Base, tell: Callable[[str], None]
+    recording: SweepRecording, base: Base, mode_count: int | None, tell: Callable[[str], None]
 ) -> tuple[SweepModel, DwellModel, Fit]:
     """The models of both parts and the fit of everything that the recording can tell."""
     sweep = SweepModel(recording, base.ref_freq_Hz)
-    modes = find_modes(sweep, tell)
+    modes = find_modes(sweep, mode_count, tell)
     dwell = DwellModel(recording, recording.dwells, base)
     start = start_values(dwell, modes, 1e3 * recording.noise_m_s2 / GRAVITY_m_s2)
     fixed = {"noise_mg"}
@@ -71,7 +72,9 @@ def carried_over(base: Base) -> dict[str, float]:
     scale = plant.modes[0].at_damper ** 2 * base.modal_mass_kg
     lag = {"rise_s": plant.rise_s, "fall_s": plant.fall_s}
     if base.model == "viscous":
-        return {**lag, "per_A_N_s_m": scale * base.damper["per_A_N_s_m"]}
+        # What resists without current is in the damping that the sweep shows.
+        per_A = scale * base.damper["per_A_N_s_m"]
+        return {**lag, "per_A_N_s_m": per_A, "base_N_s_m": 0.0}
     return {
         **lag,
         "force_scale": scale * float(base.damper.get("force_scale", 1.0)),
@@ -86,19 +89,21 @@ def identify(
     base_file: Path | None = None,
     modal_mass_kg: float = 1.0,
     is_damper_at_sensor: bool = True,
+    mode_count: int | None = None,
     tell: Callable[[str], None] = say,
 ) -> Identified:
     """Writes plant.toml, report.txt, identify.json and plots into `out`.
 
     base_file: a plant file for what no recording can tell (sensor, driver, damper model and
-    geometry). UsageError for a recording that cannot be used; nothing is written then.
+    geometry). mode_count: modes in the swept band, found where None. UsageError
+    for a recording that cannot be used; nothing is written then.
     """
     base_file = base_file or root() / DEFAULT_BASE
     Plant(base_file)
     recording = read_sweep_recording(recording_file)
     largest_A = float(recording.current_A.max())
     base = read_base(base_file, modal_mass_kg, largest_A, is_damper_at_sensor)
-    sweep, dwell, fit = fitted(recording, base, tell)
+    sweep, dwell, fit = fitted(recording, base, mode_count, tell)
     warnings = recording.warnings + fit_warnings(recording, base, dwell, fit)
     table = rows(base, fit)
     text = text_report(recording, base, fit, table, warnings)
@@ -113,7 +118,7 @@ def identify(
         Plant(staged)
         (staging / "report.txt").write_text(text + "\n", encoding="utf-8")
         (staging / "identify.json").write_text(json.dumps(figures, indent=1) + "\n")
-        plot_sweep(staging / "sweep.png", sweep, fit)
+        plot_sweep(staging / "sweep.png", sweep, modes_of(fit.values, base))
         if recording.dwells:
             plot_dwells(staging / "dwells.png", dwell, fit)
     return Identified(out / PLANT_NAME, out / "report.txt", fit, base, recording, warnings, text)

@@ -1,6 +1,7 @@
 """Plants with known truth on which identification is measured, and what a difference costs."""
 
 import copy
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -61,7 +62,7 @@ def damper_key(key: str, factor: float) -> Change:
 def curved(table: dict[str, Any]) -> None:
     """Yield stress rises with I^1.3, the same at full current."""
     damper = table["damper"]
-    field = damper["coil_turns"] * table["driver"]["max_current_A"] / (2 * 3.141592653589793)
+    field = damper["coil_turns"] * table["driver"]["max_current_A"] / (2 * math.pi)
     field /= damper["coil_radius_m"]
     damper["yield_coefficient"] *= field**-0.3
     damper["yield_exponent"] = 1.3
@@ -79,7 +80,7 @@ FRAME_PLAN = SweepPlan(
     dwell_Hz=(4.5, 8.0, 14.0, 20.0),
     max_current_A=2.0,
     hold_s=2.0,
-    rest_s=10.0,
+    rest_s=15.0,
 )
 
 CASES = (
@@ -107,8 +108,8 @@ class Compared:
     case: Case
     found: Identified
     freq_pct: float  # worst of the modes
-    damping_pct: float  # of mode 1
-    force_pct: float  # at full current, as it acts on mode 1
+    damping_pct: float  # of mode 1; NaN where it is not comparable
+    force_pct: float  # at full current, as it acts on mode 1; NaN likewise
     rise_ms: float
     fall_ms: float
     points: dict[str, float]  # by waveform and metric, worst of the frequencies
@@ -158,7 +159,7 @@ def force_on_mode1(table: dict[str, Any], at_damper: float) -> float:
     current_A = table["driver"]["max_current_A"]
     if damper["model"] == "viscous":
         return at_damper**2 * damper["per_A_N_s_m"] * current_A
-    field = damper["coil_turns"] * current_A / (2 * 3.141592653589793 * damper["coil_radius_m"])
+    field = damper["coil_turns"] * current_A / (2 * math.pi * damper["coil_radius_m"])
     yield_Pa = damper["yield_coefficient"] * field ** damper.get("yield_exponent", 1.0)
     return at_damper**2 * damper["force_scale"] * yield_Pa / damper["gap_m"]
 
@@ -188,18 +189,20 @@ def judged(case: Case, true_file: Path, found: Identified) -> Compared:
     if len(plant.modes) != len(true.modes):
         raise UsageError(f"{case.name}: {len(plant.modes)} modes found of {len(true.modes)}")
     true_table, table = read_plant_data(true_file), read_plant_data(found.plant_file)
+    damping_pct = 100.0 * abs(pairs[0][0].damping_ratio / pairs[0][1].damping_ratio - 1.0)
     one = modal_shapes(found.base, found.fit.values, 1)[0]
     ratio = force_on_mode1(table, one["at_damper"]) / force_on_mode1(
         true_table, true.modes[0].at_damper
     )
     if not case.is_damper_at_sensor:
         # Shapes elsewhere are known up to their scale: the product over sensor and damper is not.
-        ratio = float("nan")
+        # Nor is how the damping without current is divided between damper and structure.
+        ratio = damping_pct = math.nan
     return Compared(
         case,
         found,
         max(100.0 * abs(a.freq_Hz / b.freq_Hz - 1.0) for a, b in pairs),
-        100.0 * abs(pairs[0][0].damping_ratio / pairs[0][1].damping_ratio - 1.0),
+        damping_pct,
         100.0 * (ratio - 1.0),
         1e3 * (plant.rise_s - true.rise_s),
         1e3 * (plant.fall_s - true.fall_s),

@@ -15,11 +15,13 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import least_squares
 
-from quiesce.control.identify_modes import Modes, SweepModel, shaker_gain, structure_response
+from quiesce.control.identify_modes import Film, Modes, SweepModel, shaker_gain, structure_response
 from quiesce.control.identify_plant import (
     Base,
     COARSE_rad,
     FINE_rad,
+    modal_shapes,
+    no_current_N_s_m,
     plant_table,
     plant_text,
 )
@@ -30,7 +32,7 @@ from quiesce.control.sweep import Timeline
 from quiesce.errors import UsageError
 
 # Parameters that are positive or keep their sign vary by their logarithm; these do not.
-LINEAR = ("delay_ms", "yield_exponent", "_phase_rad", "_damper_ratio")
+LINEAR = ("delay_ms", "yield_exponent", "_phase_rad", "_damper_ratio", "base_N_s_m")
 # Standard deviations of what is known before any recording: the logarithm of a mode's shape ratio
 # at the sensor, and the ratio at a damper elsewhere.
 SHAPE_RATIO_PRIOR = 1.0
@@ -39,6 +41,9 @@ DAMPER_RATIO_PRIOR = 10.0
 START_FORCES = (0.02, 0.06, 0.2, 0.6, 2.0)
 START_YIELDS = (0.003, 0.02, 0.1, 0.5)
 START_LAG_s = 0.005
+# The fit moves a parameter at most by this logarithm, and these inside what a plant file allows.
+REACH = 7.0
+RANGES = {"yield_exponent": (0.1, 4.0), "base_N_s_m": (0.0, 1e9), "viscosity_ratio": (1e-12, 1.0)}
 # A residual this large stands for a plant that cannot be simulated.
 IMPOSSIBLE = 1e3
 
@@ -64,6 +69,18 @@ class Space:
         return np.array(
             [values[n] if is_linear(n) else math.log(abs(values[n])) for n in self.names]
         )
+
+    def bounds(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest theta that a fit from here may reach."""
+        limits = np.array(
+            [(-np.inf, np.inf) if is_linear(n) else (-REACH, REACH) for n in self.names]
+        )
+        low, high = theta + limits[:, 0], theta + limits[:, 1]
+        for at, name in enumerate(self.names):
+            if name in RANGES:
+                edges = RANGES[name] if is_linear(name) else np.log(RANGES[name])
+                low[at], high[at] = max(low[at], edges[0]), min(high[at], edges[1])
+        return low, high
 
     def unpack(self, theta: np.ndarray) -> dict[str, float]:
         values = dict(self.fixed)
@@ -91,8 +108,15 @@ class Fit:
         return float(self.errors[self.names.index(name)]) if name in self.names else math.nan
 
 
-def modes_of(values: dict[str, float]) -> Modes:
+def modes_of(values: dict[str, float], base: Base) -> Modes:
+    """With the damper's own force without current."""
     count = sum(1 for name in values if name.endswith("_freq_Hz"))
+    shapes = modal_shapes(base, values, count)
+    film = Film(
+        no_current_N_s_m(base, values),
+        np.array([one["at_sensor"] for one in shapes]),
+        np.array([one["at_damper"] for one in shapes]),
+    )
 
     def column(key: str) -> np.ndarray:
         return np.array([values[f"mode{i}_{key}"] for i in range(1, count + 1)])
@@ -103,6 +127,7 @@ def modes_of(values: dict[str, float]) -> Modes:
         column("residue_m_s2_V"),
         values.get("corner_Hz", 0.0),
         1e-3 * values["delay_ms"],
+        film,
     )
 
 
@@ -179,7 +204,7 @@ def load_text(text: str) -> Plant | None:
 
 
 def residual(sweep: SweepModel, dwell: DwellModel, values: dict[str, float]) -> np.ndarray:
-    parts = [sweep.residual(modes_of(values))]
+    parts = [sweep.residual(modes_of(values, dwell.base))]
     parts += [dwell.residual(number, values) for number in range(len(dwell.dwells))]
     ratios = [value for name, value in values.items() if name.endswith("_shape_ratio")]
     parts.append(np.log(np.array(ratios)) / SHAPE_RATIO_PRIOR)
@@ -194,9 +219,12 @@ def solve(
     start: dict[str, float],
     max_nfev: int = 40,
 ) -> Fit:
+    first = space.pack(start)
+    low, high = space.bounds(first)
     fit = least_squares(
         lambda theta: residuals(space.unpack(theta)),
-        space.pack(start),
+        np.clip(first, low, high),
+        bounds=(low, high),
         x_scale="jac",
         method="trf",
         max_nfev=max_nfev,
@@ -244,7 +272,10 @@ def damper_starts(dwell: DwellModel, modes: Modes) -> list[dict[str, float]]:
     fastest = float(velocity.max())
     if base.model == "viscous":
         per_A = force_N / (fastest * base.ref_current_A)
-        return [{"per_A_N_s_m": part * per_A} for part in (0.01, 0.03, 0.1, 0.3, 1.0)]
+        return [
+            {"per_A_N_s_m": part * per_A, "base_N_s_m": 1e-3 * part * per_A * base.ref_current_A}
+            for part in (0.01, 0.03, 0.1, 0.3, 1.0)
+        ]
     return [
         {
             "force_scale": part * force_N / base.yield_force_N(1.0),
@@ -294,7 +325,7 @@ def best_damper(dwell: DwellModel, modes: Modes, start: dict[str, float]) -> dic
 
 def fit_all(sweep: SweepModel, dwell: DwellModel, start: dict[str, float], free: list[str]) -> Fit:
     """Damper and lag first, with the structure held; then everything together."""
-    structural = ("mode", "corner_Hz", "delay_ms")
+    structural = ("mode", "corner_Hz", "delay_ms", "base_N_s_m")
     first = [name for name in free if not name.startswith(structural) or "_damper_" in name]
 
     def dwells_only(values: dict[str, float]) -> np.ndarray:

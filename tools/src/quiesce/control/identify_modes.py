@@ -8,7 +8,9 @@ in every bin. Model, per volt of drive:
     g(f) = sqrt((1 + (ref/corner)^2) / (1 + (f/corner)^2)), at the drive's frequency at that instant
 
 Modes are added one after the other, each where it explains most of what is left, as long as it
-explains more than noise would.
+explains more than noise would. Of these as many are kept as it takes to the last one that halved
+what was left above the noise: a real structure never fits to the noise, and the modes that would
+only mend the model's shape are no modes.
 """
 
 from collections.abc import Callable
@@ -23,12 +25,21 @@ from quiesce.control.identify_recording import Part, SweepRecording
 from quiesce.errors import UsageError
 
 MAX_MODES = 6
-# A mode must lower the sum of squares, in units of the noise variance, by its parameters' price
-# (Bayesian information criterion) and by this part of what is left: a real structure never fits
-# to the noise.
-WORTH_PART = 0.02
+# What a mode that is one leaves at most of the sum of squares above the noise.
+LEFT_PART = 0.5
 FIRST_DAMPING = 0.02
 TRIAL_FREQUENCIES = 120
+# A roll-off that begins this many times above the band is none.
+FLAT_FROM = 5.0
+
+
+@dataclass(frozen=True)
+class Film:
+    """A damper that resists without current, too: F = coefficient velocity. Arrays of n modes."""
+
+    coefficient_N_s_m: float
+    at_sensor: np.ndarray
+    at_damper: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -40,6 +51,7 @@ class Modes:
     residue_m_s2_V: np.ndarray
     corner_Hz: float  # 0: the force does not depend on the frequency
     delay_s: float  # from drive to sensor
+    film: Film | None = None  # None: its damping is part of the modes'
 
     @property
     def count(self) -> int:
@@ -110,12 +122,28 @@ def mode_response(freq_Hz: np.ndarray, mode_Hz: float, damping_ratio: float) -> 
 
 def structure_response(freq_Hz: np.ndarray, modes: Modes) -> np.ndarray:
     """Acceleration per volt at ref_freq_Hz's gain, with the delay."""
-    total = np.zeros(len(freq_Hz), complex)
-    for i in range(modes.count):
-        total += modes.residue_m_s2_V[i] * mode_response(
-            freq_Hz, modes.freq_Hz[i], modes.damping_ratio[i]
-        )
+    single = np.array(
+        [
+            mode_response(freq_Hz, mode_Hz, ratio)
+            for mode_Hz, ratio in zip(modes.freq_Hz, modes.damping_ratio, strict=True)
+        ]
+    ).reshape(modes.count, len(freq_Hz))
+    total = modes.residue_m_s2_V @ single
+    if modes.film is not None:
+        total = total - film_response(freq_Hz, modes, modes.film, single)
     return total * np.exp(-2j * np.pi * freq_Hz * modes.delay_s)
+
+
+def film_response(freq_Hz: np.ndarray, modes: Modes, film: Film, single: np.ndarray) -> np.ndarray:
+    """What the damper's force takes from the acceleration, exactly: it couples the modes.
+
+    single [n, frequencies]: acceleration per modal force of each mode.
+    """
+    drive_at_damper = (film.at_damper * modes.residue_m_s2_V / film.at_sensor) @ single
+    damper_at_sensor = (film.at_damper * film.at_sensor) @ single
+    damper_at_damper = film.at_damper**2 @ single
+    force = film.coefficient_N_s_m / (2j * np.pi * freq_Hz)
+    return damper_at_sensor * force * drive_at_damper / (1.0 + force * damper_at_damper)
 
 
 class SweepModel:
@@ -225,22 +253,46 @@ def price(model: SweepModel, parameters: int) -> float:
     return parameters * float(np.log(2 * len(model.freq_Hz)))
 
 
-def find_modes(model: SweepModel, tell: Callable[[str], None] = lambda _: None) -> Modes:
-    """The modes inside the swept band, sorted by frequency."""
+def candidates(
+    model: SweepModel, most: int, tell: Callable[[str], None]
+) -> list[tuple[Modes, float]]:
+    """No mode, one mode, ... each with its sum of squares; at most `most`."""
     empty = np.empty(0)
     corner_Hz = float(np.sqrt(model.freq_Hz.min() * model.freq_Hz.max()))
     modes = Modes(empty, empty, empty, corner_Hz, 0.0)
-    cost = float(np.sum(model.residual(modes) ** 2))
-    while modes.count < MAX_MODES:
-        richer, richer_cost = refine(model, next_mode(model, modes))
-        if cost - richer_cost < max(price(model, 3), WORTH_PART * cost):
+    found = [(modes, float(np.sum(model.residual(modes) ** 2)))]
+    while len(found) <= most:
+        modes, cost = refine(model, next_mode(model, modes))
+        # The Bayesian information criterion's price of three parameters.
+        if found[-1][1] - cost < price(model, 3):
             break
-        modes, cost = richer, richer_cost
-        tell(f"{modes.count} modes: misfit {np.sqrt(cost / (2 * len(model.freq_Hz))):.3g} x noise")
-    if modes.count == 0:
+        found.append((modes, cost))
+        rest = np.sqrt(cost / (2 * len(model.freq_Hz)))
+        tell(f"{modes.count} modes: misfit {rest:.3g} x noise")
+    return found
+
+
+def kept(found: list[tuple[Modes, float]], noise: float) -> int:
+    """How many modes there are. noise: the sum of squares that noise alone leaves."""
+    above = [max(cost - noise, 0.0) for _, cost in found]
+    halved = [i for i in range(1, len(above)) if above[i] <= LEFT_PART * above[i - 1]]
+    return max(halved, default=0)
+
+
+def find_modes(
+    model: SweepModel, count: int | None = None, tell: Callable[[str], None] = lambda _: None
+) -> Modes:
+    """The modes inside the swept band, sorted by frequency. count: how many, where it is known."""
+    found = candidates(model, MAX_MODES if count is None else count, tell)
+    number = kept(found, 2.0 * len(model.freq_Hz)) if count is None else len(found) - 1
+    if number == 0:
         raise UsageError("the sweep shows no response to the drive; check the sensor and the drive")
+    modes, cost = found[number]
     flat, flat_cost = refine(model, replace(modes, corner_Hz=0.0))
-    if flat_cost - cost < price(model, 1):
+    scale = max(1.0, cost / (2.0 * len(model.freq_Hz)))
+    if modes.corner_Hz > FLAT_FROM * model.freq_Hz.max() or (
+        flat_cost - cost < scale * price(model, 1)
+    ):
         modes = flat
     order = np.argsort(modes.freq_Hz)
     return replace(

@@ -101,20 +101,16 @@ def modal_shapes(base: Base, values: dict[str, float], count: int) -> list[dict[
     """Frequency, damping and shapes of each mode, as a plant file has them."""
     at_sensor_1 = 1.0 / math.sqrt(base.modal_mass_kg)
     gain_N_V = values["mode1_residue_m_s2_V"] / at_sensor_1**2
-    zero_field = base.zero_field_N_s_m(values["force_scale"]) if "force_scale" in values else 0.0
     modes = []
     for i in range(1, count + 1):
         at_sensor = at_sensor_1 * values.get(f"mode{i}_shape_ratio", 1.0)
         at_damper = at_sensor
         if not base.is_damper_at_sensor:
             at_damper = at_sensor_1 * values.get(f"mode{i}_damper_ratio", 1.0)
-        omega = 2.0 * math.pi * values[f"mode{i}_freq_Hz"]
-        # The sweep shows the damping with the film's own at no current in it.
-        film = 0.5 * zero_field * at_damper**2 / omega
         modes.append(
             {
                 "freq_Hz": values[f"mode{i}_freq_Hz"],
-                "damping_ratio": max(values[f"mode{i}_damping_ratio"] - film, 0.0),
+                "damping_ratio": values[f"mode{i}_damping_ratio"],
                 "at_force": values[f"mode{i}_residue_m_s2_V"] / (at_sensor * gain_N_V),
                 "at_damper": at_damper,
                 "at_sensor": at_sensor,
@@ -127,7 +123,7 @@ def damper_section(base: Base, values: dict[str, float]) -> dict[str, Any]:
     if base.model == "viscous":
         return {
             "model": "viscous",
-            "base_N_s_m": 0.0,
+            "base_N_s_m": values["base_N_s_m"],
             "per_A_N_s_m": values["per_A_N_s_m"],
             "stroke_m": base.damper["stroke_m"],
         }
@@ -143,9 +139,17 @@ def damper_section(base: Base, values: dict[str, float]) -> dict[str, Any]:
     return section
 
 
+def no_current_N_s_m(base: Base, values: dict[str, float]) -> float:
+    """The damper's coefficient without current."""
+    if base.model == "viscous":
+        return values["base_N_s_m"]
+    return base.zero_field_N_s_m(values["force_scale"])
+
+
 def stiffest_N_s_m(base: Base, values: dict[str, float]) -> float:
     if base.model == "viscous":
-        return values["per_A_N_s_m"] * float(base.table["driver"]["max_current_A"])
+        full_A = float(base.table["driver"]["max_current_A"])
+        return values["base_N_s_m"] + values["per_A_N_s_m"] * full_A
     return base.zero_field_N_s_m(values["force_scale"]) / values["viscosity_ratio"]
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from quiesce.control.identify_fit import DwellModel, Fit, modes_of
-from quiesce.control.identify_modes import SweepModel, structure_response
+from quiesce.control.identify_fit import DwellModel, Fit
+from quiesce.control.identify_modes import Modes, SweepModel, structure_response
 from quiesce.plot_style import COLORS, pyplot
 
 POINTS = 300
@@ -21,10 +21,9 @@ def averaged(freq_Hz: np.ndarray, response: np.ndarray) -> tuple[np.ndarray, np.
     return np.sqrt(edges[:-1] * edges[1:])[used], np.sqrt(power[used] / count[used])
 
 
-def plot_sweep(file: Path, sweep: SweepModel, fit: Fit) -> None:
+def plot_sweep(file: Path, sweep: SweepModel, modes: Modes) -> None:
     """Acceleration per volt at the force of the reference frequency."""
     plt = pyplot()
-    modes = modes_of(fit.values)
     figure, axes = plt.subplots(figsize=(8, 4.5))
     measured = sweep.measured(modes.corner_Hz)
     axes.loglog(*averaged(sweep.freq_Hz, measured), ".", color=COLORS["muted"], label="measured")

@@ -25,6 +25,7 @@ UNITS = {
     "corner_Hz": "Hz",
     "delay_ms": "ms",
     "_A_N_s_m": "N s/m/A",
+    "_N_s_m": "N s/m",
     "_force_N": "N",
     "_velocity_m_s": "m/s",
     "_s": "s",
@@ -44,9 +45,11 @@ def interval(name: str, value: float, error: float) -> tuple[float, float]:
     return tuple(sorted((value / factor, value * factor)))  # type: ignore[return-value]
 
 
-def judged(name: str, error: float) -> str:
+def judged(name: str, value: float, error: float) -> str:
     if not math.isfinite(error):
         return "not identified"
+    if name == "base_N_s_m":
+        error /= max(abs(value), 1e-300)
     limit = WEAK_PART if not name.endswith("_phase_rad") else math.inf
     return "weak" if error > limit else "measured"
 
@@ -61,7 +64,7 @@ def row(name: str, value: float, error: float) -> dict[str, Any]:
         "unit": unit_of(name),
         "low_95": low,
         "high_95": high,
-        "status": judged(name, error),
+        "status": judged(name, value, error),
     }
 
 
@@ -104,18 +107,14 @@ def fit_warnings(recording: SweepRecording, base: Base, dwell: DwellModel, fit: 
             f"the fit leaves {fit.misfit:.3g} times the sensor's noise; intervals are widened"
         )
     for name in fit.names:
-        if judged(name, fit.error(name)) != "measured":
-            found.append(f"{name} is only known within a factor {spread(fit.error(name))}")
+        if judged(name, fit.values[name], fit.error(name)) != "measured":
+            found.append(f"{name} is not well known: see its interval")
     if "force_scale" in fit.values and "force_scale" not in fit.names:
         found.append(f"damper and coil lag are those of {shown(base.file)}: none were measured")
     peak = float(np.abs(recording.drive_V).max())
     if peak > 0.0 and fit.values["mode1_damping_ratio"] < 1e-4:
         found.append("mode 1 is nearly undamped; sweep longer to measure its damping")
     return found
-
-
-def spread(error: float) -> str:
-    return f"{math.exp(SIGMAS * error):.3g}" if error < 20.0 else "beyond any use"
 
 
 def assumed_lines(base: Base) -> list[str]:
@@ -127,7 +126,7 @@ def assumed_lines(base: Base) -> list[str]:
         f"sensor range and bits, driver range and bits: {shown(base.file)}",
     ]
     if base.model == "viscous":
-        return [*lines, "damping without current is counted to the modes (base_N_s_m = 0)"]
+        return lines
     keys = ", ".join(ASSUMED_DAMPER_KEYS)
     return [
         *lines,
@@ -199,6 +198,7 @@ def key_notes(base: Base, fit: Fit) -> dict[str, str]:
         "damper.viscosity_ratio": "viscosity_ratio",
         "damper.yield_exponent": "yield_exponent",
         "damper.per_A_N_s_m": "per_A_N_s_m",
+        "damper.base_N_s_m": "base_N_s_m",
         "coil.rise_s": "rise_s",
         "coil.fall_s": "fall_s",
         "shaker.gain_N_V": "mode1_residue_m_s2_V",
