@@ -1,4 +1,27 @@
-"""The figures of `quiesce bench control`, with their goals."""
+"""The figures of `quiesce bench control`, with their goals.
+
+All with 0.5 mg noise and the plant's own ADC, driver and coil; reductions are against 0 A, by the
+definitions of docs/plant.md. Unless said otherwise the law adapts from a cold start.
+
+amp_red, accel_red     displacement setting, last 2 s of 60 s of a sine
+balanced_*             balanced setting, the same
+sweep_*_min_fraction   least share, over 4 .. 22 Hz, of the displacement bound; balanced: of the
+                       bound with acceleration no worse than at 0 A
+sweep_worst_below_constant   either setting, from 10 Hz on, against all the current there is
+step_*                 displacement setting, change at 4 s; peak and RMS in the 2 s after it
+robust_*               displacement setting, last 2 s of 120 s, each plant against its own bound and
+                       its own best constant current; converged: 10 s on end within 2 % of the last
+                       10 s; dither: mean of the last 30 s over the best tenth of them
+broadband_*            balanced setting, from rest to the end; displacement and acceleration each
+                       against the constant current that is best for it
+chirp_low_fraction     displacement setting: reduction of the mean half peak-to-peak of the cycles
+                       from 4 to 10 Hz, over that at the interpolated bound
+worst_cycle_work       of the damper on the structure, last 2 s of 20 s, either setting, on the
+                       plant and on one whose current switches a stiffness; negative dissipates
+inverted_*             accel_polarity -1, either setting, against constant unlock_current_mA
+day_*                  balanced setting, a fault every few seconds; lost: at the end against a run
+                       without faults
+"""
 
 from collections.abc import Callable, Sequence
 from typing import Any
