@@ -4,7 +4,7 @@ Inside optimisation a pulse has a phase of the excitation, theta; the tables hol
 displacement's fundamental, psi = theta + its phase.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,61 +14,64 @@ from quiesce.control.periodic import Drive, Floats, Orbit, solve
 from quiesce.errors import UsageError
 
 INTERVALS = 120
+SHARP = 1e-3  # ramps below this part of half a turn are steps
+SLOPE_PART = 1e-6
 
 
 @dataclass(frozen=True)
 class Pulse:
-    """level_A within width_deg around centre_deg (modulo 180), else floor_A."""
+    """level_A within width_deg around centre_deg (modulo 180), else floor_A.
+
+    The edges are ramps of ramp_deg around those angles; they never overlap: a ramp is at most as
+    wide as the pulse and as the gap between pulses.
+    """
 
     centre_deg: float
     width_deg: float
     level_A: float
     floor_A: float
+    ramp_deg: float = 0.0
 
     def moved(self, by_deg: float) -> "Pulse":
-        return Pulse((self.centre_deg + by_deg) % 180.0, self.width_deg, self.level_A, self.floor_A)
+        return replace(self, centre_deg=(self.centre_deg + by_deg) % 180.0)
 
 
 class PulseShape:
-    """Parameters: centre and width in half turns, level and floor in parts of full current.
+    """Parameters: centre, width and ramp in half turns, level and floor in parts of full current.
 
-    An interval that an edge divides gets the mean of level and floor over it.
+    Their order: centre, width, level, floor, ramp. Intervals get the mean of the pulse over them.
     """
 
-    low = np.array([-10.0, 0.0, 0.0, 0.0])
-    high = np.array([10.0, 1.0, 1.0, 1.0])
-
-    def __init__(self, count: int = INTERVALS) -> None:
+    def __init__(self, count: int = INTERVALS, has_ramp: bool = True) -> None:
         self._edges = np.arange(count + 1) / count
         self._count = count
-
-    def covered(self, parameters: Floats) -> Floats:
-        """[n] part of each interval that is inside the pulse."""
-        centre, width = parameters[:2]
-        start = centre - 0.5 * width
-        # Length of the pulse between 0 and each edge, counted over all its repetitions.
-        turns, part = np.divmod(self._edges - start, 1.0)
-        inside = turns * width + np.minimum(part, width)
-        return np.diff(inside) * self._count
+        self.low = np.array([-10.0, 0.0, 0.0, 0.0, 0.0])
+        self.high = np.array([10.0, 1.0, 1.0, 1.0, 0.5 if has_ramp else 0.0])
 
     def command(self, parameters: Floats) -> Floats:
-        level, floor = parameters[2:]
-        return floor + (level - floor) * self.covered(parameters)
+        centre, width, level, floor, ramp = parameters
+        return floor + (level - floor) * self._covered(centre, width, ramp)
 
     def slopes(self, parameters: Floats) -> Floats:
-        centre, width, level, floor = parameters
-        covered = self.covered(parameters)
-        first, last = self._at(centre - 0.5 * width), self._at(centre + 0.5 * width)
-        jump = (level - floor) * self._count
-        by_centre, by_width = np.zeros(self._count), np.zeros(self._count)
-        by_centre[last] += jump
-        by_centre[first] -= jump
-        by_width[last] += 0.5 * jump
-        by_width[first] += 0.5 * jump
-        return np.column_stack([by_centre, by_width, covered, 1.0 - covered])
+        steps = SLOPE_PART * np.eye(len(parameters))
+        rows = [self.command(parameters + step) - self.command(parameters - step) for step in steps]
+        return np.array(rows).T / (2.0 * SLOPE_PART)
 
-    def _at(self, turn: float) -> int:
-        return int(turn % 1.0 * self._count) % self._count
+    def _covered(self, centre: float, width: float, ramp: float) -> Floats:
+        """[n] part of each interval that is inside the pulse."""
+        ramp = max(min(ramp, width, 1.0 - width), SHARP)
+        from_start = self._edges - (centre - 0.5 * width)
+        ahead, behind = from_start + 0.5 * ramp, from_start - 0.5 * ramp
+        inside = (_twice_integrated(ahead, width) - _twice_integrated(behind, width)) / ramp
+        return np.diff(inside) * self._count
+
+
+def _twice_integrated(turn: Floats, width: float) -> Floats:
+    """Second integral from 0 of a function of period 1 that is 1 up to width, then 0."""
+    turns, part = np.divmod(turn, 1.0)
+    inside = np.minimum(part, width)
+    whole = width * (0.5 * turns * (turns - 1.0) + turns * (1.0 - 0.5 * width + part))
+    return whole + 0.5 * inside**2 + width * (part - inside)
 
 
 def _parameters(drive: Drive, pulse: Pulse) -> Floats:
@@ -79,17 +82,21 @@ def _parameters(drive: Drive, pulse: Pulse) -> Floats:
             pulse.width_deg / 180.0,
             pulse.level_A / full_A,
             pulse.floor_A / full_A,
+            pulse.ramp_deg / 180.0,
         ]
     )
 
 
 def _pulse(drive: Drive, parameters: Floats) -> Pulse:
     """Of these parameters, with the level above the floor."""
-    centre, width, level, floor = map(float, parameters)
+    centre, width, level, floor, ramp = map(float, parameters)
     if floor > level:
         centre, width, level, floor = centre + 0.5, 1.0 - width, floor, level
     full_A = drive.plant.max_current_A
-    return Pulse(180.0 * (centre % 1.0), 180.0 * width, level * full_A, floor * full_A)
+    ramp = min(ramp, width, 1.0 - width)
+    return Pulse(
+        180.0 * (centre % 1.0), 180.0 * width, level * full_A, floor * full_A, 180.0 * ramp
+    )
 
 
 def command_of(drive: Drive, pulse: Pulse, intervals: int = INTERVALS) -> Floats:
@@ -98,9 +105,12 @@ def command_of(drive: Drive, pulse: Pulse, intervals: int = INTERVALS) -> Floats
     return np.clip(command, 0.0, 1.0) * drive.plant.max_current_A
 
 
-def best_pulse(ref: Reference, goal: Goal, first: Pulse) -> tuple[Pulse, Optimum]:
+def best_pulse(
+    ref: Reference, goal: Goal, first: Pulse, has_ramp: bool = True
+) -> tuple[Pulse, Optimum]:
     """From one pulse at a phase of the excitation to a local optimum, at such a phase too."""
-    optimum = improve(ref, goal, PulseShape(), _parameters(ref.drive, first))
+    shape = PulseShape(has_ramp=has_ramp)
+    optimum = improve(ref, goal, shape, _parameters(ref.drive, first))
     return _pulse(ref.drive, optimum.parameters), optimum
 
 

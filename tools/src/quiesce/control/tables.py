@@ -5,7 +5,7 @@ and of the differences between neighbours' currents over the phase is least (a s
 that a slightly better pulse of another kind does not break a table in two.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from quiesce.control.periodic import Orbit, drive, solve
 from quiesce.control.phase_table import Point, interpolated
 from quiesce.control.plant import Plant
 from quiesce.control.pulse import Pulse, best_pulse, command_of, tracked
-from quiesce.control.setting import Setting
+from quiesce.control.setting import Marks, Setting
 
 # Of the displacement's phase: current ends soon after the peak (below resonance) or starts with it.
 FIRST_CENTRES_DEG = (45.0, 110.0)
@@ -22,6 +22,7 @@ FIRST_WIDTHS_DEG = (100.0, 160.0)
 ROUGHNESS = 0.02  # cost of currents that differ by full scale throughout
 CONSTANT_DEG = 179.5  # a wider pulse is a constant current
 TRIM_DEG = 1.0
+MOST_WEIGHT = 2.0
 
 
 @dataclass(frozen=True)
@@ -38,22 +39,30 @@ class Candidate:
 
 @dataclass(frozen=True)
 class TableCase:
-    """One frequency of one setting; bound_pct: the reduction that its fraction is of."""
+    """One frequency of one setting; bound_pct: the reduction that its fractions are of."""
 
     plant: Plant
     setting: Setting
     freq_Hz: float
     bound_pct: float
+    has_ramp: bool = False
 
 
 def candidates(case: TableCase) -> list[Candidate]:
     """Local optima of the setting's goal that applies, best first."""
     ref = reference(drive(case.plant, case.freq_Hz))
-    first = case.setting.first(case.bound_pct)
-    found = _search(ref, first)
+    marks = _marks(ref, case)
+    first = case.setting.first(marks)
+    found = _search(ref, first, case.has_ramp)
     if _keeps_limits(first, found[0]):
         return found
-    return _search(ref, case.setting.second(case.bound_pct))
+    return _search(ref, case.setting.second(marks), case.has_ramp)
+
+
+def _marks(ref: Reference, case: TableCase) -> Marks:
+    constant = solve(ref.drive, case.plant.max_current_A)
+    is_allowed = ref.accel_ratio(constant) <= case.setting.accel_limit
+    return Marks(case.bound_pct, ref.amp_reduction_pct(constant) if is_allowed else 0.0)
 
 
 def _keeps_limits(goal: Goal, candidate: Candidate) -> bool:
@@ -64,19 +73,19 @@ def _keeps_limits(goal: Goal, candidate: Candidate) -> bool:
     )
 
 
-def _search(ref: Reference, goal: Goal) -> list[Candidate]:
+def _search(ref: Reference, goal: Goal, has_ramp: bool) -> list[Candidate]:
     full_A = ref.drive.plant.max_current_A
     lead_deg = ref.orbit.disp_phase_deg
     firsts = [Pulse(0.0, 180.0, full_A, 0.0), Pulse(0.0, 180.0, 0.5 * full_A, 0.0)]
     for centre_deg in FIRST_CENTRES_DEG:
         for width_deg in FIRST_WIDTHS_DEG:
             firsts.append(Pulse(centre_deg - lead_deg, width_deg, full_A, 0.0))
-    found = [_candidate(ref, goal, first) for first in firsts]
+    found = [_candidate(ref, goal, first, has_ramp) for first in firsts]
     return sorted(found, key=lambda candidate: candidate.cost)
 
 
-def _candidate(ref: Reference, goal: Goal, first: Pulse) -> Candidate:
-    pulse, optimum = best_pulse(ref, goal, first)
+def _candidate(ref: Reference, goal: Goal, first: Pulse, has_ramp: bool) -> Candidate:
+    pulse, optimum = best_pulse(ref, goal, first, has_ramp)
     orbit = optimum.orbit
     return Candidate(
         pulse.moved(orbit.disp_phase_deg),
@@ -99,12 +108,12 @@ def accel_weight(ref: Reference, pulse: Pulse) -> float:
         amp.append(np.log(pair[0].amp_m / pair[1].amp_m))
         accel.append(np.log(pair[0].accel_rms_m_s2 / pair[1].accel_rms_m_s2))
     norm = float(np.dot(accel, accel))
-    return min(max(0.0, -float(np.dot(amp, accel)) / norm), 20.0) if norm > 0.0 else 0.0
+    return min(max(0.0, -float(np.dot(amp, accel)) / norm), MOST_WEIGHT) if norm > 0.0 else 0.0
 
 
 def _trimmed(ref: Reference, pulse: Pulse, centre_deg: float, width_deg: float) -> Orbit:
     width = min(max(pulse.width_deg + width_deg, 0.0), 180.0)
-    moved = Pulse(pulse.centre_deg + centre_deg, width, pulse.level_A, pulse.floor_A)
+    moved = replace(pulse, centre_deg=pulse.centre_deg + centre_deg, width_deg=width)
     return solve(ref.drive, command_of(ref.drive, moved), start=ref.orbit.state)
 
 
@@ -139,29 +148,38 @@ def difference(one: Pulse, other: Pulse, full_A: float) -> float:
     return float(np.abs(current(one) - current(other)).mean() / full_A)
 
 
-def with_centres(pulses: list[Pulse]) -> list[Pulse]:
-    """Constant currents get a centre between those of their nearest neighbours with a pulse."""
-    is_pulse = np.array([p.width_deg < CONSTANT_DEG and p.level_A > p.floor_A for p in pulses])
+def filled(chosen: list[Candidate]) -> list[Candidate]:
+    """Constant currents get centre, floor and weight between their nearest pulses': they are where
+    the pulse on the way to the next point comes from."""
+    is_pulse = np.array([c.pulse.width_deg < CONSTANT_DEG for c in chosen])
     if not is_pulse.any():
-        return pulses
-    at = np.arange(len(pulses))
-    turns = np.unwrap(
-        [p.centre_deg for p, is_one in zip(pulses, is_pulse, strict=True) if is_one], period=180.0
-    )
-    centres = np.interp(at, at[is_pulse], turns) % 180.0
-    return [
-        p if is_one else Pulse(float(centre), 180.0, p.level_A, p.floor_A)
-        for p, centre, is_one in zip(pulses, centres, is_pulse, strict=True)
+        return chosen
+    at = np.arange(len(chosen))
+    pulses = [c for c, is_one in zip(chosen, is_pulse, strict=True) if is_one]
+    columns = [
+        np.unwrap([c.pulse.centre_deg for c in pulses], period=180.0),
+        [c.pulse.floor_A for c in pulses],
+        [c.accel_weight for c in pulses],
     ]
+    rows = zip(*(np.interp(at, at[is_pulse], column) for column in columns), strict=True)
+    return [
+        c if is_one else _constant(c, *map(float, row))
+        for c, is_one, row in zip(chosen, is_pulse, rows, strict=True)
+    ]
+
+
+def _constant(chosen: Candidate, centre_deg: float, floor_A: float, weight: float) -> Candidate:
+    level_A = chosen.pulse.level_A
+    pulse = Pulse(centre_deg % 180.0, 180.0, level_A, min(floor_A, level_A))
+    return replace(chosen, pulse=pulse, accel_weight=weight)
 
 
 def table(freqs_Hz: list[float], found: list[list[Candidate]], full_A: float) -> list[Point]:
     """The points of a setting from the candidates at each frequency."""
-    chosen = smoothest(found, full_A)
-    pulses = with_centres([c.pulse for c in chosen])
+    chosen = filled(smoothest(found, full_A))
     return [
-        point(freq_Hz, pulse, candidate.accel_weight)
-        for freq_Hz, pulse, candidate in zip(freqs_Hz, pulses, chosen, strict=True)
+        point(freq_Hz, candidate.pulse, candidate.accel_weight)
+        for freq_Hz, candidate in zip(freqs_Hz, chosen, strict=True)
     ]
 
 
