@@ -118,6 +118,16 @@ def add_identify_options(group: argparse._ArgumentGroup) -> None:
         action="store_true",
         help="the damper does not act where the sensor is: fit the shapes there, too",
     )
+    group.add_argument(
+        "--modes", type=mode_count, metavar="N", help="modes in the swept band (found)"
+    )
+
+
+def mode_count(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= 16:
+        raise ValueError
+    return value
 
 
 def plan_of(args: argparse.Namespace) -> SweepPlan:
@@ -205,7 +215,12 @@ def run_identify(args: argparse.Namespace) -> int:
         raise UsageError("--modal-mass: expected more than 0 kg")
     out = args.out or build_folder() / "sweep" / args.identify.stem
     found = identify(
-        args.identify, out, args.base_plant, args.modal_mass, not args.damper_elsewhere
+        args.identify,
+        out,
+        args.base_plant,
+        args.modal_mass,
+        not args.damper_elsewhere,
+        args.modes,
     )
     print(found.text)
     print(f"\nwritten    {', '.join(shown(file) for file in sorted(out.iterdir()))}")
