@@ -174,6 +174,43 @@ quiesce_rules_verdict_t quiesce_rules_store_commit(quiesce_rules_store_t *store,
 /// second call changes nothing.
 void quiesce_rules_store_revert(quiesce_rules_store_t *store, quiesce_t *self);
 
+/// Why a table of pulses is refused. Numbers are for logs and are never reused.
+typedef enum {
+    QUIESCE_PHASE_OK = 0,
+    QUIESCE_PHASE_SIZE = 1,  ///< shorter than it says, or too long
+    QUIESCE_PHASE_MAGIC = 2, ///< not a table of pulses, or of another version
+    QUIESCE_PHASE_CRC = 3,   ///< damaged
+    QUIESCE_PHASE_SHAPE = 4, ///< numbers of points
+    QUIESCE_PHASE_POINT = 5, ///< a frequency that does not rise, a floor above its level
+} quiesce_phase_verdict_t;
+
+/// Law phase uses another table of pulses from the next tick on: words from `quiesce tune`, count
+/// of them; NULL: the one that ships. What was learnt is cleared: it belonged to the other table.
+/// The words stay the caller's and must not change while they are in use. A table that is refused
+/// changes nothing. Call between steps; quiesce_init goes back to the one that ships.
+quiesce_phase_verdict_t quiesce_phase_table_use(quiesce_t *self, const uint32_t *words,
+                                                uint32_t count);
+
+/// What law phase has learnt about the plant, as words to keep over a restart.
+#define QUIESCE_ADAPTATION_WORDS 132
+typedef struct {
+    uint32_t words[QUIESCE_ADAPTATION_WORDS];
+} quiesce_adaptation_t;
+
+/// Takes out what has been learnt. Bounded, some 5,000 instructions: call it now and then.
+void quiesce_adaptation_save(const quiesce_t *self, quiesce_adaptation_t *out);
+
+/// Puts it back, after quiesce_init or quiesce_phase_table_use. Returns false, and changes nothing,
+/// iff it is damaged, of another version, of another table or setting, or beyond the limits in the
+/// parameters.
+bool quiesce_adaptation_load(quiesce_t *self, const quiesce_adaptation_t *in);
+
+/// Forgets it: the table's own pulses again.
+void quiesce_adaptation_reset(quiesce_t *self);
+
+/// Stops learning until it is told otherwise; what has been learnt stays in use.
+void quiesce_adaptation_freeze(quiesce_t *self, bool is_frozen);
+
 /// The shipped rule base alone, for drawing and checking it: current in mA at a frequency and an
 /// RMS acceleration. *rules_fired (may be NULL) receives a bit per rule in its file's order.
 int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *rules_fired);

@@ -17,6 +17,11 @@ void adapt_init(adapt_t *self, const adapt_cfg_t *cfg) {
     *self = (adapt_t){.cfg = *cfg, .direction = 1};
 }
 
+void adapt_clear(adapt_t *self) {
+    const adapt_cfg_t cfg = self->cfg;
+    adapt_init(self, &cfg);
+}
+
 static void wait_for(adapt_t *self, adapt_state_t state, uint32_t ticks) {
     self->state = state;
     self->ticks = ticks;
@@ -35,28 +40,37 @@ static bool has_moved(const adapt_t *self, uint32_t freq_mHz) {
     return change > self->freq_mHz / DRIFT_DIVISOR;
 }
 
-// The search starts anew, with large steps, where the vibration is another one.
+// Where the vibration is another one it must last before the search starts, with large steps.
 static void begin(adapt_t *self, const adapt_in_t *in) {
+    uint32_t wait_ticks = self->cfg.settle_ticks;
     if (has_moved(self, in->freq_mHz)) {
+        wait_ticks = self->cfg.start_ticks;
         self->shrink = 0;
         self->barren = 0;
         self->failures = 0;
         self->freq_mHz = in->freq_mHz;
     }
-    wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
+    wait_for(self, ADAPT_MEASURING, wait_ticks);
 }
 
-// (to - from) / from in Q20, limited to a sixteenth, to 2^-11 of itself; one 32-bit division.
-static int32_t relative_q20(uint32_t from, uint32_t to) {
+// change / from in Q20, limited to a quarter, to 2^-9 of itself; one 32-bit division.
+static int32_t relative_q20(uint32_t from, int64_t change) {
     const uint32_t up = (uint32_t)__builtin_clz(from | 1u);
-    const int64_t change = ((int64_t)to - from) * (INT64_C(1) << up);
-    const int32_t limited_change = (int32_t)clamp_i64(change, -(1 << 28), 1 << 28);
-    return limited_change / (int32_t)(((from | 1u) << up) >> 20);
+    const int64_t limited_change = clamp_i64(change * (INT64_C(1) << up) >> 2, -(1 << 28), 1 << 28);
+    return (int32_t)limited_change / (int32_t)(((from | 1u) << up) >> 22);
 }
 
-static int32_t cost_q20(adapt_effect_t from, adapt_effect_t to, uint32_t accel_weight_q8) {
-    return relative_q20(from.reach_um_s2, to.reach_um_s2) +
-           ((relative_q20(from.rms_um_s2, to.rms_um_s2) * (int32_t)accel_weight_q8) >> 8);
+static int64_t excess_um_s2(adapt_effect_t effect, uint32_t shape_q14) {
+    const int64_t free_um_s2 = (int64_t)(((uint64_t)effect.reach_um_s2 * shape_q14) >> 14);
+    return clamp_i64(effect.rms_um_s2 - free_um_s2, 0, INT32_MAX);
+}
+
+static int32_t cost_q20(adapt_effect_t from, adapt_effect_t to, adapt_goal_t goal) {
+    const int64_t excess =
+        excess_um_s2(to, goal.accel_shape_q14) - excess_um_s2(from, goal.accel_shape_q14);
+    const int64_t accel_q20 = relative_q20(from.rms_um_s2, excess);
+    return relative_q20(from.reach_um_s2, (int64_t)to.reach_um_s2 - from.reach_um_s2) +
+           (int32_t)((accel_q20 * goal.accel_weight_q8) >> 8);
 }
 
 static int32_t step_of(const adapt_t *self) {
@@ -119,14 +133,15 @@ static void keep(adapt_t *self) {
 }
 
 // The trial lies between two measurements without its change.
-static void judge(adapt_t *self, uint32_t accel_weight_q8) {
+static void judge(adapt_t *self, adapt_goal_t goal) {
     const adapt_effect_t after = self->effect;
-    const int32_t drift_q20 = relative_q20(self->before.reach_um_s2, after.reach_um_s2);
+    const int32_t drift_q20 = relative_q20(self->before.reach_um_s2,
+                                           (int64_t)after.reach_um_s2 - self->before.reach_um_s2);
     self->trials = increment_sat_u32(self->trials);
     if (abs_i32(drift_q20) > DISTURBED_q20) {
         self->before = after;
-    } else if (cost_q20(after, self->trial, accel_weight_q8) < -GAIN_q20 &&
-               cost_q20(self->before, self->trial, accel_weight_q8) < -GAIN_q20) {
+    } else if (cost_q20(after, self->trial, goal) < -GAIN_q20 &&
+               cost_q20(self->before, self->trial, goal) < -GAIN_q20) {
         keep(self);
     } else {
         self->before = after;
@@ -134,11 +149,11 @@ static void judge(adapt_t *self, uint32_t accel_weight_q8) {
     }
 }
 
-static void conclude(adapt_t *self, uint32_t accel_weight_q8) {
+static void conclude(adapt_t *self, adapt_goal_t goal) {
     switch (self->state) {
     case ADAPT_TRYING:
         self->trial = self->effect;
-        if (cost_q20(self->before, self->trial, accel_weight_q8) <= CLEARLY_WORSE_q20) {
+        if (cost_q20(self->before, self->trial, goal) <= CLEARLY_WORSE_q20) {
             wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
             return;
         }
@@ -146,7 +161,7 @@ static void conclude(adapt_t *self, uint32_t accel_weight_q8) {
         fail(self);
         break;
     case ADAPT_CHECKING:
-        judge(self, accel_weight_q8);
+        judge(self, goal);
         break;
     default:
         self->before = self->effect;
@@ -213,7 +228,7 @@ static void measure(adapt_t *self, const adapt_in_t *in) {
     if (self->stage != 0) {
         if (work(self)) {
             self->effect.reach_um_s2 = (uint32_t)self->span.largest;
-            conclude(self, in->accel_weight_q8);
+            conclude(self, in->goal);
         }
     } else if (in->cycle != NULL) {
         collect(self, in->cycle);

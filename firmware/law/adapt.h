@@ -1,12 +1,14 @@
 /// Adapts pulses to the plant by trying: move an edge or the level a little, wait until the
 /// vibration has settled, measure, go back, measure again; keep what lowers the cost against both.
 ///
-///   cost = relative change of half peak-to-peak displacement
-///          + accel_weight x relative change of RMS acceleration
+///   cost = relative change of the reach
+///          + accel_weight x relative change of what RMS acceleration exceeds accel_shape x reach
+///          by
 ///
-/// from the fundamental and the third harmonic (the fundamental alone misleads: a sticking damper's
-/// optimum cuts the peak, not the fundamental) over whole cycles. Both are relative changes, so the
-/// unit does not matter and neither does a calibration.
+/// where reach is half peak-to-peak displacement times (2 pi f)^2, from the fundamental and the
+/// third harmonic (the fundamental alone misleads: a sticking damper's optimum cuts the peak, not
+/// the fundamental) over whole cycles. Both are relative changes, so the unit does not matter and
+/// neither does a calibration.
 ///
 /// What is learnt is kept for each point of the pulse table; it is bounded by adapt_cfg_t, and can
 /// be frozen, cleared, taken out and put back. A trial is given up, and nothing learnt, when the
@@ -33,6 +35,7 @@ typedef struct {
 } adapt_trim_t;
 
 typedef struct {
+    uint32_t start_ticks;   ///< that a vibration lasts before the first trial
     uint32_t settle_ticks;  ///< before a measurement
     uint32_t measure_ticks; ///< at least so long, in whole cycles
     uint32_t rest_ticks;    ///< between trials once nothing is left to gain
@@ -82,17 +85,27 @@ typedef struct {
     uint32_t gains;        ///< of them that lowered the cost, saturating
 } adapt_t;
 
+/// What is wanted. A shape of 0: all acceleration counts. The shape that the pulse has on the plant
+/// that it was made for: acceleration counts where it becomes worse, relatively, than there.
+typedef struct {
+    uint32_t accel_weight_q8;
+    uint32_t accel_shape_q14;
+} adapt_goal_t;
+
 /// One tick's view of the vibration.
 typedef struct {
     bool may_try; ///< locked, settled on, no fault, not frozen
     uint32_t freq_mHz;
     uint32_t index; ///< of the table's point below it
-    uint32_t accel_weight_q8;
+    adapt_goal_t goal;
     const harmonic_sums_t *cycle; ///< of a cycle that ended in this tick, else NULL
 } adapt_in_t;
 
 /// Nothing learnt.
 void adapt_init(adapt_t *self, const adapt_cfg_t *cfg);
+
+/// Forgets what was learnt, gives a trial up.
+void adapt_clear(adapt_t *self);
 
 /// Gives a trial up; what was learnt stays.
 void adapt_pause(adapt_t *self);

@@ -39,7 +39,8 @@ typedef int32_t (*law_step_t)(law_state_t *state, const quiesce_params_t *params
 typedef struct {
     const char *name; ///< its label in parameters.toml
     law_step_t step;
-    bool uses_lock;
+    bool uses_rules; ///< base_mA; else the rule base rests
+    bool uses_lock;  ///< lock; else nothing is locked on to
 } law_t;
 
 extern const law_t law_off;

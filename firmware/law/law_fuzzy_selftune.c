@@ -43,4 +43,4 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
     return (int32_t)(state->current_mA_q20 >> 20);
 }
 
-const law_t law_fuzzy_selftune = {"fuzzy_selftune", step, false};
+const law_t law_fuzzy_selftune = {"fuzzy_selftune", step, true, false};

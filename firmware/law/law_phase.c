@@ -21,6 +21,7 @@ void law_phase_init(law_phase_t *self, const quiesce_params_t *p, const phase_ta
     };
     adapt_init(&self->adapt,
                &(adapt_cfg_t){
+                   .start_ticks = ticks_of(p->adapt_start_ms, p->tick_rate_Hz),
                    .settle_ticks = ticks_of(p->adapt_settle_ms, p->tick_rate_Hz),
                    .measure_ticks = ticks_of(p->adapt_measure_ms, p->tick_rate_Hz),
                    .rest_ticks = ticks_of(p->adapt_rest_ms, p->tick_rate_Hz),
@@ -69,7 +70,7 @@ static void adapt(law_phase_t *self, const quiesce_params_t *params, const law_i
                                             self->blend_q16 == WHOLE_q16,
                                  .freq_mHz = self->freq_mHz,
                                  .index = self->place.index,
-                                 .accel_weight_q8 = self->pulse.accel_weight_q8,
+                                 .goal = {self->pulse.accel_weight_q8, self->pulse.accel_shape_q14},
                                  .cycle = in->lock.cycle,
                              });
 }
@@ -93,4 +94,4 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
     return blended(self, params->unlock_current_mA, pulse_mA);
 }
 
-const law_t law_phase = {"phase", step, true};
+const law_t law_phase = {"phase", step, false, true};

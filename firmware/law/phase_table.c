@@ -4,7 +4,7 @@
 
 #include "crc32.h"
 
-enum { HEADER_WORDS = 5, POINT_WORDS = 3 };
+enum { HEADER_WORDS = 5, POINT_WORDS = 4 };
 
 _Static_assert(sizeof(phase_point_t) == 4u * POINT_WORDS, "words on the wire");
 _Static_assert(offsetof(phase_table_t, point) == 4u * HEADER_WORDS, "words on the wire");
@@ -101,6 +101,8 @@ phase_pulse_t phase_pulse_at(const phase_point_t *points, phase_place_t place) {
         .floor_mA = (int32_t)between(a->floor_mA, b->floor_mA - a->floor_mA, part),
         .accel_weight_q8 =
             between(a->accel_weight_q8, b->accel_weight_q8 - a->accel_weight_q8, part),
+        .accel_shape_q14 =
+            between(a->accel_shape_q14, b->accel_shape_q14 - a->accel_shape_q14, part),
     };
 }
 

@@ -13,7 +13,7 @@
 #define PHASE_TABLE_SETTINGS 2u
 #define PHASE_TABLE_MIN_POINTS 2u
 #define PHASE_TABLE_MAX_POINTS 64u
-#define PHASE_TABLE_MAX_WORDS (5u + 3u * PHASE_TABLE_SETTINGS * PHASE_TABLE_MAX_POINTS)
+#define PHASE_TABLE_MAX_WORDS (5u + 4u * PHASE_TABLE_SETTINGS * PHASE_TABLE_MAX_POINTS)
 #define PHASE_WIDTH_ALL 65535u ///< no gap: one current throughout
 
 typedef struct {
@@ -22,8 +22,9 @@ typedef struct {
     uint16_t centre_q16;
     uint16_t width_q16;
     uint16_t floor_mA;        ///< between pulses, <= level_mA
-    uint16_t accel_weight_q8; ///< what a relative change of RMS acceleration counts against one of
-                              ///< displacement when the pulse is adapted
+    uint16_t accel_weight_q8; ///< for adapt.h: what acceleration counts against displacement ..
+    uint16_t accel_shape_q14; ///< .. beyond this ratio of the two
+    uint16_t reserved;        ///< 0
 } phase_point_t;
 
 typedef struct {
@@ -67,6 +68,7 @@ typedef struct {
     int32_t level_mA;
     int32_t floor_mA;
     uint32_t accel_weight_q8;
+    uint32_t accel_shape_q14;
 } phase_pulse_t;
 
 /// Linear between the two points; the centre the shorter way round.

@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 
+#include "adapt_store.h"
 #include "current_monitor.h"
 #include "fuzzy.h"
 #include "guard.h"
@@ -46,6 +47,7 @@ typedef struct {
 
 _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
+_Static_assert(QUIESCE_ADAPTATION_WORDS == ADAPT_STORE_WORDS, "what is learnt, in words");
 _Static_assert(QUIESCE_PEAKS == ESTIMATOR_TONES, "telemetry holds the estimator's components");
 
 static const fuzzy_table_t *shipped_rules(void) {
@@ -255,7 +257,10 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
 
-    rules_step(&c->rules, c->rules_next, c->signal.estimator.tone[0].freq_uHz, signal.rms_um_s2);
+    if (c->law->uses_rules) {
+        rules_step(&c->rules, c->rules_next, c->signal.estimator.tone[0].freq_uHz,
+                   signal.rms_um_s2);
+    }
     const law_in_t law_in = law_input(c, &signal, c->rules.current_mA);
     const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
 
@@ -300,6 +305,45 @@ quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words
     }
     use_rules(c, table);
     return QUIESCE_RULES_OK;
+}
+
+quiesce_phase_verdict_t quiesce_phase_table_use(quiesce_t *self, const uint32_t *words,
+                                                uint32_t count) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    const phase_table_t *table = shipped_pulses();
+    if (words != NULL) {
+        const phase_table_verdict_t verdict = phase_table_check(words, count);
+        if (verdict != PHASE_TABLE_OK) {
+            return (quiesce_phase_verdict_t)verdict;
+        }
+        table = (const phase_table_t *)(const void *)words;
+    }
+    law_phase_init(&c->law_state.phase, &c->params, table);
+    return QUIESCE_PHASE_OK;
+}
+
+static adapt_owner_t owner_of(const controller_t *c) {
+    return (adapt_owner_t){c->law_state.phase.table->crc, (uint32_t)c->params.phase_setting};
+}
+
+void quiesce_adaptation_save(const quiesce_t *self, quiesce_adaptation_t *out) {
+    const controller_t *c = (const controller_t *)(const void *)self->opaque;
+    adapt_store(&c->law_state.phase.adapt, owner_of(c), out->words);
+}
+
+bool quiesce_adaptation_load(quiesce_t *self, const quiesce_adaptation_t *in) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    return adapt_restore(&c->law_state.phase.adapt, owner_of(c), in->words);
+}
+
+void quiesce_adaptation_reset(quiesce_t *self) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    adapt_clear(&c->law_state.phase.adapt);
+}
+
+void quiesce_adaptation_freeze(quiesce_t *self, bool is_frozen) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    c->law_state.phase.is_frozen = is_frozen;
 }
 
 int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *fired) {

@@ -3,7 +3,7 @@
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
     YOUNG_CYCLES = 2,
-    ELSEWHERE_DIVISOR = 32,    // a lock 3 % off the dominant component is on something else
+    ELSEWHERE_DIVISOR = 32, // a lock 3 % off the dominant component is on something else
 };
 
 void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {

@@ -1,5 +1,6 @@
 #include "in_process_link.h"
 
+#include "phase_table_file.h"
 #include "rule_file.h"
 
 namespace quiesce {
@@ -7,8 +8,11 @@ namespace quiesce {
 bool InProcessLink::start(const quiesce_params_t &params) {
     server_ = lockstep_t{};
     const bool is_accepted = lockstep_start(&server_, &params);
-    if (!rules_.empty()) {
-        use_rules(server_.app.controller, rules_);
+    if (!tables_.rules.empty()) {
+        use_rules(server_.app.controller, tables_.rules);
+    }
+    if (!tables_.phase.empty()) {
+        use_phase_table(server_.app.controller, tables_.phase);
     }
     return is_accepted;
 }

@@ -13,8 +13,14 @@ namespace quiesce {
 
 class InProcessLink final : public ControllerLink {
   public:
-    /// rules: words of a rule table for the controller; none: the one that ships.
-    explicit InProcessLink(std::vector<std::uint32_t> rules = {}) : rules_(std::move(rules)) {}
+    /// Words of tables for the controller; none: the ones that ship.
+    struct Tables {
+        std::vector<std::uint32_t> rules;
+        std::vector<std::uint32_t> phase;
+    };
+
+    InProcessLink() = default;
+    explicit InProcessLink(Tables tables) : tables_(std::move(tables)) {}
 
     std::string target() const override { return "host"; }
     bool start(const quiesce_params_t &params) override;
@@ -22,7 +28,7 @@ class InProcessLink final : public ControllerLink {
     std::optional<InstructionCounts> finish() override { return std::nullopt; }
 
   private:
-    std::vector<std::uint32_t> rules_;
+    Tables tables_;
     lockstep_t server_{};
 };
 

@@ -2,6 +2,7 @@
 
 #include "in_process_link.h"
 #include "input_error.h"
+#include "phase_table_file.h"
 #include "qemu_shm_link.h"
 #include "qemu_uart_link.h"
 #include "rule_file.h"
@@ -19,6 +20,9 @@ QemuOptions emulated(const LinkOptions &options) {
     if (!options.rules_path.empty()) {
         throw InputError("--rules: only the host target takes a rule table");
     }
+    if (!options.phase_table_path.empty()) {
+        throw InputError("--phase-table: only the host target takes a table of pulses");
+    }
     if (options.image_path.empty()) {
         throw InputError(
             "an emulated target needs --image ELF; cmake --preset mps2 && cmake --build "
@@ -34,9 +38,14 @@ QemuOptions emulated(const LinkOptions &options) {
 const Target kTargets[] = {
     {"host",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
-         return std::make_unique<InProcessLink>(options.rules_path.empty()
-                                                    ? std::vector<std::uint32_t>{}
-                                                    : load_rules(options.rules_path));
+         InProcessLink::Tables tables;
+         if (!options.rules_path.empty()) {
+             tables.rules = load_rules(options.rules_path);
+         }
+         if (!options.phase_table_path.empty()) {
+             tables.phase = load_phase_table(options.phase_table_path);
+         }
+         return std::make_unique<InProcessLink>(std::move(tables));
      }},
     {"mps2",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {

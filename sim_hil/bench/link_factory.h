@@ -11,9 +11,10 @@ namespace quiesce {
 
 /// What the targets may need beyond their name; empty where the user gave none.
 struct LinkOptions {
-    std::string image_path;  ///< --image: ELF for an emulated target
-    std::string plugin_path; ///< --plugin: emulator plugin that counts instructions
-    std::string rules_path;  ///< --rules: rule table for the controller, host only
+    std::string image_path;       ///< --image: ELF for an emulated target
+    std::string plugin_path;      ///< --plugin: emulator plugin that counts instructions
+    std::string rules_path;       ///< --rules: rule table for the controller, host only
+    std::string phase_table_path; ///< --phase-table: table of pulses, host only
 };
 
 /// Throws InputError where the target is unknown (the message lists those known) or cannot start.

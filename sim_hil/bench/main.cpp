@@ -29,7 +29,8 @@ const Entry kCommands[] = {
      quiesce::cmd_replay},
     {"run",
      "--scenario FILE --law NAME [--plant FILE] [--set NAME=VALUE]... [--target T] [--image ELF] "
-     "[--plugin SO] [--rules FILE] [--seed N] [--noise-mg X] [--dt-us N] [--trace FILE] "
+     "[--plugin SO] [--rules FILE] [--phase-table FILE] [--seed N] [--noise-mg X] [--dt-us N] "
+     "[--trace FILE] "
      "[--columns NAME,NAME...] [--every N] [--repeat N]",
      quiesce::cmd_run},
     {"scenario-check", "FILE", quiesce::cmd_scenario_check},

@@ -52,7 +52,8 @@ const std::vector<std::string> &run_option_names() {
 }
 
 const std::vector<std::string> &target_option_names() {
-    static const std::vector<std::string> names = {"target", "image", "plugin", "rules"};
+    static const std::vector<std::string> names = {"target", "image", "plugin", "rules",
+                                                   "phase-table"};
     return names;
 }
 
@@ -94,9 +95,9 @@ RunSetup run_setup(const Arguments &arguments) {
 }
 
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {
-    const LinkOptions link_options = {arguments.text("image").value_or(""),
-                                      arguments.text("plugin").value_or(""),
-                                      arguments.text("rules").value_or("")};
+    const LinkOptions link_options = {
+        arguments.text("image").value_or(""), arguments.text("plugin").value_or(""),
+        arguments.text("rules").value_or(""), arguments.text("phase-table").value_or("")};
     return make_link(arguments.text("target").value_or("host"), link_options);
 }
 

@@ -4,6 +4,6 @@
 #include <stdint.h>
 
 /// For phase_table_check(): the words of a phase_table_t.
-extern const uint32_t phase_squeeze_2012_table[119];
+extern const uint32_t phase_squeeze_2012_table[157];
 
 #endif

@@ -6,9 +6,9 @@ floor_mA. Between points the firmware interpolates all four linearly, the centre
 round; outside the first and last point it uses those.
 
 Words (uint32): magic; CRC-32 of all words after it as little-endian bytes; number of words; points
-of the first setting | points of the second << 16; unlock_current_mA; then three for each point:
+of the first setting | points of the second << 16; unlock_current_mA; then four for each point:
 freq_mHz | level_mA << 16, centre | width << 16 in 1/65536 of half a turn (a width of 65535 is all
-of it), floor_mA | accel weight << 16 in 1/256.
+of it), floor_mA | accel weight << 16 in 1/256, accel shape in 1/16384.
 """
 
 import struct
@@ -27,7 +27,7 @@ VERSION = 1
 SETTINGS = ("displacement", "balanced")
 MAGIC = 0x31485051  # "QPH1"
 HEADER_WORDS = 5
-POINT_WORDS = 3
+POINT_WORDS = 4
 FEWEST_POINTS, MOST_POINTS = 2, 64
 MOST_MA = 65_000
 HALF_TURN = 65_536
@@ -42,8 +42,10 @@ class Point:
     width_deg: float  # 0 .. 180; 180: level throughout
     level_mA: int
     floor_mA: int  # 0 .. level_mA
-    accel_weight: float = 0.0  # of relative RMS acceleration against relative displacement, where
-    # the firmware adapts the pulse
+    # Where the firmware adapts the pulse: what RMS acceleration counts against displacement, once
+    # RMS acceleration / (half peak-to-peak displacement x (2 pi f)^2) is above accel_shape.
+    accel_weight: float = 0.0
+    accel_shape: float = 0.0  # 0 .. below 4; 0.707 is a sine
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ ALLOWED = {
     "level_mA": (0, MOST_MA, "mA"),
     "floor_mA": (0, MOST_MA, "mA"),
     "accel_weight": (0.0, 255.0, ""),
+    "accel_shape": (0.0, 3.9999, ""),
 }
 
 
@@ -115,7 +118,8 @@ class _Reader:
 
     def point(self, table: Any, key: str) -> Point:
         names = [field.name for field in fields(Point)]
-        table = {"accel_weight": 0.0, **self.known(table, names, key, ("accel_weight",))}
+        defaults = {"accel_weight": 0.0, "accel_shape": 0.0}
+        table = {**defaults, **self.known(table, names, key, tuple(defaults))}
         point = Point(*(self.number(table[n], f"{key}.{n}", *ALLOWED[n]) for n in names))
         if point.floor_mA > point.level_mA:
             raise self.fail(f"{key}.floor_mA", f"{point.floor_mA}", f"0 .. {point.level_mA} mA")
@@ -187,7 +191,8 @@ def _point_text(point: Point) -> str:
     return (
         f"{{ freq_Hz = {point.freq_Hz:.3f}, centre_deg = {point.centre_deg:.2f}, "
         f"width_deg = {point.width_deg:.2f}, level_mA = {point.level_mA}, "
-        f"floor_mA = {point.floor_mA}, accel_weight = {point.accel_weight:.3f} }}"
+        f"floor_mA = {point.floor_mA}, accel_weight = {point.accel_weight:.3f}, "
+        f"accel_shape = {point.accel_shape:.4f} }}"
     )
 
 
@@ -214,13 +219,14 @@ def law_bytes(law: PhaseLaw) -> bytes:
     return struct.pack(f"<{len(words)}I", *words)
 
 
-def _point_words(point: Point) -> tuple[int, int, int]:
+def _point_words(point: Point) -> tuple[int, ...]:
     centre = round(point.centre_deg / 180.0 * HALF_TURN) % HALF_TURN
     width = min(round(point.width_deg / 180.0 * HALF_TURN), HALF_TURN - 1)
     return (
         round(1e3 * point.freq_Hz) | point.level_mA << 16,
         centre | width << 16,
         point.floor_mA | round(256 * point.accel_weight) << 16,
+        round(16384 * point.accel_shape),
     )
 
 
