@@ -154,8 +154,8 @@ bool PeriodicOrbit::newton_step() {
     const Eigen::Index states = start_.size();
     const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(states, states) - monodromy().end;
     const Eigen::VectorXd step = left.partialPivLu().solve(period_.end - start_);
-    for (double part = 1.0; part > 0.05; part *= 0.5) {
-        const Eigen::VectorXd start = start_ + part * step;
+    for (int halvings = 0; halvings < 5; ++halvings) {
+        const Eigen::VectorXd start = start_ + std::ldexp(1.0, -halvings) * step;
         const Period trial = run(start);
         if (relative(trial.end - start) < residual_) {
             take(start, trial);

@@ -70,6 +70,7 @@ typedef struct {
 /// Any pointer but figures may be NULL. grid: quiesce_orbit_grid of the case.
 typedef struct {
     quiesce_orbit_figures figures;
+    double *start; ///< [state count] at theta = 0: a first guess (first NaN: none), then the answer
     double *disp_m;      ///< [grid] at theta = 2 pi k / grid
     double *accel_m_s2;  ///< [grid]
     double *coil_A;      ///< [grid]
@@ -82,10 +83,9 @@ typedef struct {
 size_t quiesce_orbit_grid(const quiesce_plant *plant, const quiesce_orbit_case *orbit_case);
 size_t quiesce_orbit_state_count(const quiesce_plant *plant);
 
-/// Finds the orbit for command_A [intervals], each 0 .. max_current_A. start [state count]: the
-/// state at theta = 0, a first guess (NaN in its first element: none) and then the answer; or NULL.
+/// Finds the orbit for command_A [intervals], each 0 .. max_current_A.
 int quiesce_orbit_solve(const quiesce_plant *plant, const quiesce_orbit_case *orbit_case,
-                        const double *command_A, double *start, quiesce_orbit *orbit, char *error,
+                        const double *command_A, quiesce_orbit *orbit, char *error,
                         size_t error_size);
 
 #ifdef __cplusplus

@@ -117,15 +117,15 @@ std::size_t quiesce_orbit_state_count(const quiesce_plant *plant) {
 }
 
 int quiesce_orbit_solve(const quiesce_plant *plant, const quiesce_orbit_case *orbit_case,
-                        const double *command_A, double *start, quiesce_orbit *orbit, char *error,
+                        const double *command_A, quiesce_orbit *orbit, char *error,
                         std::size_t error_size) {
     const auto work = [&] {
         check(*plant, *orbit_case, command_A);
         PeriodicOrbit solver(plant->model, converted(*orbit_case));
-        const bool has_guess = start != nullptr && !std::isnan(start[0]);
-        solver.solve(command_A, has_guess ? start : nullptr);
+        const bool has_guess = orbit->start != nullptr && !std::isnan(orbit->start[0]);
+        solver.solve(command_A, has_guess ? orbit->start : nullptr);
         orbit->figures = figures_of(solver);
-        write(solver.start(), start);
+        write(solver.start(), orbit->start);
         write(solver.period().disp_m, orbit->disp_m);
         write(solver.period().accel_m_s2, orbit->accel_m_s2);
         write(coil_A(solver), orbit->coil_A);

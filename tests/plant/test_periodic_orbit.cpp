@@ -179,8 +179,8 @@ class PlantLibrary : public testing::Test {
         quiesce_orbit orbit{};
         const std::vector<double> commands_A(10, command_A);
         error_[0] = '\0';
-        const int status = quiesce_orbit_solve(plant_, &orbit_case, commands_A.data(), nullptr,
-                                               &orbit, error_, sizeof error_);
+        const int status = quiesce_orbit_solve(plant_, &orbit_case, commands_A.data(), &orbit,
+                                               error_, sizeof error_);
         EXPECT_EQ(status, 1);
         return error_;
     }
@@ -212,9 +212,9 @@ TEST_F(PlantLibrary, figures_follow_from_the_waveforms) {
     quiesce_orbit orbit{};
     orbit.disp_m = disp_m.data();
     orbit.coil_A = coil_A.data();
-    ASSERT_EQ(quiesce_orbit_solve(plant_, &orbit_case, command_A.data(), nullptr, &orbit, error_,
-                                  sizeof error_),
-              0);
+    ASSERT_EQ(
+        quiesce_orbit_solve(plant_, &orbit_case, command_A.data(), &orbit, error_, sizeof error_),
+        0);
     // Without current the plant is linear: a sine of the amplitude that docs/plant.md tells.
     EXPECT_NEAR(1e6 * orbit.figures.amp_m, 151.3, 0.1);
     EXPECT_NEAR(orbit.figures.amp_m, orbit.figures.disp_fundamental_m, 1e-4 * 151e-6);

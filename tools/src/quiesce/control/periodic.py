@@ -47,6 +47,7 @@ class _Figures(ctypes.Structure):
 class _Orbit(ctypes.Structure):
     _fields_ = [
         ("figures", _Figures),
+        ("start", POINTER(c_double)),
         ("disp_m", POINTER(c_double)),
         ("accel_m_s2", POINTER(c_double)),
         ("coil_A", POINTER(c_double)),
@@ -65,7 +66,6 @@ def _periodic_library() -> Any:
     lib.quiesce_orbit_solve.argtypes = [
         c_void_p,
         POINTER(_Case),
-        POINTER(c_double),
         POINTER(c_double),
         POINTER(_Orbit),
         c_char_p,
@@ -133,13 +133,12 @@ def solve(
     state = np.full(states, np.nan) if start is None else np.array(start, dtype=np.float64)
     waves = np.empty((3, grid))
     slopes = np.empty((2, grid, len(command))) if sensitive else None
-    out = _Orbit(_Figures(), *map(_pointer, waves), *_slope_pointers(slopes))
+    out = _Orbit(_Figures(), _pointer(state), *map(_pointer, waves), *_slope_pointers(slopes))
     call(
         lib.quiesce_orbit_solve,
         drive.plant.handle,
         ctypes.byref(case),
         _pointer(command),
-        _pointer(state),
         ctypes.byref(out),
     )
     return _orbit(out.figures, state, waves, slopes)
