@@ -200,7 +200,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     args = parser.parse_args()
     cases = robust_cases(args.plant) if args.robustness else nominal_cases(args.plant)
-    words = f"python -m quiesce.control.bound_store {args.out.name}"
+    words = f"python -m quiesce.control.bound_store docs/bounds/{args.out.name}"
     words += " --robustness" if args.robustness else ""
     compute_all(BoundStore(args.out, words), cases, args.workers)
 
