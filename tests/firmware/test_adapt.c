@@ -1,0 +1,583 @@
+#include "adapt.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "test_signal.h"
+#include "unity.h"
+
+// A vibration of 20 ticks a half cycle whose reach and RMS acceleration depend on the trim, each
+// least at a place of its own, and follow it by half of the rest a half cycle.
+
+enum {
+    HALF_TICKS = 20,
+    SETTLE_TICKS = 200,
+    MEASURE_TICKS = 100,
+    TRIAL_TICKS = 2 * (SETTLE_TICKS + MEASURE_TICKS + 2 * HALF_TICKS + 40), // at most
+    WHOLE_ppm = 1000000,
+    DEGREE_q16 = 364,
+};
+
+typedef struct {
+    int32_t best[ADAPT_COORDINATES];
+    int32_t rise_ppm[ADAPT_COORDINATES]; // a limit away from there
+} bowl_t;
+
+typedef struct {
+    bowl_t reach;
+    bowl_t rms;
+    int32_t third_ppm;      // amplitude of the third harmonic, in antiphase, a limit of ON_EDGE on
+    int32_t excitation_ppm; // of both
+    int32_t drift_ppm;      // of that, a half cycle
+    int32_t noise_ppm;      // of a half cycle
+    int32_t now_reach_ppm;  // follows
+    int32_t now_rms_ppm;
+    int32_t now_third_ppm;
+    uint32_t seed;
+    uint32_t ticks;
+    adapt_trim_t trim; // of this half cycle
+} plant_t;
+
+static const adapt_cfg_t cfg = {
+    .start_ticks = 400,
+    .settle_ticks = SETTLE_TICKS,
+    .measure_ticks = MEASURE_TICKS,
+    .rest_ticks = 3000,
+    .edge_limit_q16 = 45 * DEGREE_q16,
+    .level_limit_q15 = 16384,
+};
+
+static adapt_t adapt;
+static adapt_in_t in;
+static plant_t plant;
+static uint32_t part_q16;
+
+void setUp(void) {
+    adapt_init(&adapt, &cfg);
+    in = (adapt_in_t){.may_try = true, .freq_mHz = 10000, .index = 3};
+    part_q16 = 20000;
+    plant = (plant_t){
+        .excitation_ppm = WHOLE_ppm,
+        .now_reach_ppm = WHOLE_ppm,
+        .now_rms_ppm = WHOLE_ppm,
+        .seed = 1,
+    };
+}
+void tearDown(void) {}
+
+static int32_t limit_of(uint32_t coordinate) {
+    return coordinate == ADAPT_LEVEL ? cfg.level_limit_q15 : cfg.edge_limit_q16;
+}
+
+static int32_t bowl_ppm(const bowl_t *bowl, const adapt_trim_t *trim) {
+    int64_t sum = WHOLE_ppm;
+    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
+        const int64_t off = trim->value[i] - bowl->best[i];
+        sum += bowl->rise_ppm[i] * off * off / ((int64_t)limit_of(i) * limit_of(i));
+    }
+    return (int32_t)sum;
+}
+
+// Half a cycle with these amplitudes: what harmonic_sums_take would have summed up.
+static harmonic_sums_t half_of(int64_t first, int64_t third, int64_t rms) {
+    return (harmonic_sums_t){
+        .ticks = HALF_TICKS,
+        .product = {first * HALF_TICKS * 16384, 0, third * HALF_TICKS * 16384, 0},
+        .square = (uint64_t)(rms * rms * HALF_TICKS) >> HARMONICS_SQUARE_SHIFT,
+    };
+}
+
+static harmonic_sums_t end_of_half(void) {
+    const int32_t third_ppm =
+        (int32_t)((int64_t)plant.third_ppm * plant.trim.value[ADAPT_ON_EDGE] / cfg.edge_limit_q16);
+    plant.now_reach_ppm += (bowl_ppm(&plant.reach, &plant.trim) - plant.now_reach_ppm) / 2;
+    plant.now_rms_ppm += (bowl_ppm(&plant.rms, &plant.trim) - plant.now_rms_ppm) / 2;
+    plant.now_third_ppm += (third_ppm - plant.now_third_ppm) / 2;
+    plant.excitation_ppm += plant.drift_ppm;
+    const int64_t noise_ppm = WHOLE_ppm + signal_noise(&plant.seed, plant.noise_ppm);
+    const int64_t scale_ppm = plant.excitation_ppm * noise_ppm / WHOLE_ppm;
+    return half_of(plant.now_reach_ppm * scale_ppm / WHOLE_ppm,
+                   plant.now_third_ppm * scale_ppm / WHOLE_ppm,
+                   plant.now_rms_ppm * scale_ppm / WHOLE_ppm);
+}
+
+static void tick(void) {
+    plant.ticks++;
+    if (plant.ticks % HALF_TICKS == 0) {
+        const harmonic_sums_t half = end_of_half();
+        in.half = &half;
+        adapt_step(&adapt, &in);
+        plant.trim = adapt_trim_at(&adapt, in.index, part_q16);
+    } else {
+        in.half = NULL;
+        adapt_step(&adapt, &in);
+    }
+}
+
+static void run(uint32_t ticks) {
+    for (; ticks > 0; ticks--) {
+        tick();
+    }
+}
+
+static bool run_until(adapt_state_t state, uint32_t most_ticks) {
+    for (; adapt.state != state && most_ticks > 0; most_ticks--) {
+        tick();
+    }
+    return adapt.state == state;
+}
+
+static const adapt_trim_t *learnt(void) {
+    return &adapt.trim[in.index];
+}
+
+static void assert_nothing_learnt(void) {
+    TEST_ASSERT_EQUAL_UINT32(0, adapt.gains);
+    for (uint32_t i = 0; i < ADAPT_POINTS; i++) {
+        for (uint32_t k = 0; k < ADAPT_COORDINATES; k++) {
+            TEST_ASSERT_EQUAL_INT16(0, adapt.trim[i].value[k]);
+        }
+    }
+}
+
+// --- search
+
+static void assert_converges(int32_t on, int32_t off, int32_t level) {
+    setUp();
+    plant.reach = (bowl_t){{on, off, level}, {200000, 150000, 100000}};
+    plant.noise_ppm = 400;
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    adapt_trim_t best;
+    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
+        best.value[i] = (int16_t)clamp_i32(plant.reach.best[i], -limit_of(i),
+                                           i == ADAPT_LEVEL ? 0 : limit_of(i));
+    }
+    TEST_ASSERT_TRUE(adapt_is_allowed(&cfg, learnt()));
+    TEST_ASSERT_LESS_OR_EQUAL_INT32(bowl_ppm(&plant.reach, &best) + 10000,
+                                    bowl_ppm(&plant.reach, learnt()));
+}
+
+static void test_adapt_converges_to_the_best_inside_its_limits(void) {
+    assert_converges(0, 0, 0);
+    assert_converges(30 * DEGREE_q16, -20 * DEGREE_q16, -8000);
+    assert_converges(-40 * DEGREE_q16, -40 * DEGREE_q16, 0);
+    assert_converges(10 * DEGREE_q16, 44 * DEGREE_q16, -16000);
+}
+
+static void test_adapt_converges_to_the_limits_where_the_best_is_beyond(void) {
+    assert_converges(60 * DEGREE_q16, -70 * DEGREE_q16, 16000);
+    assert_converges(-80 * DEGREE_q16, 70 * DEGREE_q16, -30000);
+}
+
+static void test_adapt_rests_with_nothing_learnt_where_nothing_is_to_gain(void) {
+    plant.noise_ppm = 800;
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 60 * TRIAL_TICKS));
+    assert_nothing_learnt();
+    TEST_ASSERT_GREATER_THAN_UINT32(0, adapt.trials);
+}
+
+static void test_adapt_rests_as_long_as_told_then_tries_again(void) {
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 60 * TRIAL_TICKS));
+    const uint32_t trials = adapt.trials;
+    for (uint32_t i = 0; i < cfg.rest_ticks; i++) {
+        tick();
+        TEST_ASSERT_EQUAL(ADAPT_RESTING, adapt.state);
+    }
+    run(3 * TRIAL_TICKS);
+    TEST_ASSERT_GREATER_THAN_UINT32(trials, adapt.trials);
+}
+
+// The plant changes; so does what is learnt.
+static void test_adapt_follows_a_plant_that_changes_while_it_rests(void) {
+    plant.reach = (bowl_t){{20 * DEGREE_q16, 0, 0}, {200000, 150000, 100000}};
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    plant.reach.best[ADAPT_ON_EDGE] = -10 * DEGREE_q16;
+    run(cfg.rest_ticks + 100);
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    TEST_ASSERT_INT32_WITHIN(8 * DEGREE_q16, -10 * DEGREE_q16, learnt()->value[ADAPT_ON_EDGE]);
+}
+
+static void test_adapt_waits_for_a_vibration_that_lasts(void) {
+    run(cfg.start_ticks + MEASURE_TICKS);
+    TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
+    run(100);
+    TEST_ASSERT_EQUAL(ADAPT_TRYING, adapt.state);
+}
+
+// A third harmonic that lowers the peak counts for more than the fundamental that it raises.
+static void test_adapt_looks_at_the_peak_rather_than_the_fundamental(void) {
+    plant.reach = (bowl_t){{-cfg.edge_limit_q16, 0, 0}, {20000, 0, 0}};
+    plant.now_reach_ppm = bowl_ppm(&plant.reach, &plant.trim);
+    plant.third_ppm = -2 * WHOLE_ppm; // a ninth of it: 22 % lower a limit on, 6 % higher
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    TEST_ASSERT_GREATER_THAN_INT32(20 * DEGREE_q16, learnt()->value[ADAPT_ON_EDGE]);
+}
+
+static void test_adapt_measures_reach_and_rms(void) {
+    plant.reach = (bowl_t){{0}, {0}};
+    plant.rms = (bowl_t){{cfg.edge_limit_q16, 0, 0}, {500000, 0, 0}};
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 2 * TRIAL_TICKS));
+    TEST_ASSERT_UINT32_WITHIN(2000, WHOLE_ppm, adapt.before.reach_um_s2);
+    TEST_ASSERT_UINT32_WITHIN(3000, 1500000, adapt.before.rms_um_s2);
+}
+
+// --- goals: reach wants 20 degrees later, acceleration 20 degrees sooner
+
+static int32_t on_edge_with(uint32_t weight_q8, uint32_t shape_q14) {
+    setUp();
+    plant.reach = (bowl_t){{20 * DEGREE_q16, 0, 0}, {300000, 100000, 100000}};
+    plant.rms = (bowl_t){{-20 * DEGREE_q16, 0, 0}, {300000, 100000, 100000}};
+    in.goal = (adapt_goal_t){weight_q8, shape_q14};
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    return learnt()->value[ADAPT_ON_EDGE] / DEGREE_q16;
+}
+
+static void test_adapt_weighs_acceleration(void) {
+    TEST_ASSERT_INT32_WITHIN(5, 20, on_edge_with(0, 0));
+    TEST_ASSERT_INT32_WITHIN(5, 0, on_edge_with(256, 0));
+    TEST_ASSERT_INT32_WITHIN(5, -15, on_edge_with(7 * 256, 0)); // (20 - 7 x 20) / 8
+}
+
+// RMS over reach is 1 at no trim: twice that is free, half of it is not.
+static void test_adapt_lets_acceleration_go_up_to_its_shape(void) {
+    TEST_ASSERT_INT32_WITHIN(5, 20, on_edge_with(7 * 256, 2 << 14));
+    TEST_ASSERT_LESS_THAN_INT32(5, on_edge_with(7 * 256, 1 << 13));
+    // At no trim it is all that is free: later is reach's gain, but more acceleration.
+    TEST_ASSERT_INT32_WITHIN(4, 0, on_edge_with(20 * 256, 1 << 14));
+}
+
+// --- what must not be learnt
+
+static void test_adapt_does_not_learn_a_drift_of_the_excitation(void) {
+    const int32_t drifts_ppm[] = {-100, -400, -1000, -3000, 100, 400, 1000, 3000};
+    for (uint32_t i = 0; i < sizeof drifts_ppm / sizeof drifts_ppm[0]; i++) {
+        setUp();
+        // A seventh of it, at the end.
+        const uint32_t cycles = 850000u / (uint32_t)abs_i32(drifts_ppm[i]);
+        plant.drift_ppm = drifts_ppm[i];
+        run((cycles < 1000u ? cycles : 1000u) * HALF_TICKS);
+        TEST_ASSERT_GREATER_THAN_UINT32(0, adapt.trials);
+        assert_nothing_learnt();
+    }
+}
+
+// Of any size, at any time of a trial.
+static void test_adapt_does_not_learn_a_step_of_the_excitation(void) {
+    const int32_t steps_ppm[] = {-500000, -50000, -21000, -15000, -3000, 3000, 15000, 50000};
+    for (uint32_t i = 0; i < sizeof steps_ppm / sizeof steps_ppm[0]; i++) {
+        for (uint32_t when = 0; when < TRIAL_TICKS; when += 3u * HALF_TICKS) {
+            setUp();
+            TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 3 * TRIAL_TICKS));
+            run(when);
+            plant.excitation_ppm += steps_ppm[i];
+            run(2 * TRIAL_TICKS);
+            assert_nothing_learnt();
+        }
+    }
+}
+
+// Thrown away means that the same trial is made once more: the direction was not to blame.
+static void test_adapt_repeats_a_trial_that_was_disturbed(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
+    plant.now_reach_ppm = bowl_ppm(&plant.reach, &plant.trim);
+    TEST_ASSERT_TRUE(run_until(ADAPT_CHECKING, 3 * TRIAL_TICKS));
+    plant.excitation_ppm += 60000;
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
+    assert_nothing_learnt();
+    TEST_ASSERT_EQUAL_UINT32(1, adapt.trials);
+    const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
+    TEST_ASSERT_GREATER_THAN_INT32(0, tried.value[ADAPT_ON_EDGE]);
+    run(2 * TRIAL_TICKS);
+    TEST_ASSERT_GREATER_THAN_INT32(0, learnt()->value[ADAPT_ON_EDGE]);
+}
+
+// --- giving up
+
+static void learn_something(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, -30 * DEGREE_q16, -9000}, {300000, 300000, 300000}};
+    while (adapt.gains < 4u) {
+        tick();
+    }
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
+}
+
+static void assert_trial_is_undone(const adapt_trim_t *before) {
+    TEST_ASSERT_EQUAL_MEMORY(before, adapt.trim, sizeof adapt.trim);
+    const adapt_trim_t now = adapt_trim_at(&adapt, in.index, part_q16);
+    TEST_ASSERT_EQUAL_INT16_ARRAY(learnt()->value, now.value, ADAPT_COORDINATES);
+}
+
+static void test_adapt_trial_changes_one_thing(void) {
+    learn_something();
+    const adapt_trim_t now = adapt_trim_at(&adapt, in.index, part_q16);
+    uint32_t changed = 0;
+    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
+        changed += now.value[i] != learnt()->value[i] ? 1u : 0u;
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, changed);
+}
+
+static void test_adapt_fault_keeps_what_was_learnt_and_undoes_the_trial(void) {
+    learn_something();
+    adapt_trim_t before[ADAPT_POINTS];
+    memcpy(before, adapt.trim, sizeof before);
+    in.may_try = false;
+    tick();
+    TEST_ASSERT_EQUAL(ADAPT_WAITING, adapt.state);
+    assert_trial_is_undone(before);
+    plant.excitation_ppm /= 3;
+    run(20 * TRIAL_TICKS);
+    TEST_ASSERT_EQUAL(ADAPT_WAITING, adapt.state);
+    assert_trial_is_undone(before);
+    in.may_try = true;
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    TEST_ASSERT_LESS_THAN_INT32(WHOLE_ppm + 10000, bowl_ppm(&plant.reach, learnt()));
+}
+
+static void test_adapt_pause_in_any_state_undoes_the_trial(void) {
+    for (uint32_t ticks = 0; ticks < TRIAL_TICKS; ticks += 37u) {
+        setUp();
+        learn_something();
+        run(ticks);
+        adapt_trim_t before[ADAPT_POINTS];
+        memcpy(before, adapt.trim, sizeof before);
+        adapt_pause(&adapt);
+        TEST_ASSERT_EQUAL(ADAPT_WAITING, adapt.state);
+        assert_trial_is_undone(before);
+    }
+}
+
+static void test_adapt_clear_forgets(void) {
+    learn_something();
+    adapt_clear(&adapt);
+    for (uint32_t i = 0; i < ADAPT_POINTS; i++) {
+        const adapt_trim_t zero = {{0}};
+        TEST_ASSERT_EQUAL_INT16_ARRAY(zero.value, adapt.trim[i].value, ADAPT_COORDINATES);
+    }
+    const adapt_trim_t now = adapt_trim_at(&adapt, in.index, part_q16);
+    TEST_ASSERT_EQUAL_INT16(0, now.value[ADAPT_ON_EDGE]);
+    TEST_ASSERT_EQUAL(ADAPT_WAITING, adapt.state);
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    TEST_ASSERT_LESS_THAN_INT32(WHOLE_ppm + 10000, bowl_ppm(&plant.reach, learnt()));
+}
+
+// --- frequency
+
+static void test_adapt_gives_up_where_the_frequency_moves_by_2_percent(void) {
+    for (int32_t sign = -1; sign <= 1; sign += 2) {
+        setUp();
+        learn_something();
+        adapt_trim_t before[ADAPT_POINTS];
+        memcpy(before, adapt.trim, sizeof before);
+        const uint32_t trials = adapt.trials;
+        in.freq_mHz = (uint32_t)(10000 + sign * 200);
+        tick();
+        TEST_ASSERT_EQUAL(ADAPT_TRYING, adapt.state);
+        in.freq_mHz = (uint32_t)(10000 + sign * 201);
+        tick();
+        TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
+        assert_trial_is_undone(before);
+        TEST_ASSERT_EQUAL_UINT32(trials, adapt.trials);
+        run(cfg.start_ticks); // it must last anew
+        TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
+        TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
+    }
+}
+
+// Hops between two frequencies, faster than a trial takes.
+static void test_adapt_does_not_learn_while_the_frequency_hops(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {300000, 0, 0}};
+    for (uint32_t i = 0; i < 60u; i++) {
+        in.freq_mHz = i % 2u == 0 ? 5000 : 20000;
+        in.index = i % 2u == 0 ? 1 : 9;
+        run(TRIAL_TICKS / 2);
+    }
+    assert_nothing_learnt();
+}
+
+static void test_adapt_learns_each_frequency_by_itself(void) {
+    learn_something();
+    const adapt_trim_t first = *learnt();
+    in.index = 20;
+    in.freq_mHz = 20000;
+    plant.reach = (bowl_t){{-30 * DEGREE_q16, 0, 0}, {300000, 100000, 100000}};
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    TEST_ASSERT_EQUAL_INT16_ARRAY(first.value, adapt.trim[3].value, ADAPT_COORDINATES);
+    TEST_ASSERT_EQUAL_INT16_ARRAY(first.value, adapt.trim[4].value, ADAPT_COORDINATES);
+    TEST_ASSERT_LESS_THAN_INT32(-20 * DEGREE_q16, adapt.trim[20].value[ADAPT_ON_EDGE]);
+    TEST_ASSERT_LESS_THAN_INT32(-20 * DEGREE_q16, adapt.trim[21].value[ADAPT_ON_EDGE]);
+    for (uint32_t i = 0; i < ADAPT_POINTS; i++) {
+        if (i != 3u && i != 4u && i != 20u && i != 21u) {
+            TEST_ASSERT_EQUAL_INT16(0, adapt.trim[i].value[ADAPT_ON_EDGE]);
+        }
+    }
+}
+
+// The very ends of the largest table.
+static void test_adapt_learns_at_the_last_points(void) {
+    const uint32_t ends[] = {0, ADAPT_POINTS - 2u};
+    for (uint32_t i = 0; i < 2u; i++) {
+        setUp();
+        in.index = ends[i];
+        part_q16 = 65536u * i;
+        learn_something();
+        TEST_ASSERT_NOT_EQUAL(0, adapt.trim[ends[i]].value[ADAPT_ON_EDGE]);
+        TEST_ASSERT_EQUAL_INT16(adapt.trim[ends[i]].value[ADAPT_ON_EDGE],
+                                adapt.trim[ends[i] + 1u].value[ADAPT_ON_EDGE]);
+    }
+}
+
+static void test_adapt_trim_between_points(void) {
+    adapt.trim[5] = (adapt_trim_t){{1000, -16000, -300}};
+    adapt.trim[6] = (adapt_trim_t){{-1000, 16000, 0}};
+    const struct {
+        uint32_t part_q16;
+        int32_t expected[ADAPT_COORDINATES];
+    } rows[] = {
+        {0, {1000, -16000, -300}},
+        {32768, {0, 0, -150}},
+        {49152, {-500, 8000, -75}},
+        {65536, {-1000, 16000, 0}},
+    };
+    for (uint32_t i = 0; i < 4u; i++) {
+        const adapt_trim_t trim = adapt_trim_at(&adapt, 5, rows[i].part_q16);
+        for (uint32_t k = 0; k < ADAPT_COORDINATES; k++) {
+            TEST_ASSERT_INT32_WITHIN(1, rows[i].expected[k], trim.value[k]);
+        }
+    }
+}
+
+// --- limits
+
+static void test_adapt_allows_what_lies_within_the_limits(void) {
+    const int16_t edge = (int16_t)cfg.edge_limit_q16;
+    const int16_t level = (int16_t)cfg.level_limit_q15;
+    const struct {
+        bool is_allowed;
+        adapt_trim_t trim;
+    } rows[] = {
+        {true, {{0, 0, 0}}},
+        {true, {{edge, (int16_t)-edge, (int16_t)-level}}},
+        {false, {{(int16_t)(edge + 1), 0, 0}}},
+        {false, {{(int16_t)(-edge - 1), 0, 0}}},
+        {false, {{0, (int16_t)(edge + 1), 0}}},
+        {false, {{0, 0, 1}}},
+        {false, {{0, 0, (int16_t)(-level - 1)}}},
+        {false, {{INT16_MIN, INT16_MIN, INT16_MIN}}},
+    };
+    for (uint32_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        TEST_ASSERT_EQUAL(rows[i].is_allowed, adapt_is_allowed(&cfg, &rows[i].trim));
+    }
+}
+
+static void test_adapt_with_limits_of_zero_learns_nothing(void) {
+    adapt_cfg_t none = cfg;
+    none.edge_limit_q16 = 0;
+    none.level_limit_q15 = 0;
+    adapt_init(&adapt, &none);
+    plant.reach = (bowl_t){{30 * DEGREE_q16, -30 * DEGREE_q16, -9000}, {300000, 300000, 300000}};
+    run(30 * TRIAL_TICKS);
+    assert_nothing_learnt();
+    const adapt_trim_t now = adapt_trim_at(&adapt, in.index, part_q16);
+    TEST_ASSERT_TRUE(adapt_is_allowed(&none, &now));
+}
+
+// Anything at all, or a tone that is now and then a little lower: a gain.
+static harmonic_sums_t any_half(uint32_t *seed) {
+    const uint32_t kind = (uint32_t)abs_i32(signal_noise(seed, 63));
+    const int64_t large = INT64_C(1) << kind % 30u;
+    if (kind < 60u) {
+        return half_of((1 << 20) - (kind < 30u ? 1 << 14 : 0), 0, 1 << 20);
+    }
+    harmonic_sums_t half = {.ticks = 1u + kind * 64u};
+    half.square = (uint64_t)(large * large >> 12) * half.ticks;
+    for (uint32_t i = 0; i < HARMONIC_PRODUCTS; i++) {
+        half.product[i] = (large * half.ticks >> 10) * signal_noise(seed, 1 << 25);
+    }
+    return half;
+}
+
+static adapt_in_t any_input(uint32_t *seed, const harmonic_sums_t *half) {
+    const uint32_t change = (uint32_t)abs_i32(signal_noise(seed, 1000));
+    return (adapt_in_t){
+        .may_try = change > 1u,
+        .freq_mHz = change < 5u ? change * 13000u : 10000u,
+        .index = change < 20u ? change * 3u : ADAPT_POINTS - 2u,
+        .goal = {change < 500u ? 65535u : 256u, change < 700u ? 65535u : 0u},
+        .half = change % 3u != 0 ? half : NULL,
+    };
+}
+
+static void assert_within_limits(const adapt_cfg_t *limits, uint32_t index) {
+    for (uint32_t i = 0; i < ADAPT_POINTS; i++) {
+        TEST_ASSERT_TRUE(adapt_is_allowed(limits, &adapt.trim[i]));
+    }
+    for (uint32_t part = 0; part <= 65536u; part += 16384u) {
+        const adapt_trim_t trim = adapt_trim_at(&adapt, index, part);
+        TEST_ASSERT_TRUE(adapt_is_allowed(limits, &trim));
+    }
+}
+
+static void test_adapt_stays_within_its_limits_whatever_it_sees(void) {
+    const adapt_cfg_t quick[] = {
+        {0, 0, 1, 0, 16384, 16384},
+        {3, 1, 10, 2, 32767, 31129}, // 90 degrees and 95 %
+        {0, 2, 1, 5, 1, 1},
+    };
+    uint32_t seed = 3;
+    uint32_t gains = 0;
+    for (uint32_t k = 0; k < 3u; k++) {
+        adapt_init(&adapt, &quick[k]);
+        for (uint32_t i = 0; i < 20000u; i++) {
+            const harmonic_sums_t half = any_half(&seed);
+            const adapt_in_t now = any_input(&seed, &half);
+            adapt_step(&adapt, &now);
+            if (i % 16u == 0) {
+                assert_within_limits(&quick[k], now.index);
+            }
+        }
+        gains += adapt.gains;
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(20, gains);
+}
+
+static void test_adapt_counters_saturate(void) {
+    adapt.trials = UINT32_MAX - 1u;
+    adapt.gains = UINT32_MAX - 1u;
+    learn_something(); // by now above four: ends at once
+    plant.now_reach_ppm = WHOLE_ppm;
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, adapt.trials);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, adapt.gains);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_adapt_converges_to_the_best_inside_its_limits);
+    RUN_TEST(test_adapt_converges_to_the_limits_where_the_best_is_beyond);
+    RUN_TEST(test_adapt_rests_with_nothing_learnt_where_nothing_is_to_gain);
+    RUN_TEST(test_adapt_rests_as_long_as_told_then_tries_again);
+    RUN_TEST(test_adapt_follows_a_plant_that_changes_while_it_rests);
+    RUN_TEST(test_adapt_waits_for_a_vibration_that_lasts);
+    RUN_TEST(test_adapt_looks_at_the_peak_rather_than_the_fundamental);
+    RUN_TEST(test_adapt_measures_reach_and_rms);
+    RUN_TEST(test_adapt_weighs_acceleration);
+    RUN_TEST(test_adapt_lets_acceleration_go_up_to_its_shape);
+    RUN_TEST(test_adapt_does_not_learn_a_drift_of_the_excitation);
+    RUN_TEST(test_adapt_does_not_learn_a_step_of_the_excitation);
+    RUN_TEST(test_adapt_repeats_a_trial_that_was_disturbed);
+    RUN_TEST(test_adapt_trial_changes_one_thing);
+    RUN_TEST(test_adapt_fault_keeps_what_was_learnt_and_undoes_the_trial);
+    RUN_TEST(test_adapt_pause_in_any_state_undoes_the_trial);
+    RUN_TEST(test_adapt_clear_forgets);
+    RUN_TEST(test_adapt_gives_up_where_the_frequency_moves_by_2_percent);
+    RUN_TEST(test_adapt_does_not_learn_while_the_frequency_hops);
+    RUN_TEST(test_adapt_learns_each_frequency_by_itself);
+    RUN_TEST(test_adapt_learns_at_the_last_points);
+    RUN_TEST(test_adapt_trim_between_points);
+    RUN_TEST(test_adapt_allows_what_lies_within_the_limits);
+    RUN_TEST(test_adapt_with_limits_of_zero_learns_nothing);
+    RUN_TEST(test_adapt_stays_within_its_limits_whatever_it_sees);
+    RUN_TEST(test_adapt_counters_saturate);
+    return UNITY_END();
+}
