@@ -221,6 +221,52 @@ static void test_adapt_measures_reach_and_rms(void) {
     TEST_ASSERT_UINT32_WITHIN(3000, 1500000, adapt.before.rms_um_s2);
 }
 
+// Half cycles with these components, the fundamental at first_deg.
+static harmonic_sums_t turned_half(uint32_t first_deg, uint32_t third_deg) {
+    const uint32_t degree_turn = 11930465; // a turn / 360
+    const uint32_t first_turn = first_deg * degree_turn;
+    const uint32_t third_turn = third_deg * degree_turn;
+    harmonic_sums_t half = half_of(0, 0, WHOLE_ppm);
+    const int64_t parts[HARMONIC_PRODUCTS] = {
+        signal_cosine(WHOLE_ppm, first_turn),
+        signal_cosine(WHOLE_ppm, first_turn - 90u * degree_turn),
+        signal_cosine(WHOLE_ppm, third_turn),
+        signal_cosine(WHOLE_ppm, third_turn - 90u * degree_turn),
+    };
+    for (uint32_t i = 0; i < HARMONIC_PRODUCTS; i++) {
+        half.product[i] = parts[i] * HALF_TICKS * 16384;
+    }
+    return half;
+}
+
+// cos(p) + cos(3 p + d) / 9, whatever the phase that it is told from: 1 + 1/9 at d = 0; at half a
+// turn cos(p) (12 - 4 cos(p)^2) / 9, 1 - 1/9; at a quarter by search.
+static void test_adapt_measures_the_same_reach_at_any_phase(void) {
+    const uint32_t expected[] = {1111111, 1044654, 888889, 1044654};
+    for (uint32_t turned = 0; turned < 360u; turned += 40u) {
+        for (uint32_t i = 0; i < 4u; i++) {
+            setUp();
+            const harmonic_sums_t half = turned_half(turned, (3u * turned + 90u * i) % 360u);
+            in.half = &half;
+            for (uint32_t k = 0; k < TRIAL_TICKS && adapt.state != ADAPT_TRYING; k++) {
+                adapt_step(&adapt, &in);
+            }
+            TEST_ASSERT_UINT32_WITHIN(5000, expected[i], adapt.before.reach_um_s2);
+        }
+    }
+}
+
+static void test_adapt_leaves_out_the_half_cycle_in_which_it_settled(void) {
+    for (uint32_t i = 0; i <= cfg.start_ticks; i++) {
+        adapt_step(&adapt, &in);
+    }
+    const harmonic_sums_t large = half_of(10 * WHOLE_ppm, 0, 10 * WHOLE_ppm);
+    in.half = &large;
+    adapt_step(&adapt, &in);
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
+    TEST_ASSERT_UINT32_WITHIN(2000, WHOLE_ppm, adapt.before.reach_um_s2);
+}
+
 // --- goals: reach wants 20 degrees later, acceleration 20 degrees sooner
 
 static int32_t on_edge_with(uint32_t weight_q8, uint32_t shape_q14) {
@@ -276,28 +322,33 @@ static void test_adapt_does_not_learn_a_step_of_the_excitation(void) {
     }
 }
 
-// Thrown away means that the same trial is made once more: the direction was not to blame.
+// A gain of a tenth, and an excitation that grows or falls by a twentieth meanwhile. Thrown away
+// means that the same trial is made once more: the direction was not to blame.
 static void test_adapt_repeats_a_trial_that_was_disturbed(void) {
-    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
-    plant.now_reach_ppm = bowl_ppm(&plant.reach, &plant.trim);
-    TEST_ASSERT_TRUE(run_until(ADAPT_CHECKING, 3 * TRIAL_TICKS));
-    plant.excitation_ppm += 60000;
-    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
-    assert_nothing_learnt();
-    TEST_ASSERT_EQUAL_UINT32(1, adapt.trials);
-    const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
-    TEST_ASSERT_GREATER_THAN_INT32(0, tried.value[ADAPT_ON_EDGE]);
-    run(2 * TRIAL_TICKS);
-    TEST_ASSERT_GREATER_THAN_INT32(0, learnt()->value[ADAPT_ON_EDGE]);
+    for (int32_t sign = -1; sign <= 1; sign += 2) {
+        setUp();
+        plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
+        plant.now_reach_ppm = bowl_ppm(&plant.reach, &plant.trim);
+        TEST_ASSERT_TRUE(run_until(ADAPT_CHECKING, 3 * TRIAL_TICKS));
+        plant.excitation_ppm += sign * 50000;
+        TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
+        assert_nothing_learnt();
+        TEST_ASSERT_EQUAL_UINT32(1, adapt.trials);
+        const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
+        TEST_ASSERT_GREATER_THAN_INT32(0, tried.value[ADAPT_ON_EDGE]);
+        run(2 * TRIAL_TICKS);
+        TEST_ASSERT_GREATER_THAN_INT32(0, learnt()->value[ADAPT_ON_EDGE]);
+    }
 }
 
 // --- giving up
 
 static void learn_something(void) {
     plant.reach = (bowl_t){{30 * DEGREE_q16, -30 * DEGREE_q16, -9000}, {300000, 300000, 300000}};
-    while (adapt.gains < 4u) {
+    for (uint32_t i = 0; i < 50u * TRIAL_TICKS && adapt.gains < 4u; i++) {
         tick();
     }
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(4, adapt.gains);
     TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
 }
 
@@ -561,6 +612,8 @@ int main(void) {
     RUN_TEST(test_adapt_waits_for_a_vibration_that_lasts);
     RUN_TEST(test_adapt_looks_at_the_peak_rather_than_the_fundamental);
     RUN_TEST(test_adapt_measures_reach_and_rms);
+    RUN_TEST(test_adapt_measures_the_same_reach_at_any_phase);
+    RUN_TEST(test_adapt_leaves_out_the_half_cycle_in_which_it_settled);
     RUN_TEST(test_adapt_weighs_acceleration);
     RUN_TEST(test_adapt_lets_acceleration_go_up_to_its_shape);
     RUN_TEST(test_adapt_does_not_learn_a_drift_of_the_excitation);
