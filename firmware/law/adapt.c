@@ -214,13 +214,13 @@ static bool work(adapt_t *self) {
     }
 }
 
-// Whole cycles, from the first one that began after the vibration had settled.
-static void collect(adapt_t *self, const harmonic_sums_t *cycle) {
+// Half cycles, from the first one that began after the vibration had settled.
+static void collect(adapt_t *self, const harmonic_sums_t *half) {
     if (!self->is_collecting) {
         self->is_collecting = true;
         return;
     }
-    harmonic_sums_add(&self->sums, cycle);
+    harmonic_sums_add(&self->sums, half);
     self->stage = self->sums.ticks >= self->cfg.measure_ticks ? 1u : 0u;
 }
 
@@ -230,8 +230,8 @@ static void measure(adapt_t *self, const adapt_in_t *in) {
             self->effect.reach_um_s2 = (uint32_t)self->span.largest;
             conclude(self, in->goal);
         }
-    } else if (in->cycle != NULL) {
-        collect(self, in->cycle);
+    } else if (in->half != NULL) {
+        collect(self, in->half);
     }
 }
 

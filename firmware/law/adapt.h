@@ -7,7 +7,7 @@
 ///
 /// where reach is half peak-to-peak displacement times (2 pi f)^2, from the fundamental and the
 /// third harmonic (the fundamental alone misleads: a sticking damper's optimum cuts the peak, not
-/// the fundamental) over whole cycles. Both are relative changes, so the unit does not matter and
+/// the fundamental) over half cycles. Both are relative changes, so the unit does not matter and
 /// neither does a calibration.
 ///
 /// What is learnt is kept for each point of the pulse table; it is bounded by adapt_cfg_t, and can
@@ -37,7 +37,7 @@ typedef struct {
 typedef struct {
     uint32_t start_ticks;   ///< that a vibration lasts before the first trial
     uint32_t settle_ticks;  ///< before a measurement
-    uint32_t measure_ticks; ///< at least so long, in whole cycles
+    uint32_t measure_ticks; ///< at least so long, in half cycles
     uint32_t rest_ticks;    ///< between trials once nothing is left to gain
     int32_t edge_limit_q16;
     int32_t level_limit_q15; ///< most that the level may be lowered
@@ -62,7 +62,7 @@ typedef struct {
     adapt_trim_t trim[ADAPT_POINTS]; ///< learnt
     adapt_state_t state;
     uint32_t ticks;       ///< left to settle or rest
-    bool is_collecting;   ///< whole cycles are added up
+    bool is_collecting;   ///< half cycles are added up
     harmonic_sums_t sums; ///< so far
     uint32_t stage;       ///< of the work on them, a division or a root a tick; 0: none
     harmonic_parts_t parts;
@@ -94,11 +94,11 @@ typedef struct {
 
 /// One tick's view of the vibration.
 typedef struct {
-    bool may_try; ///< locked, settled on, no fault, not frozen
+    bool may_try; ///< locked, frequency known, no fault, not frozen
     uint32_t freq_mHz;
     uint32_t index; ///< of the table's point below it
     adapt_goal_t goal;
-    const harmonic_sums_t *cycle; ///< of a cycle that ended in this tick, else NULL
+    const harmonic_sums_t *half; ///< of half a cycle that ended in this tick, else NULL
 } adapt_in_t;
 
 /// Nothing learnt.

@@ -11,9 +11,9 @@
 /// The component that is locked on to.
 typedef struct {
     bool is_on;
-    uint32_t phase_turn;          ///< of its acceleration, a = amp x cos(phase), at this tick
-    uint32_t step_turn;           ///< a tick
-    const harmonic_sums_t *cycle; ///< a cycle whose sums became known in this tick, else NULL
+    uint32_t phase_turn;         ///< of its acceleration, a = amp x cos(phase), at this tick
+    uint32_t step_turn;          ///< a tick
+    const harmonic_sums_t *half; ///< half a cycle whose sums became known in this tick, else NULL
 } law_lock_t;
 
 typedef struct {

@@ -39,7 +39,7 @@ static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
     pulse->level_mA = level_mA > pulse->floor_mA ? level_mA : pulse->floor_mA;
 }
 
-// Frequency, pulse and trim of the cycle that has begun.
+// Frequency, pulse and trim of the half cycle that has begun.
 static void refresh(law_phase_t *self, const quiesce_params_t *params, uint32_t step_turn) {
     const uint64_t per_tick = (uint64_t)step_turn * (uint32_t)params->tick_rate_Hz;
     self->freq_mHz = (uint32_t)((per_tick * 1000u) >> 32);
@@ -71,7 +71,7 @@ static void adapt(law_phase_t *self, const quiesce_params_t *params, const law_i
                                  .freq_mHz = self->freq_mHz,
                                  .index = self->place.index,
                                  .goal = {self->pulse.accel_weight_q8, self->pulse.accel_shape_q14},
-                                 .cycle = in->lock.cycle,
+                                 .half = in->lock.half,
                              });
 }
 
@@ -84,7 +84,7 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
     if (self->is_stale) {
         refresh(self, params, in->lock.step_turn);
     }
-    self->is_stale = in->lock.cycle != NULL;
+    self->is_stale = in->lock.half != NULL;
     adapt(self, params, in);
     // What is requested now acts during the next tick. Half turns: the current repeats twice a
     // cycle.

@@ -3,6 +3,7 @@
 enum {
     LOST_ANGLE_TURN = 715827883,        // a sixth of a turn
     LAST_STAGE = HARMONIC_PRODUCTS + 2, // the mean, then all the rest
+    CONTRADICTED_SHIFT = 3, // an eighth of what is expected
     SCALED_BITS = 16,
     LARGEST_SCALED = 1 << 20,
 };
@@ -29,8 +30,7 @@ static void expect(lock_in_t *self, uint32_t amp_um_s2, const harmonic_parts_t *
     self->power = squares >> (1u + 2u * self->shift);
 }
 
-void lock_in_acquire(lock_in_t *self, uint32_t phase_turn, uint32_t step_turn, int32_t amp_um_s2,
-                     int32_t mean_um_s2) {
+void lock_in_acquire(lock_in_t *self, uint32_t phase_turn, uint32_t step_turn, int32_t mean_um_s2) {
     *self = (lock_in_t){
         .tick_rate_Hz = self->tick_rate_Hz,
         .is_locked = true,
@@ -39,12 +39,11 @@ void lock_in_acquire(lock_in_t *self, uint32_t phase_turn, uint32_t step_turn, i
         .mean_um_s2 = mean_um_s2,
         .memory_q16 = quarter_cycle_q16(step_turn),
     };
-    expect(self, (uint32_t)amp_um_s2, &(harmonic_parts_t){.um_s2 = {amp_um_s2, 0, 0, 0}});
 }
 
 void lock_in_release(lock_in_t *self) {
     self->is_locked = false;
-    self->has_cycle = false;
+    self->has_half = false;
 }
 
 // Slow differences count: fast ones, from harmonics or a higher mode, say nothing of the phase.
@@ -55,16 +54,17 @@ static bool is_contradicted(lock_in_t *self, int32_t difference_um_s2) {
     self->slow_q8 += (int32_t)(((int64_t)(scaled * 256 - self->slow_q8) * (2 * memory_q16)) >> 16);
     const int64_t slow = self->slow_q8 >> 8;
     self->unexplained += ((slow * slow - self->unexplained) * memory_q16) >> 16;
-    return self->cycles > 0 && self->unexplained > self->power >> 1;
+    return self->halves > 0 && self->unexplained > self->power >> CONTRADICTED_SHIFT;
 }
 
-static void end_cycle(lock_in_t *self) {
-    self->last = self->cycle;
-    self->cycle = (harmonic_sums_t){0};
+static void end_half(lock_in_t *self) {
+    self->before = self->last;
+    self->last = self->half;
+    self->half = (harmonic_sums_t){0};
     self->stage = 1;
 }
 
-// Corrects phase and frequency; lets go where the cycle does not continue the ones before it.
+// Corrects phase and frequency; lets go where the half cycle does not continue the one before it.
 static void follow(lock_in_t *self) {
     const int32_t *part = self->found.um_s2;
     const uint32_t amp_um_s2 = harmonic_amp_um_s2(part[HARMONIC_COS1], part[HARMONIC_SIN1]);
@@ -74,45 +74,50 @@ static void follow(lock_in_t *self) {
         return;
     }
     self->phase_turn += (uint32_t)(angle / 2);
-    self->step_turn += (uint32_t)(angle / 16 / (int32_t)self->last.ticks);
+    self->step_turn += (uint32_t)(angle / 5 / (int32_t)self->last.ticks);
     self->memory_q16 = quarter_cycle_q16(self->step_turn);
     expect(self, amp_um_s2, &self->found);
-    if (self->cycles == 0) {
-        self->unexplained = 0; // only now it is known what to expect
+    if (self->halves == 0) {
+        self->slow_q8 = 0; // only now it is known what to expect
+        self->unexplained = 0;
     }
-    self->cycles = increment_sat_u32(self->cycles);
-    self->has_cycle = true;
+    self->halves = increment_sat_u32(self->halves);
+    self->has_half = true;
 }
 
-// Works on the last cycle, one part a tick, so that no tick has much of it.
+// Works on the last half cycle, one part a tick, so that no tick has much of it.
 static void work(lock_in_t *self) {
     const uint32_t stage = self->stage;
     self->stage = stage == LAST_STAGE ? 0 : stage + 1u;
     if (stage <= HARMONIC_PRODUCTS) {
         self->found.um_s2[stage - 1u] = harmonic_part_um_s2(&self->last, stage - 1u);
     } else if (stage < LAST_STAGE) {
-        self->mean_um_s2 += harmonic_mean_um_s2(&self->last);
+        // Halves of one cycle: what is left of both is not the component's.
+        if (self->before.ticks != 0) {
+            harmonic_sums_add(&self->before, &self->last);
+            self->mean_um_s2 += harmonic_mean_um_s2(&self->before) / 2;
+        }
     } else {
         follow(self);
     }
 }
 
 void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good) {
-    self->has_cycle = false;
+    self->has_half = false;
     if (!self->is_locked) {
         return;
     }
     self->phase_turn += self->step_turn;
-    self->cycle_turn += self->step_turn;
+    self->half_turn += 2u * self->step_turn;
     const harmonic_wave_t one = harmonic_wave(self->phase_turn);
     const harmonic_wave_t three = harmonic_wave(3u * self->phase_turn);
     const int32_t expected = harmonic_at_um_s2(&self->expected, one, three);
     const int32_t accel = is_good ? accel_um_s2 - self->mean_um_s2 : expected;
-    harmonic_sums_take(&self->cycle, accel, one, three);
+    harmonic_sums_take(&self->half, accel, one, three);
     if (is_contradicted(self, accel - expected)) {
         lock_in_release(self);
-    } else if (self->cycle_turn < self->step_turn) {
-        end_cycle(self);
+    } else if (self->half_turn < 2u * self->step_turn && self->stage == 0) {
+        end_half(self);
     } else if (self->stage != 0) {
         work(self);
     }

@@ -1,16 +1,16 @@
 /// A lock on one component: its phase at every tick, followed from cycle to cycle, and what each
-/// cycle of the acceleration holds of it and of its third harmonic.
+/// half cycle of the acceleration holds of it and of its third harmonic.
 ///
-/// Between two cycles the phase runs on at the known frequency. Each whole cycle is correlated with
-/// cosine and sine of the phase; the angle that comes out corrects phase (by half of it) and
-/// frequency (by a sixteenth of it a cycle): a second-order phase-locked loop that settles within a
-/// few cycles, follows sweeps, and knows a change of amplitude from a change of frequency. The
-/// tracker finds components and says when they can be trusted; the lock holds on to one of them
-/// while the amplitude changes, as it does whenever a law changes what it does.
+/// The phase runs on at the known frequency. Each half cycle is correlated with cosine and sine of
+/// the phase; the angle that comes out corrects phase (by half of it) and frequency (by a fifth of
+/// it a half cycle): a second-order phase-locked loop that settles within a few cycles, follows
+/// sweeps, and knows a change of amplitude from a change of frequency. The tracker finds components
+/// and says when they can be trusted; the lock holds on to one of them while the amplitude changes,
+/// as it does whenever a law changes what it does.
 ///
-/// It is lost when a cycle's angle is above 60 degrees, when a cycle's amplitude is below a quarter
-/// of the last one's, or when the samples contradict the last cycle: the mean square of what it
-/// does not explain, low-passed at 1.3 times the frequency, over about a quarter of a cycle,
+/// It is lost when a half cycle's angle is above 60 degrees, when its amplitude is below a quarter
+/// of the last one's, or when the samples contradict the last half cycle: the mean square of what
+/// it does not explain, low-passed at 1.3 times the frequency, over about a quarter of a cycle,
 /// exceeds half of what it held.
 ///
 /// Formats: phases in turns Q32; accelerations um/s2, |x| < 2^29. Bounded: about 110 instructions
@@ -23,17 +23,18 @@
 typedef struct {
     uint32_t tick_rate_Hz;
     bool is_locked;
-    uint32_t cycles;       ///< whole ones since locked, saturating
-    uint32_t phase_turn;   ///< now: the component is amp x cos(phase)
-    uint32_t step_turn;    ///< a tick
-    uint32_t cycle_turn;   ///< of the running cycle: it ends where this wraps
-    harmonic_sums_t cycle; ///< the one that is running
-    harmonic_sums_t last;  ///< the last whole one
-    uint32_t stage;        ///< of the work on it, a division a tick
+    uint32_t halves;      ///< half cycles since locked, saturating
+    uint32_t phase_turn;  ///< now: the component is amp x cos(phase)
+    uint32_t step_turn;   ///< a tick
+    uint32_t half_turn;   ///< twice the phase since it began: it ends where this wraps
+    harmonic_sums_t half; ///< the one that is running
+    harmonic_sums_t last; ///< the last whole half cycle
+    uint32_t stage;       ///< of the work on it, a division a tick
     harmonic_parts_t found;
-    bool has_cycle;            ///< that work was finished in this tick
-    int32_t mean_um_s2;        ///< of the cycles so far, taken off the samples
-    harmonic_parts_t expected; ///< of the next samples: what the last cycle held
+    bool has_half;             ///< that work was finished in this tick
+    harmonic_sums_t before;    ///< the half cycle before the last: a mean takes both
+    int32_t mean_um_s2;        ///< taken off the samples
+    harmonic_parts_t expected; ///< of the next samples: what the last half cycle held
     uint32_t amp_um_s2;        ///< of its fundamental
     uint32_t shift;            ///< for squares: so many bits are dropped
     int64_t power;             ///< mean square of the fundamental, shifted
@@ -46,10 +47,9 @@ typedef struct {
 void lock_in_init(lock_in_t *self, uint32_t tick_rate_Hz);
 
 /// Locks on to a component as of this tick. Takes effect with the next tick.
-/// step_turn: its frequency, 2^32 f / tick_rate, 1 .. 60 Hz; amp_um_s2 > 0; mean_um_s2: constant
-/// part of the samples, roughly.
-void lock_in_acquire(lock_in_t *self, uint32_t phase_turn, uint32_t step_turn, int32_t amp_um_s2,
-                     int32_t mean_um_s2);
+/// step_turn: its frequency, 2^32 f / tick_rate, 1 .. 60 Hz; mean_um_s2: constant part of the
+/// samples, roughly.
+void lock_in_acquire(lock_in_t *self, uint32_t phase_turn, uint32_t step_turn, int32_t mean_um_s2);
 
 /// Lets go.
 void lock_in_release(lock_in_t *self);

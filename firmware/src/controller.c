@@ -184,7 +184,7 @@ static law_in_t law_input(const controller_t *self, const signal_chain_out_t *si
                 .is_on = lock->is_locked,
                 .phase_turn = lock->phase_turn,
                 .step_turn = lock->step_turn,
-                .cycle = lock->has_cycle ? &lock->last : NULL,
+                .half = lock->has_half ? &lock->last : NULL,
             },
         .is_output_on = supervisor_allows_output(&self->supervisor),
     };

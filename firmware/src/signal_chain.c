@@ -2,9 +2,12 @@
 
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
-    YOUNG_CYCLES = 2,
-    ELSEWHERE_DIVISOR = 32, // a lock 3 % off the dominant component is on something else
+    ELSEWHERE_DIVISOR = 32,    // a lock 3 % off the dominant component is on something else
 };
+
+static uint32_t step_turn_of(int32_t freq_mHz, uint32_t rate_Hz) {
+    return (uint32_t)(((uint64_t)(uint32_t)freq_mHz << 32) / (1000u * rate_Hz));
+}
 
 void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
@@ -35,6 +38,10 @@ void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
     displacement_reset(&self->displacement);
     motion_init(&self->motion, rate_Hz, p->velocity_cutoff_mHz);
     lock_in_init(&self->lock, rate_Hz);
+    half_cycles_reset(&self->half_cycles);
+    self->lowest_step_turn = step_turn_of(p->band_low_mHz, rate_Hz);
+    self->highest_step_turn = step_turn_of(p->band_high_mHz, rate_Hz);
+    self->min_accel_um_s2 = p->track_min_accel_um_s2;
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
@@ -76,21 +83,36 @@ static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {
     return !lock->is_locked || apart > step_turn / ELSEWHERE_DIVISOR;
 }
 
-// Locks on to what the estimator trusts, and holds on to it by itself.
-static void hold_on(signal_chain_t *self, const condition_out_t *sample, bool has_gap) {
+static void lock_on(signal_chain_t *self, const condition_out_t *sample, uint32_t phase_turn,
+                    uint32_t step_turn) {
+    lock_in_acquire(&self->lock, phase_turn, step_turn, sample->raw_um_s2 - sample->accel_um_s2);
+}
+
+// Until the estimator knows more: a few half cycles that are alike.
+static void look_for_lock(signal_chain_t *self, const signal_chain_out_t *out) {
+    half_cycles_tone_t tone;
+    const int32_t velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32);
+    if (half_cycles_step(&self->half_cycles, velocity_um_s, &tone) && !self->lock.is_locked &&
+        tone.step_turn >= self->lowest_step_turn && tone.step_turn <= self->highest_step_turn &&
+        out->rms_um_s2 >= self->min_accel_um_s2) {
+        lock_on(self, &out->sample, tone.phase_turn, tone.step_turn);
+    }
+}
+
+// Locks on to what the estimator trusts, or to what looks alike, and holds on to it by itself.
+static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool has_gap) {
+    const condition_out_t *sample = &out->sample;
+    const estimator_t *estimator = &self->estimator;
+    const predictor_tone_t *tone = &estimator->predictor.tone[0];
     if (sample->is_fault || has_gap) {
         lock_in_release(&self->lock);
+        half_cycles_reset(&self->half_cycles);
     }
     lock_in_step(&self->lock, sample->raw_um_s2, sample->flag == CONDITION_GOOD);
-    const predictor_tone_t *tone = &self->estimator.predictor.tone[0];
-    if (!estimator_is_valid(&self->estimator)) {
-        // A young lock does not know yet what to expect.
-        if (self->lock.cycles < YOUNG_CYCLES) {
-            lock_in_release(&self->lock);
-        }
-    } else if (self->estimator.has_published && is_elsewhere(&self->lock, tone->step_turn)) {
-        lock_in_acquire(&self->lock, tone->phase_turn, tone->step_turn,
-                        self->estimator.tone[0].amp_um_s2, sample->raw_um_s2 - sample->accel_um_s2);
+    look_for_lock(self, out);
+    if (estimator->has_published && estimator_is_valid(estimator) &&
+        is_elsewhere(&self->lock, tone->step_turn)) {
+        lock_on(self, sample, tone->phase_turn, tone->step_turn);
     }
 }
 
@@ -103,8 +125,8 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal
     }
     out->rms_um_s2 = rms_step(&self->rms, out->sample.accel_um_s2);
     out->displacement_nm = follow(self, &out->sample, in->has_gap);
-    if (in->wants_lock) {
-        hold_on(self, &out->sample, in->has_gap);
-    }
     out->velocity_um_s_q32 = motion_step(&self->motion, out->sample.accel_um_s2);
+    if (in->wants_lock) {
+        hold_on(self, out, in->has_gap);
+    }
 }

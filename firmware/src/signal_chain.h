@@ -6,6 +6,7 @@
 #include "condition.h"
 #include "displacement.h"
 #include "estimator.h"
+#include "half_cycles.h"
 #include "lock_in.h"
 #include "motion.h"
 #include "quiesce_params.h"
@@ -18,6 +19,10 @@ typedef struct {
     displacement_t displacement;
     motion_t motion;
     lock_in_t lock;
+    half_cycles_t half_cycles;
+    uint32_t lowest_step_turn; ///< of the band, a tick
+    uint32_t highest_step_turn;
+    int32_t min_accel_um_s2; ///< RMS
 } signal_chain_t;
 
 typedef struct {

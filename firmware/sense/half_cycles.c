@@ -1,0 +1,69 @@
+#include "half_cycles.h"
+
+enum {
+    TICK_q8 = 256,
+    LONGEST_q8 = 1 << 21, // two seconds at the fastest tick
+    ALIKE = 8,            // one part in ..
+    BEYOND = 8,           // of the last peak
+};
+
+void half_cycles_reset(half_cycles_t *self) {
+    *self = (half_cycles_t){.last_um_s = self->last_um_s, .is_up = self->last_um_s > 0};
+}
+
+static bool are_alike(uint32_t a, uint32_t b) {
+    return (a > b ? a - b : b - a) < a / ALIKE;
+}
+
+// The period is that of the middles: unequal halves, from an offset of the velocity, cancel.
+static bool is_steady(const half_cycles_t *self, uint32_t length_q8) {
+    const uint32_t first_q8 = self->earlier_q8 + self->before_q8;
+    const uint32_t second_q8 = self->before_q8 + length_q8;
+    return self->earlier_q8 != 0 && are_alike(first_q8, second_q8) &&
+           (length_q8 > self->before_q8 / 2u) && (self->before_q8 > length_q8 / 2u);
+}
+
+// The velocity has crossed zero since_q8 ago, after a half cycle of length_q8.
+static bool end_half(half_cycles_t *self, uint32_t length_q8, half_cycles_tone_t *tone) {
+    const bool is_found = is_steady(self, length_q8);
+    if (is_found) {
+        const uint32_t period_q8 = (self->earlier_q8 + 2u * self->before_q8 + length_q8) / 2u;
+        tone->step_turn = (uint32_t)((UINT64_C(1) << 40) / period_q8);
+        tone->phase_turn = (uint32_t)(((uint64_t)tone->step_turn * self->since_q8) >> 8) +
+                           (self->is_up ? 0u : 0x80000000u);
+    }
+    self->earlier_q8 = self->before_q8;
+    self->before_q8 = length_q8;
+    self->peak_um_s = 0;
+    return is_found;
+}
+
+// Ticks since the crossing between the last sample and this one, Q8, 0 .. 256.
+static uint32_t crossing_q8(int32_t last, int32_t now) {
+    const int64_t span = (int64_t)now - last;
+    return span == 0 ? 0 : (uint32_t)(((int64_t)now * TICK_q8) / span);
+}
+
+bool half_cycles_step(half_cycles_t *self, int32_t velocity_um_s, half_cycles_tone_t *tone) {
+    const int32_t last_um_s = self->last_um_s;
+    self->last_um_s = velocity_um_s;
+    self->since_q8 += self->since_q8 < LONGEST_q8 ? TICK_q8 : 0;
+    const int32_t size_um_s = abs_i32(velocity_um_s);
+    if ((velocity_um_s > 0) == self->is_up) {
+        self->is_rough = false;
+        self->peak_um_s = size_um_s > self->peak_um_s ? size_um_s : self->peak_um_s;
+        return false;
+    }
+    if (!self->is_rough) {
+        self->is_rough = true;
+        self->rough_q8 = self->since_q8 - crossing_q8(last_um_s, velocity_um_s);
+    }
+    if (size_um_s < self->peak_um_s / BEYOND) {
+        return false;
+    }
+    const uint32_t length_q8 = self->rough_q8;
+    self->since_q8 -= length_q8;
+    self->is_up = velocity_um_s > 0;
+    self->is_rough = false;
+    return end_half(self, length_q8, tone);
+}
