@@ -58,6 +58,10 @@ TEST(Trace, telemetry_keeps_signs_and_large_words) {
     telemetry.tick = 0xFFFFFFFFu;
     telemetry.accel_um_s2 = -7;
     telemetry.current_cmd_mA = 4321;
+    telemetry.lock_is_on = 1;
+    telemetry.adapt_trials = 0x80000000u;
+    telemetry.trim_on_mdeg = -45000;
+    telemetry.trim_level_q15 = -16384;
     trace.put_telemetry(telemetry);
     const std::string file = temporary("telemetry");
     trace.write(file);
@@ -67,7 +71,12 @@ TEST(Trace, telemetry_keeps_signs_and_large_words) {
     std::memcpy(row.data(), bytes.data() + bytes.find('\n') + 1, row.size() * sizeof(double));
     EXPECT_EQ(row.front(), 4294967295.0);
     EXPECT_EQ(row[5], -7.0);
-    EXPECT_EQ(row.back(), 4321.0);
+    const std::size_t law = row.size() - 8; // the command, then seven words of the phase law
+    EXPECT_EQ(row[law], 4321.0);
+    EXPECT_EQ(row[law + 1], 1.0);
+    EXPECT_EQ(row[law + 3], 2147483648.0);
+    EXPECT_EQ(row[law + 5], -45000.0);
+    EXPECT_EQ(row.back(), -16384.0);
 }
 
 TEST(ReplyFields, name_the_words_where_they_are) {
@@ -76,6 +85,8 @@ TEST(ReplyFields, name_the_words_where_they_are) {
     reply.telemetry.freq_uHz = 12;
     reply.telemetry.peaks[2].amp_um_s2 = 13;
     reply.telemetry.current_cmd_mA = 14;
+    reply.telemetry.adapt_state = 15;
+    reply.telemetry.trim_off_mdeg = 16;
     const auto &fields = quiesce::reply_fields();
     ASSERT_EQ(fields.size() * 4, sizeof reply);
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -85,6 +96,8 @@ TEST(ReplyFields, name_the_words_where_they_are) {
         EXPECT_EQ(word == 12, name == "freq_uHz") << name;
         EXPECT_EQ(word == 13, name == "peak2_amp_um_s2") << name;
         EXPECT_EQ(word == 14, name == "current_cmd_mA") << name;
+        EXPECT_EQ(word == 15, name == "adapt_state") << name;
+        EXPECT_EQ(word == 16, name == "trim_off_mdeg") << name;
     }
 }
 

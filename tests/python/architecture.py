@@ -29,7 +29,11 @@ SHARED = {
     "fuzzy_partition": {"fuzzy_forms.h"},
     "fuzzy_table": {"fuzzy_math.h"},
     "rules_*": {"fuzzy_math.h"},
+    # The state of any law holds that of the phase law.
+    "law": {"law_phase.h"},
+    "law_phase": {"law.h", "adapt.h", "phase_table.h"},
     "law_*": {"law.h"},
+    "adapt_store": {"adapt.h"},
 }
 # What the simulation may know of the firmware and the simulated peripherals.
 SIM_SEES = PUBLIC | {
@@ -100,7 +104,7 @@ def allowed_headers(root: Path, source: Source) -> set[str]:
     """Project headers that a file of the firmware or the HAL may include."""
     own = {f"{source.stem}.h"}
     base = headers_in(root, "firmware/base")
-    folders = (*BLOCK_FOLDERS, "fuzzy/generated")
+    folders = (*BLOCK_FOLDERS, "fuzzy/generated", "law/generated")
     blocks = {h for name in folders for h in headers_in(root, f"firmware/{name}")}
     interface = {f"hal/{name}" for name in headers_in(root, "hal/include/hal")}
     comm = headers_in(root, "firmware/comm") | headers_in(root, "firmware/comm/generated")
