@@ -16,6 +16,7 @@ from quiesce import (
     cmd_replay,
     cmd_rules,
     cmd_sweep,
+    cmd_tune,
 )
 from quiesce.errors import (
     EXIT_BAD_INPUT,
@@ -35,6 +36,7 @@ COMMANDS = (
     cmd_chain,
     cmd_rules,
     cmd_sweep,
+    cmd_tune,
     cmd_bench,
 )
 
@@ -45,6 +47,7 @@ EPILOG = """examples:
   quiesce params                                every parameter of the controller
   quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
   quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
+  quiesce tune my_plant.toml                    pulses of current for my own plant
   quiesce bench signal --check                  the sensing chain's figures and goals
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,

@@ -1,0 +1,84 @@
+"""Finished pieces of `quiesce tune`, in one JSON file, so that an interrupted run goes on."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+from quiesce.errors import UsageError
+from quiesce.paths import shown
+
+SCHEMA = "quiesce-tune"
+VERSION = 1
+FILE_NAME = "work.json"
+
+
+def method() -> str:
+    """Changes where the optimisation's own code does: its results are not mixed."""
+    digest = hashlib.sha256()
+    names = ("bound", "descent", "goal", "pulse", "setting", "tables", "tune_work")
+    for name in names:
+        digest.update((Path(__file__).parent / f"{name}.py").read_bytes())
+    return digest.hexdigest()[:16]
+
+
+class TuneStore:
+    """Each piece is stored as it arrives. A damaged file, or one of other inputs, is refused."""
+
+    def __init__(self, folder: Path, inputs: dict[str, Any], is_fresh: bool) -> None:
+        """inputs: what the pieces depend on. is_fresh: whatever is there is given up."""
+        self.file = folder / FILE_NAME
+        head = {"schema": SCHEMA, "version": VERSION, "inputs": {**inputs, "method": method()}}
+        # As JSON tells it: infinities and tuples read back as they were written.
+        self._head = json.loads(json.dumps(head))
+        self._pieces: dict[str, Any] = {}
+        if self.file.exists() and not is_fresh:
+            self._pieces = self._read()
+
+    def _read(self) -> dict[str, Any]:
+        try:
+            data = json.loads(self.file.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise self._damaged(str(error))
+        if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+            raise self._damaged(f"schema is not {SCHEMA!r}")
+        inputs, pieces = data.get("inputs"), data.get("pieces")
+        if not isinstance(inputs, dict) or not isinstance(pieces, dict):
+            raise self._damaged("no inputs or pieces")
+        if data.get("check") != _check(pieces):
+            raise self._damaged("its pieces do not match their checksum")
+        wanted = self._head["inputs"]
+        differing = [key for key in wanted if inputs.get(key) != wanted[key]]
+        if differing or data.get("version") != VERSION:
+            raise UsageError(
+                f"{shown(self.file)} holds results of another {', '.join(differing) or 'version'}; "
+                "name another --out, or start anew with --fresh"
+            )
+        return pieces
+
+    def _damaged(self, why: str) -> UsageError:
+        return UsageError(
+            f"{shown(self.file)} is damaged ({why}); name another --out, or start anew with --fresh"
+        )
+
+    def __len__(self) -> int:
+        return len(self._pieces)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._pieces
+
+    def __getitem__(self, key: str) -> Any:
+        return self._pieces[key]
+
+    def put(self, key: str, value: Any) -> None:
+        """Appears in the file whole or not at all."""
+        self._pieces[key] = json.loads(json.dumps(value))
+        data = {**self._head, "check": _check(self._pieces), "pieces": self._pieces}
+        self.file.parent.mkdir(parents=True, exist_ok=True)
+        staging = self.file.with_suffix(".part")
+        staging.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+        staging.replace(self.file)
+
+
+def _check(pieces: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(pieces, sort_keys=True).encode()).hexdigest()[:16]
