@@ -66,7 +66,9 @@ void setUp(void) {
 void tearDown(void) {}
 
 static int32_t limit_of(uint32_t coordinate) {
-    return coordinate == ADAPT_LEVEL ? cfg.level_limit_q15 : cfg.edge_limit_q16;
+    return coordinate == ADAPT_WHOLE   ? 1
+           : coordinate == ADAPT_LEVEL ? cfg.level_limit_q15
+                                       : cfg.edge_limit_q16;
 }
 
 static int32_t bowl_ppm(const bowl_t *bowl, const adapt_trim_t *trim) {
@@ -150,7 +152,7 @@ static void assert_converges(int32_t on, int32_t off, int32_t level) {
     adapt_trim_t best;
     for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
         best.value[i] = (int16_t)clamp_i32(plant.reach.best[i], -limit_of(i),
-                                           i == ADAPT_LEVEL ? 0 : limit_of(i));
+                                           i >= ADAPT_LEVEL ? 0 : limit_of(i));
     }
     TEST_ASSERT_TRUE(adapt_is_allowed(&cfg, learnt()));
     TEST_ASSERT_LESS_OR_EQUAL_INT32(bowl_ppm(&plant.reach, &best) + 10000,
@@ -202,6 +204,27 @@ static void test_adapt_waits_for_a_vibration_that_lasts(void) {
     TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
     run(100);
     TEST_ASSERT_EQUAL(ADAPT_TRYING, adapt.state);
+}
+
+// A plant whose best is no gap at all; then one where the gap is better again.
+static void test_adapt_tries_first_to_close_the_gap_and_opens_it_again(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0, 1}, {50000, 100000, 100000, 200000}};
+    plant.now_reach_ppm = bowl_ppm(&plant.reach, &plant.trim);
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 2 * TRIAL_TICKS));
+    TEST_ASSERT_EQUAL_INT16(1, adapt_trim_at(&adapt, in.index, 0).value[ADAPT_WHOLE]);
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    TEST_ASSERT_EQUAL_INT16(1, learnt()->value[ADAPT_WHOLE]);
+    TEST_ASSERT_EQUAL_INT16(0, learnt()->value[ADAPT_ON_EDGE]); // there is no edge to move
+    plant.reach.best[ADAPT_WHOLE] = 0;
+    run(cfg.rest_ticks + 100);
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    TEST_ASSERT_EQUAL_INT16(0, learnt()->value[ADAPT_WHOLE]);
+}
+
+static void test_adapt_leaves_the_gap_open_where_that_is_better(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0, 0}, {50000, 100000, 100000, 20000}};
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    TEST_ASSERT_EQUAL_INT16(0, learnt()->value[ADAPT_WHOLE]);
 }
 
 // A third harmonic that lowers the peak counts for more than the fundamental that it raises.
@@ -329,13 +352,19 @@ static void test_adapt_repeats_a_trial_that_was_disturbed(void) {
         setUp();
         plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
         plant.now_reach_ppm = bowl_ppm(&plant.reach, &plant.trim);
-        TEST_ASSERT_TRUE(run_until(ADAPT_CHECKING, 3 * TRIAL_TICKS));
+        for (uint32_t i = 0; i < 9u * TRIAL_TICKS && adapt.coordinate != ADAPT_ON_EDGE; i++) {
+            tick();
+        }
+        const uint32_t trials = adapt.trials;
+        const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
+        TEST_ASSERT_GREATER_THAN_INT32(0, tried.value[ADAPT_ON_EDGE]);
+        TEST_ASSERT_TRUE(run_until(ADAPT_CHECKING, TRIAL_TICKS));
         plant.excitation_ppm += sign * 50000;
         TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
         assert_nothing_learnt();
-        TEST_ASSERT_EQUAL_UINT32(1, adapt.trials);
-        const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
-        TEST_ASSERT_GREATER_THAN_INT32(0, tried.value[ADAPT_ON_EDGE]);
+        TEST_ASSERT_EQUAL_UINT32(trials + 1u, adapt.trials);
+        const adapt_trim_t again = adapt_trim_at(&adapt, in.index, 0);
+        TEST_ASSERT_EQUAL_INT16_ARRAY(tried.value, again.value, ADAPT_COORDINATES);
         run(2 * TRIAL_TICKS);
         TEST_ASSERT_GREATER_THAN_INT32(0, learnt()->value[ADAPT_ON_EDGE]);
     }
@@ -514,6 +543,9 @@ static void test_adapt_allows_what_lies_within_the_limits(void) {
         {false, {{0, (int16_t)(edge + 1), 0}}},
         {false, {{0, 0, 1}}},
         {false, {{0, 0, (int16_t)(-level - 1)}}},
+        {true, {{0, 0, 0, 1}}},
+        {false, {{0, 0, 0, 2}}},
+        {false, {{0, 0, 0, -1}}},
         {false, {{INT16_MIN, INT16_MIN, INT16_MIN}}},
     };
     for (uint32_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -610,6 +642,8 @@ int main(void) {
     RUN_TEST(test_adapt_rests_as_long_as_told_then_tries_again);
     RUN_TEST(test_adapt_follows_a_plant_that_changes_while_it_rests);
     RUN_TEST(test_adapt_waits_for_a_vibration_that_lasts);
+    RUN_TEST(test_adapt_tries_first_to_close_the_gap_and_opens_it_again);
+    RUN_TEST(test_adapt_leaves_the_gap_open_where_that_is_better);
     RUN_TEST(test_adapt_looks_at_the_peak_rather_than_the_fundamental);
     RUN_TEST(test_adapt_measures_reach_and_rms);
     RUN_TEST(test_adapt_measures_the_same_reach_at_any_phase);

@@ -19,6 +19,7 @@ void setUp(void) {
             (int16_t)signal_noise(&seed, 16384),
             (int16_t)signal_noise(&seed, 16384),
             (int16_t)-abs_i32(signal_noise(&seed, 31129)),
+            (int16_t)(i % 2u),
         }};
     }
     adapt.trim[1] = (adapt_trim_t){{100, -200, -300}};
@@ -75,7 +76,8 @@ static void test_adapt_store_of_another_table_setting_or_version_is_refused(void
 }
 
 static void test_adapt_store_beyond_the_limits_is_refused(void) {
-    const adapt_trim_t bad[] = {{{16385, 0, 0}}, {{0, -16385, 0}}, {{0, 0, 1}}, {{0, 0, -31130}}};
+    const adapt_trim_t bad[] = {{{0, 0, 0, 2}},   {{0, 0, 0, -1}}, {{16385, 0, 0}},
+                                {{0, -16385, 0}}, {{0, 0, 1}},     {{0, 0, -31130}}};
     const uint32_t points[] = {0, 31, ADAPT_POINTS - 1u};
     for (uint32_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         for (uint32_t k = 0; k < 3u; k++) {

@@ -133,6 +133,13 @@ static void test_phase_table_with_bad_points(void) {
     setUp();
     point(4)->level_mA = 65534;
     TEST_ASSERT_EQUAL(PHASE_TABLE_POINT, sealed_verdict());
+    for (uint32_t i = 0; i < 5u; i++) {
+        setUp();
+        point(i)->ramp_q16 = 32767;
+        TEST_ASSERT_EQUAL(PHASE_TABLE_OK, sealed_verdict());
+        point(i)->ramp_q16 = 32768;
+        TEST_ASSERT_EQUAL(PHASE_TABLE_POINT, sealed_verdict());
+    }
     const uint32_t later[] = {1, 2, 4};
     for (uint32_t i = 0; i < 3u; i++) {
         setUp();
@@ -176,10 +183,11 @@ static void test_phase_table_with_many_bits_flipped_is_refused(void) {
     }
 }
 
-static bool is_rising_and_above_its_floor(const phase_point_t *points, uint32_t length) {
+static bool are_points_good(const phase_point_t *points, uint32_t length) {
     bool is_good = true;
     for (uint32_t i = 0; i < length; i++) {
         is_good = is_good && points[i].level_mA >= points[i].floor_mA;
+        is_good = is_good && points[i].ramp_q16 < 32768u;
         is_good = is_good && (i == 0 || points[i].freq_mHz > points[i - 1u].freq_mHz);
     }
     return is_good;
@@ -198,9 +206,8 @@ static void test_phase_table_of_any_content_is_judged_right(void) {
         const phase_table_t *table = (const phase_table_t *)(const void *)words;
         const bool has_shape = table->points[0] + table->points[1] == 5 && table->points[0] >= 2 &&
                                table->points[1] >= 2;
-        const bool is_good =
-            has_shape && is_rising_and_above_its_floor(point(0), table->points[0]) &&
-            is_rising_and_above_its_floor(point(table->points[0]), table->points[1]);
+        const bool is_good = has_shape && are_points_good(point(0), table->points[0]) &&
+                             are_points_good(point(table->points[0]), table->points[1]);
         const phase_table_verdict_t expected = !has_shape ? PHASE_TABLE_SHAPE
                                                : is_good  ? PHASE_TABLE_OK
                                                           : PHASE_TABLE_POINT;
@@ -303,10 +310,11 @@ static void test_phase_pulse_centre_goes_the_shorter_way_round(void) {
     }
 }
 
-static void test_phase_pulse_goal_between_points(void) {
+static void test_phase_pulse_goal_and_ramp_between_points(void) {
     const phase_pulse_t pulse =
-        halfway((phase_point_t){.accel_weight_q8 = 65535, .accel_shape_q14 = 100},
-                (phase_point_t){.accel_weight_q8 = 1, .accel_shape_q14 = 65500});
+        halfway((phase_point_t){.accel_weight_q8 = 65535, .accel_shape_q14 = 100, .ramp_q16 = 3000},
+                (phase_point_t){.accel_weight_q8 = 1, .accel_shape_q14 = 65500, .ramp_q16 = 1000});
+    TEST_ASSERT_EQUAL_UINT32(2000, pulse.ramp_q16);
     TEST_ASSERT_EQUAL_UINT32(32768, pulse.accel_weight_q8);
     TEST_ASSERT_EQUAL_UINT32(32800, pulse.accel_shape_q14);
 }
@@ -357,12 +365,17 @@ static uint64_t on_part(const phase_pulse_t *pulse, uint32_t start, uint32_t len
     return sum;
 }
 
-// A tick's mean current to 1 mA and the 16 bits in which its length is counted.
+// A tick's mean current to 1 mA and the 16 bits in which its length is counted; a ramp that is
+// longer than the tick is the mean over the ramp's length about the tick's middle.
 static void assert_current(const phase_pulse_t *pulse, uint32_t start, uint32_t length) {
+    const uint32_t ramp = pulse->ramp_q16 << 16;
+    const uint32_t longer = ramp > length ? (ramp - length) / 2u : 0;
+    const uint32_t window = length + 2u * longer;
     const int64_t height = pulse->level_mA - pulse->floor_mA;
-    const int64_t exact =
-        pulse->floor_mA + height * (int64_t)on_part(pulse, start, length) / (int64_t)length;
-    const int32_t tolerance = (int32_t)(2 + height * 65536 / length);
+    const int64_t exact = pulse->floor_mA + height *
+                                                (int64_t)on_part(pulse, start - longer, window) /
+                                                (int64_t)window;
+    const int32_t tolerance = (int32_t)(2 + height * 65536 / window);
     const int32_t current = phase_pulse_current_mA(pulse, start, length);
     TEST_ASSERT_INT32_WITHIN(tolerance, (int32_t)exact, current);
     TEST_ASSERT_GREATER_OR_EQUAL_INT32(pulse->floor_mA, current);
@@ -423,6 +436,7 @@ static void test_phase_current_of_any_tick_is_the_mean_over_it(void) {
             .width_q16 = (random_u32() >> 16) % PHASE_WIDTH_ALL,
             .level_mA = (int32_t)(floor_mA + random_u32() % 20000u),
             .floor_mA = (int32_t)floor_mA,
+            .ramp_q16 = round % 2u == 0 ? 0 : (random_u32() >> 17 >> random_u32() % 8u),
         };
         // From 1 Hz at 4 kHz to just below half of it all; one beside an edge now and then.
         const uint32_t length = (random_u32() >> 1 >> random_u32() % 10u) | 1u << 21;
@@ -433,10 +447,27 @@ static void test_phase_current_of_any_tick_is_the_mean_over_it(void) {
     }
 }
 
+// Rises from floor to level about its first edge, falls likewise about its last.
+static void test_phase_current_of_a_ramp(void) {
+    const phase_pulse_t pulse = {
+        .on_q16 = 60000, .width_q16 = 30000, .level_mA = 5000, .floor_mA = 1000, .ramp_q16 = 8192};
+    const struct {
+        int32_t after_edge_q16, current_mA;
+    } rows[] = {{-4200, 1000}, {-2048, 2000}, {0, 3000}, {2048, 4000}, {4200, 5000}};
+    const uint32_t tick = 1u << 20; // 16 of 65536
+    for (uint32_t i = 0; i < 5u; i++) {
+        const uint32_t on = (uint32_t)(60000 + rows[i].after_edge_q16) << 16;
+        const uint32_t off = (uint32_t)(60000 + 30000 - rows[i].after_edge_q16) << 16;
+        TEST_ASSERT_INT32_WITHIN(10, rows[i].current_mA,
+                                 phase_pulse_current_mA(&pulse, on - tick / 2u, tick));
+        TEST_ASSERT_INT32_WITHIN(10, rows[i].current_mA,
+                                 phase_pulse_current_mA(&pulse, off - tick / 2u, tick));
+    }
+}
+
 // Over whole periods the ticks add up to the pulse's area, wherever the grid lies.
 static void test_phase_current_adds_up_to_the_pulse(void) {
-    const phase_pulse_t pulse = {
-        .on_q16 = 50000, .width_q16 = 30001, .level_mA = 5000, .floor_mA = 1000};
+    phase_pulse_t pulse = {.on_q16 = 50000, .width_q16 = 30001, .level_mA = 5000, .floor_mA = 1000};
     const int32_t mean_mA = 1000 + 4000 * 30001 / 65536;
     const uint32_t ticks_a_period[] = {3, 7, 25, 64, 100, 333, 2000};
     for (uint32_t i = 0; i < sizeof ticks_a_period / sizeof ticks_a_period[0]; i++) {
@@ -444,11 +475,13 @@ static void test_phase_current_adds_up_to_the_pulse(void) {
         const uint32_t length = (uint32_t)(HALF_TURN / ticks);
         for (uint32_t offset = 0; offset < 5u; offset++) {
             int64_t sum_mA = 0;
+            pulse.ramp_q16 = offset * 2000u;
             for (uint32_t k = 0; k < ticks; k++) {
                 sum_mA += phase_pulse_current_mA(&pulse, offset * 777777777u + k * length, length);
             }
             // Each of the two edges is low by a 2^-16 of all, at most, and a milliampere's rest.
-            TEST_ASSERT_INT32_WITHIN(2, mean_mA, (int32_t)(sum_mA / ticks));
+            TEST_ASSERT_INT32_WITHIN(pulse.ramp_q16 == 0 ? 2 : 6, mean_mA,
+                                     (int32_t)(sum_mA / ticks));
         }
     }
 }
@@ -470,13 +503,14 @@ int main(void) {
     RUN_TEST(test_phase_place_among_any_number_of_points);
     RUN_TEST(test_phase_pulse_at_points_and_between);
     RUN_TEST(test_phase_pulse_centre_goes_the_shorter_way_round);
-    RUN_TEST(test_phase_pulse_goal_between_points);
+    RUN_TEST(test_phase_pulse_goal_and_ramp_between_points);
     RUN_TEST(test_phase_pulse_lies_between_its_points);
     RUN_TEST(test_phase_current_of_ticks_at_the_edges);
     RUN_TEST(test_phase_current_of_a_pulse_across_the_wrap);
     RUN_TEST(test_phase_current_of_no_width_and_of_all);
     RUN_TEST(test_phase_current_of_a_gap_or_a_pulse_inside_a_tick);
     RUN_TEST(test_phase_current_of_any_tick_is_the_mean_over_it);
+    RUN_TEST(test_phase_current_of_a_ramp);
     RUN_TEST(test_phase_current_adds_up_to_the_pulse);
     return UNITY_END();
 }
