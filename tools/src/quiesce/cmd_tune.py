@@ -69,7 +69,7 @@ def add_aims(group: argparse._ArgumentGroup) -> None:
         group.add_argument(name, type=float, metavar="Hz", help=text)
     group.add_argument(
         "--robustness", choices=("none", "axes", "full"), default="axes",
-        help="other plants to try: one property changed at a time, or all 54 combinations "
+        help="other plants to try: one property changed at a time, or all 81 combinations "
         "(%(default)s)",
     )  # fmt: skip
     group.add_argument(

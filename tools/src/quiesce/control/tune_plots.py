@@ -13,6 +13,7 @@ from quiesce.plot_style import COLORS, pyplot
 
 SETTING_COLORS = dict(zip(SETTINGS, ("main", "current"), strict=True))
 PHASES, MAP_ROWS = 180, 240
+LOOP_POINTS = 100
 REDUCTIONS = (
     ("amp_red_pct", "Displacement, half peak-to-peak", "amp"),
     ("accel_red_pct", "RMS acceleration", "accel"),
@@ -143,7 +144,10 @@ def shade(axis: Any, one: Cycle) -> None:
 def plot_loop(axis: Any, one: Cycle) -> None:
     closed = [*range(len(one.disp_um)), 0]
     axis.plot(one.disp_um[closed], one.force_mN[closed], color=COLORS["muted"], linewidth=0.8)
-    image = axis.scatter(one.disp_um, one.force_mN, c=one.coil_A, s=9, cmap="viridis", vmin=0)
+    few = slice(None, None, max(1, len(one.disp_um) // LOOP_POINTS))
+    image = axis.scatter(
+        one.disp_um[few], one.force_mN[few], c=one.coil_A[few], s=9, cmap="viridis", vmin=0
+    )
     kind = "spring" if one.stiffness_N_m > 0 else "mass"
     reach = np.array([-1.0, 1.0]) * np.abs(one.disp_um).max()
     line = 1e-3 * one.stiffness_N_m * reach
@@ -161,7 +165,7 @@ def plot_robustness(cells: Sequence[Cell]) -> Any:
     at = {(n, f): i + 0.16 * (k - (len(freqs_Hz) - 1) / 2)
           for i, n in enumerate(names) for k, f in enumerate(freqs_Hz)}  # fmt: skip
     for label, marker, color, pick in (
-        ("best constant current", "_", "reference", lambda c: c.constant),
+        ("best constant current", "D", "reference", lambda c: c.constant),
         ("table alone", "o", "muted", lambda c: c.table["displacement"]),
         ("adapting, after 120 s", "o", "main", lambda c: c.adapted.get("displacement")),
     ):
