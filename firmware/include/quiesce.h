@@ -100,6 +100,7 @@ typedef struct {
     int32_t trim_on_mdeg;   ///< change of the pulse in effect: its first edge, later is positive
     int32_t trim_off_mdeg;  ///< and its last edge
     int32_t trim_level_q15; ///< and its level as a factor: 32768 is 1
+    uint32_t trim_is_whole; ///< 1: its gap is closed
 } quiesce_telemetry_t;
 
 /// One tick's output.
@@ -181,7 +182,8 @@ typedef enum {
     QUIESCE_PHASE_MAGIC = 2, ///< not a table of pulses, or of another version
     QUIESCE_PHASE_CRC = 3,   ///< damaged
     QUIESCE_PHASE_SHAPE = 4, ///< numbers of points
-    QUIESCE_PHASE_POINT = 5, ///< a frequency that does not rise, a floor above its level
+    QUIESCE_PHASE_POINT =
+        5, ///< a frequency that does not rise, a floor above its level, a long ramp
 } quiesce_phase_verdict_t;
 
 /// Law phase uses another table of pulses from the next tick on: words from `quiesce tune`, count

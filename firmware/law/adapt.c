@@ -11,10 +11,11 @@ enum {
     CLEARLY_WORSE_q20 = 10486, // 1 %
     DRIFT_DIVISOR = 50,        // of the frequency: 2 %
     DIRECTIONS = 2,
+    HALF_q15 = 1 << 14,
 };
 
 void adapt_init(adapt_t *self, const adapt_cfg_t *cfg) {
-    *self = (adapt_t){.cfg = *cfg, .direction = 1};
+    *self = (adapt_t){.cfg = *cfg, .coordinate = ADAPT_WHOLE, .direction = 1};
 }
 
 void adapt_clear(adapt_t *self) {
@@ -28,10 +29,6 @@ static void wait_for(adapt_t *self, adapt_state_t state, uint32_t ticks) {
     self->is_collecting = false;
     self->stage = 0;
     self->sums = (harmonic_sums_t){0};
-}
-
-void adapt_pause(adapt_t *self) {
-    wait_for(self, ADAPT_WAITING, 0);
 }
 
 static bool has_moved(const adapt_t *self, uint32_t freq_mHz) {
@@ -74,18 +71,38 @@ static int32_t cost_q20(adapt_effect_t from, adapt_effect_t to, adapt_goal_t goa
 }
 
 static int32_t step_of(const adapt_t *self) {
-    const int32_t largest = self->coordinate == ADAPT_LEVEL ? LEVEL_STEP_q15 : EDGE_STEP_q16;
-    return self->direction * (largest >> self->shrink);
+    switch (self->coordinate) {
+    case ADAPT_WHOLE:
+        return self->direction;
+    case ADAPT_LEVEL:
+        return self->direction * (LEVEL_STEP_q15 >> self->shrink);
+    default:
+        return self->direction * (EDGE_STEP_q16 >> self->shrink);
+    }
 }
 
 static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t value) {
-    return coordinate == ADAPT_LEVEL ? clamp_i32(value, -cfg->level_limit_q15, 0)
-                                     : clamp_i32(value, -cfg->edge_limit_q16, cfg->edge_limit_q16);
+    switch (coordinate) {
+    case ADAPT_WHOLE:
+        return clamp_i32(value, 0, 1);
+    case ADAPT_LEVEL:
+        return clamp_i32(value, -cfg->level_limit_q15, 0);
+    default:
+        return clamp_i32(value, -cfg->edge_limit_q16, cfg->edge_limit_q16);
+    }
 }
 
+// Whether a trial would change anything. The gap is closed at the beginning of a search only: where
+// it helps, closing it costs most.
 static bool has_room(const adapt_t *self) {
-    const int32_t now = self->trim[self->index].value[self->coordinate];
-    return limited(&self->cfg, self->coordinate, now + step_of(self)) != now;
+    const int16_t *now = self->trim[self->index].value;
+    if (self->coordinate == ADAPT_WHOLE
+            ? self->shrink > 0 && now[ADAPT_WHOLE] == 0
+            : self->coordinate != ADAPT_LEVEL && now[ADAPT_WHOLE] != 0) {
+        return false;
+    }
+    const int32_t value = now[self->coordinate];
+    return limited(&self->cfg, self->coordinate, value + step_of(self)) != value;
 }
 
 static void next_coordinate(adapt_t *self) {
@@ -235,15 +252,24 @@ static void measure(adapt_t *self, const adapt_in_t *in) {
     }
 }
 
+// A trial that ends like this is not tried again at once: it may be what ended it.
+void adapt_pause(adapt_t *self) {
+    if (self->state == ADAPT_TRYING) {
+        self->trials = increment_sat_u32(self->trials);
+        fail(self);
+    }
+    wait_for(self, ADAPT_WAITING, 0);
+}
+
 void adapt_step(adapt_t *self, const adapt_in_t *in) {
     self->index = in->index;
     if (!in->may_try) {
         adapt_pause(self);
-    } else if (self->state == ADAPT_WAITING || has_moved(self, in->freq_mHz)) {
+    } else if (self->state == ADAPT_WAITING) {
         begin(self, in);
     } else if (self->ticks > 0) {
         self->ticks--;
-    } else if (self->state == ADAPT_RESTING) {
+    } else if (self->state == ADAPT_RESTING || has_moved(self, in->freq_mHz)) {
         begin(self, in);
     } else {
         measure(self, in);
@@ -254,8 +280,8 @@ adapt_trim_t adapt_trim_at(const adapt_t *self, uint32_t index, uint32_t part_q1
     adapt_trim_t trim;
     for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
         const int32_t from = self->trim[index].value[i];
-        const int32_t to = self->trim[index + 1u].value[i];
-        trim.value[i] = (int16_t)(from + (((to - from) * (int32_t)(part_q16 >> 1)) >> 15));
+        const int32_t change = self->trim[index + 1u].value[i] - from;
+        trim.value[i] = (int16_t)(from + ((change * (int32_t)(part_q16 >> 1) + HALF_q15) >> 15));
     }
     if (self->state == ADAPT_TRYING) {
         const int32_t tried = trim.value[self->coordinate] + step_of(self);

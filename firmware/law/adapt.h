@@ -10,6 +10,10 @@
 /// the fundamental) over half cycles. Both are relative changes, so the unit does not matter and
 /// neither does a calibration.
 ///
+/// The first trial of all is the pulse without its gap: edges that are moved little by little find
+/// the best pulse near the one that they start from, and on another plant a plain constant current
+/// may be better than that.
+///
 /// What is learnt is kept for each point of the pulse table; it is bounded by adapt_cfg_t, and can
 /// be frozen, cleared, taken out and put back. A trial is given up, and nothing learnt, when the
 /// lock is lost, a fault is present, the frequency moves by 2 %, or the two measurements around it
@@ -26,12 +30,12 @@
 #define ADAPT_POINTS 64u
 
 /// What is changed.
-enum { ADAPT_ON_EDGE, ADAPT_OFF_EDGE, ADAPT_LEVEL, ADAPT_COORDINATES };
+enum { ADAPT_ON_EDGE, ADAPT_OFF_EDGE, ADAPT_LEVEL, ADAPT_WHOLE, ADAPT_COORDINATES };
 
 /// Change of a pulse. Zero: none.
 typedef struct {
-    int16_t
-        value[ADAPT_COORDINATES]; ///< edges: half turns Q16, later is positive; level: Q15, <= 0
+    int16_t value[ADAPT_COORDINATES]; ///< edges: half turns Q16, later is positive; level: Q15,
+                                      ///< <= 0; whole: 1 without any gap, else 0
 } adapt_trim_t;
 
 typedef struct {

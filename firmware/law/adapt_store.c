@@ -16,7 +16,8 @@ void adapt_store(const adapt_t *self, adapt_owner_t owner, uint32_t *words) {
         const int16_t *value = self->trim[i].value;
         words[TRIM_WORD + 2u * i] = (uint32_t)(uint16_t)value[ADAPT_ON_EDGE] |
                                     (uint32_t)(uint16_t)value[ADAPT_OFF_EDGE] << 16;
-        words[TRIM_WORD + 2u * i + 1u] = (uint16_t)value[ADAPT_LEVEL];
+        words[TRIM_WORD + 2u * i + 1u] =
+            (uint32_t)(uint16_t)value[ADAPT_LEVEL] | (uint32_t)(uint16_t)value[ADAPT_WHOLE] << 16;
     }
     words[CRC_WORD] = crc_of(words);
 }
@@ -26,7 +27,9 @@ static adapt_trim_t trim_of(const uint32_t *words, uint32_t point) {
     adapt_trim_t trim;
     trim.value[ADAPT_ON_EDGE] = (int16_t)(uint16_t)edges;
     trim.value[ADAPT_OFF_EDGE] = (int16_t)(uint16_t)(edges >> 16);
-    trim.value[ADAPT_LEVEL] = (int16_t)(uint16_t)words[TRIM_WORD + 2u * point + 1u];
+    const uint32_t rest = words[TRIM_WORD + 2u * point + 1u];
+    trim.value[ADAPT_LEVEL] = (int16_t)(uint16_t)rest;
+    trim.value[ADAPT_WHOLE] = (int16_t)(uint16_t)(rest >> 16);
     return trim;
 }
 

@@ -34,7 +34,9 @@ static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
     const int32_t width_q16 =
         (int32_t)pulse->width_q16 + trim->value[ADAPT_OFF_EDGE] - trim->value[ADAPT_ON_EDGE];
     pulse->on_q16 = (uint32_t)((int32_t)pulse->on_q16 + trim->value[ADAPT_ON_EDGE]) & 0xFFFFu;
-    pulse->width_q16 = (uint32_t)clamp_i32(width_q16, 0, (int32_t)PHASE_WIDTH_ALL);
+    pulse->width_q16 = trim->value[ADAPT_WHOLE] != 0
+                           ? PHASE_WIDTH_ALL
+                           : (uint32_t)clamp_i32(width_q16, 0, (int32_t)PHASE_WIDTH_ALL);
     const int32_t level_mA = pulse->level_mA + ((pulse->level_mA * trim->value[ADAPT_LEVEL]) >> 15);
     pulse->level_mA = level_mA > pulse->floor_mA ? level_mA : pulse->floor_mA;
 }

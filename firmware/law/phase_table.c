@@ -4,14 +4,14 @@
 
 #include "crc32.h"
 
-enum { HEADER_WORDS = 5, POINT_WORDS = 4 };
+enum { HEADER_WORDS = 5, POINT_WORDS = 4, LONGEST_RAMP_q16 = 32767 };
 
 _Static_assert(sizeof(phase_point_t) == 4u * POINT_WORDS, "words on the wire");
 _Static_assert(offsetof(phase_table_t, point) == 4u * HEADER_WORDS, "words on the wire");
 
 static bool are_points_good(const phase_point_t *points, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
-        if (points[i].floor_mA > points[i].level_mA ||
+        if (points[i].floor_mA > points[i].level_mA || points[i].ramp_q16 > LONGEST_RAMP_q16 ||
             (i > 0 && points[i].freq_mHz <= points[i - 1u].freq_mHz)) {
             return false;
         }
@@ -99,6 +99,7 @@ phase_pulse_t phase_pulse_at(const phase_point_t *points, phase_place_t place) {
         .width_q16 = width_q16,
         .level_mA = (int32_t)between(a->level_mA, b->level_mA - a->level_mA, part),
         .floor_mA = (int32_t)between(a->floor_mA, b->floor_mA - a->floor_mA, part),
+        .ramp_q16 = between(a->ramp_q16, b->ramp_q16 - a->ramp_q16, part),
         .accel_weight_q8 =
             between(a->accel_weight_q8, b->accel_weight_q8 - a->accel_weight_q8, part),
         .accel_shape_q14 =
@@ -124,15 +125,19 @@ int32_t phase_pulse_current_mA(const phase_pulse_t *pulse, uint32_t start_turn,
     if (pulse->width_q16 >= PHASE_WIDTH_ALL) {
         return pulse->level_mA;
     }
-    const uint32_t start = start_turn - (pulse->on_q16 << 16);
-    const uint32_t on = covered(start, length_turn, pulse->width_q16 << 16);
+    // A ramp is the mean over a longer time about the same middle.
+    const uint32_t ramp_turn = pulse->ramp_q16 << 16;
+    const uint32_t longer = ramp_turn > length_turn ? (ramp_turn - length_turn) / 2u : 0;
+    const uint32_t length = length_turn + 2u * longer;
+    const uint32_t start = start_turn - longer - (pulse->on_q16 << 16);
+    const uint32_t on = covered(start, length, pulse->width_q16 << 16);
     if (on == 0) {
         return pulse->floor_mA;
     }
-    if (on == length_turn) {
+    if (on == length) {
         return pulse->level_mA;
     }
-    const uint32_t part_q16 = on / ((length_turn >> 16) + 1u);
+    const uint32_t part_q16 = on / ((length >> 16) + 1u);
     const int64_t height_mA = pulse->level_mA - pulse->floor_mA;
     return pulse->floor_mA + (int32_t)((height_mA * part_q16) >> 16);
 }

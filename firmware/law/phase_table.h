@@ -24,7 +24,7 @@ typedef struct {
     uint16_t floor_mA;        ///< between pulses, <= level_mA
     uint16_t accel_weight_q8; ///< for adapt.h: what acceleration counts against displacement ..
     uint16_t accel_shape_q14; ///< .. beyond this ratio of the two
-    uint16_t reserved;        ///< 0
+    uint16_t ramp_q16;        ///< how long an edge takes, about its middle; 0: at once
 } phase_point_t;
 
 typedef struct {
@@ -42,7 +42,8 @@ typedef enum {
     PHASE_TABLE_MAGIC_WRONG = 2,
     PHASE_TABLE_CRC = 3,
     PHASE_TABLE_SHAPE = 4, ///< numbers of points
-    PHASE_TABLE_POINT = 5, ///< frequencies that do not rise, a floor above its level
+    PHASE_TABLE_POINT =
+        5, ///< frequencies that do not rise, a floor above its level, a ramp too long
 } phase_table_verdict_t;
 
 /// Whether count words are a table; nothing else reads a table that has not passed.
@@ -67,6 +68,7 @@ typedef struct {
     uint32_t width_q16;
     int32_t level_mA;
     int32_t floor_mA;
+    uint32_t ramp_q16; ///< of an edge, about its middle
     uint32_t accel_weight_q8;
     uint32_t accel_shape_q14;
 } phase_pulse_t;

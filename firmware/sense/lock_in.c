@@ -3,7 +3,7 @@
 enum {
     LOST_ANGLE_TURN = 715827883,        // a sixth of a turn
     LAST_STAGE = HARMONIC_PRODUCTS + 2, // the mean, then all the rest
-    CONTRADICTED_SHIFT = 3, // an eighth of what is expected
+    CONTRADICTED_SHIFT = 2, // a quarter of what is expected
     SCALED_BITS = 16,
     LARGEST_SCALED = 1 << 20,
 };

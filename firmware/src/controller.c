@@ -230,6 +230,7 @@ static void report_phase(const controller_t *self, quiesce_telemetry_t *t) {
     t->trim_on_mdeg = half_turn_mdeg(phase->trim.value[ADAPT_ON_EDGE]);
     t->trim_off_mdeg = half_turn_mdeg(phase->trim.value[ADAPT_OFF_EDGE]);
     t->trim_level_q15 = 32768 + phase->trim.value[ADAPT_LEVEL];
+    t->trim_is_whole = phase->trim.value[ADAPT_WHOLE] != 0 ? 1u : 0u;
 }
 
 static void report(const controller_t *self, quiesce_telemetry_t *t) {

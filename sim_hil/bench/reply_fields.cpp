@@ -46,6 +46,7 @@ constexpr WordField kTelemetry[] = {
     {"trim_on_mdeg", kSigned},
     {"trim_off_mdeg", kSigned},
     {"trim_level_q15", kSigned},
+    {"trim_is_whole", kUnsigned},
 };
 static_assert(sizeof kTelemetry / sizeof kTelemetry[0] * 4 == sizeof(quiesce_telemetry_t));
 static_assert(QUIESCE_PEAKS == 3);

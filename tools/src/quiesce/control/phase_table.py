@@ -8,7 +8,8 @@ round; outside the first and last point it uses those.
 Words (uint32): magic; CRC-32 of all words after it as little-endian bytes; number of words; points
 of the first setting | points of the second << 16; unlock_current_mA; then four for each point:
 freq_mHz | level_mA << 16, centre | width << 16 in 1/65536 of half a turn (a width of 65535 is all
-of it), floor_mA | accel weight << 16 in 1/256, accel shape in 1/16384.
+of it), floor_mA | accel weight << 16 in 1/256, accel shape in
+1/16384 | ramp << 16 in 1/65536 of half a turn.
 """
 
 import struct
@@ -46,6 +47,7 @@ class Point:
     # RMS acceleration / (half peak-to-peak displacement x (2 pi f)^2) is above accel_shape.
     accel_weight: float = 0.0
     accel_shape: float = 0.0  # 0 .. below 4; 0.707 is a sine
+    ramp_deg: float = 0.0  # how long each edge takes, about its middle; below 90
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,7 @@ ALLOWED = {
     "floor_mA": (0, MOST_MA, "mA"),
     "accel_weight": (0.0, 255.0, ""),
     "accel_shape": (0.0, 3.9999, ""),
+    "ramp_deg": (0.0, 89.99, "degrees"),
 }
 
 
@@ -118,7 +121,7 @@ class _Reader:
 
     def point(self, table: Any, key: str) -> Point:
         names = [field.name for field in fields(Point)]
-        defaults = {"accel_weight": 0.0, "accel_shape": 0.0}
+        defaults = {"accel_weight": 0.0, "accel_shape": 0.0, "ramp_deg": 0.0}
         table = {**defaults, **self.known(table, names, key, tuple(defaults))}
         point = Point(*(self.number(table[n], f"{key}.{n}", *ALLOWED[n]) for n in names))
         if point.floor_mA > point.level_mA:
@@ -192,7 +195,7 @@ def _point_text(point: Point) -> str:
         f"{{ freq_Hz = {point.freq_Hz:.3f}, centre_deg = {point.centre_deg:.2f}, "
         f"width_deg = {point.width_deg:.2f}, level_mA = {point.level_mA}, "
         f"floor_mA = {point.floor_mA}, accel_weight = {point.accel_weight:.3f}, "
-        f"accel_shape = {point.accel_shape:.4f} }}"
+        f"accel_shape = {point.accel_shape:.4f}, ramp_deg = {point.ramp_deg:.2f} }}"
     )
 
 
@@ -226,7 +229,7 @@ def _point_words(point: Point) -> tuple[int, ...]:
         round(1e3 * point.freq_Hz) | point.level_mA << 16,
         centre | width << 16,
         point.floor_mA | round(256 * point.accel_weight) << 16,
-        round(16384 * point.accel_shape),
+        round(16384 * point.accel_shape) | round(point.ramp_deg / 180.0 * HALF_TURN) << 16,
     )
 
 
@@ -250,4 +253,6 @@ def _between(low: Point, high: Point, freq_Hz: float) -> Point:
         round(low.level_mA + part * (high.level_mA - low.level_mA)),
         round(low.floor_mA + part * (high.floor_mA - low.floor_mA)),
         low.accel_weight + part * (high.accel_weight - low.accel_weight),
+        low.accel_shape + part * (high.accel_shape - low.accel_shape),
+        low.ramp_deg + part * (high.ramp_deg - low.ramp_deg),
     )
