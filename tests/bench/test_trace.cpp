@@ -29,6 +29,15 @@ std::string read(const std::string &file) {
     return text.str();
 }
 
+std::size_t column_of(const std::string &name) {
+    const auto &fields = quiesce::telemetry_fields();
+    std::size_t i = 0;
+    while (fields.at(i).name != name) {
+        ++i;
+    }
+    return i;
+}
+
 TEST(Trace, is_a_json_line_and_rows_of_float64) {
     quiesce::Trace trace({"a", "b"});
     for (const double value : {1.0, -2.5, 3e100, 0.0}) {
@@ -71,12 +80,11 @@ TEST(Trace, telemetry_keeps_signs_and_large_words) {
     std::memcpy(row.data(), bytes.data() + bytes.find('\n') + 1, row.size() * sizeof(double));
     EXPECT_EQ(row.front(), 4294967295.0);
     EXPECT_EQ(row[5], -7.0);
-    const std::size_t law = row.size() - 8; // the command, then seven words of the phase law
-    EXPECT_EQ(row[law], 4321.0);
-    EXPECT_EQ(row[law + 1], 1.0);
-    EXPECT_EQ(row[law + 3], 2147483648.0);
-    EXPECT_EQ(row[law + 5], -45000.0);
-    EXPECT_EQ(row.back(), -16384.0);
+    EXPECT_EQ(row[column_of("current_cmd_mA")], 4321.0);
+    EXPECT_EQ(row[column_of("lock_is_on")], 1.0);
+    EXPECT_EQ(row[column_of("adapt_trials")], 2147483648.0);
+    EXPECT_EQ(row[column_of("trim_on_mdeg")], -45000.0);
+    EXPECT_EQ(row[column_of("trim_level_q15")], -16384.0);
 }
 
 TEST(ReplyFields, name_the_words_where_they_are) {

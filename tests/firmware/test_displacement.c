@@ -16,7 +16,7 @@ static int64_t expected_nm(int32_t fundamental, int32_t third, uint32_t third_tu
 }
 
 static void run_search(void) {
-    for (uint32_t i = 0; i < DISPLACEMENT_POINTS / 2; i++) {
+    for (uint32_t i = 0; i < HARMONIC_SPAN_POINTS / 2; i++) {
         displacement_step(&displacement, 0);
     }
 }
@@ -48,7 +48,7 @@ static void test_half_peak_to_peak_against_every_point_of_the_cycle(void) {
 
 static void test_the_last_search_stands_until_the_next_has_finished(void) {
     displacement_load(&displacement, 1000000, 0, 0);
-    for (uint32_t i = 0; i < DISPLACEMENT_POINTS / 2; i++) {
+    for (uint32_t i = 0; i < HARMONIC_SPAN_POINTS / 2; i++) {
         TEST_ASSERT_EQUAL_INT32(0, displacement.half_peak_to_peak_nm);
         displacement_step(&displacement, 0);
     }
