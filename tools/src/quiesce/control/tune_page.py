@@ -138,8 +138,8 @@ def spring_words(cycles: Sequence[Cycle]) -> str:
 
 WHY = """A damper's force opposes the motion; the current only says how strongly. <b>Below
 resonance</b> the structure moves like its spring, so more stiffness helps. Current flows while the
-structure moves away from rest and is released just after the peak: the force resists the way out,
-as a spring does, and does not push back on the way in; a spring that gives nothing back. <b>Above
+structure moves away from rest and is released at the peak: the force resists the way out, as a
+spring does, and does not push back on the way in; a spring that gives nothing back. <b>Above
 resonance</b> it moves like its mass, so more mass helps. Current flows on the way back to rest and
 is released on the way out: the force opposes the return, as inertia does. Shaded: current flows.
 The command comes earlier than the current by the coil's lag. Dotted: the displacement without

@@ -127,8 +127,8 @@ def variants(plant: Plant, robustness: str) -> tuple[Variant, ...]:
     """none; axes: one property at a time; full: all combinations."""
     if robustness == "none":
         return ()
-    rises_s = [part * plant.rise_s for part in LAGS]
-    drives_V = [part * plant.drive_V for part in DRIVES]
+    rises_s = [_rounded(part * plant.rise_s) for part in LAGS]
+    drives_V = [_rounded(part * plant.drive_V) for part in DRIVES]
     whole = [
         Variant(rise_s=rise_s, force=force, freq=freq, drive_V=drive_V)
         for rise_s in rises_s
@@ -137,15 +137,20 @@ def variants(plant: Plant, robustness: str) -> tuple[Variant, ...]:
         for drive_V in drives_V
     ]
     if robustness == "full":
-        nominal = Variant(rise_s=plant.rise_s, drive_V=plant.drive_V)
+        nominal = Variant(rise_s=rises_s[1], drive_V=drives_V[1])
         return (Variant(), *(one for one in whole if one != nominal))
     return (
         Variant(),
         *(Variant(force=force) for force in FORCES if force != 1.0),
-        *(Variant(rise_s=part * plant.rise_s) for part in LAGS if part != 1.0),
+        *(Variant(rise_s=rise_s) for rise_s in (rises_s[0], rises_s[2])),
         *(Variant(freq=freq) for freq in FREQS if freq != 1.0),
-        *(Variant(drive_V=part * plant.drive_V) for part in DRIVES if part != 1.0),
+        *(Variant(drive_V=drive_V) for drive_V in (drives_V[0], drives_V[2])),
     )
+
+
+def _rounded(value: float) -> float:
+    """To a number that can be told in a name."""
+    return float(f"{value:.3g}")
 
 
 def chosen_settings(weights: list[str], limits: list[str]) -> dict[str, Setting]:

@@ -74,7 +74,9 @@ def plot_pulses(law: PhaseLaw) -> Any:
 def current_A(points: Any, freq_Hz: float, phase_deg: np.ndarray) -> np.ndarray:
     at = interpolated(points, freq_Hz)
     away_deg = np.abs((phase_deg - at.centre_deg + 90.0) % 180.0 - 90.0)
-    return 1e-3 * np.where(away_deg <= 0.5 * at.width_deg, at.level_mA, at.floor_mA)
+    ramp_deg = max(min(at.ramp_deg, at.width_deg, 180.0 - at.width_deg), 1e-3)
+    part = np.clip((0.5 * at.width_deg - away_deg) / ramp_deg + 0.5, 0.0, 1.0)
+    return 1e-3 * (at.floor_mA + (at.level_mA - at.floor_mA) * part)
 
 
 def plot_fronts(rows: Sequence[Row], fronts: dict[float, list[dict[str, float]]]) -> Any:
@@ -135,10 +137,10 @@ def plot_cycles(cycles: Sequence[Cycle], first_Hz: float) -> Any:
 def shade(axis: Any, one: Cycle) -> None:
     """Where more than half of the largest current flows."""
     is_on = one.coil_A > 0.5 * (one.coil_A.max() + one.coil_A.min())
-    axis.fill_between(
-        one.turn_deg, 0, 1, where=is_on, transform=axis.get_xaxis_transform(),
-        color=COLORS["shade"], zorder=0, step="mid",
-    )  # fmt: skip
+    edges = np.flatnonzero(np.diff(is_on.astype(int), prepend=0, append=0))
+    ends_deg = np.append(one.turn_deg, 360.0)
+    for first, last in edges.reshape(-1, 2):
+        axis.axvspan(ends_deg[first], ends_deg[last], color=COLORS["shade"], zorder=0, linewidth=0)
 
 
 def plot_loop(axis: Any, one: Cycle) -> None:
@@ -151,9 +153,9 @@ def plot_loop(axis: Any, one: Cycle) -> None:
     kind = "spring" if one.stiffness_N_m > 0 else "mass"
     reach = np.array([-1.0, 1.0]) * np.abs(one.disp_um).max()
     line = 1e-3 * one.stiffness_N_m * reach
-    axis.plot(reach, line, "--", color=COLORS["current"], label=f"its part like a {kind}")
+    axis.plot(reach, line, "--", color=COLORS["current"])
+    axis.set_title(f"dashed: its part like a {kind}", fontsize=8)
     axis.set(xlabel="displacement (µm)", ylabel="resisting force (mN)")
-    axis.legend(loc="upper left" if one.stiffness_N_m > 0 else "upper right")
     axis.figure.colorbar(image, ax=axis, label="coil current (A)")
 
 
