@@ -202,7 +202,7 @@ static void test_adapt_follows_a_plant_that_changes_while_it_rests(void) {
 static void test_adapt_waits_for_a_vibration_that_lasts(void) {
     run(cfg.start_ticks + MEASURE_TICKS);
     TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
-    run(100);
+    run(SETTLE_TICKS + 100);
     TEST_ASSERT_EQUAL(ADAPT_TRYING, adapt.state);
 }
 
@@ -345,6 +345,15 @@ static void test_adapt_does_not_learn_a_step_of_the_excitation(void) {
     }
 }
 
+static void run_until_edge_is_tried(void) {
+    for (uint32_t i = 0;
+         i < 9u * TRIAL_TICKS && (adapt.state != ADAPT_TRYING || adapt.coordinate != ADAPT_ON_EDGE);
+         i++) {
+        tick();
+    }
+    TEST_ASSERT_EQUAL(ADAPT_TRYING, adapt.state);
+}
+
 // A gain of a tenth, and an excitation that grows or falls by a twentieth meanwhile. Thrown away
 // means that the same trial is made once more: the direction was not to blame.
 static void test_adapt_repeats_a_trial_that_was_disturbed(void) {
@@ -352,9 +361,7 @@ static void test_adapt_repeats_a_trial_that_was_disturbed(void) {
         setUp();
         plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
         plant.now_reach_ppm = bowl_ppm(&plant.reach, &plant.trim);
-        for (uint32_t i = 0; i < 9u * TRIAL_TICKS && adapt.coordinate != ADAPT_ON_EDGE; i++) {
-            tick();
-        }
+        run_until_edge_is_tried();
         const uint32_t trials = adapt.trials;
         const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
         TEST_ASSERT_GREATER_THAN_INT32(0, tried.value[ADAPT_ON_EDGE]);
@@ -427,6 +434,18 @@ static void test_adapt_pause_in_any_state_undoes_the_trial(void) {
     }
 }
 
+// What was tried may be what the lock was lost of.
+static void test_adapt_goes_on_with_another_trial_after_a_lost_lock(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
+    run_until_edge_is_tried();
+    const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
+    adapt_pause(&adapt);
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 3 * TRIAL_TICKS));
+    const adapt_trim_t next = adapt_trim_at(&adapt, in.index, 0);
+    TEST_ASSERT_FALSE(memcmp(tried.value, next.value, sizeof tried.value) == 0);
+    assert_nothing_learnt();
+}
+
 static void test_adapt_clear_forgets(void) {
     learn_something();
     adapt_clear(&adapt);
@@ -454,11 +473,11 @@ static void test_adapt_gives_up_where_the_frequency_moves_by_2_percent(void) {
         tick();
         TEST_ASSERT_EQUAL(ADAPT_TRYING, adapt.state);
         in.freq_mHz = (uint32_t)(10000 + sign * 201);
-        tick();
+        run(SETTLE_TICKS + 1); // by when it would be measured
         TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
         assert_trial_is_undone(before);
         TEST_ASSERT_EQUAL_UINT32(trials, adapt.trials);
-        run(cfg.start_ticks); // it must last anew
+        run(cfg.start_ticks - SETTLE_TICKS); // it must last anew
         TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
         TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
     }
@@ -656,6 +675,7 @@ int main(void) {
     RUN_TEST(test_adapt_trial_changes_one_thing);
     RUN_TEST(test_adapt_fault_keeps_what_was_learnt_and_undoes_the_trial);
     RUN_TEST(test_adapt_pause_in_any_state_undoes_the_trial);
+    RUN_TEST(test_adapt_goes_on_with_another_trial_after_a_lost_lock);
     RUN_TEST(test_adapt_clear_forgets);
     RUN_TEST(test_adapt_gives_up_where_the_frequency_moves_by_2_percent);
     RUN_TEST(test_adapt_does_not_learn_while_the_frequency_hops);
