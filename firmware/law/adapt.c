@@ -15,7 +15,7 @@ enum {
 };
 
 void adapt_init(adapt_t *self, const adapt_cfg_t *cfg) {
-    *self = (adapt_t){.cfg = *cfg, .coordinate = ADAPT_WHOLE, .direction = 1};
+    *self = (adapt_t){.cfg = *cfg, .direction = 1};
 }
 
 void adapt_clear(adapt_t *self) {
@@ -37,17 +37,16 @@ static bool has_moved(const adapt_t *self, uint32_t freq_mHz) {
     return change > self->freq_mHz / DRIFT_DIVISOR;
 }
 
-// Where the vibration is another one it must last before the search starts, with large steps.
-static void begin(adapt_t *self, const adapt_in_t *in) {
-    uint32_t wait_ticks = self->cfg.settle_ticks;
-    if (has_moved(self, in->freq_mHz)) {
-        wait_ticks = self->cfg.start_ticks;
-        self->shrink = 0;
-        self->barren = 0;
-        self->failures = 0;
-        self->freq_mHz = in->freq_mHz;
-    }
-    wait_for(self, ADAPT_MEASURING, wait_ticks);
+// The vibration is another one: it must last before the search starts, with large steps.
+static void start_search_at(adapt_t *self, uint32_t freq_mHz) {
+    self->freq_mHz = freq_mHz;
+    self->coordinate = ADAPT_WHOLE;
+    self->direction = 1;
+    self->shrink = 0;
+    self->barren = 0;
+    self->failures = 0;
+    self->has_tried_whole = false;
+    wait_for(self, ADAPT_MEASURING, self->cfg.start_ticks);
 }
 
 // change / from in Q20, limited to a quarter, to 2^-9 of itself; one 32-bit division.
@@ -92,12 +91,12 @@ static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t valu
     }
 }
 
-// Whether a trial would change anything. The gap is closed at the beginning of a search only: where
-// it helps, closing it costs most.
+// Whether a trial would change anything. The gap is closed once a search only: where it helps,
+// closing it costs most.
 static bool has_room(const adapt_t *self) {
     const int16_t *now = self->trim[self->index].value;
     if (self->coordinate == ADAPT_WHOLE
-            ? self->shrink > 0 && now[ADAPT_WHOLE] == 0
+            ? self->has_tried_whole && now[ADAPT_WHOLE] == 0
             : self->coordinate != ADAPT_LEVEL && now[ADAPT_WHOLE] != 0) {
         return false;
     }
@@ -134,6 +133,7 @@ static void try_next(adapt_t *self) {
         self->is_exhausted = false;
         wait_for(self, ADAPT_RESTING, self->cfg.rest_ticks);
     } else {
+        self->has_tried_whole |= self->coordinate == ADAPT_WHOLE;
         wait_for(self, ADAPT_TRYING, self->cfg.settle_ticks);
     }
 }
@@ -266,11 +266,13 @@ void adapt_step(adapt_t *self, const adapt_in_t *in) {
     if (!in->may_try) {
         adapt_pause(self);
     } else if (self->state == ADAPT_WAITING) {
-        begin(self, in);
+        wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
     } else if (self->ticks > 0) {
         self->ticks--;
-    } else if (self->state == ADAPT_RESTING || has_moved(self, in->freq_mHz)) {
-        begin(self, in);
+    } else if (has_moved(self, in->freq_mHz)) {
+        start_search_at(self, in->freq_mHz);
+    } else if (self->state == ADAPT_RESTING) {
+        wait_for(self, ADAPT_MEASURING, 0);
     } else {
         measure(self, in);
     }
