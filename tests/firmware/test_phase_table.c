@@ -366,9 +366,12 @@ static uint64_t on_part(const phase_pulse_t *pulse, uint32_t start, uint32_t len
 }
 
 // A tick's mean current to 1 mA and the 16 bits in which its length is counted; a ramp that is
-// longer than the tick is the mean over the ramp's length about the tick's middle.
+// longer than the tick is the mean over the ramp's length about the tick's middle. Two ramps never
+// overlap: they are no longer than the pulse or the gap.
 static void assert_current(const phase_pulse_t *pulse, uint32_t start, uint32_t length) {
-    const uint32_t ramp = pulse->ramp_q16 << 16;
+    const uint32_t gap_q16 = PHASE_WIDTH_ALL - pulse->width_q16;
+    const uint32_t room_q16 = gap_q16 < pulse->width_q16 ? gap_q16 : pulse->width_q16;
+    const uint32_t ramp = (pulse->ramp_q16 < room_q16 ? pulse->ramp_q16 : room_q16) << 16;
     const uint32_t longer = ramp > length ? (ramp - length) / 2u : 0;
     const uint32_t window = length + 2u * longer;
     const int64_t height = pulse->level_mA - pulse->floor_mA;
@@ -465,6 +468,17 @@ static void test_phase_current_of_a_ramp(void) {
     }
 }
 
+// Shorter pulse or gap than ramp: level and floor are still reached.
+static void test_phase_current_of_ramps_without_room(void) {
+    const uint32_t tick = 1u << 20;
+    phase_pulse_t pulse = {.on_q16 = 10000, .width_q16 = 4000, .level_mA = 3000, .ramp_q16 = 30000};
+    TEST_ASSERT_INT32_WITHIN(20, 3000, phase_pulse_current_mA(&pulse, UINT32_C(12000) << 16, tick));
+    TEST_ASSERT_EQUAL_INT32(0, phase_pulse_current_mA(&pulse, UINT32_C(40000) << 16, tick));
+    pulse.width_q16 = 61536;
+    TEST_ASSERT_INT32_WITHIN(20, 0, phase_pulse_current_mA(&pulse, UINT32_C(8000) << 16, tick));
+    TEST_ASSERT_EQUAL_INT32(3000, phase_pulse_current_mA(&pulse, UINT32_C(40000) << 16, tick));
+}
+
 // Over whole periods the ticks add up to the pulse's area, wherever the grid lies.
 static void test_phase_current_adds_up_to_the_pulse(void) {
     phase_pulse_t pulse = {.on_q16 = 50000, .width_q16 = 30001, .level_mA = 5000, .floor_mA = 1000};
@@ -511,6 +525,7 @@ int main(void) {
     RUN_TEST(test_phase_current_of_a_gap_or_a_pulse_inside_a_tick);
     RUN_TEST(test_phase_current_of_any_tick_is_the_mean_over_it);
     RUN_TEST(test_phase_current_of_a_ramp);
+    RUN_TEST(test_phase_current_of_ramps_without_room);
     RUN_TEST(test_phase_current_adds_up_to_the_pulse);
     return UNITY_END();
 }
