@@ -44,6 +44,17 @@ def write_one_mode(folder: Path) -> Path:
     return file
 
 
+def write_viscous(folder: Path) -> Path:
+    """One mode and a linear damper, which is quick to compute."""
+    data = read_plant_data(write_one_mode(folder))
+    data["damper"] = {
+        "model": "viscous", "base_N_s_m": 0.0, "per_A_N_s_m": 0.15, "stroke_m": 0.002
+    }  # fmt: skip
+    file = folder / "viscous.toml"
+    file.write_text(tomli_w.dumps(data), encoding="utf-8")
+    return file
+
+
 @pytest.fixture
 def one_mode(tmp_path: Path) -> Path:
     return write_one_mode(tmp_path)
@@ -147,9 +158,9 @@ def test_same_command_again_computes_nothing(tuned) -> None:
     assert (folder / "work.json").read_bytes() == before
 
 
-def test_interrupted_run_keeps_what_is_finished_and_goes_on(build, one_mode: Path) -> None:
-    folder = one_mode.parent
-    words = ("tune", one_mode.name, *SHORT, *ALONE, "--out", "out", "--jobs", "2")
+def test_interrupted_run_keeps_what_is_finished_and_goes_on(build, tmp_path: Path) -> None:
+    folder = tmp_path
+    words = ("tune", write_viscous(folder).name, *SHORT, *ALONE, "--out", "out", "--jobs", "2")
     store = folder / "out/work.json"
     process = subprocess.Popen(
         [sys.executable, "-m", "quiesce", *words],
@@ -175,6 +186,27 @@ def test_interrupted_run_keeps_what_is_finished_and_goes_on(build, one_mode: Pat
     assert len(pieces) == 4
     assert f"[1/{4 - len(kept)}]" in again.stderr
     assert {key: pieces[key] for key in kept} == kept
+
+
+def test_recording_is_identified_once_and_tuned_for(build, tmp_path: Path) -> None:
+    plant = write_viscous(tmp_path).name
+    record = ("--band", "4", "30", "--sweep-s", "10", "--dwell-hz", "9", "--hold-s", "0.3")
+    rest = ("--rest-s", "1.5", "--max-current", "5", "--out", "rec.csv")
+    assert run_quiesce(tmp_path, "sweep", "--simulate", plant, *record, *rest).returncode == 0
+    words = ("tune", "--from-sweep", "rec.csv", "--base-plant", plant, *SHORT, *ALONE)
+    first = run_quiesce(tmp_path, *words, "--out", "out", "--json")
+    assert first.returncode == 0, first.stderr
+    assert "least squares" in first.stderr
+    data = json.loads(first.stdout)
+    assert "95 % interval" in data["identification"]
+    assert "95 % interval" in (tmp_path / "out/report.html").read_text(encoding="utf-8")
+    assert Plant(tmp_path / "out/identified/plant.toml").modes[0].freq_Hz == pytest.approx(
+        11.5, abs=0.01
+    )
+    assert len(read_law(tmp_path / "out/rec.phase.toml").settings["balanced"]) == 2
+    again = run_quiesce(tmp_path, *words, "--out", "out")
+    assert again.returncode == 0, again.stderr
+    assert "least squares" not in again.stderr and "Hz  (" not in again.stderr
 
 
 def small_store(folder: Path, **inputs) -> TuneStore:

@@ -4,6 +4,7 @@ import argparse
 import json
 import os
 import shlex
+import signal
 import sys
 from pathlib import Path
 
@@ -159,6 +160,8 @@ def tune_into(args: argparse.Namespace) -> int:
 
 def run(args: argparse.Namespace) -> int:
     check(args)
+    # Whoever ends it: finished pieces are kept, and no process stays behind.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return tune_into(args)
     except KeyboardInterrupt:
