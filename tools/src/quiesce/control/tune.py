@@ -171,9 +171,7 @@ def closed_loop(
         return cells(plan, store, law, loop), cycles(plan, plant, law, loop)
 
 
-def write_law_files(
-    folder: Path, stem: str, law: PhaseLaw, values: dict[str, int | str]
-) -> None:
+def write_law_files(folder: Path, stem: str, law: PhaseLaw, values: dict[str, int | str]) -> None:
     (folder / f"{stem}.phase.toml").write_text(law_text(law), encoding="utf-8")
     (folder / f"{stem}.phase.bin").write_bytes(law_bytes(law))
     (folder / f"{stem}.set").write_text(setting_words(values) + "\n", encoding="utf-8")

@@ -79,9 +79,7 @@ def sine_text(plant: Path, freq_Hz: float, duration_s: float) -> str:
     )
 
 
-def cells(
-    plan: TunePlan, store: TuneStore, law: PhaseLaw, loop: ClosedLoop | None
-) -> list[Cell]:
+def cells(plan: TunePlan, store: TuneStore, law: PhaseLaw, loop: ClosedLoop | None) -> list[Cell]:
     """loop: None leaves the adapting firmware out."""
     wanted = [(variant, freq_Hz) for variant in plan.variants for freq_Hz in plan.shown_Hz]
     progress = Progress(len(wanted))
