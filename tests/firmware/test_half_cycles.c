@@ -108,6 +108,7 @@ static void test_half_cycles_period_with_an_offset(void) {
 }
 
 static void test_half_cycles_in_noise_cross_once(void) {
+    start(4000, 10000); // 157 um/s a tick at a crossing, noise of 250
     noise = AMP_um_s / 40;
     count_found(half_ticks(6));
     assert_tones(60, 8, 60);

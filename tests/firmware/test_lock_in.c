@@ -279,6 +279,16 @@ static void test_lock_in_lets_go_where_the_phase_jumps_or_the_motion_ends(void) 
     }
 }
 
+// More than 60 degrees off at once: the first half cycle tells.
+static void test_lock_in_gives_a_wrong_start_up(void) {
+    for (uint32_t degrees = 100; degrees <= 260u; degrees += 20u) {
+        setUp();
+        lock_in_acquire(&lock, motion.phase + degrees * DEGREE_TURN, motion.step, 0);
+        TEST_ASSERT_LESS_THAN_UINT32(half_cycles(1) + 12u, ticks_until_lost(1000));
+        TEST_ASSERT_FALSE(lock.has_half);
+    }
+}
+
 // Rests until it is told what to hold; a release is at once.
 static void test_lock_in_unlocked_does_nothing(void) {
     run(500);
@@ -392,6 +402,7 @@ int main(void) {
     RUN_TEST(test_lock_in_follows_a_sweep);
     RUN_TEST(test_lock_in_lets_go_within_a_cycle_where_the_frequency_steps);
     RUN_TEST(test_lock_in_lets_go_where_the_phase_jumps_or_the_motion_ends);
+    RUN_TEST(test_lock_in_gives_a_wrong_start_up);
     RUN_TEST(test_lock_in_unlocked_does_nothing);
     RUN_TEST(test_lock_in_keeps_on_through_changes_of_the_third_harmonic);
     RUN_TEST(test_lock_in_keeps_on_through_a_ring_of_96_Hz);
