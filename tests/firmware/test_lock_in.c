@@ -224,7 +224,7 @@ static uint32_t kept_after_growth(int32_t amp) {
 static void test_lock_in_follows_growth_at_any_size_alike(void) {
     const uint32_t kept = kept_after_growth(38000);
     TEST_ASSERT_GREATER_THAN_UINT32(3 * PARTS, kept);
-    for (int32_t amp = 46000; amp < 130000; amp += 8000) {
+    for (int32_t amp = 46000; amp < 130000; amp += 12000) {
         TEST_ASSERT_UINT32_WITHIN(2, kept, kept_after_growth(amp));
     }
 }
