@@ -128,7 +128,7 @@ def test_bench_takes_the_words_and_does_what_the_table_promises(tuned, tmp_path:
 
 def data_amp_um(folder: Path) -> float:
     pieces = json.loads((folder / "work.json").read_text())["pieces"]
-    return pieces["8 Hz"]["uncontrolled"]["amp_um"]
+    return pieces["bound 8 Hz"]["uncontrolled"]["amp_um"]
 
 
 @pytest.mark.parametrize(
@@ -183,8 +183,8 @@ def test_interrupted_run_keeps_what_is_finished_and_goes_on(build, tmp_path: Pat
     again = run_quiesce(folder, *words)
     assert again.returncode == 0, again.stderr
     pieces = json.loads(store.read_text())["pieces"]
-    assert len(pieces) == 4
-    assert f"[1/{4 - len(kept)}]" in again.stderr
+    assert len(pieces) == 8
+    assert again.stderr.count("Hz  (") == 8 - len(kept)
     assert {key: pieces[key] for key in kept} == kept
 
 
@@ -237,13 +237,31 @@ def test_store_that_is_damaged_or_of_other_inputs_is_refused(tmp_path: Path, dam
     assert len(TuneStore(tmp_path, {"plant": "a"}, is_fresh=True)) == 0
 
 
-def test_other_weights_are_not_mixed_with_what_is_stored(tuned) -> None:
+def test_other_weights_use_the_bounds_again(tuned) -> None:
+    folder = tuned[0]
+    before = json.loads((folder / "work.json").read_text())["pieces"]
+    words = ("--weights", "balanced=1,0,0.3", *SHORT, *ALONE, "--out", "out", "--json")
+    result = run_quiesce(folder.parent, "tune", "one_mode.toml", *words)
+    assert result.returncode == 0, result.stderr
+    assert result.stderr.count("Hz  (") == 2 and "bound" not in result.stderr
+    after = json.loads((folder / "work.json").read_text())["pieces"]
+    assert {key: after[key] for key in before} == before
+    used_A = [row["settings"]["balanced"]["mean_current_A"] for row in frequencies_of(result)]
+    usual_A = [row["settings"]["balanced"]["mean_current_A"] for row in tuned[1]["frequencies"]]
+    assert all(used < usual for used, usual in zip(used_A[::2], usual_A[::2], strict=True))
+
+
+def frequencies_of(result) -> list[dict]:
+    return json.loads(result.stdout)["frequencies"]
+
+
+def test_other_quality_is_not_mixed_with_what_is_stored(tuned) -> None:
     folder = tuned[0]
     before = (folder / "work.json").read_bytes()
-    words = ("--weights", "balanced=1,2,0.1", *SHORT, *ALONE, "--out", "out")
+    words = (*(word for word in SHORT if word != "--quick"), *ALONE, "--out", "out")
     result = run_quiesce(folder.parent, "tune", "one_mode.toml", *words)
     assert result.returncode == 2
-    assert "another settings" in result.stderr and "--fresh" in result.stderr
+    assert "another quality" in result.stderr and "--fresh" in result.stderr
     assert (folder / "work.json").read_bytes() == before
 
 

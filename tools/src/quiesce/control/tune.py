@@ -21,7 +21,7 @@ from quiesce.control.tune_page import Tuned, make_page, text
 from quiesce.control.tune_plan import Band, TunePlan, chosen_settings, make_plan
 from quiesce.control.tune_robust import Cell, ClosedLoop, cells
 from quiesce.control.tune_store import TuneStore
-from quiesce.control.tune_work import all_work, compute_all, fronts
+from quiesce.control.tune_work import compute_plan, fronts
 from quiesce.control.variant import read_plant_data
 from quiesce.errors import UsageError
 from quiesce.params import effective_params
@@ -101,7 +101,7 @@ def tune(order: Order) -> Result:
     folder = order.out or default_folder(order.source, data["name"])
     inputs = {"plant": f"{plant_hash(data)} {plant.drive_V:g} V", **plan.inputs()}
     store = TuneStore(folder, inputs, order.is_fresh)
-    compute_all(store, all_work(plan), order.jobs)
+    compute_plan(store, plan, order.jobs)
     return finished(order, plan, plant, store, folder, data["name"], report)
 
 

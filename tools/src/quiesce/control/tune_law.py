@@ -14,7 +14,7 @@ from quiesce.control.plant import Mode, Plant
 from quiesce.control.tables import judged, table
 from quiesce.control.tune_plan import TunePlan
 from quiesce.control.tune_store import TuneStore
-from quiesce.control.tune_work import FrequencyWork, candidate_of, figures
+from quiesce.control.tune_work import bound_works, candidate_of, figures, pulse_works
 from quiesce.errors import UsageError
 
 # Of a mode's decay time, 1/(damping ratio x angular frequency).
@@ -37,10 +37,8 @@ class Row:
 
 
 def results(plan: TunePlan, store: TuneStore) -> list[dict[str, Any]]:
-    """Of each frequency, in order."""
-    settings = tuple(plan.settings.items())
-    works = [FrequencyWork(plan.plant, f, settings, plan.quality) for f in plan.freqs_Hz]
-    return [store[work.key] for work in works]
+    """Bounds and constants of each frequency, in order."""
+    return [store[work.key] for work in bound_works(plan)]
 
 
 def best_constant_A(found: list[dict[str, Any]]) -> float:
@@ -50,13 +48,15 @@ def best_constant_A(found: list[dict[str, Any]]) -> float:
 
 
 def make_law(plant: Plant, plan: TunePlan, store: TuneStore, name: str, source: str) -> PhaseLaw:
-    found = results(plan, store)
+    works = pulse_works(plan, store)
     tables = {}
     for setting in plan.settings:
-        chosen = [[candidate_of(c) for c in r["candidates"][setting]] for r in found]
+        mine = [store[work.key] for work in works if work.name == setting]
+        chosen = [[candidate_of(one) for one in found] for found in mine]
         points = table(list(plan.freqs_Hz), chosen, plant.max_current_A)
         tables[setting] = tuple(_shaped(plant, points, point) for point in points)
-    return PhaseLaw(name, source, round(1e3 * best_constant_A(found)), tables)
+    unlock_mA = round(1e3 * best_constant_A(results(plan, store)))
+    return PhaseLaw(name, source, unlock_mA, tables)
 
 
 def _shaped(plant: Plant, points: list[Point], point: Point) -> Point:

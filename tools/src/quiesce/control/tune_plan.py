@@ -57,9 +57,8 @@ class TunePlan:
     variants: tuple[Variant, ...]  # the first one is the plant as it is; empty: no robustness
 
     def inputs(self) -> dict[str, Any]:
-        """What stored results depend on, but for plant and frequency."""
-        settings = {name: asdict(setting) for name, setting in self.settings.items()}
-        return {"settings": settings, "quality": asdict(self.quality)}
+        """What all stored pieces depend on, but for the plant."""
+        return {"quality": asdict(self.quality)}
 
 
 def make_plan(

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,19 @@ VERSION = 1
 FILE_NAME = "work.json"
 
 
-def method() -> str:
-    """Changes where the optimisation's own code does: its results are not mixed."""
+def bound_method() -> str:
+    """Changes where the code does that finds bounds: results of two are not mixed."""
+    return _code("bound", "descent", "goal", "tune_work")
+
+
+@cache
+def pulse_method() -> str:
+    """The same for pulses."""
+    return _code("pulse", "setting", "tables")
+
+
+def _code(*names: str) -> str:
     digest = hashlib.sha256()
-    names = ("bound", "descent", "goal", "pulse", "setting", "tables", "tune_work")
     for name in names:
         digest.update((Path(__file__).parent / f"{name}.py").read_bytes())
     return digest.hexdigest()[:16]
@@ -28,7 +38,8 @@ class TuneStore:
     def __init__(self, folder: Path, inputs: dict[str, Any], is_fresh: bool) -> None:
         """inputs: what the pieces depend on. is_fresh: whatever is there is given up."""
         self.file = folder / FILE_NAME
-        head = {"schema": SCHEMA, "version": VERSION, "inputs": {**inputs, "method": method()}}
+        inputs = {**inputs, "method": bound_method()}
+        head = {"schema": SCHEMA, "version": VERSION, "inputs": inputs}
         # As JSON tells it: infinities and tuples read back as they were written.
         self._head = json.loads(json.dumps(head))
         self._pieces: dict[str, Any] = {}

@@ -1,10 +1,11 @@
 """The pieces of work of `quiesce tune`: what each computes, and a pool that computes many."""
 
+import hashlib
 import multiprocessing
 import os
 import signal
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -23,7 +24,7 @@ from quiesce.control.pulse import Pulse
 from quiesce.control.setting import Setting
 from quiesce.control.tables import Candidate, TableCase, candidates
 from quiesce.control.tune_plan import Quality, TunePlan
-from quiesce.control.tune_store import TuneStore
+from quiesce.control.tune_store import TuneStore, pulse_method
 from quiesce.control.variant import Variant, write_variant
 from quiesce.errors import BenchFailure
 from quiesce.progress import Progress
@@ -35,21 +36,19 @@ ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True)
-class FrequencyWork:
-    """Bounds, constants and the settings' pulses at one frequency."""
+class BoundWork:
+    """Bounds and constant currents at one frequency."""
 
     plant: Path
     freq_Hz: float
-    settings: tuple[tuple[str, Setting], ...]
     quality: Quality
 
     @property
     def key(self) -> str:
-        return f"{self.freq_Hz:g} Hz"
+        return f"bound {self.freq_Hz:g} Hz"
 
     def compute(self) -> dict[str, Any]:
-        plant = Plant(self.plant)
-        ref = reference(drive(plant, self.freq_Hz))
+        ref = reference(drive(Plant(self.plant), self.freq_Hz))
         goals = {"amp": AMP, "accel": ACCEL}
         bounds = {name: _bound(ref, goal, self.quality) for name, goal in goals.items()}
         is_kept = bounds["amp"]["accel_red_pct"] >= 0.0
@@ -61,16 +60,27 @@ class FrequencyWork:
             },
             "bounds": bounds,
             "constants": _constants(ref),
-            "candidates": {
-                name: self._candidates(plant, setting, bounds) for name, setting in self.settings
-            },
         }
 
-    def _candidates(
-        self, plant: Plant, setting: Setting, bounds: dict[str, Any]
-    ) -> list[dict[str, Any]]:
-        bound_pct = bounds["no_worse" if setting.of_no_worse else "amp"]["amp_red_pct"]
-        case = TableCase(plant, setting, self.freq_Hz, bound_pct)
+
+@dataclass(frozen=True)
+class PulseWork:
+    """A setting's pulses at one frequency."""
+
+    plant: Path
+    freq_Hz: float
+    name: str
+    setting: Setting
+    bound_pct: float  # that its fractions are of
+
+    @property
+    def key(self) -> str:
+        """Other weights, another key: results of both are kept."""
+        wanted = hashlib.sha256(f"{self.setting} {pulse_method()}".encode()).hexdigest()[:8]
+        return f"{self.name} {wanted} {self.freq_Hz:g} Hz"
+
+    def compute(self) -> list[dict[str, Any]]:
+        case = TableCase(Plant(self.plant), self.setting, self.freq_Hz, self.bound_pct)
         return [asdict(candidate) for candidate in candidates(case)]
 
 
@@ -124,7 +134,7 @@ class VariantWork:
             }
 
 
-Work = FrequencyWork | FrontWork | VariantWork
+Work = BoundWork | FrontWork | VariantWork | PulseWork
 
 
 @contextmanager
@@ -162,25 +172,40 @@ def fronts(plan: TunePlan) -> list[FrontWork]:
     return [FrontWork(plan.plant, freq_Hz, plan.quality.front_points) for freq_Hz in plan.shown_Hz]
 
 
-def all_work(plan: TunePlan) -> list[Work]:
-    """The slowest pieces, at low frequencies, first."""
-    settings = tuple(plan.settings.items())
+def bound_works(plan: TunePlan) -> list[BoundWork]:
+    return [BoundWork(plan.plant, freq_Hz, plan.quality) for freq_Hz in plan.freqs_Hz]
+
+
+def pulse_works(plan: TunePlan, store: TuneStore) -> list[PulseWork]:
+    """All settings of one frequency, then of the next. The bounds must be in the store."""
+    out = []
+    for work in bound_works(plan):
+        bounds = store[work.key]["bounds"]
+        for name, setting in plan.settings.items():
+            bound_pct = bounds["no_worse" if setting.of_no_worse else "amp"]["amp_red_pct"]
+            out.append(PulseWork(plan.plant, work.freq_Hz, name, setting, bound_pct))
+    return out
+
+
+def variant_works(plan: TunePlan) -> list[VariantWork]:
     return [
-        *(FrequencyWork(plan.plant, freq, settings, plan.quality) for freq in plan.freqs_Hz),
-        *fronts(plan),
-        *(
-            VariantWork(plan.plant, variant, freq_Hz, plan.quality)
-            for freq_Hz in plan.shown_Hz
-            for variant in plan.variants
-        ),
+        VariantWork(plan.plant, variant, freq_Hz, plan.quality)
+        for freq_Hz in plan.shown_Hz
+        for variant in plan.variants
     ]
+
+
+def compute_plan(store: TuneStore, plan: TunePlan, jobs: int) -> None:
+    """All that a plan asks for; the slowest pieces, at low frequencies, first."""
+    compute_all(store, [*bound_works(plan), *fronts(plan), *variant_works(plan)], jobs)
+    compute_all(store, pulse_works(plan, store), jobs)
 
 
 def compute(work: Work) -> Any:
     return work.compute()
 
 
-def compute_all(store: TuneStore, pieces: list[Work], jobs: int) -> None:
+def compute_all(store: TuneStore, pieces: Sequence[Work], jobs: int) -> None:
     """Computes what the store does not hold; every piece is stored as it is finished."""
     todo = [work for work in pieces if work.key not in store]
     if not todo:
