@@ -17,6 +17,7 @@ void law_phase_init(law_phase_t *self, const quiesce_params_t *p, const phase_ta
         .table = table,
         .points = phase_table_points(table, setting),
         .point_count = table->points[setting],
+        .is_stale = true,
         .blend_step_q16 = WHOLE_q16 / (blend_ticks + 1u) + 1u,
     };
     adapt_init(&self->adapt,

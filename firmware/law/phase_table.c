@@ -120,13 +120,20 @@ static uint32_t covered(uint32_t start, uint32_t length, uint32_t width) {
     return length - (uint32_t)gap;
 }
 
+// Ramps never overlap.
+static uint32_t ramp_q16(const phase_pulse_t *pulse) {
+    const uint32_t gap_q16 = PHASE_WIDTH_ALL - pulse->width_q16;
+    const uint32_t least_q16 = gap_q16 < pulse->width_q16 ? gap_q16 : pulse->width_q16;
+    return pulse->ramp_q16 < least_q16 ? pulse->ramp_q16 : least_q16;
+}
+
 int32_t phase_pulse_current_mA(const phase_pulse_t *pulse, uint32_t start_turn,
                                uint32_t length_turn) {
     if (pulse->width_q16 >= PHASE_WIDTH_ALL) {
         return pulse->level_mA;
     }
     // A ramp is the mean over a longer time about the same middle.
-    const uint32_t ramp_turn = pulse->ramp_q16 << 16;
+    const uint32_t ramp_turn = ramp_q16(pulse) << 16;
     const uint32_t longer = ramp_turn > length_turn ? (ramp_turn - length_turn) / 2u : 0;
     const uint32_t length = length_turn + 2u * longer;
     const uint32_t start = start_turn - longer - (pulse->on_q16 << 16);

@@ -3,7 +3,7 @@
 enum {
     LOST_ANGLE_TURN = 715827883,        // a sixth of a turn
     LAST_STAGE = HARMONIC_PRODUCTS + 2, // the mean, then all the rest
-    CONTRADICTED_SHIFT = 2, // a quarter of what is expected
+    CONTRADICTED_SHIFT = 2,             // a quarter of what is expected
     SCALED_BITS = 16,
     LARGEST_SCALED = 1 << 20,
 };
@@ -17,12 +17,27 @@ static uint32_t quarter_cycle_q16(uint32_t step_turn) {
     return step_turn >> 14;
 }
 
+// Running means keep their meaning where the unit changes.
+static void rescale(lock_in_t *self, uint32_t shift) {
+    if (shift > self->shift) {
+        const uint32_t coarser = shift - self->shift;
+        self->slow_q8 >>= coarser;
+        self->unexplained >>= 2u * coarser;
+    } else {
+        const int64_t finer = INT64_C(1) << (self->shift - shift);
+        self->slow_q8 =
+            (int32_t)clamp_i64(self->slow_q8 * finer, -LARGEST_SCALED * 256, LARGEST_SCALED * 256);
+        self->unexplained *= finer * finer;
+    }
+    self->shift = shift;
+}
+
 // Scaled so that squares of what is expected stay below 2^32, whatever its size.
 static void expect(lock_in_t *self, uint32_t amp_um_s2, const harmonic_parts_t *parts) {
     const uint32_t bits = 32u - (uint32_t)__builtin_clz(amp_um_s2 | 1u);
     self->expected = *parts;
     self->amp_um_s2 = amp_um_s2;
-    self->shift = bits > SCALED_BITS ? bits - SCALED_BITS : 0;
+    rescale(self, bits > SCALED_BITS ? bits - SCALED_BITS : 0);
     int64_t squares = 0;
     for (uint32_t i = 0; i < HARMONIC_PRODUCTS; i++) {
         squares += (int64_t)parts->um_s2[i] * parts->um_s2[i];

@@ -319,7 +319,9 @@ quiesce_phase_verdict_t quiesce_phase_table_use(quiesce_t *self, const uint32_t 
         }
         table = (const phase_table_t *)(const void *)words;
     }
+    const bool is_frozen = c->law_state.phase.is_frozen;
     law_phase_init(&c->law_state.phase, &c->params, table);
+    c->law_state.phase.is_frozen = is_frozen;
     return QUIESCE_PHASE_OK;
 }
 
