@@ -214,7 +214,11 @@ def small_store(folder: Path, **inputs) -> TuneStore:
 
 
 def test_store_gives_back_what_it_got(tmp_path: Path) -> None:
-    small_store(tmp_path).put("5 Hz", {"bound": 19.5})
+    store = small_store(tmp_path)
+    store.put("5 Hz", {"bound": 19.5})
+    with pytest.raises(UsageError, match="another run works there"):
+        small_store(tmp_path)
+    store.close()
     again = small_store(tmp_path)
     assert "5 Hz" in again and again["5 Hz"] == {"bound": 19.5}
 
@@ -231,6 +235,7 @@ def test_store_gives_back_what_it_got(tmp_path: Path) -> None:
 def test_store_that_is_damaged_or_of_other_inputs_is_refused(tmp_path: Path, damage, word) -> None:
     store = small_store(tmp_path)
     store.put("5 Hz", {"bound": 19.5})
+    store.close()
     store.file.write_text(damage(store.file.read_text()))
     with pytest.raises(UsageError, match=word):
         small_store(tmp_path)

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import tempfile
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -100,9 +101,9 @@ def tune(order: Order) -> Result:
     data = read_plant_data(plant_file)
     folder = order.out or default_folder(order.source, data["name"])
     inputs = {"plant": f"{plant_hash(data)} {plant.drive_V:g} V", **plan.inputs()}
-    store = TuneStore(folder, inputs, order.is_fresh)
-    compute_plan(store, plan, order.jobs)
-    return finished(order, plan, plant, store, folder, data["name"], report)
+    with closing(TuneStore(folder, inputs, order.is_fresh)) as store:
+        compute_plan(store, plan, order.jobs)
+        return finished(order, plan, plant, store, folder, data["name"], report)
 
 
 def default_folder(source: Source, name: str) -> Path:

@@ -1,7 +1,9 @@
 """Finished pieces of `quiesce tune`, in one JSON file, so that an interrupted run goes on."""
 
+import fcntl
 import hashlib
 import json
+import os
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -36,15 +38,23 @@ class TuneStore:
     """Each piece is stored as it arrives. A damaged file, or one of other inputs, is refused."""
 
     def __init__(self, folder: Path, inputs: dict[str, Any], is_fresh: bool) -> None:
-        """inputs: what the pieces depend on. is_fresh: whatever is there is given up."""
+        """inputs: what the pieces depend on. is_fresh: whatever is there is given up.
+
+        The folder is this store's alone as long as it is open. UsageError where it is another's.
+        """
         self.file = folder / FILE_NAME
+        self._folder = _locked(folder)
         inputs = {**inputs, "method": bound_method()}
         head = {"schema": SCHEMA, "version": VERSION, "inputs": inputs}
         # As JSON tells it: infinities and tuples read back as they were written.
         self._head = json.loads(json.dumps(head))
         self._pieces: dict[str, Any] = {}
-        if self.file.exists() and not is_fresh:
-            self._pieces = self._read()
+        try:
+            if self.file.exists() and not is_fresh:
+                self._pieces = self._read()
+        except UsageError:
+            self.close()
+            raise
 
     def _read(self) -> dict[str, Any]:
         try:
@@ -72,6 +82,10 @@ class TuneStore:
             f"{shown(self.file)} is damaged ({why}); name another --out, or start anew with --fresh"
         )
 
+    def close(self) -> None:
+        """Another run may have the folder now."""
+        os.close(self._folder)
+
     def __len__(self) -> int:
         return len(self._pieces)
 
@@ -85,10 +99,21 @@ class TuneStore:
         """Appears in the file whole or not at all."""
         self._pieces[key] = json.loads(json.dumps(value))
         data = {**self._head, "check": _check(self._pieces), "pieces": self._pieces}
-        self.file.parent.mkdir(parents=True, exist_ok=True)
         staging = self.file.with_suffix(".part")
         staging.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
         staging.replace(self.file)
+
+
+def _locked(folder: Path) -> int:
+    """The folder, made where there is none, as a file descriptor that holds its lock."""
+    folder.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(descriptor)
+        raise UsageError(f"{shown(folder)}: another run works there; wait, or name another --out")
+    return descriptor
 
 
 def _check(pieces: dict[str, Any]) -> str:
