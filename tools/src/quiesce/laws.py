@@ -20,6 +20,8 @@ LAWS = (
     Law(OPEN_LOOP, "open loop, 0 A", "off"),
     Law(CONSTANT_BEST, "best constant", "constant"),
     Law("fuzzy", "fuzzy", "fuzzy"),
+    Law("phase", "phase, balanced", "phase", ("phase_setting=balanced",)),
+    Law("phase_displacement", "phase, displacement", "phase", ("phase_setting=displacement",)),
     Law(
         "fuzzy_selftune_printed",
         "fuzzy + self-tuning",

@@ -24,6 +24,8 @@ class Setting:
     of_no_worse: bool
     fraction_alone: float | None
     constant_slack_pts: float = 0.4
+    adapt_weight: float | None = None  # of acceleration where the firmware adapts the pulse; None:
+    # the one for which the pulse is the best on the plant that it was made for
 
     def first(self, marks: "Marks") -> Goal:
         """All limits."""
@@ -58,18 +60,20 @@ def _ratio(reduction_pct: float) -> float:
 
 DISPLACEMENT = Setting(
     amp=1.0,
-    accel=0.5,
+    accel=1.0,
     current=0.02,
-    fraction=0.9015,
-    accel_limit=1.0098,
+    fraction=0.897,
+    accel_limit=1.006,
     of_no_worse=False,
     fraction_alone=0.94,
+    constant_slack_pts=0.9,
+    adapt_weight=0.05,
 )
 BALANCED = Setting(
     amp=1.0,
     accel=1.0,
     current=0.02,
-    fraction=0.92,
+    fraction=0.91,
     accel_limit=1.005,
     of_no_worse=True,
     fraction_alone=None,

@@ -19,10 +19,12 @@ from quiesce.control.setting import Marks, Setting
 # Of the displacement's phase: current ends soon after the peak (below resonance) or starts with it.
 FIRST_CENTRES_DEG = (45.0, 110.0)
 FIRST_WIDTHS_DEG = (100.0, 160.0)
+FIRST_RAMP_DEG = 30.0
 ROUGHNESS = 0.02  # cost of currents that differ by full scale throughout
 CONSTANT_DEG = 179.5  # a wider pulse is a constant current
 TRIM_DEG = 1.0
 MOST_WEIGHT = 2.0
+LONGEST_RAMP_DEG = 89.99
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class TableCase:
     setting: Setting
     freq_Hz: float
     bound_pct: float
-    has_ramp: bool = False
+    has_ramp: bool = True
 
 
 def candidates(case: TableCase) -> list[Candidate]:
@@ -53,10 +55,11 @@ def candidates(case: TableCase) -> list[Candidate]:
     ref = reference(drive(case.plant, case.freq_Hz))
     marks = _marks(ref, case)
     first = case.setting.first(marks)
-    found = _search(ref, first, case.has_ramp)
+    weight = case.setting.adapt_weight
+    found = _search(ref, first, case.has_ramp, weight)
     if _keeps_limits(first, found[0]):
         return found
-    return _search(ref, case.setting.second(marks), case.has_ramp)
+    return _search(ref, case.setting.second(marks), case.has_ramp, weight)
 
 
 def _marks(ref: Reference, case: TableCase) -> Marks:
@@ -73,18 +76,24 @@ def _keeps_limits(goal: Goal, candidate: Candidate) -> bool:
     )
 
 
-def _search(ref: Reference, goal: Goal, has_ramp: bool) -> list[Candidate]:
+def _search(ref: Reference, goal: Goal, has_ramp: bool, weight: float | None) -> list[Candidate]:
     full_A = ref.drive.plant.max_current_A
     lead_deg = ref.orbit.disp_phase_deg
     firsts = [Pulse(0.0, 180.0, full_A, 0.0), Pulse(0.0, 180.0, 0.5 * full_A, 0.0)]
     for centre_deg in FIRST_CENTRES_DEG:
         for width_deg in FIRST_WIDTHS_DEG:
             firsts.append(Pulse(centre_deg - lead_deg, width_deg, full_A, 0.0))
-    found = [_candidate(ref, goal, first, has_ramp) for first in firsts]
+        if has_ramp:
+            # From sharp edges none finds its way to ramps.
+            width_deg = FIRST_WIDTHS_DEG[0]
+            firsts.append(Pulse(centre_deg - lead_deg, width_deg, full_A, 0.0, FIRST_RAMP_DEG))
+    found = [_candidate(ref, goal, first, has_ramp, weight) for first in firsts]
     return sorted(found, key=lambda candidate: candidate.cost)
 
 
-def _candidate(ref: Reference, goal: Goal, first: Pulse, has_ramp: bool) -> Candidate:
+def _candidate(
+    ref: Reference, goal: Goal, first: Pulse, has_ramp: bool, weight: float | None
+) -> Candidate:
     pulse, optimum = best_pulse(ref, goal, first, has_ramp)
     orbit = optimum.orbit
     return Candidate(
@@ -93,7 +102,7 @@ def _candidate(ref: Reference, goal: Goal, first: Pulse, has_ramp: bool) -> Cand
         ref.amp_reduction_pct(orbit),
         ref.accel_reduction_pct(orbit),
         orbit.mean_current_A,
-        accel_weight(ref, pulse),
+        accel_weight(ref, pulse) if weight is None else weight,
     )
 
 
@@ -187,11 +196,21 @@ def point(freq_Hz: float, pulse: Pulse, weight: float) -> Point:
     level_mA, floor_mA = round(1e3 * pulse.level_A), round(1e3 * pulse.floor_A)
     width_deg = 180.0 if pulse.width_deg >= CONSTANT_DEG else round(pulse.width_deg, 2)
     centre_deg = round(pulse.centre_deg, 2) % 180.0
-    return Point(freq_Hz, centre_deg, width_deg, level_mA, floor_mA, round(weight, 3))
+    return Point(
+        freq_Hz, centre_deg, width_deg, level_mA, floor_mA, round(weight, 3),
+        ramp_deg=min(round(pulse.ramp_deg, 2), LONGEST_RAMP_DEG),
+    )  # fmt: skip
 
 
 def pulse_of(point: Point) -> Pulse:
-    return Pulse(point.centre_deg, point.width_deg, 1e-3 * point.level_mA, 1e-3 * point.floor_mA)
+    ramp_deg = min(point.ramp_deg, point.width_deg, 180.0 - point.width_deg)
+    return Pulse(
+        point.centre_deg,
+        point.width_deg,
+        1e-3 * point.level_mA,
+        1e-3 * point.floor_mA,
+        max(ramp_deg, 0.0),
+    )
 
 
 def judged(plant: Plant, points: list[Point], freq_Hz: float) -> tuple[Reference, Orbit]:
