@@ -315,10 +315,10 @@ def test_command_refuses_in_one_line(refused, one_mode: Path) -> None:
 
 def test_band_follows_the_first_mode(build) -> None:
     plant = Plant(PUBLISHED)
-    usual = frequencies(plant, Band(), 40)
+    usual = frequencies(plant, Band(), is_quick=False)
     assert (usual[0], usual[-1], len(usual)) == (4.0, 23.0, 39)
-    quick = frequencies(plant, Band(), 6)
-    assert quick[0] == 4.0 and quick[-1] >= 23.0 and 5 <= len(quick) <= 7
+    quick = frequencies(plant, Band(), is_quick=True)
+    assert quick[0] == 5.0 and quick[-1] >= 23.0 and 5 <= len(quick) <= 7
 
 
 def test_variants_change_one_property_or_all(build) -> None:

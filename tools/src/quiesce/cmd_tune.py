@@ -63,9 +63,9 @@ def add_aims(group: argparse._ArgumentGroup) -> None:
         help="most RMS acceleration, of that at 0 A; repeatable",
     )  # fmt: skip
     for name, text in (
-        ("--from-Hz", "first frequency (0.35 times the first mode)"),
+        ("--from-Hz", "first frequency (0.35 times the first mode; with --quick 0.45)"),
         ("--to-Hz", "last frequency (2 times the first mode)"),
-        ("--step-Hz", "step; 2 to 64 frequencies in all (some 40; with --quick 6)"),
+        ("--step-Hz", "step; 2 to 64 frequencies in all (some 40; with --quick 7)"),
     ):
         group.add_argument(name, type=float, metavar="Hz", help=text)
     group.add_argument(

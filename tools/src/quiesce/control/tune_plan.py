@@ -15,6 +15,7 @@ from quiesce.errors import UsageError
 # The band of a table, in parts of the first mode's frequency.
 FROM_PART, TO_PART = 0.35, 2.0
 USUAL_POINTS, QUICK_POINTS = 40, 6
+QUICK_FROM_PART = 0.45  # below it optimisation takes longest
 # What the firmware's tracker reports.
 LOWEST_Hz, HIGHEST_Hz = 1.0, 50.0
 ROUND_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
@@ -65,7 +66,7 @@ def make_plan(
     plant: Plant, band: Band, settings: dict[str, Setting], robustness: str, is_quick: bool
 ) -> TunePlan:
     """UsageError, naming the option, for a band that no table can have."""
-    freqs_Hz = frequencies(plant, band, QUICK_POINTS if is_quick else USUAL_POINTS)
+    freqs_Hz = frequencies(plant, band, is_quick)
     shown_Hz = shown(freqs_Hz, plant.modes[0].freq_Hz)
     return TunePlan(
         plant.file,
@@ -77,9 +78,11 @@ def make_plan(
     )
 
 
-def frequencies(plant: Plant, band: Band, points: int) -> tuple[float, ...]:
+def frequencies(plant: Plant, band: Band, is_quick: bool) -> tuple[float, ...]:
     first_Hz = plant.modes[0].freq_Hz
-    low_Hz = band.from_Hz if band.from_Hz is not None else max(LOWEST_Hz, FROM_PART * first_Hz)
+    from_part = QUICK_FROM_PART if is_quick else FROM_PART
+    points = QUICK_POINTS if is_quick else USUAL_POINTS
+    low_Hz = band.from_Hz if band.from_Hz is not None else max(LOWEST_Hz, from_part * first_Hz)
     high_Hz = band.to_Hz if band.to_Hz is not None else min(HIGHEST_Hz, TO_PART * first_Hz)
     _require_band(low_Hz, high_Hz, band.step_Hz)
     grid_Hz = round_step((high_Hz - low_Hz) / (USUAL_POINTS - 1))
