@@ -85,6 +85,8 @@ def test_law_has_the_frequencies_and_stays_near_the_bound(tuned) -> None:
     folder, data = tuned
     law = read_law(folder / "one_mode.phase.toml")
     assert [point.freq_Hz for point in law.settings["displacement"]] == [8.0, 16.0]
+    assert law.source.startswith("quiesce tune") and "--step-Hz 8" in law.source
+    assert "--out" not in law.source
     assert all(0.3 < p.accel_shape < 3.0 for points in law.settings.values() for p in points)
     for row in (one for one in data["frequencies"] if not one["is_between"]):
         bound_pct = row["bounds"]["amp"]["amp_red_pct"]
@@ -160,7 +162,8 @@ def test_same_command_again_computes_nothing(tuned) -> None:
 
 def test_interrupted_run_keeps_what_is_finished_and_goes_on(build, tmp_path: Path) -> None:
     folder = tmp_path
-    words = ("tune", write_viscous(folder).name, *SHORT, *ALONE, "--out", "out", "--jobs", "2")
+    band = ("--quick", "--from-Hz", "14", "--to-Hz", "22", "--step-Hz", "8")
+    words = ("tune", write_viscous(folder).name, *band, *ALONE, "--out", "out", "--jobs", "2")
     store = folder / "out/work.json"
     process = subprocess.Popen(
         [sys.executable, "-m", "quiesce", *words],

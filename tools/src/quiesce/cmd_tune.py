@@ -113,9 +113,9 @@ def check(args: argparse.Namespace) -> None:
         raise UsageError(f"{shown(args.out)} is a file; name a folder for --out")
 
 
-def command_line(args: argparse.Namespace) -> str:
+def what_was_asked(args: argparse.Namespace) -> str:
     """As it can be typed again, without what does not change the result."""
-    words = ["./tools/quiesce", "tune"]
+    words = ["quiesce", "tune"]
     words += [shown(args.plant)] if args.plant else ["--from-sweep", shown(args.from_sweep)]
     for name in ("base_plant", "modes", "from_Hz", "to_Hz", "step_Hz"):
         if (value := getattr(args, name)) is not None:
@@ -128,7 +128,6 @@ def command_line(args: argparse.Namespace) -> str:
     words += [f"--{name.replace('_', '-')}" for name in flags if getattr(args, name)]
     words += ["--modal-mass", f"{args.modal_mass:g}"] if args.modal_mass != 1.0 else []
     words += ["--robustness", args.robustness] if args.robustness != "axes" else []
-    words += ["--out", shown(args.out)] if args.out else []
     return shlex.join(words)
 
 
@@ -144,7 +143,7 @@ def tune_into(args: argparse.Namespace) -> int:
         tune.Order(
             source=source,
             out=args.out,
-            command=command_line(args),
+            asked=what_was_asked(args),
             band=tune.Band(args.from_Hz, args.to_Hz, args.step_Hz),
             settings=tune.chosen_settings(args.weights, args.accel_limit),
             robustness=args.robustness,
@@ -167,8 +166,7 @@ def run(args: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         folder = shown(args.out or build_folder() / "tune")
         print(
-            f"quiesce: interrupted; finished pieces are kept in {folder}, "
-            "the same command goes on",
+            f"quiesce: interrupted; finished pieces are kept in {folder}, the same command goes on",
             file=sys.stderr,
         )
         return EXIT_INTERRUPTED

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import shlex
 import tempfile
 from contextlib import closing
 from dataclasses import asdict, dataclass
@@ -62,7 +63,7 @@ class Order:
 
     source: Source
     out: Path | None
-    command: str
+    asked: str  # as it can be typed again, but for `out`
     band: Band
     settings: dict[str, Setting]
     robustness: str
@@ -142,12 +143,11 @@ def finished(
     order: Order, plan: TunePlan, plant: Plant, store: TuneStore,
     folder: Path, name: str, report: str | None,
 ) -> Result:  # fmt: skip
-    source = f"quiesce tune, best pulses on {plant.file.name}"
-    law = make_law(plant, plan, store, name, source)
+    law = make_law(plant, plan, store, name, order.asked)
     values = parameters(plant, law)
     judged, shown_cycles = closed_loop(order, plan, plant, store, law, values)
     tuned = Tuned(
-        name, shown(plant.file), order.command, plant.modes[0].freq_Hz,
+        name, shown(plant.file), command(order), plant.modes[0].freq_Hz,
         rows(plant, plan, store, law), judged, shown_cycles, values, report,
     )  # fmt: skip
     found_fronts = {work.freq_Hz: store[work.key] for work in fronts(plan)}
@@ -156,6 +156,11 @@ def finished(
         write_report(staging, tuned, law, found_fronts)
         names = sorted(file.name for file in staging.iterdir())
     return Result(tuned, folder, names)
+
+
+def command(order: Order) -> str:
+    out = shlex.join(["--out", shown(order.out)]) if order.out else ""
+    return f"./tools/{order.asked} {out}".rstrip()
 
 
 def closed_loop(
