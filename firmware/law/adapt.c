@@ -91,17 +91,25 @@ static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t valu
     }
 }
 
-// Whether a trial would change anything. The gap is closed once a search only: where it helps,
-// closing it costs most.
-static bool has_room(const adapt_t *self) {
+// What costs much where it does not help is tried at the beginning of a search only: the pulse
+// without its gap once, a lower level with large steps.
+static bool is_too_late(const adapt_t *self) {
     const int16_t *now = self->trim[self->index].value;
-    if (self->coordinate == ADAPT_WHOLE
-            ? self->has_tried_whole && now[ADAPT_WHOLE] == 0
-            : self->coordinate != ADAPT_LEVEL && now[ADAPT_WHOLE] != 0) {
-        return false;
+    switch (self->coordinate) {
+    case ADAPT_WHOLE:
+        return self->has_tried_whole && now[ADAPT_WHOLE] == 0;
+    case ADAPT_LEVEL:
+        return self->shrink == SHRINK_LAST && now[ADAPT_LEVEL] == 0;
+    default:
+        return now[ADAPT_WHOLE] != 0; // there are no edges to move
     }
-    const int32_t value = now[self->coordinate];
-    return limited(&self->cfg, self->coordinate, value + step_of(self)) != value;
+}
+
+// Whether a trial would change anything.
+static bool has_room(const adapt_t *self) {
+    const int32_t value = self->trim[self->index].value[self->coordinate];
+    return !is_too_late(self) &&
+           limited(&self->cfg, self->coordinate, value + step_of(self)) != value;
 }
 
 static void next_coordinate(adapt_t *self) {
@@ -152,13 +160,15 @@ static void keep(adapt_t *self) {
 // The trial lies between two measurements without its change.
 static void judge(adapt_t *self, adapt_goal_t goal) {
     const adapt_effect_t after = self->effect;
-    const int32_t drift_q20 = relative_q20(self->before.reach_um_s2,
-                                           (int64_t)after.reach_um_s2 - self->before.reach_um_s2);
+    const int32_t drift_q20 = abs_i32(relative_q20(
+        self->before.reach_um_s2, (int64_t)after.reach_um_s2 - self->before.reach_um_s2));
+    // What two measurements of the same differ by is no gain.
+    const int32_t gain_q20 = GAIN_q20 + drift_q20;
     self->trials = increment_sat_u32(self->trials);
-    if (abs_i32(drift_q20) > DISTURBED_q20) {
+    if (drift_q20 > DISTURBED_q20) {
         self->before = after;
-    } else if (cost_q20(after, self->trial, goal) < -GAIN_q20 &&
-               cost_q20(self->before, self->trial, goal) < -GAIN_q20) {
+    } else if (cost_q20(after, self->trial, goal) < -gain_q20 &&
+               cost_q20(self->before, self->trial, goal) < -gain_q20) {
         keep(self);
     } else {
         self->before = after;

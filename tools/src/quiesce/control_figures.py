@@ -5,7 +5,7 @@ definitions of docs/plant.md. Unless said otherwise the law adapts from a cold s
 
 amp_red, accel_red     displacement setting, last 2 s of 8 s of a sine: the pulses that were tuned
                        for this plant (the adaptation begins after 10 s)
-*_adapted_*            the same in the last 2 s of 60 s: what the adaptation makes of them
+*_adapted_*            the same in the last 2 s of 120 s: what the adaptation makes of them
 balanced_*             balanced setting, likewise
 sweep_*_min_fraction   least share, over 4 .. 22 Hz, of the displacement bound; balanced: of the
                        bound with acceleration no worse than at 0 A

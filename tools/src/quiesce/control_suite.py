@@ -36,7 +36,7 @@ class Size:
 
 FULL = Size(
     sweep_Hz=tuple(np.arange(4.0, 22.25, 0.5).tolist()),
-    adapt_s=60.0,
+    adapt_s=120.0,
     variations=GOAL_VARIATIONS,
     robust_s=120.0,
     robust_step_A=control_robust.GRID_STEP_A,
@@ -46,7 +46,7 @@ FULL = Size(
 )
 QUICK = Size(
     sweep_Hz=(4.0, *POINTS_Hz[:1], 7.5, *POINTS_Hz[1:2], 12.5, *POINTS_Hz[2:], 22.0),
-    adapt_s=60.0,
+    adapt_s=120.0,
     variations=tuple(corners(GOAL_VARIATIONS)),
     robust_s=120.0,
     robust_step_A=1.25,
