@@ -312,4 +312,4 @@ def test_page_has_every_figure_of_the_table(quick) -> None:
     for words in ("0 mismatches", "sine_5Hz", "step_10_20Hz", "Rule surface", "Spectrum",
                   "Run it again", "./tools/hil --quick"):  # fmt: skip
         assert words in page
-    assert page.count("<tr>") == 2 + 3 * 4
+    assert page.count("<tr>") == 2 + 3 * 6

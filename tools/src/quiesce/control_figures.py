@@ -20,7 +20,8 @@ chirp_low_fraction     displacement setting: reduction of the mean half peak-to-
                        from 4 to 10 Hz, over that at the interpolated bound
 worst_cycle_work       of the damper on the structure, last 2 s of 20 s, either setting, on the
                        plant and on one whose current switches a stiffness; negative dissipates
-inverted_*             accel_polarity -1, either setting, against constant unlock_current_mA
+inverted_*             accel_polarity -1: setting displacement against constant
+                       unlock_current_mA; either setting against itself with the right sign
 day_*                  balanced setting, a fault every few seconds; lost: at the end against a run
                        without faults
 """
@@ -34,7 +35,7 @@ from quiesce.control_cost import Counted, added_worst_instr
 from quiesce.control_rig import BALANCED, DISPLACEMENT, Rig
 from quiesce.control_robust import Cell
 from quiesce.control_ruler import Ruler
-from quiesce.control_safety import worst_inverted_pts, worst_work_uJ
+from quiesce.control_safety import worst_inversion_pts, worst_inverted_pts, worst_work_uJ
 from quiesce.control_steady import Point, POINTS_Hz, judge_sweep, least
 from quiesce.control_steps import find
 from quiesce.control_suite import Results
@@ -138,6 +139,13 @@ def safety_figures(results: Results) -> list[Figure]:
     return [
         Figure("worst_cycle_work_uJ", worst_work_uJ(results.work), "uJ", 0.0, "lower"),
         Figure("inverted_worst_below_unlock_pts", inverted, "pts", ALLOWANCE_pts, "lower"),
+        Figure(
+            "inverted_worst_change_pts",
+            worst_inversion_pts(results.inverted),
+            "pts",
+            ALLOWANCE_pts,
+            "lower",
+        ),
         Figure("day_samples_outside_limits", day.outside_limits, "1", 0, "lower"),
         Figure("day_lost_pts", day.lost_pts, "pts", DAY_LOST_pts, "lower"),
     ]

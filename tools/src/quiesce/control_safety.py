@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.control_measures import reduction_pct
-from quiesce.control_rig import BALANCED, OPEN_LOOP, SETTINGS, Plant, Rig, constant
+from quiesce.control_rig import BALANCED, DISPLACEMENT, OPEN_LOOP, SETTINGS, Plant, Rig, constant
 from quiesce.control_scenarios import Scenario, sine, steady
 from quiesce.control_steady import SHIPPED_s
 from quiesce.signal_records import generator
@@ -199,7 +199,13 @@ def worst_work_uJ(results: Sequence[Work]) -> float | None:
 
 
 def worst_inverted_pts(results: Sequence[Inverted]) -> float:
-    return max(one.below_unlock_pts for one in results)
+    """Of setting `displacement`; `balanced` gives some away for acceleration, upright too."""
+    return max(one.below_unlock_pts for one in results if one.setting == DISPLACEMENT)
+
+
+def worst_inversion_pts(results: Sequence[Inverted]) -> float:
+    """What the wrong sign itself changes, either setting."""
+    return max(abs(one.amp_pct - one.upright_amp_pct) for one in results)
 
 
 def inverted_pairs(freqs_Hz: Sequence[float]) -> list[tuple[float, str]]:

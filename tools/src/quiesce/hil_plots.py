@@ -22,6 +22,8 @@ LINE_WIDTHS = {
     "open_loop": 1.6,
     "fuzzy_selftune_printed": 1.2,
     "fuzzy": 1.1,
+    "phase": 1.1,
+    "phase_displacement": 1.1,
 }
 CELL_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 

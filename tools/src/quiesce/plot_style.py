@@ -13,6 +13,8 @@ COLORS = {
     "open_loop": "#9aa3ad",
     "constant_best": "#009e73",
     "fuzzy": "#0072b2",
+    "phase": "#e69f00",
+    "phase_displacement": "#56b4e9",
     "fuzzy_selftune_printed": "#cc79a7",
     "fuzzy_selftune_reversed": "#d55e00",
     "bound": "#222222",
