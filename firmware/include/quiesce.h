@@ -90,17 +90,17 @@ typedef struct {
     int32_t velocity_rms_um_s;           ///< of the whole band, from the last spectrum
     quiesce_peak_t peaks[QUIESCE_PEAKS]; ///< 0 Hz where there are fewer
     uint32_t rules_fired;                ///< bit per fuzzy rule in its file's order, the first 32
-    int32_t current_fuzzy_mA;            ///< the rule base's own output
-    int32_t current_law_mA;              ///< what the law requests
-    int32_t current_cmd_mA;              ///< what leaves the guard
-    uint32_t lock_is_on;                 ///< law phase has locked on to the dominant component
-    uint32_t adapt_state;                ///< quiesce_adapt_state_t
-    uint32_t adapt_trials;               ///< finished since init, saturating
-    uint32_t adapt_gains;                ///< of them that were kept, saturating
-    int32_t trim_on_mdeg;   ///< change of the pulse in effect: its first edge, later is positive
-    int32_t trim_off_mdeg;  ///< and its last edge
-    int32_t trim_level_q15; ///< and its level as a factor: 32768 is 1
-    uint32_t trim_is_whole; ///< 1: its gap is closed
+    int32_t current_fuzzy_mA; ///< the rule base's output; 0 with a law that does not use it
+    int32_t current_law_mA;   ///< what the law requests
+    int32_t current_cmd_mA;   ///< what leaves the guard
+    uint32_t lock_is_on;      ///< law phase has locked on to the dominant component
+    uint32_t adapt_state;     ///< quiesce_adapt_state_t
+    uint32_t adapt_trials;    ///< finished since init, saturating
+    uint32_t adapt_gains;     ///< of them that were kept, saturating
+    int32_t trim_on_mdeg;     ///< change of the pulse in effect: its first edge, later is positive
+    int32_t trim_off_mdeg;    ///< and its last edge
+    int32_t trim_level_q15;   ///< and its level as a factor: 32768 is 1
+    uint32_t trim_is_whole;   ///< 1: its gap is closed
 } quiesce_telemetry_t;
 
 /// One tick's output.
