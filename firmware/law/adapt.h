@@ -84,7 +84,7 @@ typedef struct {
     uint32_t shrink;       ///< steps are the largest >> shrink
     bool is_exhausted;     ///< the smallest steps gain nothing
     bool has_tried_whole;  ///< in this search
-    uint32_t index;        ///< of the point below the frequency when the trial began
+    uint32_t index;        ///< of the point below the frequency
     uint32_t freq_mHz;     ///< then
     uint32_t trials;       ///< finished, saturating
     uint32_t gains;        ///< of them that lowered the cost, saturating
