@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,14 +26,15 @@ using quiesce::PlantModel;
 constexpr const char *kPlantFile = "sim_hil/plants/squeeze_2012.toml";
 constexpr int kRate_Hz = 1000;
 constexpr std::size_t kTicks = 2000;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Arrays {
     std::vector<double> amplitude_V = std::vector<double>(kTicks, 0.10);
     std::vector<double> phase_cycles = std::vector<double>(kTicks, 0.0);
     std::vector<double> command_A = std::vector<double>(kTicks, 0.0);
-    std::vector<double> accel_m_s2 = std::vector<double>(kTicks, NAN);
-    std::vector<double> disp_m = std::vector<double>(kTicks, NAN);
-    std::vector<double> coil_A = std::vector<double>(kTicks, NAN);
+    std::vector<double> accel_m_s2 = std::vector<double>(kTicks, kNan);
+    std::vector<double> disp_m = std::vector<double>(kTicks, kNan);
+    std::vector<double> coil_A = std::vector<double>(kTicks, kNan);
 };
 
 /// Current from 0.5 s on, off from 1.2 s on.
