@@ -17,9 +17,9 @@ sincos_t sincos_q30(uint32_t turn);
 static inline int32_t cos_linear_q25(uint32_t turn) {
     const uint32_t i = turn >> 24;
     const int32_t here = cosine_q25[i];
-    const int32_t step = cosine_q25[(i + 1u) % COSINE_POINTS] - here;
-    // |step| < 2^20: the product with 11 bits of the fraction fits.
-    return here + ((step * (int32_t)(turn >> 13 & 0x7FFu)) >> 11);
+    const int32_t rise = cosine_q25[(i + 1u) % COSINE_POINTS] - here;
+    // |rise| < 2^20: the product with 11 bits of the fraction fits.
+    return here + ((rise * (int32_t)(turn >> 13 & 0x7FFu)) >> 11);
 }
 
 /// Angle of the vector (x, y) in turns, |x|, |y| <= 2^30; 0 for (0, 0). Error at most 10^-8 turns

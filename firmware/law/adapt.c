@@ -12,6 +12,7 @@ enum {
     DRIFT_DIVISOR = 50,        // of the frequency: 2 %
     DIRECTIONS = 2,
     HALF_q15 = 1 << 14,
+    HALF_q16 = 1 << 15,
 };
 
 void adapt_init(adapt_t *self, const adapt_cfg_t *cfg) {
@@ -46,6 +47,7 @@ static void start_search_at(adapt_t *self, uint32_t freq_mHz) {
     self->barren = 0;
     self->failures = 0;
     self->has_tried_whole = false;
+    self->is_exhausted = false;
     wait_for(self, ADAPT_MEASURING, self->cfg.start_ticks);
 }
 
@@ -94,7 +96,7 @@ static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t valu
 // What costs much where it does not help is tried at the beginning of a search only: the pulse
 // without its gap once, a lower level with large steps.
 static bool is_too_late(const adapt_t *self) {
-    const int16_t *now = self->trim[self->index].value;
+    const int16_t *now = self->trim[self->nearest].value;
     switch (self->coordinate) {
     case ADAPT_WHOLE:
         return self->has_tried_whole && now[ADAPT_WHOLE] == 0;
@@ -107,7 +109,7 @@ static bool is_too_late(const adapt_t *self) {
 
 // Whether a trial would change anything.
 static bool has_room(const adapt_t *self) {
-    const int32_t value = self->trim[self->index].value[self->coordinate];
+    const int32_t value = self->trim[self->nearest].value[self->coordinate];
     return !is_too_late(self) &&
            limited(&self->cfg, self->coordinate, value + step_of(self)) != value;
 }
@@ -149,7 +151,9 @@ static void try_next(adapt_t *self) {
 static void keep(adapt_t *self) {
     for (uint32_t i = self->index; i <= self->index + 1u && i < ADAPT_POINTS; i++) {
         int16_t *value = &self->trim[i].value[self->coordinate];
-        *value = (int16_t)limited(&self->cfg, self->coordinate, *value + step_of(self));
+        // A gap is closed or open at both points: between them it is as at the nearer one.
+        const int32_t from = self->coordinate == ADAPT_WHOLE ? 0 : *value;
+        *value = (int16_t)limited(&self->cfg, self->coordinate, from + step_of(self));
     }
     self->gains = increment_sat_u32(self->gains);
     self->barren = 0;
@@ -186,7 +190,9 @@ static void conclude(adapt_t *self, adapt_goal_t goal) {
         }
         self->trials = increment_sat_u32(self->trials);
         fail(self);
-        break;
+        // It may be worse because something else has changed: what comes next is judged anew.
+        wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
+        return;
     case ADAPT_CHECKING:
         judge(self, goal);
         break;
@@ -273,11 +279,13 @@ void adapt_pause(adapt_t *self) {
 
 void adapt_step(adapt_t *self, const adapt_in_t *in) {
     self->index = in->index;
+    self->nearest = in->index + (in->part_q16 >= HALF_q16 ? 1u : 0u);
     if (!in->may_try) {
         adapt_pause(self);
     } else if (self->state == ADAPT_WAITING) {
         wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
-    } else if (self->ticks > 0) {
+    } else if (self->ticks > 0 &&
+               !(self->state == ADAPT_RESTING && has_moved(self, in->freq_mHz))) {
         self->ticks--;
     } else if (has_moved(self, in->freq_mHz)) {
         start_search_at(self, in->freq_mHz);

@@ -16,8 +16,8 @@
 ///
 /// What is learnt is kept for each point of the pulse table; it is bounded by adapt_cfg_t, and can
 /// be frozen, cleared, taken out and put back. A trial is given up, and nothing learnt, when the
-/// lock is lost, a fault is present, the frequency moves by 2 %, or the two measurements around it
-/// differ by more than 2 %: then something else has changed.
+/// lock is lost, a fault is present, the frequency has moved by 2 % once it is to be measured, or
+/// the two measurements around it differ by more than 2 %: then something else has changed.
 ///
 /// Formats: edges in half turns Q16 (364 is one degree), level as a factor Q15; accelerations
 /// um/s2. Bounded: a few instructions a tick, 300 at most at the end of a cycle, spread over
@@ -85,6 +85,7 @@ typedef struct {
     bool is_exhausted;     ///< the smallest steps gain nothing
     bool has_tried_whole;  ///< in this search
     uint32_t index;        ///< of the point below the frequency
+    uint32_t nearest;      ///< of the point nearest to it
     uint32_t freq_mHz;     ///< then
     uint32_t trials;       ///< finished, saturating
     uint32_t gains;        ///< of them that lowered the cost, saturating
@@ -101,7 +102,8 @@ typedef struct {
 typedef struct {
     bool may_try; ///< locked, frequency known, no fault, not frozen
     uint32_t freq_mHz;
-    uint32_t index; ///< of the table's point below it
+    uint32_t index;    ///< of the table's point below it
+    uint32_t part_q16; ///< of the way to the next point, 0 .. 65536
     adapt_goal_t goal;
     const harmonic_sums_t *half; ///< of half a cycle that ended in this tick, else NULL
 } adapt_in_t;

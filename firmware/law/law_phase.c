@@ -20,15 +20,15 @@ void law_phase_init(law_phase_t *self, const quiesce_params_t *p, const phase_ta
         .is_stale = true,
         .blend_step_q16 = WHOLE_q16 / (blend_ticks + 1u) + 1u,
     };
-    adapt_init(&self->adapt,
-               &(adapt_cfg_t){
-                   .start_ticks = ticks_of(p->adapt_start_ms, p->tick_rate_Hz),
-                   .settle_ticks = ticks_of(p->adapt_settle_ms, p->tick_rate_Hz),
-                   .measure_ticks = ticks_of(p->adapt_measure_ms, p->tick_rate_Hz),
-                   .rest_ticks = ticks_of(p->adapt_rest_ms, p->tick_rate_Hz),
-                   .edge_limit_q16 = (int32_t)((int64_t)p->adapt_edge_limit_mdeg * 65536 / 180000),
-                   .level_limit_q15 = p->adapt_level_limit_pct * 32768 / 100,
-               });
+    adapt_init(&self->adapt, &(adapt_cfg_t){
+                                 .start_ticks = ticks_of(p->adapt_start_ms, p->tick_rate_Hz),
+                                 .settle_ticks = ticks_of(p->adapt_settle_ms, p->tick_rate_Hz),
+                                 .measure_ticks = ticks_of(p->adapt_measure_ms, p->tick_rate_Hz),
+                                 .rest_ticks = ticks_of(p->adapt_rest_ms, p->tick_rate_Hz),
+                                 .edge_limit_q16 = (int32_t)((int64_t)p->adapt_edge_limit_mdeg *
+                                                             INT16_MAX / 90000),
+                                 .level_limit_q15 = p->adapt_level_limit_pct * 32768 / 100,
+                             });
 }
 
 static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
@@ -48,9 +48,10 @@ static void refresh(law_phase_t *self, const quiesce_params_t *params, uint32_t 
     self->freq_mHz = (uint32_t)((per_tick * 1000u) >> 32);
     self->place = phase_place(self->points, self->point_count, self->freq_mHz);
     self->pulse = phase_pulse_at(self->points, self->place);
-    self->trim = params->adapt == QUIESCE_ADAPT_OFF
-                     ? (adapt_trim_t){{0}}
-                     : adapt_trim_at(&self->adapt, self->place.index, self->place.part_q16);
+    self->trim = (adapt_trim_t){{0}};
+    if (params->adapt != QUIESCE_ADAPT_OFF) {
+        self->trim = adapt_trim_at(&self->adapt, self->place.index, self->place.part_q16);
+    }
     trim_pulse(&self->pulse, &self->trim);
     self->is_stale = false;
 }
@@ -73,6 +74,7 @@ static void adapt(law_phase_t *self, const quiesce_params_t *params, const law_i
                                             self->blend_q16 == WHOLE_q16,
                                  .freq_mHz = self->freq_mHz,
                                  .index = self->place.index,
+                                 .part_q16 = self->place.part_q16,
                                  .goal = {self->pulse.accel_weight_q8, self->pulse.accel_shape_q14},
                                  .half = in->lock.half,
                              });

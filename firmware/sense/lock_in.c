@@ -21,8 +21,8 @@ static uint32_t quarter_cycle_q16(uint32_t step_turn) {
 static void rescale(lock_in_t *self, uint32_t shift) {
     if (shift > self->shift) {
         const uint32_t coarser = shift - self->shift;
-        self->slow_q8 >>= coarser;
-        self->unexplained >>= 2u * coarser;
+        self->slow_q8 = self->slow_q8 >> coarser;
+        self->unexplained = self->unexplained >> (2u * coarser);
     } else {
         const int64_t finer = INT64_C(1) << (self->shift - shift);
         self->slow_q8 =
@@ -83,7 +83,8 @@ static void end_half(lock_in_t *self) {
 static void follow(lock_in_t *self) {
     const int32_t *part = self->found.um_s2;
     const uint32_t amp_um_s2 = harmonic_amp_um_s2(part[HARMONIC_COS1], part[HARMONIC_SIN1]);
-    const int32_t angle = -(int32_t)harmonic_peak_turn(part[HARMONIC_COS1], part[HARMONIC_SIN1]);
+    const int32_t angle =
+        (int32_t)(0u - harmonic_peak_turn(part[HARMONIC_COS1], part[HARMONIC_SIN1]));
     if (abs_i32(angle) > LOST_ANGLE_TURN || amp_um_s2 < self->amp_um_s2 / 4u) {
         lock_in_release(self);
         return;
@@ -100,6 +101,11 @@ static void follow(lock_in_t *self) {
     self->has_half = true;
 }
 
+// Both one half cycle, or both two (where a half cycle is shorter than the work on it).
+static bool are_alike(uint32_t a, uint32_t b) {
+    return a != 0 && (a > b ? a - b : b - a) <= 1u + b / 8u;
+}
+
 // Works on the last half cycle, one part a tick, so that no tick has much of it.
 static void work(lock_in_t *self) {
     const uint32_t stage = self->stage;
@@ -108,7 +114,7 @@ static void work(lock_in_t *self) {
         self->found.um_s2[stage - 1u] = harmonic_part_um_s2(&self->last, stage - 1u);
     } else if (stage < LAST_STAGE) {
         // Halves of one cycle: what is left of both is not the component's.
-        if (self->before.ticks != 0) {
+        if (are_alike(self->before.ticks, self->last.ticks)) {
             harmonic_sums_add(&self->before, &self->last);
             self->mean_um_s2 += harmonic_mean_um_s2(&self->before) / 2;
         }
