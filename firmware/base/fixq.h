@@ -29,6 +29,16 @@ static inline int32_t abs_i32(int32_t value) {
     return value >= 0 ? value : value == INT32_MIN ? INT32_MAX : -value;
 }
 
+/// How far two numbers are apart.
+static inline uint32_t gap_u32(uint32_t a, uint32_t b) {
+    return a > b ? a - b : b - a;
+}
+
+/// Ticks in a time, floor. 0 <= time_ms <= 5 x 10^7; tick_rate_Hz: a multiple of 100, at most 4000.
+static inline uint32_t ticks_in_ms(int32_t time_ms, int32_t tick_rate_Hz) {
+    return (uint32_t)(time_ms * (tick_rate_Hz / 100) / 10);
+}
+
 /// -1, 0 or 1.
 static inline int32_t sign_i64(int64_t value) {
     return (value > 0) - (value < 0);

@@ -33,9 +33,7 @@ static void wait_for(adapt_t *self, adapt_state_t state, uint32_t ticks) {
 }
 
 static bool has_moved(const adapt_t *self, uint32_t freq_mHz) {
-    const uint32_t change =
-        freq_mHz > self->freq_mHz ? freq_mHz - self->freq_mHz : self->freq_mHz - freq_mHz;
-    return change > self->freq_mHz / DRIFT_DIVISOR;
+    return gap_u32(freq_mHz, self->freq_mHz) > self->freq_mHz / DRIFT_DIVISOR;
 }
 
 // The vibration is another one: it must last before the search starts, with large steps.
@@ -51,7 +49,8 @@ static void start_search_at(adapt_t *self, uint32_t freq_mHz) {
     wait_for(self, ADAPT_MEASURING, self->cfg.start_ticks);
 }
 
-// change / from in Q20, limited to a quarter, to 2^-9 of itself; one 32-bit division.
+// change / from in Q20, limited to something between a quarter and a half, to 2^-9 of itself; one
+// 32-bit division.
 static int32_t relative_q20(uint32_t from, int64_t change) {
     const uint32_t up = (uint32_t)__builtin_clz(from | 1u);
     const int64_t limited_change = clamp_i64(change * (INT64_C(1) << up) >> 2, -(1 << 28), 1 << 28);
@@ -135,6 +134,12 @@ static void fail(adapt_t *self) {
     }
 }
 
+// A trial that is not checked.
+static void give_up(adapt_t *self) {
+    self->trials = increment_sat_u32(self->trials);
+    fail(self);
+}
+
 static void try_next(adapt_t *self) {
     for (uint32_t i = 0; i < DIRECTIONS * ADAPT_COORDINATES && !has_room(self); i++) {
         fail(self);
@@ -188,8 +193,7 @@ static void conclude(adapt_t *self, adapt_goal_t goal) {
             wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
             return;
         }
-        self->trials = increment_sat_u32(self->trials);
-        fail(self);
+        give_up(self);
         // It may be worse because something else has changed: what comes next is judged anew.
         wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
         return;
@@ -271,8 +275,7 @@ static void measure(adapt_t *self, const adapt_in_t *in) {
 // A trial that ends like this is not tried again at once: it may be what ended it.
 void adapt_pause(adapt_t *self) {
     if (self->state == ADAPT_TRYING) {
-        self->trials = increment_sat_u32(self->trials);
-        fail(self);
+        give_up(self);
     }
     wait_for(self, ADAPT_WAITING, 0);
 }

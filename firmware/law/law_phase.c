@@ -6,12 +6,8 @@
 
 enum { WHOLE_q16 = 65536 };
 
-static uint32_t ticks_of(int32_t time_ms, int32_t tick_rate_Hz) {
-    return (uint32_t)(time_ms * (tick_rate_Hz / 100) / 10);
-}
-
 void law_phase_init(law_phase_t *self, const quiesce_params_t *p, const phase_table_t *table) {
-    const uint32_t blend_ticks = ticks_of(p->phase_blend_ms, p->tick_rate_Hz);
+    const uint32_t blend_ticks = ticks_in_ms(p->phase_blend_ms, p->tick_rate_Hz);
     const uint32_t setting = (uint32_t)p->phase_setting;
     *self = (law_phase_t){
         .table = table,
@@ -21,10 +17,10 @@ void law_phase_init(law_phase_t *self, const quiesce_params_t *p, const phase_ta
         .blend_step_q16 = WHOLE_q16 / (blend_ticks + 1u) + 1u,
     };
     adapt_init(&self->adapt, &(adapt_cfg_t){
-                                 .start_ticks = ticks_of(p->adapt_start_ms, p->tick_rate_Hz),
-                                 .settle_ticks = ticks_of(p->adapt_settle_ms, p->tick_rate_Hz),
-                                 .measure_ticks = ticks_of(p->adapt_measure_ms, p->tick_rate_Hz),
-                                 .rest_ticks = ticks_of(p->adapt_rest_ms, p->tick_rate_Hz),
+                                 .start_ticks = ticks_in_ms(p->adapt_start_ms, p->tick_rate_Hz),
+                                 .settle_ticks = ticks_in_ms(p->adapt_settle_ms, p->tick_rate_Hz),
+                                 .measure_ticks = ticks_in_ms(p->adapt_measure_ms, p->tick_rate_Hz),
+                                 .rest_ticks = ticks_in_ms(p->adapt_rest_ms, p->tick_rate_Hz),
                                  .edge_limit_q16 = (int32_t)((int64_t)p->adapt_edge_limit_mdeg *
                                                              INT16_MAX / 90000),
                                  .level_limit_q15 = p->adapt_level_limit_pct * 32768 / 100,

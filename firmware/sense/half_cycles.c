@@ -12,7 +12,7 @@ void half_cycles_reset(half_cycles_t *self) {
 }
 
 static bool are_alike(uint32_t a, uint32_t b) {
-    return (a > b ? a - b : b - a) < a / ALIKE;
+    return gap_u32(a, b) < a / ALIKE;
 }
 
 // The period is that of the middles: unequal halves, from an offset of the velocity, cancel.

@@ -103,7 +103,7 @@ static void follow(lock_in_t *self) {
 
 // Both one half cycle, or both two (where a half cycle is shorter than the work on it).
 static bool are_alike(uint32_t a, uint32_t b) {
-    return a != 0 && (a > b ? a - b : b - a) <= 1u + b / 8u;
+    return a != 0 && gap_u32(a, b) <= 1u + b / 8u;
 }
 
 // Works on the last half cycle, one part a tick, so that no tick has much of it.

@@ -124,17 +124,13 @@ bool tracker_is_missing_something(const tracker_t *self, int32_t residual_um_s2)
     return self->window.is_longest && (int32_t)log2_q8_u64(variance) > limit_q8;
 }
 
-static uint32_t gap_between(uint32_t a, uint32_t b) {
-    return a > b ? a - b : b - a;
-}
-
 // The last fit's frequency where it belongs to this candidate, else the candidate's own. A fit from
 // before a reset is a hint only.
 static uint32_t start_turn(const tracker_t *self, int32_t bin_q15) {
     const uint32_t turn = (uint32_t)bin_q15 << (17u - self->window.points_log2);
     const uint32_t gate = self->tones > 0 ? bin_turn(self) : bin_turn(self) / 4u;
     for (uint32_t i = 0; i < self->hints; i++) {
-        if (gap_between(turn, self->tone[i].turn) < gate) {
+        if (gap_u32(turn, self->tone[i].turn) < gate) {
             return self->tone[i].turn;
         }
     }
@@ -174,7 +170,7 @@ static void dominant_start_first(tracker_start_t *start, uint32_t count) {
 // Whether a start within a bin of it stands already.
 static bool is_close(const tracker_t *self, uint32_t turn) {
     for (uint32_t i = 0; i < self->starts; i++) {
-        if (gap_between(turn, self->start[i].turn) < bin_turn(self)) {
+        if (gap_u32(turn, self->start[i].turn) < bin_turn(self)) {
             return true;
         }
     }
@@ -229,7 +225,7 @@ bool tracker_choose(tracker_t *self, const uint64_t *power) {
 
 static bool is_third_harmonic(const tracker_t *self, const tracker_tone_t *of,
                               const tracker_tone_t *tone) {
-    return gap_between(3u * of->turn, tone->turn) < bin_turn(self) / 4u;
+    return gap_u32(3u * of->turn, tone->turn) < bin_turn(self) / 4u;
 }
 
 // Index of the dominant one among tones in the band; count > 0.

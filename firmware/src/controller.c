@@ -90,7 +90,7 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
     c->rules_next = shipped_rules();
     c->law = law_find(c->params.law);
     law_phase_init(&c->law_state.phase, &c->params, shipped_pulses());
-    c->hold_ticks = (uint32_t)(c->params.track_hold_ms * (c->params.tick_rate_Hz / 100) / 10);
+    c->hold_ticks = ticks_in_ms(c->params.track_hold_ms, c->params.tick_rate_Hz);
     init_output(c, params, is_accepted);
     return is_accepted;
 }

@@ -312,7 +312,7 @@ static predictor_rest_t rest_of(const estimator_t *self) {
 
 // Whether a and b are more than a / fraction apart.
 static bool differs(uint32_t a, uint32_t b, uint32_t fraction) {
-    return (a > b ? a - b : b - a) > a / fraction;
+    return gap_u32(a, b) > a / fraction;
 }
 
 // One component, alone or with the third harmonic that a sticking damper adds to it.

@@ -78,9 +78,7 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, bool 
 }
 
 static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {
-    const uint32_t apart =
-        lock->step_turn > step_turn ? lock->step_turn - step_turn : step_turn - lock->step_turn;
-    return !lock->is_locked || apart > step_turn / ELSEWHERE_DIVISOR;
+    return !lock->is_locked || gap_u32(lock->step_turn, step_turn) > step_turn / ELSEWHERE_DIVISOR;
 }
 
 static void lock_on(signal_chain_t *self, const condition_out_t *sample, uint32_t phase_turn,

@@ -6,27 +6,24 @@ Every run is made once, however many parts of the bench ask for it.
 import tempfile
 import threading
 import tomllib
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from quiesce.bench_exe import Bench, setting_options
+from quiesce.bench_pool import Work, run_work
 from quiesce.control_measures import reduction_pct
 from quiesce.control_scenarios import Scenario
 from quiesce.errors import UsageError
 from quiesce.params import effective_params
 from quiesce.paths import root
-from quiesce.progress import Progress
 from quiesce.trace import Trace, read_trace
 
-WORKERS = 2
 DISPLACEMENT, BALANCED = "displacement", "balanced"
 SETTINGS = (DISPLACEMENT, BALANCED)
 DEFAULT_PLANT = "sim_hil/plants/squeeze_2012.toml"
-
-Work = tuple[str, Callable[[], Any]]
 
 
 @dataclass(frozen=True)
@@ -212,23 +209,8 @@ class Rig:
         )
 
     def work(self, pieces: Sequence[Work]) -> list[Any]:
-        """Results in order; WORKERS pieces at a time, progress on stderr."""
-        progress = Progress(len(pieces))
-
-        def run(name: str, task: Callable[[], Any]) -> Any:
-            result = task()
-            progress.done(name)
-            return result
-
-        pool = ThreadPoolExecutor(WORKERS)
-        try:
-            return [future.result() for future in [pool.submit(run, *piece) for piece in pieces]]
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            self.bench.stop()
-            raise
-        finally:
-            pool.shutdown()
+        """Results in order, progress on stderr."""
+        return run_work(self.bench, pieces)
 
 
 def fitted(plant: Plant, params: dict[str, int]) -> list[str]:

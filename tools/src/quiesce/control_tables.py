@@ -123,10 +123,12 @@ def robust_table(cells: Sequence[Cell]) -> str:
                 number(median(converged), 0),
                 number(max(converged), 0),
                 number(max(cell.dither_loss_pct for cell in some), 2),
+                number(max(c.constant_amp_pct - c.shipped_amp_pct for c in some), 2),
             ]
         )
     head = ["", "plants", "least of bound", "median", "below 0.9", "below constant pts",
-            "converged s, median", "worst", "dither pts, worst"]  # fmt: skip
+            "converged s, median", "worst", "dither pts, worst",
+            "table alone below constant"]  # fmt: skip
     return titled("robustness: displacement setting, other plants without retuning", head, rows)
 
 

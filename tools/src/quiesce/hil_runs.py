@@ -2,19 +2,19 @@
 
 import tempfile
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from quiesce.bench_exe import Bench, echo_image, image, setting_options, target_options
+from quiesce.bench_pool import run_all
 from quiesce.laws import CONSTANT_BEST, OPEN_LOOP, Law
 from quiesce.params import effective_params
 from quiesce.progress import Progress
 from quiesce.scenarios import Scenario
 from quiesce.trace import Trace, read_trace
 
-WORKERS = 2
 CONSTANT_STEP_mA = 500
 QUICK_CONSTANT_STEP_mA = 2500
 TRACE_COLUMNS = [
@@ -122,15 +122,7 @@ class Runner:
         return runs, searches
 
     def _map(self, work: Callable[[Any], Done], items: Sequence[Any]) -> list[Done]:
-        pool = ThreadPoolExecutor(WORKERS)
-        try:
-            return [future.result() for future in [pool.submit(work, item) for item in items]]
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            self._bench.stop()
-            raise
-        finally:
-            pool.shutdown()
+        return run_all(self._bench, [partial(work, item) for item in items])
 
     def _options(self, scenario: Scenario, law: Law, settings: Sequence[str]) -> list[str]:
         return [

@@ -1,7 +1,5 @@
 """Everything that `quiesce bench signal` runs: the pieces of work, their budget, their results."""
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,16 +13,12 @@ from quiesce import (
     signal_stress,
     signal_truth,
 )
-from quiesce.bench_exe import Bench
-from quiesce.progress import Progress
+from quiesce.bench_pool import Work, run_work
 from quiesce.signal_accuracy import Group
 from quiesce.signal_plant import StickSlip
 from quiesce.signal_records import Rig, Tally
 from quiesce.signal_response import Dropouts, Steady, Step
 from quiesce.signal_truth import Answers
-
-WORKERS = 2
-Work = tuple[str, Callable[[], Any]]
 
 
 @dataclass(frozen=True)
@@ -163,26 +157,6 @@ def all_work(rig: Rig, seed: int, budget: Budget, data: Path) -> dict[str, list[
             for source in signal_recorded.SOURCES
         ],
     }
-
-
-def run_work(bench: Bench, work: Sequence[Work]) -> list[Any]:
-    """Results in order; WORKERS pieces at a time."""
-    progress = Progress(len(work))
-
-    def run(name: str, task: Callable[[], Any]) -> Any:
-        result = task()
-        progress.done(name)
-        return result
-
-    pool = ThreadPoolExecutor(WORKERS)
-    try:
-        return [future.result() for future in [pool.submit(run, *piece) for piece in work]]
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        bench.stop()
-        raise
-    finally:
-        pool.shutdown()
 
 
 def measure_all(rig: Rig, seed: int, budget: Budget, data: Path) -> Results:
