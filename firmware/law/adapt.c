@@ -1,7 +1,5 @@
 #include "adapt.h"
 
-#include <stddef.h>
-
 enum {
     EDGE_STEP_q16 = 4369,      // 12 degrees
     LEVEL_STEP_q15 = 4915,     // 15 %
@@ -27,9 +25,7 @@ void adapt_clear(adapt_t *self) {
 static void wait_for(adapt_t *self, adapt_state_t state, uint32_t ticks) {
     self->state = state;
     self->ticks = ticks;
-    self->is_collecting = false;
-    self->stage = 0;
-    self->sums = (harmonic_sums_t){0};
+    adapt_meter_reset(&self->meter);
 }
 
 static bool has_moved(const adapt_t *self, uint32_t freq_mHz) {
@@ -168,7 +164,7 @@ static void keep(adapt_t *self) {
 
 // The trial lies between two measurements without its change.
 static void judge(adapt_t *self, adapt_goal_t goal) {
-    const adapt_effect_t after = self->effect;
+    const adapt_effect_t after = self->meter.effect;
     const int32_t drift_q20 = abs_i32(relative_q20(
         self->before.reach_um_s2, (int64_t)after.reach_um_s2 - self->before.reach_um_s2));
     // What two measurements of the same differ by is no gain.
@@ -188,7 +184,7 @@ static void judge(adapt_t *self, adapt_goal_t goal) {
 static void conclude(adapt_t *self, adapt_goal_t goal) {
     switch (self->state) {
     case ADAPT_TRYING:
-        self->trial = self->effect;
+        self->trial = self->meter.effect;
         if (cost_q20(self->before, self->trial, goal) <= CLEARLY_WORSE_q20) {
             wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
             return;
@@ -201,74 +197,15 @@ static void conclude(adapt_t *self, adapt_goal_t goal) {
         judge(self, goal);
         break;
     default:
-        self->before = self->effect;
+        self->before = self->meter.effect;
         break;
     }
     try_next(self);
 }
 
-static int32_t amp_um_s2(const adapt_t *self, uint32_t cos, uint32_t sin) {
-    return (int32_t)harmonic_amp_um_s2(self->parts.um_s2[cos], self->parts.um_s2[sin]);
-}
-
-static uint32_t peak_turn(const adapt_t *self, uint32_t cos, uint32_t sin) {
-    return harmonic_peak_turn(self->parts.um_s2[cos], self->parts.um_s2[sin]);
-}
-
-// Half peak-to-peak of the displacement, times (2 pi f)^2: the third harmonic counts a ninth.
-static void start_search(adapt_t *self) {
-    const uint32_t third_turn = peak_turn(self, HARMONIC_COS3, HARMONIC_SIN3);
-    harmonic_span_start(&self->span, self->first_um_s2, self->third_um_s2 / 9,
-                        3u * self->peak_turn - third_turn);
-}
-
-// One stage a tick. Returns true iff the effect is complete.
-static bool work(adapt_t *self) {
-    const uint32_t stage = self->stage;
-    self->stage++;
-    if (stage <= HARMONIC_PRODUCTS) {
-        self->parts.um_s2[stage - 1u] = harmonic_part_um_s2(&self->sums, stage - 1u);
-        return false;
-    }
-    switch (stage - HARMONIC_PRODUCTS) {
-    case 1:
-        self->first_um_s2 = amp_um_s2(self, HARMONIC_COS1, HARMONIC_SIN1);
-        return false;
-    case 2:
-        self->third_um_s2 = amp_um_s2(self, HARMONIC_COS3, HARMONIC_SIN3);
-        return false;
-    case 3:
-        self->peak_turn = peak_turn(self, HARMONIC_COS1, HARMONIC_SIN1);
-        return false;
-    case 4:
-        start_search(self);
-        return false;
-    case 5:
-        self->effect.rms_um_s2 = harmonic_rms_um_s2(&self->sums);
-        return false;
-    default:
-        return harmonic_span_step(&self->span);
-    }
-}
-
-// Half cycles, from the first one that began after the vibration had settled.
-static void collect(adapt_t *self, const harmonic_sums_t *half) {
-    if (!self->is_collecting) {
-        self->is_collecting = true;
-        return;
-    }
-    harmonic_sums_add(&self->sums, half);
-    self->stage = self->sums.ticks >= self->cfg.measure_ticks ? 1u : 0u;
-}
-
 static void measure(adapt_t *self, const adapt_in_t *in) {
-    if (self->stage != 0) {
-        if (work(self)) {
-            self->effect.reach_um_s2 = (uint32_t)self->span.largest;
-            conclude(self, in->goal);
-        }
-    } else if (in->half != NULL) {
-        collect(self, in->half);
+    if (adapt_meter_step(&self->meter, in->half, self->cfg.measure_ticks)) {
+        conclude(self, in->goal);
     }
 }
 

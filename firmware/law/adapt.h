@@ -25,7 +25,7 @@
 #ifndef ADAPT_H
 #define ADAPT_H
 
-#include "harmonics.h"
+#include "adapt_effect.h"
 
 #define ADAPT_POINTS 64u
 
@@ -55,26 +55,12 @@ typedef enum {
     ADAPT_RESTING = 4,   ///< nothing left to gain
 } adapt_state_t;
 
-/// What a measurement says.
-typedef struct {
-    uint32_t reach_um_s2; ///< half peak-to-peak displacement x (2 pi f)^2
-    uint32_t rms_um_s2;
-} adapt_effect_t;
-
 typedef struct {
     adapt_cfg_t cfg;
     adapt_trim_t trim[ADAPT_POINTS]; ///< learnt
     adapt_state_t state;
-    uint32_t ticks;       ///< left to settle or rest
-    bool is_collecting;   ///< half cycles are added up
-    harmonic_sums_t sums; ///< so far
-    uint32_t stage;       ///< of the work on them, a division or a root a tick; 0: none
-    harmonic_parts_t parts;
-    int32_t first_um_s2; ///< amplitudes of fundamental and third harmonic
-    int32_t third_um_s2;
-    uint32_t peak_turn; ///< where the fundamental is largest
-    harmonic_span_t span;
-    adapt_effect_t effect; ///< that comes out
+    uint32_t ticks; ///< left to settle or rest
+    adapt_meter_t meter;
     adapt_effect_t before; ///< without the trial's change
     adapt_effect_t trial;  ///< with it
     uint32_t coordinate;   ///< tried
@@ -86,7 +72,7 @@ typedef struct {
     bool has_tried_whole;  ///< in this search
     uint32_t index;        ///< of the point below the frequency
     uint32_t nearest;      ///< of the point nearest to it
-    uint32_t freq_mHz;     ///< then
+    uint32_t freq_mHz;     ///< that the search is for
     uint32_t trials;       ///< finished, saturating
     uint32_t gains;        ///< of them that lowered the cost, saturating
 } adapt_t;

@@ -33,6 +33,7 @@ SHARED = {
     "law": {"law_phase.h"},
     "law_phase": {"law.h", "adapt.h", "phase_table.h"},
     "law_*": {"law.h"},
+    "adapt": {"adapt_effect.h"},
     "adapt_store": {"adapt.h"},
 }
 # What the simulation may know of the firmware and the simulated peripherals.

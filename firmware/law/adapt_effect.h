@@ -1,0 +1,38 @@
+/// What a pulse does to the vibration, measured over half cycles: how far the displacement reaches,
+/// and the RMS acceleration.
+///
+/// Reach is half peak-to-peak displacement times (2 pi f)^2, from the fundamental and the third
+/// harmonic, which counts a ninth. Formats: um/s2. Bounded: an addition of sums at the end of a
+/// half cycle, then one division, root or angle a tick, and 16 ticks of search.
+#ifndef ADAPT_EFFECT_H
+#define ADAPT_EFFECT_H
+
+#include "harmonics.h"
+
+/// What a measurement says.
+typedef struct {
+    uint32_t reach_um_s2;
+    uint32_t rms_um_s2;
+} adapt_effect_t;
+
+/// A measurement under way.
+typedef struct {
+    bool is_collecting;   ///< half cycles are added up
+    harmonic_sums_t sums; ///< so far
+    uint32_t stage;       ///< of the work on them; 0: none
+    harmonic_parts_t parts;
+    int32_t first_um_s2; ///< amplitudes of fundamental and third harmonic
+    int32_t third_um_s2;
+    uint32_t peak_turn; ///< where the fundamental is largest
+    harmonic_span_t span;
+    adapt_effect_t effect; ///< that comes out
+} adapt_meter_t;
+
+/// Starts anew.
+void adapt_meter_reset(adapt_meter_t *self);
+
+/// One tick. half: half a cycle that ended in it, or NULL; the first one counts as begun too early.
+/// Returns true iff at least measure_ticks have been taken in and self->effect is complete.
+bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t measure_ticks);
+
+#endif
