@@ -1,0 +1,1 @@
+"""Damper models from measurements: data, fits, reports."""

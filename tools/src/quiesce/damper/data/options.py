@@ -1,0 +1,220 @@
+"""Data options of the command line, and the records that they ask for."""
+
+import argparse
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from quiesce.damper.data.columns import NONE, ROLES, parse_spec
+from quiesce.damper.data.condition import condition_all
+from quiesce.damper.data.mapping import Plan, plan_of_mapping, read_mapping
+from quiesce.damper.data.read import OutputAverage, RawTest, read_file
+from quiesce.damper.data.record import Record
+from quiesce.damper.data.split import Split, part_from_text
+from quiesce.errors import UsageError
+from quiesce.paths import shown
+
+
+@dataclass(frozen=True)
+class Conditioned:
+    """Records ready to fit; `notes` say in plain sentences what was found and done."""
+
+    records: list[Record]
+    notes: list[str]
+    split: Split | None = None
+
+
+def positive(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise ValueError
+    return value
+
+
+def whole_number(text: str) -> int:
+    value = int(text)
+    if value < 0:
+        raise ValueError
+    return value
+
+
+def finite(text: str) -> float:
+    value = float(text)
+    if not abs(value) < float("inf"):
+        raise ValueError
+    return value
+
+
+def add_data_options(group: argparse._ArgumentGroup) -> None:
+    """Options that `records_of` reads; the files themselves are the command's own."""
+    group.add_argument(
+        "--columns", type=Path, metavar="FILE.toml",
+        help="mapping file; what is given on the command line wins",
+    )  # fmt: skip
+    for role in ROLES:
+        group.add_argument(
+            f"--{role}", dest=f"column_{role}", metavar="NAME[:UNIT]",
+            help=f"column of {role} (found by its name), or 'none'",
+        )  # fmt: skip
+    group.add_argument("--rate-hz", type=positive, metavar="Hz", help="rate, without time column")
+    group.add_argument(
+        "--current-a", type=finite, nargs="+", metavar="A",
+        help="constant current, one for all files or one a file",
+    )  # fmt: skip
+    group.add_argument("--flip-force", action="store_true", help="turn the sign of the force")
+    group.add_argument(
+        "--group", action="append", default=[], metavar="NAME[,NAME]",
+        help="columns whose values tell the tests in a file apart",
+    )  # fmt: skip
+    group.add_argument(
+        "--output-average", metavar="S|PERIODS:COLUMN",
+        help="moving average that the force went through: seconds, or periods of the frequency "
+        "in a column",
+    )  # fmt: skip
+    group.add_argument("--split-gaps", action="store_true", help="a record on each side of a gap")
+    group.add_argument(
+        "--skip-lines", type=whole_number, metavar="N", help="lines above the header"
+    )
+    add_condition_options(group)
+    for name in ("--train", "--test"):
+        group.add_argument(
+            name, metavar="FORM=A,B", dest=f"part_{name[2:]}",
+            help="rows to fit or to hold out: time_s, part (0 .. 1), rows or current_A",
+        )  # fmt: skip
+
+
+def add_condition_options(group: argparse._ArgumentGroup) -> None:
+    for name, text in (
+        ("--low-pass-hz", "cut-off of the displacement (40, less where sampled slowly)"),
+        ("--drift-hz", "high-pass where velocity is integrated (0.2)"),
+        ("--work-rate-hz", "rate of the records (the file's, or a part of it)"),
+    ):
+        group.add_argument(name, type=positive, metavar="Hz", help=text)
+    for name, text in (
+        ("--keep-offset", "do not remove the mean displacement"),
+        ("--use-velocity", "use the measured velocity, not dx/dt"),
+        ("--accept-values", "values that look like a wrong unit are right"),
+    ):
+        group.add_argument(name, action="store_true", help=text)
+
+
+def plan_of(args: argparse.Namespace, files: list[Path]) -> Plan:
+    """The mapping file's plan with the command line on top."""
+    plan = read_mapping(args.columns, files) if args.columns else Plan()
+    given = dict(plan.columns.given)
+    for role in ROLES:
+        if text := getattr(args, f"column_{role}"):
+            given[role] = None if text == NONE else parse_spec(role, text)
+    columns = replace(plan.columns, given=given)
+    if args.rate_hz is not None:
+        columns = replace(columns, rate_Hz=args.rate_hz)
+    if args.flip_force:
+        columns = replace(columns, flip_force=True)
+    if args.group:
+        columns = replace(
+            columns, group=tuple(name for item in args.group for name in item.split(","))
+        )
+    if args.output_average:
+        columns = replace(columns, average=average_from_text(args.output_average))
+    if args.skip_lines is not None:
+        columns = replace(columns, skip_lines=args.skip_lines)
+    settings = plan.settings
+    for name, key in (
+        ("low_pass", "low_pass_Hz"),
+        ("drift", "drift_Hz"),
+        ("work_rate", "work_rate_Hz"),
+    ):
+        if (value := getattr(args, f"{name}_hz")) is not None:
+            settings = replace(settings, **{key: value})
+    for name in ("keep_offset", "use_velocity", "accept_values"):
+        if getattr(args, name):
+            settings = replace(settings, **{name: True})
+    columns = replace(
+        columns,
+        split_gaps=columns.split_gaps or args.split_gaps,
+        may_be_uneven=settings.work_rate_Hz is not None,
+    )
+    settings = replace(settings, flipped=columns.flip_force)
+    return Plan(columns, settings, split_of(args, plan.split))
+
+
+def split_of(args: argparse.Namespace, from_file: Split | None) -> Split | None:
+    if (args.part_train is None) != (args.part_test is None):
+        raise UsageError("--train and --test go together")
+    if args.part_train is None:
+        return from_file
+    return Split(
+        part_from_text("--train", args.part_train), part_from_text("--test", args.part_test)
+    )
+
+
+def average_from_text(text: str) -> OutputAverage:
+    length, _, column = text.partition(":")
+    try:
+        value = positive(length)
+    except ValueError:
+        raise UsageError(
+            f"--output-average '{text}': write seconds, such as 0.02, or periods and the column "
+            "of the frequency, such as 0.1:freq_hz"
+        )
+    return OutputAverage(value, column) if column else OutputAverage(seconds=value)
+
+
+def records_of(args: argparse.Namespace, files: list[Path] | None = None) -> Conditioned:
+    """Records of `files` (args.files unless given). UsageError for bad input."""
+    files = list(args.files if files is None else files)
+    return conditioned(files, plan_of(args, files), args.current_a)
+
+
+def records_of_set(table: Mapping[str, Any], folder: Path, low_pass_Hz: float) -> Conditioned:
+    """Records of one [[set]] of a scoring file, its data below `folder`."""
+    from quiesce.damper.data.mapping import with_low_pass
+
+    where = f"set {table.get('name', '?')}"
+    if not isinstance(table.get("file"), str):
+        raise UsageError(f"{where}: no file is named")
+    plan = with_low_pass(plan_of_mapping(table, where), low_pass_Hz, where)
+    return conditioned([folder / table["file"]], plan, None)
+
+
+def conditioned(files: list[Path], plan: Plan, currents_A: list[float] | None) -> Conditioned:
+    """All files read in the same way and conditioned together."""
+    if not files:
+        raise UsageError("no data: name at least one CSV file")
+    if len({file.resolve() for file in files}) < len(files):
+        raise UsageError("one file is named twice; its tests would count double")
+    stated = stated_currents(files, plan, currents_A)
+    tests: list[RawTest] = []
+    notes: list[str] = []
+    for file, current_A in zip(files, stated, strict=True):
+        raw = read_file(file, replace(plan.columns, current_A=current_A))
+        if len(files) > 1 and current_A is None and not {"current", "command"} & set(raw.columns):
+            raise UsageError(
+                f"{shown(file)}: no column of current or voltage; with several files, state the "
+                "current of each: --current-a A [A ...]"
+            )
+        if current_A is not None:
+            raw = replace(raw, tests=[with_current(test, current_A) for test in raw.tests])
+        tests += raw.tests
+        notes += [f"{shown(file)}: {note}" for note in raw.notes]
+    records, done = condition_all(tests, plan.settings)
+    return Conditioned(records, notes + done, plan.split)
+
+
+def with_current(test: RawTest, current_A: float) -> RawTest:
+    import numpy as np
+
+    return replace(test, si={**test.si, "current": np.full(len(test.time_s), current_A)})
+
+
+def stated_currents(
+    files: list[Path], plan: Plan, currents_A: list[float] | None
+) -> list[float | None]:
+    if currents_A is None:
+        return [plan.columns.current_A] * len(files)
+    if len(currents_A) not in (1, len(files)):
+        raise UsageError(
+            f"--current-a: {len(currents_A)} values for {len(files)} files; one for all or one each"
+        )
+    return list(currents_A) * (len(files) if len(currents_A) == 1 else 1)
