@@ -199,7 +199,7 @@ def motion_of(
     disp_m = low_passed(disp_m, rate_Hz, corner_Hz)
     velocity_m_s, accel_m_s2 = derivatives(disp_m, rate_Hz)
     notes.append(
-        f"displacement low-passed at {corner_Hz:.4g} Hz, 4th order Butterworth run both ways; "
+        f"displacement low-passed at {corner_Hz:.4g} Hz, 4th order Butterworth run both ways, ends free; "
         "velocity and acceleration by a spline of 5th order through it"
     )
     motion = Motion(disp_m, velocity_m_s, accel_m_s2)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.damper.data.columns import NONE, ROLES, ColumnSpec, parse_spec, stated_unit
-from quiesce.damper.data.condition import Settings
+from quiesce.damper.data.condition import LOW_PASS_Hz, Settings
 from quiesce.damper.data.read import Columns, OutputAverage
 from quiesce.damper.data.split import Split, is_number, parse_part
 from quiesce.damper.data.table import clipped
@@ -17,8 +17,8 @@ from quiesce.paths import shown
 # Of a scoring file: what a mapping has no use for.
 _OF_SCORING = {"name", "file", "lagged_baseline"}
 _FLAGS = ("flip_force", "split_gaps", "keep_offset", "use_velocity", "accept_values")
-_NUMBERS = ("rate_Hz", "low_pass_Hz", "drift_Hz", "work_rate_Hz")
-_OTHERS = ("columns", "group", "output_average", "current_A", "skip_lines", "train", "test")
+_NUMBERS = ("current_A", "rate_Hz", "low_pass_Hz", "drift_Hz", "work_rate_Hz")
+_OTHERS = ("columns", "group", "output_average", "skip_lines", "train", "test")
 KEYS = (*_OTHERS[:3], *_FLAGS, *_NUMBERS, *_OTHERS[3:])
 
 
@@ -38,9 +38,6 @@ def plan_of_mapping(table: Mapping[str, Any], where: str) -> Plan:
             raise UsageError(f"{where}: unknown key '{clipped(key)}'; known are {', '.join(KEYS)}")
     flags = {key: checked_flag(table, key, where) for key in _FLAGS if key in table}
     numbers = {key: checked_number(table, key, where) for key in _NUMBERS if key in table}
-    numbers |= {
-        key: checked_number(table, key, where, 0.0) for key in ("current_A",) if key in table
-    }
     columns = Columns(
         given=given_columns(table.get("columns", {}), where),
         rate_Hz=numbers.get("rate_Hz"),
@@ -68,10 +65,12 @@ def checked_flag(table: Mapping[str, Any], key: str, where: str) -> bool:
     return table[key]
 
 
-def checked_number(table: Mapping[str, Any], key: str, where: str, least: float = 1e-9) -> float:
+def checked_number(table: Mapping[str, Any], key: str, where: str) -> float:
     value = table[key]
-    if not is_number(value) or (key != "current_A" and value < least):
-        raise UsageError(f"{where}: {key} has to be a number above 0")
+    if not is_number(value):
+        raise UsageError(f"{where}: {key} has to be a number")
+    if key != "current_A" and value <= 0.0:
+        raise UsageError(f"{where}: {key} has to be above 0")
     return float(value)
 
 
@@ -100,11 +99,8 @@ def checked_average(value: Any, where: str) -> OutputAverage | None:
     ):
         raise UsageError(expected)
     length = value.get("seconds", value.get("periods"))
-    if (
-        not is_number(length)
-        or length <= 0
-        or not isinstance(value.get("frequency_column", ""), str)
-    ):
+    is_name = isinstance(value.get("frequency_column", ""), str)
+    if not is_number(length) or length <= 0 or not is_name:
         raise UsageError(expected)
     return OutputAverage(**value)
 
@@ -178,14 +174,11 @@ def read_mapping(file: Path, data: list[Path]) -> Plan:
 
 
 def with_low_pass(plan: Plan, low_pass_Hz: Any, where: str) -> Plan:
-    """A scoring file's cut-off; it may be lowered where a test's rate is low, like the default."""
-    from quiesce.damper.data.condition import LOW_PASS_Hz
-
+    """A scoring file's cut-off; the usual one is lowered where a test was sampled slowly."""
     if low_pass_Hz is None or plan.settings.low_pass_Hz is not None:
         return plan
-    value = checked_number(
-        {"displacement_low_pass_Hz": low_pass_Hz}, "displacement_low_pass_Hz", where
-    )
+    key = "displacement_low_pass_Hz"
+    value = checked_number({key: low_pass_Hz}, key, where)
     if value == LOW_PASS_Hz:
         return plan
     return replace(plan, settings=replace(plan.settings, low_pass_Hz=value))

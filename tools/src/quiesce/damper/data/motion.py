@@ -1,53 +1,77 @@
-"""Displacement, velocity and acceleration from what was measured; zero phase throughout."""
+"""Displacement, velocity and acceleration from what was measured; zero phase throughout.
+
+Filters are solved for over the whole record, not run along it, so that the ends are free: inside,
+the gain is that of a Butterworth filter run forth and back, 1 / (1 + (f / f_corner)^(2 order)); at
+the ends no continuation of the record is assumed, and polynomials below the order pass unchanged.
+"""
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
-from scipy.signal import butter, sosfilt, sosfilt_zi
-
-from quiesce.resample import extend_odd
+from scipy.linalg import solveh_banded
+from scipy.signal import butter, sosfiltfilt
 
 ORDER = 4
-# Samples beyond each end, in periods of the cut-off: the filter has forgotten its start by then.
-_LEAD_PERIODS = 4.0
-# The edge's parabola is fitted over this many periods of the cut-off, and at least these rows.
-_EDGE_PERIODS = 1.0
-_EDGE_ROWS = 6
+# The equations are well conditioned up to this many samples a period of the corner; above it, they
+# are solved on fewer samples, after a filter whose own corner is far above.
+_MOST_A_PERIOD = 50.0
+_SOLVED_A_PERIOD = 25.0
+_AHEAD_OF_CORNER = 8.0
+# Slow drift is found from means over this part of the corner's period.
+_MEANS_A_PERIOD = 20.0
 
 
-def continued(values: np.ndarray, count: int, edge_rows: int) -> np.ndarray:
-    """`count` samples more at each end: the parabola through the first `edge_rows` samples goes
-    on, and what is left over it is mirrored oddly. Slope and curvature have no step."""
-    count = min(count, len(values) - 1)
-    head = _before(values, count, edge_rows)
-    tail = _before(values[::-1], count, edge_rows)[::-1]
-    return np.concatenate([head, values, tail])
+def free_end_filter(values: np.ndarray, corner: float, order: int) -> np.ndarray:
+    """Low-pass of `values`; `corner` in cycles a sample, below 0.5.
+
+    Minimises |S (y - x)|^2 + weight |D y|^2 over y, with S and D the sums and the differences of
+    `order` + 1 neighbours: the bilinear Butterworth response squared.
+    """
+    order = min(order, len(values) - 1)
+    weight = np.tan(np.pi * corner) ** (-2 * order)
+    sums = _squared(_weights(order, 1.0), len(values))
+    differences = _squared(_weights(order, -1.0), len(values))
+    return solveh_banded(sums + weight * differences, _times(sums, values), lower=True)
 
 
-def _before(values: np.ndarray, count: int, edge_rows: int) -> np.ndarray:
-    rows = min(max(edge_rows, _EDGE_ROWS), len(values))
-    # Scaled to 1 over the edge, for a fit that is well conditioned at any length.
-    inner = np.arange(rows) / rows
-    parabola = np.polynomial.polynomial.polyfit(inner, values[:rows], 2)
-    ahead = np.arange(1, count + 1) / rows
-    trend = np.polynomial.polynomial.polyval
-    mirrored = trend(-ahead, parabola) - (values[1 : count + 1] - trend(ahead, parabola))
-    return mirrored[::-1]
+def _weights(order: int, sign: float) -> np.ndarray:
+    """Coefficients of (1 + sign z)^order."""
+    out = np.ones(1)
+    for _ in range(order):
+        out = np.convolve(out, [1.0, sign])
+    return out
 
 
-def _both_ways(sos: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Each pass starts settled at the value that it meets first."""
-    for _ in range(2):
-        values = sosfilt(sos, values, zi=sosfilt_zi(sos) * values[0])[0][::-1]
-    return values
+def _squared(weights: np.ndarray, count: int) -> np.ndarray:
+    """W'W in lower banded form, W with `weights` in each of its rows."""
+    width = len(weights)
+    rows = count - width + 1
+    bands = np.zeros((width, count))
+    for i in range(width):
+        for j in range(i, width):
+            bands[j - i, i : i + rows] += weights[i] * weights[j]
+    return bands
+
+
+def _times(bands: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """A symmetric matrix in lower banded form times a vector."""
+    out = bands[0] * values
+    for k in range(1, len(bands)):
+        out[k:] += bands[k, :-k] * values[:-k]
+        out[:-k] += bands[k, :-k] * values[k:]
+    return out
 
 
 def low_passed(values: np.ndarray, rate_Hz: float, corner_Hz: float) -> np.ndarray:
-    """Butterworth of 4th order run forth and back: -6 dB at the corner, no delay."""
-    period = rate_Hz / corner_Hz
-    count = min(int(np.ceil(_LEAD_PERIODS * period)) + 8, len(values) - 1)
-    longer = continued(values, count, int(np.ceil(_EDGE_PERIODS * period)))
-    sos = butter(ORDER, corner_Hz, fs=rate_Hz, output="sos")
-    return _both_ways(sos, longer)[count : count + len(values)]
+    """Butterworth of 4th order forth and back: half the amplitude at the corner, no delay."""
+    if rate_Hz <= _MOST_A_PERIOD * corner_Hz:
+        return free_end_filter(values, corner_Hz / rate_Hz, ORDER)
+    step = int(rate_Hz / (_SOLVED_A_PERIOD * corner_Hz))
+    sos = butter(ORDER, _AHEAD_OF_CORNER * corner_Hz, fs=rate_Hz, output="sos")
+    pad = min(len(values) - 1, int(4.0 * rate_Hz / (_AHEAD_OF_CORNER * corner_Hz)))
+    smooth = sosfiltfilt(sos, values, padlen=pad)
+    index = np.arange(len(values))
+    few = free_end_filter(smooth[::step], corner_Hz * step / rate_Hz, ORDER)
+    return make_interp_spline(index[::step], few, k=5)(index)
 
 
 def derivatives(values: np.ndarray, rate_Hz: float) -> tuple[np.ndarray, np.ndarray]:
@@ -58,13 +82,18 @@ def derivatives(values: np.ndarray, rate_Hz: float) -> tuple[np.ndarray, np.ndar
 
 
 def integrated(velocity_m_s: np.ndarray, rate_Hz: float, corner_Hz: float) -> np.ndarray:
-    """Displacement from velocity: its spline's integral, slow drift below `corner_Hz` taken out
-    (Butterworth high-pass of 2nd order run forth and back)."""
+    """Displacement from velocity: the integral of its cubic spline, less what is slower than
+    `corner_Hz` (2nd order, forth and back)."""
     time_s = np.arange(len(velocity_m_s)) / rate_Hz
-    velocity_m_s = velocity_m_s - velocity_m_s.mean()
     disp_m = make_interp_spline(time_s, velocity_m_s, k=3).antiderivative()(time_s)
     disp_m = disp_m - np.polynomial.Polynomial.fit(time_s, disp_m, 1)(time_s)
-    count = len(disp_m) - 1
-    longer = extend_odd(disp_m, count)
-    sos = butter(2, corner_Hz, btype="highpass", fs=rate_Hz, output="sos")
-    return _both_ways(sos, longer)[count : count + len(disp_m)]
+    return disp_m - slow_part(disp_m, rate_Hz, corner_Hz)
+
+
+def slow_part(values: np.ndarray, rate_Hz: float, corner_Hz: float) -> np.ndarray:
+    size = max(1, int(rate_Hz / (_MEANS_A_PERIOD * corner_Hz)))
+    count = len(values) // size
+    means = values[: count * size].reshape(count, size).mean(axis=1)
+    middles = (np.arange(count) + 0.5) * size - 0.5
+    slow = free_end_filter(means, corner_Hz * size / rate_Hz, 2)
+    return make_interp_spline(middles, slow, k=3)(np.arange(len(values)))

@@ -6,14 +6,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from quiesce.damper.data.columns import NONE, ROLES, parse_spec
 from quiesce.damper.data.condition import condition_all
-from quiesce.damper.data.mapping import Plan, plan_of_mapping, read_mapping
-from quiesce.damper.data.read import OutputAverage, RawTest, read_file
+from quiesce.damper.data.mapping import Plan, plan_of_mapping, read_mapping, with_low_pass
+from quiesce.damper.data.read import Columns, OutputAverage, RawTest, read_file
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Split, part_from_text
 from quiesce.errors import UsageError
 from quiesce.paths import shown
+
+
+_SETTING_FLAGS = ("keep_offset", "use_velocity", "accept_values")
 
 
 @dataclass(frozen=True)
@@ -102,41 +107,37 @@ def add_condition_options(group: argparse._ArgumentGroup) -> None:
 def plan_of(args: argparse.Namespace, files: list[Path]) -> Plan:
     """The mapping file's plan with the command line on top."""
     plan = read_mapping(args.columns, files) if args.columns else Plan()
-    given = dict(plan.columns.given)
+    stated = {
+        "low_pass_Hz": args.low_pass_hz,
+        "drift_Hz": args.drift_hz,
+        "work_rate_Hz": args.work_rate_hz,
+        **{name: getattr(args, name) or None for name in _SETTING_FLAGS},
+    }
+    settings = replace(plan.settings, **given_only(stated))
+    columns = columns_of(args, plan.columns)
+    columns = replace(columns, may_be_uneven=settings.work_rate_Hz is not None)
+    settings = replace(settings, flipped=columns.flip_force)
+    return Plan(columns, settings, split_of(args, plan.split))
+
+
+def columns_of(args: argparse.Namespace, from_file: Columns) -> Columns:
+    given = dict(from_file.given)
     for role in ROLES:
         if text := getattr(args, f"column_{role}"):
             given[role] = None if text == NONE else parse_spec(role, text)
-    columns = replace(plan.columns, given=given)
-    if args.rate_hz is not None:
-        columns = replace(columns, rate_Hz=args.rate_hz)
-    if args.flip_force:
-        columns = replace(columns, flip_force=True)
-    if args.group:
-        columns = replace(
-            columns, group=tuple(name for item in args.group for name in item.split(","))
-        )
-    if args.output_average:
-        columns = replace(columns, average=average_from_text(args.output_average))
-    if args.skip_lines is not None:
-        columns = replace(columns, skip_lines=args.skip_lines)
-    settings = plan.settings
-    for name, key in (
-        ("low_pass", "low_pass_Hz"),
-        ("drift", "drift_Hz"),
-        ("work_rate", "work_rate_Hz"),
-    ):
-        if (value := getattr(args, f"{name}_hz")) is not None:
-            settings = replace(settings, **{key: value})
-    for name in ("keep_offset", "use_velocity", "accept_values"):
-        if getattr(args, name):
-            settings = replace(settings, **{name: True})
-    columns = replace(
-        columns,
-        split_gaps=columns.split_gaps or args.split_gaps,
-        may_be_uneven=settings.work_rate_Hz is not None,
-    )
-    settings = replace(settings, flipped=columns.flip_force)
-    return Plan(columns, settings, split_of(args, plan.split))
+    stated = {
+        "rate_Hz": args.rate_hz,
+        "flip_force": args.flip_force or None,
+        "split_gaps": args.split_gaps or None,
+        "skip_lines": args.skip_lines,
+        "group": tuple(name.strip() for item in args.group for name in item.split(",")) or None,
+        "average": average_from_text(args.output_average) if args.output_average else None,
+    }
+    return replace(from_file, given=given, **given_only(stated))
+
+
+def given_only(values: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in values.items() if value is not None}
 
 
 def split_of(args: argparse.Namespace, from_file: Split | None) -> Split | None:
@@ -169,8 +170,6 @@ def records_of(args: argparse.Namespace, files: list[Path] | None = None) -> Con
 
 def records_of_set(table: Mapping[str, Any], folder: Path, low_pass_Hz: float) -> Conditioned:
     """Records of one [[set]] of a scoring file, its data below `folder`."""
-    from quiesce.damper.data.mapping import with_low_pass
-
     where = f"set {table.get('name', '?')}"
     if not isinstance(table.get("file"), str):
         raise UsageError(f"{where}: no file is named")
@@ -203,8 +202,6 @@ def conditioned(files: list[Path], plan: Plan, currents_A: list[float] | None) -
 
 
 def with_current(test: RawTest, current_A: float) -> RawTest:
-    import numpy as np
-
     return replace(test, si={**test.si, "current": np.full(len(test.time_s), current_A)})
 
 
