@@ -192,12 +192,16 @@ def half_span(values: np.ndarray) -> float:
     return float(np.ptp(values)) / 2.0
 
 
+def stiffness_N_m(record: Record) -> float:
+    travel_m = half_span(record.disp_m)
+    return half_span(record.force_N) / travel_m if travel_m > 0.0 else 0.0
+
+
 # From finger-sized dampers and squeeze-mode mounts to seismic ones of several MN.
 RANGES = (
-    Range("the sampling rate", "Hz", 5.0, 1e5, lambda r: r.rate_Hz * r.file_rows, "time"),
     Range(
         "the displacement (half its span)", "m", 1e-5, 1.5,
-        lambda r: half_span(r.disp_m), "displacement",
+        lambda r: half_span(r.disp_m), "displacement or velocity",
     ),
     Range(
         "the speed (its largest value)", "m/s", 2e-4, 15.0,
@@ -206,7 +210,7 @@ RANGES = (
     Range("the force (half its span)", "N", 2.0, 5e6, lambda r: half_span(r.force_N), "force"),
     Range(
         "force over displacement (of their half spans)", "N/m", 10.0, 5e7,
-        lambda r: half_span(r.force_N) / half_span(r.disp_m), "force or displacement",
+        stiffness_N_m, "force or displacement",
     ),
     Range(
         "the current (its largest value)", "A", 5e-3, 30.0,
@@ -219,7 +223,22 @@ RANGES = (
 )  # fmt: skip
 
 
-def check_ranges(record: Record) -> None:
+RATE_Hz = (5.0, 1e5)
+RATE_LIMIT_Hz = (0.05, 1e7)
+
+
+def check_rate(where: str, rate_Hz: float, accepted: bool) -> None:
+    least, most = RATE_LIMIT_Hz if accepted else RATE_Hz
+    if least <= rate_Hz <= most:
+        return
+    hint = "" if accepted else f"; {ACCEPT}"
+    raise UsageError(
+        f"{where}: sampled at {rate_Hz:.3g} Hz (expected {least:g} .. {most:g}); is the unit of "
+        f"time right? State it as --time NAME:UNIT{hint}"
+    )
+
+
+def check_ranges(where: str, record: Record) -> None:
     """UsageError for a value that points to a wrong unit."""
     for item in RANGES:
         value = item.measure(record)
@@ -227,7 +246,7 @@ def check_ranges(record: Record) -> None:
             continue
         side = "small" if value < item.least else "large"
         raise UsageError(
-            f"{record.name}: {item.what} is implausibly {side}, {value:.3g} {item.unit} (expected "
+            f"{where}: {item.what} is implausibly {side}, {value:.3g} {item.unit} (expected "
             f"{item.least:g} .. {item.most:g}); is the unit of {item.columns} right? State it as "
             f"NAME:UNIT; {ACCEPT}"
         )
@@ -249,10 +268,10 @@ def motion_agreement(velocity_m_s: np.ndarray, derivative_m_s: np.ndarray) -> tu
     across = float(velocity_m_s @ derivative_m_s)
     power = float(derivative_m_s @ derivative_m_s)
     both = np.sqrt(power * float(velocity_m_s @ velocity_m_s))
-    return (across / power, across / both) if both > 0.0 else (0.0, 0.0)
+    return (across / power, across / both) if min(both, power) > 0.0 else (0.0, 0.0)
 
 
-def check_velocity(name: str, gain: float, correlation: float, used: bool) -> None:
+def check_velocity(where: str, gain: float, correlation: float, used: bool) -> None:
     """A measured velocity that is dx/dt but for a power of ten, or for its sign where it is used,
     has a wrong unit or sign."""
     if abs(correlation) < 0.8:
@@ -260,13 +279,13 @@ def check_velocity(name: str, gain: float, correlation: float, used: bool) -> No
     power = round(float(np.log10(abs(gain))))
     if power != 0 and abs(abs(gain) / 10.0**power - 1.0) < 0.2:
         raise UsageError(
-            f"{name}: the measured velocity is {gain:.3g} times dx/dt; one unit of displacement, "
+            f"{where}: the measured velocity is {gain:.3g} times dx/dt; one unit of displacement, "
             "velocity or time is wrong by a power of ten: state it as NAME:UNIT, or leave the "
             "velocity out with --velocity none"
         )
     if used and gain < 0.0:
         raise UsageError(
-            f"{name}: the measured velocity has the opposite sign of dx/dt; leave out "
+            f"{where}: the measured velocity has the opposite sign of dx/dt; leave out "
             "--use-velocity, or turn it with --velocity NAME:-1*UNIT"
         )
 
@@ -276,7 +295,7 @@ OPPOSITE = -0.05
 HARDLY = 0.05
 
 
-def check_energy(record: Record, flipped: bool) -> str | None:
+def check_energy(where: str, record: Record, flipped: bool) -> str | None:
     """UsageError where the force gives energy to the motion; a note where it hardly takes any."""
     force_N = record.force_N - record.force_N.mean()
     velocity_m_s = record.velocity_m_s - record.velocity_m_s.mean()
@@ -286,7 +305,7 @@ def check_energy(record: Record, flipped: bool) -> str | None:
     if correlation < OPPOSITE:
         hint = "leave out --flip-force" if flipped else "--flip-force turns the force"
         raise UsageError(
-            f"{record.name}: the force gives {-energy_J:.3g} J to the motion over the test where a "
+            f"{where}: the force gives {-energy_J:.3g} J to the motion over the test where a "
             f"damper absorbs energy (correlation with velocity {correlation:.2f}); it has the "
             f"opposite sign: {hint}"
         )

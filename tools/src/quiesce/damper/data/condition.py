@@ -8,8 +8,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from quiesce.damper.data.check import (
+    MIN_ROWS,
     check_energy,
     check_ranges,
+    check_rate,
     check_velocity,
     motion_agreement,
     stuck_note,
@@ -53,8 +55,9 @@ class Motion:
 def condition(raw: RawTest, settings: Settings, notes: list[str]) -> Record:
     """One record; `notes` gets what was done in plain sentences. UsageError where units or sign
     are wrong or a setting does not fit the test."""
+    check_rate(raw.where, 1.0 / raw.period_s, settings.accept_values)
     raw, rate_Hz = evened(raw, settings, notes)
-    corner_Hz = low_pass_corner(raw.name, rate_Hz, settings, notes)
+    corner_Hz = low_pass_corner(raw, rate_Hz, settings, notes)
     motion = motion_of(raw, rate_Hz, corner_Hz, settings, notes)
     step = decimation(raw, rate_Hz, corner_Hz, settings, notes)
     picked = slice(None, None, step)
@@ -74,15 +77,15 @@ def condition(raw: RawTest, settings: Settings, notes: list[str]) -> Record:
         average_samples=odd_samples(raw.average_s * rate_Hz / step, notes),
         file_rows=step / (rate_Hz * raw.period_s),
     )
-    judge(record, settings, notes)
+    judge(raw.where, record, settings, notes)
     notes.append("force as in the file, not filtered")
     return record
 
 
-def judge(record: Record, settings: Settings, notes: list[str]) -> None:
+def judge(where: str, record: Record, settings: Settings, notes: list[str]) -> None:
     if not settings.accept_values:
-        check_ranges(record)
-    found = (check_energy(record, settings.flipped), stuck_note(record))
+        check_ranges(where, record)
+    found = (check_energy(where, record, settings.flipped), stuck_note(record))
     notes += [note for note in found if note]
 
 
@@ -106,18 +109,27 @@ def evened(raw: RawTest, settings: Settings, notes: list[str]) -> tuple[RawTest,
     rate_Hz = settings.work_rate_Hz
     if rate_Hz is None or rate_Hz * raw.period_s > 2.0:
         raise UsageError(
-            f"{raw.name}: uneven sampling, {1.0 / raw.period_s:.4g} Hz on average; --work-rate-hz "
+            f"{raw.where}: uneven sampling, {1.0 / raw.period_s:.4g} Hz on average; --work-rate-hz "
             "has to state a rate of at most twice that"
         )
     count = int((raw.time_s[-1] - raw.time_s[0]) * rate_Hz * (1.0 + 1e-12)) + 1
+    check_count(raw, count, rate_Hz)
     even_s = raw.time_s[0] + np.arange(count) / rate_Hz
     si = {role: on_grid(role, raw.time_s, values, even_s) for role, values in raw.si.items()}
     notes.append(
         f"uneven time stamps: interpolated onto {rate_Hz:g} Hz, motion by cubic splines, the rest "
         "by straight lines, the command held"
     )
-    even = RawTest(raw.name, raw.line, raw.period_s, 0.0, even_s, si, raw.average_s)
+    even = RawTest(raw.name, raw.where, raw.period_s, 0.0, even_s, si, raw.average_s)
     return even, rate_Hz
+
+
+def check_count(raw: RawTest, rows: int, rate_Hz: float) -> None:
+    if rows < MIN_ROWS:
+        raise UsageError(
+            f"{raw.where}: {rows} rows only at --work-rate-hz {rate_Hz:g}; at least {MIN_ROWS} are "
+            "needed: raise it"
+        )
 
 
 def on_grid(role: str, time_s: np.ndarray, values: np.ndarray, even_s: np.ndarray) -> np.ndarray:
@@ -140,15 +152,16 @@ def decimation(
         step = max(1, round(rate_Hz / settings.work_rate_Hz))
         if settings.work_rate_Hz > 1.05 * rate_Hz:
             raise UsageError(
-                f"{raw.name}: --work-rate-hz {settings.work_rate_Hz:g} is above the "
+                f"{raw.where}: --work-rate-hz {settings.work_rate_Hz:g} is above the "
                 f"{rate_Hz:.6g} Hz of the file; name a lower one"
             )
         if rate_Hz / step < 2.5 * corner_Hz:
             raise UsageError(
-                f"{raw.name}: --work-rate-hz {settings.work_rate_Hz:g} is too low for a motion up "
+                f"{raw.where}: --work-rate-hz {settings.work_rate_Hz:g} is too low for a motion up "
                 f"to {corner_Hz:g} Hz; at least {2.5 * corner_Hz:g}, or lower --low-pass-hz"
             )
     if step > 1:
+        check_count(raw, rows // step, rate_Hz / step)
         notes.append(
             f"every {step}th row kept, {rate_Hz / step:.6g} Hz (the motion is smooth there, the "
             "force is picked, not averaged)"
@@ -173,7 +186,7 @@ def odd_samples(length: float, notes: list[str]) -> int:
 # Motion
 
 
-def low_pass_corner(name: str, rate_Hz: float, settings: Settings, notes: list[str]) -> float:
+def low_pass_corner(raw: RawTest, rate_Hz: float, settings: Settings, notes: list[str]) -> float:
     corner_Hz = settings.low_pass_Hz
     if corner_Hz is None:
         corner_Hz = min(LOW_PASS_Hz, _LOW_PASS_OF_RATE * rate_Hz)
@@ -181,8 +194,13 @@ def low_pass_corner(name: str, rate_Hz: float, settings: Settings, notes: list[s
             notes.append(f"the low-pass is at {corner_Hz:.4g} Hz: sampled at {rate_Hz:.4g} Hz only")
     elif corner_Hz > _LOW_PASS_MOST_OF_RATE * rate_Hz:
         raise UsageError(
-            f"{name}: --low-pass-hz {corner_Hz:g} is too high for sampling at {rate_Hz:.6g} Hz; "
-            f"at most {_LOW_PASS_MOST_OF_RATE * rate_Hz:.4g}"
+            f"{raw.where}: --low-pass-hz {corner_Hz:g} is too high for sampling at "
+            f"{rate_Hz:.6g} Hz; at most {_LOW_PASS_MOST_OF_RATE * rate_Hz:.4g}"
+        )
+    elif corner_Hz < 2.0 * rate_Hz / len(raw.time_s):
+        raise UsageError(
+            f"{raw.where}: --low-pass-hz {corner_Hz:g} leaves no motion in a test of "
+            f"{len(raw.time_s) / rate_Hz:.3g} s; raise it"
         )
     return corner_Hz
 
@@ -199,8 +217,8 @@ def motion_of(
     disp_m = low_passed(disp_m, rate_Hz, corner_Hz)
     velocity_m_s, accel_m_s2 = derivatives(disp_m, rate_Hz)
     notes.append(
-        f"displacement low-passed at {corner_Hz:.4g} Hz, 4th order Butterworth run both ways, ends free; "
-        "velocity and acceleration by a spline of 5th order through it"
+        f"displacement low-passed at {corner_Hz:.4g} Hz, 4th order Butterworth run both ways, ends "
+        "free; velocity and acceleration by a spline of 5th order through it"
     )
     motion = Motion(disp_m, velocity_m_s, accel_m_s2)
     return with_measured_velocity(raw, motion, rate_Hz, corner_Hz, settings, notes)
@@ -213,13 +231,13 @@ def with_measured_velocity(
     if "velocity" not in raw.si:
         if settings.use_velocity:
             raise UsageError(
-                f"{raw.name}: --use-velocity needs a velocity; name its column with --velocity"
+                f"{raw.where}: --use-velocity needs a velocity; name its column with --velocity"
             )
         return motion
     velocity_m_s = raw.si["velocity"]
     gain, correlation = motion_agreement(velocity_m_s, motion.velocity_m_s)
     if not settings.accept_values:
-        check_velocity(raw.name, gain, correlation, settings.use_velocity)
+        check_velocity(raw.where, gain, correlation, settings.use_velocity)
     notes.append(
         f"measured velocity against dx/dt: gain {gain:.2f}, correlation {correlation:.2f}; "
         f"{'used' if settings.use_velocity else 'not used (--use-velocity)'}"
@@ -241,10 +259,10 @@ def motion_from_velocity(
         notes.append("the mean velocity of each test is removed")
     duration_s = len(velocity_m_s) / rate_Hz
     drift_Hz = settings.drift_Hz or max(DRIFT_Hz, 1.0 / duration_s)
-    if drift_Hz >= 0.4 * rate_Hz:
+    if not 0.99 / duration_s <= drift_Hz < 0.1 * rate_Hz:
         raise UsageError(
-            f"{raw.name}: --drift-hz {drift_Hz:g} is too high for sampling at {rate_Hz:.6g} Hz; "
-            f"it should lie well below the motion ({DRIFT_Hz:g} unless stated)"
+            f"{raw.where}: --drift-hz {drift_Hz:g} has to lie above one over the test's duration, "
+            f"{1.0 / duration_s:.3g} Hz, and well below the motion ({DRIFT_Hz:g} unless stated)"
         )
     notes.append(
         "velocity as measured; displacement by integrating it, drift taken out by a high-pass at "

@@ -17,7 +17,6 @@ from quiesce.damper.data.split import Split, part_from_text
 from quiesce.errors import UsageError
 from quiesce.paths import shown
 
-
 _SETTING_FLAGS = ("keep_offset", "use_velocity", "accept_values")
 
 
@@ -44,11 +43,11 @@ def whole_number(text: str) -> int:
     return value
 
 
-def finite(text: str) -> float:
-    value = float(text)
-    if not abs(value) < float("inf"):
+def numbers(text: str) -> list[float]:
+    values = [float(word) for word in text.split(",")]
+    if not all(abs(value) < float("inf") for value in values):
         raise ValueError
-    return value
+    return values
 
 
 def add_data_options(group: argparse._ArgumentGroup) -> None:
@@ -64,7 +63,7 @@ def add_data_options(group: argparse._ArgumentGroup) -> None:
         )  # fmt: skip
     group.add_argument("--rate-hz", type=positive, metavar="Hz", help="rate, without time column")
     group.add_argument(
-        "--current-a", type=finite, nargs="+", metavar="A",
+        "--current-a", type=numbers, metavar="A[,A]",
         help="constant current, one for all files or one a file",
     )  # fmt: skip
     group.add_argument("--flip-force", action="store_true", help="turn the sign of the force")
@@ -191,7 +190,7 @@ def conditioned(files: list[Path], plan: Plan, currents_A: list[float] | None) -
         if len(files) > 1 and current_A is None and not {"current", "command"} & set(raw.columns):
             raise UsageError(
                 f"{shown(file)}: no column of current or voltage; with several files, state the "
-                "current of each: --current-a A [A ...]"
+                "current of each: --current-a A,A,..."
             )
         if current_A is not None:
             raw = replace(raw, tests=[with_current(test, current_A) for test in raw.tests])

@@ -44,7 +44,7 @@ class RawTest:
     """One uninterrupted test as measured; `si` by role, in SI units."""
 
     name: str
-    line: int  # of its first row
+    where: str  # FILE:LINE of its first row and what tells it apart, for messages
     period_s: float
     jitter: float
     time_s: np.ndarray
@@ -120,7 +120,10 @@ def file_notes(table: Table, found: dict[str, Column], how: Columns) -> list[str
     if how.current_A is not None:
         notes.append(f"current stated: {how.current_A:g} A throughout")
     elif "current" not in found and "command" not in found:
-        notes.append("no column of current or voltage: the command is taken as 0 A throughout")
+        notes.append(
+            "no column of current or voltage: the command is taken as 0 A throughout (--current, "
+            "--command or --current-a state it)"
+        )
     if table.separator != ",":
         kind = {"\t": "tabs", ";": "semicolons"}[table.separator]
         notes.append(f"columns separated by {kind}")
@@ -173,7 +176,8 @@ def raw_test(
         if role in values:
             check_constant(table, int(lines[rows][0]), role, found[role].name, values[role])
     return RawTest(
-        name=name, line=int(lines[rows][0]), period_s=piece.period_s, jitter=piece.jitter,
+        where=f"{shown(table.file)}:{lines[rows][0]}{name.removeprefix(shown(table.file))}",
+        name=name, period_s=piece.period_s, jitter=piece.jitter,
         time_s=si["time"][rows], si=values, average_s=average_s,
     )  # fmt: skip
 

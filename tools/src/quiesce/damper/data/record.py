@@ -4,6 +4,10 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+# Largest span of a command that counts as constant: part of its largest value, or A (V).
+NOISE_PART = 0.05
+NOISE_LEAST = 0.02
+
 
 @dataclass(frozen=True)
 class Record:
@@ -31,9 +35,9 @@ class Record:
 
     @property
     def level(self) -> float | None:
-        """The command where it is constant (within 2 % of its largest value or 5 mA), else None."""
+        """The command where it is constant but for noise, else None."""
         spread = float(np.ptp(self.command))
-        limit = max(0.02 * float(np.abs(self.command).max()), 5e-3)
+        limit = max(NOISE_PART * float(np.abs(self.command).max()), NOISE_LEAST)
         return float(np.median(self.command)) if spread <= limit else None
 
     def rows(self, first: int, end: int) -> "Record":

@@ -13,6 +13,11 @@ FORMS = ("time_s", "part", "rows", "current_A")
 VALIDATION_PART = 0.25
 
 
+def same_within(level: float) -> float:
+    """How far measured commands of one level may lie apart, in A (V)."""
+    return max(0.02 * abs(level), 0.01)
+
+
 @dataclass(frozen=True)
 class Segment:
     """Rows first .. end - 1 of a record are scored; a model runs from the record's row 0 on."""
@@ -46,7 +51,7 @@ class Part:
     def has_level(self, record: Record) -> bool:
         level = record.level
         return level is not None and any(
-            abs(level - value) <= max(0.02 * abs(value), 5e-3) for value in self.values
+            abs(level - value) <= same_within(value) for value in self.values
         )
 
     def range_of(self, record: Record) -> tuple[int, int]:
@@ -148,11 +153,11 @@ Fold = tuple[list[Segment], list[Segment]]
 def levels_of(segments: Sequence[Segment]) -> list[float]:
     """The distinct constant commands, rising; tests with a switched command have none."""
     found = sorted(level for segment in segments if (level := segment.record.level) is not None)
-    return [level for i, level in enumerate(found) if i == 0 or level - found[i - 1] > _same(level)]
-
-
-def _same(level: float) -> float:
-    return max(0.02 * abs(level), 5e-3)
+    return [
+        level
+        for i, level in enumerate(found)
+        if i == 0 or level - found[i - 1] > same_within(level)
+    ]
 
 
 def inner_split(segments: Sequence[Segment], ends: bool = False) -> list[Fold]:

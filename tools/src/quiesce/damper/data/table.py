@@ -4,7 +4,6 @@ Errors name the file's line (1-based), say what is there and what to do.
 """
 
 import csv
-import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,6 +15,8 @@ from quiesce.errors import UsageError, one_line
 from quiesce.paths import shown
 
 MAX_BYTES = 400_000_000
+# Beyond any measured value, in any unit.
+MAX_VALUE = 1e18
 SEPARATORS = {"\t": "tabs", ";": "semicolons", ",": "commas"}
 _KINDS = {
     b"\x89PNG": "a PNG image",
@@ -130,8 +131,12 @@ class Table:
                 "points in one file; export it with one of them and without thousands marks",
             )  # fmt: skip
         value = float(text.replace(",", ".").replace("d", "e").replace("D", "e"))
-        if not math.isfinite(value):
-            raise self.not_a_number(line, name, text)
+        if abs(value) > MAX_VALUE:
+            raise at(
+                self.file,
+                line,
+                f"column '{clipped(name)}': {clipped(text)} is no measured value; drop this line",
+            )
         return value
 
     def not_a_number(self, line: int, name: str, text: str) -> UsageError:
