@@ -106,6 +106,19 @@ std::int64_t TomlTable::integer(const std::string &key, std::int64_t min, std::i
     return find(key) == nullptr ? fallback : integer(key, min, max);
 }
 
+std::vector<double> TomlTable::coefficients(const std::string &key, std::size_t most,
+                                            const Range &range) {
+    if (!has(key) || !table_->get(key)->is_array()) {
+        return {number(key, range)};
+    }
+    const std::vector<double> values = numbers(key, 0);
+    if (values.size() > most) {
+        fail(key, "expected a number or at most " + std::to_string(most) + " coefficients, found " +
+                      std::to_string(values.size()));
+    }
+    return values;
+}
+
 bool TomlTable::boolean(const std::string &key, bool fallback) {
     const toml::node *node = find(key);
     if (node != nullptr && !node->is_boolean()) {

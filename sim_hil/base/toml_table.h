@@ -34,6 +34,8 @@ class TomlTable {
     std::int64_t integer(const std::string &key, std::int64_t min, std::int64_t max);
     std::int64_t integer(const std::string &key, std::int64_t min, std::int64_t max,
                          std::int64_t fallback);
+    /// One number, or an array of 1 .. most numbers.
+    std::vector<double> coefficients(const std::string &key, std::size_t most, const Range &range);
     bool boolean(const std::string &key, bool fallback);
     std::string text(const std::string &key);
     std::string choice(const std::string &key, const std::vector<std::string> &choices);
@@ -47,6 +49,9 @@ class TomlTable {
     std::optional<TomlTable> optional_table(const std::string &key);
     /// [[key]]; empty when there is none.
     std::vector<TomlTable> tables(const std::string &key);
+
+    /// Lets a key stand that this program does not read.
+    void accept(const std::string &key) { asked_.insert(key); }
 
     /// Throws for the first key that none of the above was asked for. Call it last.
     void reject_unknown_keys() const;

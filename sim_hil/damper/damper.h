@@ -11,6 +11,9 @@ struct DamperInput {
     double velocity_m_s; ///< of the moving end; > 0 opens the gap (extends the damper)
     double position_m;   ///< of the moving end from its rest position, same direction
     double current_A;    ///< coil current, >= 0
+    /// Of the moving end. Only for models that ask for it (uses_accel).
+    double accel_m_s2 = 0.0;
+    double temperature_C = 25.0; ///< of the fluid
 };
 
 /// Implementations are immutable: what a model remembers (hysteresis, a magnetic lag) is a state
@@ -32,6 +35,12 @@ class Damper {
 
     /// The same for d force / d position (N/m).
     virtual double stiffest_N_m(double /*current_A*/) const { return 0.0; }
+
+    /// Bound of |d rate / d state| (1/s) with this current, at the largest speed expected.
+    virtual double fastest_rate_1_s(double /*current_A*/) const { return 0.0; }
+
+    /// The force depends on the acceleration (on its sign): accel_estimate.h where there is none.
+    virtual bool uses_accel() const { return false; }
 
     /// Positions at or below this are outside the model (plates that touch).
     virtual double lowest_position_m() const = 0;

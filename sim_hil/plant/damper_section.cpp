@@ -1,5 +1,11 @@
 #include "damper_section.h"
 
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "accel_estimate.h"
+#include "kernel_models.h"
 #include "squeeze_biviscosity.h"
 #include "switched_stiffness.h"
 #include "viscous.h"
@@ -45,9 +51,10 @@ std::shared_ptr<const Damper> read_switched_stiffness(TomlTable &section) {
     return std::make_shared<SwitchedStiffness>(params);
 }
 
+/// A model that is not a kernel.
 struct Model {
     const char *name;
-    std::shared_ptr<const Damper> (*read)(TomlTable &section);
+    std::shared_ptr<const Damper> (*read)(TomlTable &keys);
 };
 
 const Model kModels[] = {
@@ -56,22 +63,103 @@ const Model kModels[] = {
     {"viscous", read_viscous},
 };
 
-} // namespace
-
-std::shared_ptr<const Damper> read_damper(TomlTable section) {
+std::vector<std::string> model_names() {
     std::vector<std::string> names;
     for (const Model &model : kModels) {
         names.emplace_back(model.name);
     }
-    const std::string chosen = section.choice("model", names);
-    std::shared_ptr<const Damper> damper;
-    for (const Model &model : kModels) {
+    for (const KernelModel &model : kernel_models()) {
+        names.emplace_back(model.name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+CurrentLaw read_law(TomlTable &keys, const ParameterInfo &info) {
+    const std::vector<double> values =
+        keys.coefficients(info.name, 3, {info.min, info.max, info.unit});
+    CurrentLaw law{};
+    std::copy(values.begin(), values.end(), law.begin());
+    return law;
+}
+
+std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &section) {
+    const double stroke_m = section.number("stroke_m", {1e-9, 100.0, "m"});
+    const double speed_m_s = section.number("speed_m_s", {1e-9, 1000.0, "m/s"});
+    TomlTable keys = section.table("parameters");
+    std::vector<CurrentLaw> laws;
+    for (std::size_t k = 0; k < model.parameter_count; ++k) {
+        laws.push_back(read_law(keys, model.parameters[k]));
+    }
+    keys.reject_unknown_keys();
+    return model.make(laws.data(), stroke_m, speed_m_s);
+}
+
+std::shared_ptr<const Damper> read_model(TomlTable &section) {
+    const std::string chosen = section.choice("model", model_names());
+    for (const KernelModel &model : kernel_models()) {
         if (chosen == model.name) {
-            damper = model.read(section);
+            return read_kernel(model, section);
         }
     }
-    section.reject_unknown_keys();
+    const Model *model = std::find_if(std::begin(kModels), std::end(kModels),
+                                      [&](const Model &one) { return chosen == one.name; });
+    if (!section.has("parameters")) {
+        return model->read(section);
+    }
+    TomlTable keys = section.table("parameters");
+    std::shared_ptr<const Damper> damper = model->read(keys);
+    keys.reject_unknown_keys();
     return damper;
+}
+
+DamperChoice with_accel_estimate(DamperChoice choice) {
+    if (choice.damper->uses_accel()) {
+        choice.damper = std::make_shared<AccelEstimate>(choice.damper);
+    }
+    return choice;
+}
+
+} // namespace
+
+CoilParams read_coil(TomlTable section) {
+    CoilParams params{};
+    params.rise_s = section.number("rise_s", {0.0, 10.0, "s"});
+    params.fall_s = section.number("fall_s", {0.0, 10.0, "s"}, params.rise_s);
+    params.remanence = section.number("remanence", {0.0, 0.5, "of driver.max_current_A"}, 0.0);
+    section.reject_unknown_keys();
+    return params;
+}
+
+DamperChoice read_damper(TomlTable section, const std::string &plant_file) {
+    DamperChoice choice;
+    if (section.has("file")) {
+        const std::filesystem::path file = section.text("file");
+        choice = load_damper((std::filesystem::path(plant_file).parent_path() / file).string());
+    } else {
+        choice.damper = read_model(section);
+    }
+    section.reject_unknown_keys();
+    return with_accel_estimate(choice);
+}
+
+DamperChoice load_damper(const std::string &file) {
+    const TomlFile toml(file, "quiesce-damper", 1);
+    TomlTable root = toml.root();
+    root.text("schema");
+    root.integer("version", 1, 1);
+    root.text("name");
+    DamperChoice choice;
+    choice.damper = read_model(root);
+    if (std::optional<TomlTable> coil = root.optional_table("coil")) {
+        choice.coil = read_coil(*coil);
+    }
+    // For people and for other readers: where it comes from, where it holds, the rig it was on.
+    for (const char *key : {"source", "rig", "valid", "fit"}) {
+        root.accept(key);
+    }
+    root.reject_unknown_keys();
+    return choice;
 }
 
 } // namespace quiesce

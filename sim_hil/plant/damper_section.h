@@ -1,16 +1,35 @@
-/// The [damper] section of a plant file: one line in damper_section.cpp adds a model.
+/// Dampers in files: the [damper] section of a plant file and damper files (schema quiesce-damper).
+/// A kernel is found by its name (kernel_models.h); one line in damper_section.cpp adds a model of
+/// another kind.
 #ifndef QUIESCE_DAMPER_SECTION_H
 #define QUIESCE_DAMPER_SECTION_H
 
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "coil.h"
 #include "damper.h"
 #include "toml_table.h"
 
 namespace quiesce {
 
-/// Makes the damper that the section describes. Throws InputError naming the key that is wrong.
-std::shared_ptr<const Damper> read_damper(TomlTable section);
+/// A damper and, where its file says so, the lag that was identified with it.
+struct DamperChoice {
+    std::shared_ptr<const Damper> damper;
+    std::optional<CoilParams> coil;
+};
+
+/// The damper that a plant's section describes, either by `model` and its keys or by `file`, a path
+/// from plant_file's folder. Models that ask for the acceleration get an estimate of it. Throws
+/// InputError naming the key that is wrong.
+DamperChoice read_damper(TomlTable section, const std::string &plant_file);
+
+/// The same from a damper file, as it is: without the estimate.
+DamperChoice load_damper(const std::string &file);
+
+/// Lag of coil and driver, and remanence: [coil] of plants and dampers.
+CoilParams read_coil(TomlTable section);
 
 } // namespace quiesce
 

@@ -18,15 +18,6 @@ CurrentDriverParams read_driver(TomlTable section) {
     return params;
 }
 
-CoilParams read_coil(TomlTable section) {
-    CoilParams params{};
-    params.rise_s = section.number("rise_s", {0.0, 10.0, "s"});
-    params.fall_s = section.number("fall_s", {0.0, 10.0, "s"}, params.rise_s);
-    params.remanence = section.number("remanence", {0.0, 0.5, "of driver.max_current_A"}, 0.0);
-    section.reject_unknown_keys();
-    return params;
-}
-
 ShakerParams read_shaker(TomlTable section) {
     ShakerParams params{};
     params.gain_N_V = section.number("gain_N_V", {-1e6, 1e6, "N/V"});
@@ -78,9 +69,10 @@ PlantModel load_plant(const std::string &file) {
     PlantModel model{};
     model.name = root.text("name");
     model.structure = read_structure(root.table("structure"));
-    model.damper = read_damper(root.table("damper"));
+    const DamperChoice damper = read_damper(root.table("damper"), file);
+    model.damper = damper.damper;
     model.driver = read_driver(root.table("driver"));
-    model.coil = read_coil(root.table("coil"));
+    model.coil = damper.coil && !root.has("coil") ? *damper.coil : read_coil(root.table("coil"));
     model.shaker = read_shaker(root.table("shaker"));
     model.sensor = read_sensor(root.table("sensor"));
     model.max_step_s = read_max_step_s(root, model);

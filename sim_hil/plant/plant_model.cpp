@@ -15,7 +15,10 @@ double longest_safe_step_s(const PlantModel &model) {
                                    stiffness_N_m * structure.at_damper.squaredNorm());
     const double rate_1_s =
         omega + structure.damping_1_s.norm() + slope_N_s_m * structure.at_damper.squaredNorm();
-    return 0.9 / rate_1_s;
+    const double state_rate_1_s =
+        std::max(model.damper->fastest_rate_1_s(0.0),
+                 model.damper->fastest_rate_1_s(model.driver.max_current_A));
+    return std::min(0.9 / rate_1_s, 2.0 / std::max(state_rate_1_s, 1e-9));
 }
 
 std::int64_t steps_per_tick(const PlantModel &model, double tick_s) {

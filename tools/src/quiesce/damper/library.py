@@ -157,9 +157,7 @@ def substeps_for(rate_1_s: float, rate_Hz: float) -> int:
     return int(np.clip(np.ceil(rate_1_s / (STEP_RATE * rate_Hz)), 1, MAX_SUBSTEPS))
 
 
-def substeps(
-    one: Model, orders: Sequence[int], rows: np.ndarray, record: Record
-) -> int:
+def substeps(one: Model, orders: Sequence[int], rows: np.ndarray, record: Record) -> int:
     """Integration steps a sample that suit every row at the record's largest speed."""
     if one.states == 0:
         return 1

@@ -1,0 +1,68 @@
+/// A kernel as the damper of a plant: parameters follow the coil current; the rig is left out.
+#ifndef QUIESCE_KERNEL_DAMPER_H
+#define QUIESCE_KERNEL_DAMPER_H
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "damper.h"
+#include "kernel.h"
+
+namespace quiesce {
+
+/// Coefficients of one parameter against the current, ascending.
+using CurrentLaw = std::array<double, 3>;
+
+template <class Kernel>
+class KernelDamper final : public Damper {
+  public:
+    /// laws: Kernel::kParameters.size() of them. stroke_m: the model ends at -stroke_m; speed_m_s:
+    /// the largest that is expected.
+    KernelDamper(const CurrentLaw *laws, double stroke_m, double speed_m_s)
+        : stroke_m_(stroke_m), speed_m_s_(speed_m_s) {
+        std::copy(laws, laws + kCount, laws_.begin());
+    }
+
+    std::size_t state_count() const override { return Kernel::kStates; }
+    bool uses_accel() const override { return Kernel::kUsesAccel; }
+
+    double force_N(const DamperInput &input, const double *state, double *rates) const override {
+        const Parameters p = parameters(input.current_A);
+        const Motion<double> motion{input.position_m, input.velocity_m_s, input.accel_m_s2,
+                                    input.current_A};
+        return Kernel::force_N(p.data(), motion, state, rates);
+    }
+    double stiffest_N_s_m(double current_A) const override {
+        return Kernel::stiffest_N_s_m(parameters(current_A).data());
+    }
+    double stiffest_N_m(double current_A) const override {
+        return Kernel::stiffest_N_m(parameters(current_A).data());
+    }
+    double fastest_rate_1_s(double current_A) const override {
+        return Kernel::fastest_rate_1_s(parameters(current_A).data(), speed_m_s_);
+    }
+    double lowest_position_m() const override { return -stroke_m_; }
+
+  private:
+    static constexpr std::size_t kCount = Kernel::kParameters.size();
+    using Parameters = std::array<double, kCount>;
+
+    Parameters parameters(double current_A) const {
+        Parameters p{};
+        for (std::size_t k = 0; k < kCount; ++k) {
+            const CurrentLaw &c = laws_[k];
+            const ParameterInfo &info = Kernel::kParameters[k];
+            p[k] = std::clamp(c[0] + current_A * (c[1] + current_A * c[2]), info.min, info.max);
+        }
+        return p;
+    }
+
+    std::array<CurrentLaw, kCount> laws_;
+    double stroke_m_;
+    double speed_m_s_;
+};
+
+} // namespace quiesce
+
+#endif

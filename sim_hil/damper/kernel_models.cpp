@@ -1,0 +1,35 @@
+#include "kernel_models.h"
+
+#include "kernels.h"
+
+namespace quiesce {
+
+namespace {
+
+template <class Kernel>
+KernelModel describe() {
+    return {Kernel::kName,
+            Kernel::kTitle,
+            Kernel::kSource,
+            Kernel::kParameters.data(),
+            Kernel::kParameters.size(),
+            Kernel::kStates,
+            Kernel::kUsesAccel,
+            Kernel::fastest_rate_1_s,
+            Kernel::is_passive,
+            [](const CurrentLaw *laws, double stroke_m,
+               double speed_m_s) -> std::shared_ptr<const Damper> {
+                return std::make_shared<KernelDamper<Kernel>>(laws, stroke_m, speed_m_s);
+            }};
+}
+
+} // namespace
+
+const std::vector<KernelModel> &kernel_models() {
+#define QUIESCE_DESCRIBE(Kernel) describe<Kernel>(),
+    static const std::vector<KernelModel> models{QUIESCE_KERNELS(QUIESCE_DESCRIBE)};
+#undef QUIESCE_DESCRIBE
+    return models;
+}
+
+} // namespace quiesce
