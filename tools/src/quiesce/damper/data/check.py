@@ -132,7 +132,7 @@ def time_goes_back(
     row = int(back[0])
     text = f"time goes back from {time_s[row - 1]:.6g} to {time_s[row]:.6g} s"
     edges = spans(back, len(time_s))
-    if any(end - first < MIN_ROWS for first, end in edges):
+    if not all(starts_again(time_s, *pair) for pair in zip(edges, edges[1:], strict=False)):
         return at(table.file, int(lines[row]), f"{text}; sort the rows by time")
     columns = constant_within(table, set(lines.tolist()), edges)
     hint = f"--group {','.join(columns)}" if columns else "--split-gaps"
@@ -141,6 +141,14 @@ def time_goes_back(
         f"{text}: this looks like {len(edges)} tests one after the other; "
         f"{hint} makes a record of each",
     )  # fmt: skip
+
+
+def starts_again(time_s: np.ndarray, one: tuple[int, int], other: tuple[int, int]) -> bool:
+    """Both are long enough for a test, and time falls back by most of the first one's duration."""
+    if min(one[1] - one[0], other[1] - other[0]) < MIN_ROWS:
+        return False
+    last_s = time_s[one[1] - 1]
+    return bool(last_s - time_s[other[0]] > 0.5 * (last_s - time_s[one[0]]))
 
 
 def constant_within(table: Table, lines: set[int], edges: list[tuple[int, int]]) -> list[str]:

@@ -163,7 +163,7 @@ def decimation(
     if step > 1:
         check_count(raw, rows // step, rate_Hz / step)
         notes.append(
-            f"every {step}th row kept, {rate_Hz / step:.6g} Hz (the motion is smooth there, the "
+            f"one row in {step} kept, {rate_Hz / step:.6g} Hz (the motion is smooth there, the "
             "force is picked, not averaged)"
         )
     return step

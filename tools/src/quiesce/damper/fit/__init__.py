@@ -1,0 +1,1 @@
+"""Parameters of damper models from measured motion and force."""
