@@ -146,8 +146,10 @@ def values_at(one: Model, orders: Sequence[int], row: np.ndarray, current_A: flo
     out = np.empty(len(one.parameters))
     first = 0
     for k, order in enumerate(orders):
-        value = float(np.polynomial.polynomial.polyval(current_A, row[first : first + order]))
-        out[k] = np.clip(value, one.parameters[k].min, one.parameters[k].max)
+        value = 0.0
+        for coefficient in row[first : first + order][::-1]:
+            value = value * current_A + coefficient
+        out[k] = min(max(value, one.parameters[k].min), one.parameters[k].max)
         first += order
     return out
 
@@ -157,18 +159,24 @@ def substeps_for(rate_1_s: float, rate_Hz: float) -> int:
     return int(np.clip(np.ceil(rate_1_s / (STEP_RATE * rate_Hz)), 1, MAX_SUBSTEPS))
 
 
-def substeps(one: Model, orders: Sequence[int], rows: np.ndarray, record: Record) -> int:
-    """Integration steps a sample that suit every row at the record's largest speed."""
-    if one.states == 0:
-        return 1
+def fastest_rates(
+    one: Model, orders: Sequence[int], rows: np.ndarray, record: Record
+) -> np.ndarray:
+    """Fastest rate of each row's states (1/s) at the record's largest speed and its least and
+    largest command: [rows]."""
     speed_m_s = float(np.max(np.abs(record.velocity_m_s)))
     currents_A = np.unique([record.command.min(), record.command.max()])
-    rate = max(
-        module().fastest_rate_1_s(one.name, values_at(one, orders, row, current_A), speed_m_s)
-        for row in np.atleast_2d(rows)
-        for current_A in currents_A
+    return np.array(
+        [
+            max(
+                module().fastest_rate_1_s(
+                    one.name, values_at(one, orders, row, current_A), speed_m_s
+                )
+                for current_A in currents_A
+            )
+            for row in np.atleast_2d(rows)
+        ]
     )
-    return substeps_for(rate, record.rate_Hz)
 
 
 def simulate(

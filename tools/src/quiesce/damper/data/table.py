@@ -106,17 +106,20 @@ class Table:
     def numbers(self, names: list[str]) -> tuple[np.ndarray, np.ndarray]:
         """Lines [n] and values [n, columns] of the named columns; finite numbers only."""
         indices = [self.index(name) for name in names]
+        rows = [(line, [cells[i] for i in indices]) for line, cells in self.rows()]
+        lines = np.array([line for line, _ in rows], dtype=int)
+        values = plain_numbers([cells for _, cells in rows], len(names))
+        if values is not None:
+            return lines, values
         marks: set[str] = set()
-        lines, values = [], []
-        for line, cells in self.rows():
-            lines.append(line)
-            values.append(
-                [
-                    self.number(line, name, cells[i].strip(), marks)
-                    for name, i in zip(names, indices, strict=True)
-                ]
-            )
-        return np.array(lines, dtype=int), np.array(values, dtype=float).reshape(-1, len(names))
+        checked = [
+            [
+                self.number(line, name, text.strip(), marks)
+                for name, text in zip(names, cells, strict=True)
+            ]
+            for line, cells in rows
+        ]
+        return lines, np.array(checked, dtype=float).reshape(-1, len(names))
 
     def number(self, line: int, name: str, text: str, marks: set[str]) -> float:
         if not _NUMBER.fullmatch(text):
@@ -150,6 +153,17 @@ class Table:
         else:
             what, hint = f"'{clipped(text)}' is not a number", "repair or drop this line"
         return at(self.file, line, f"column '{clipped(name)}': {what}; {hint}")
+
+
+def plain_numbers(rows: list[list[str]], width: int) -> np.ndarray | None:
+    """All cells at once where none needs a closer look, else None: one cell at a time then."""
+    if any("_" in text for cells in rows for text in cells):
+        return None
+    try:
+        values = np.array(rows, dtype=float).reshape(-1, width)
+    except ValueError:
+        return None
+    return values if np.all(np.abs(values) <= MAX_VALUE) else None
 
 
 def open_table(file: Path, skip_lines: int = 0) -> Table:
