@@ -18,6 +18,7 @@ from damper_files import (
     samples,
     text_of,
 )
+from quiesce.damper.data.condition import odd_samples
 from quiesce.damper.data.motion import derivatives, free_end_filter, integrated, low_passed
 from quiesce.damper.data.options import Conditioned, add_data_options, records_of_set
 from quiesce.damper.data.record import Record
@@ -139,6 +140,11 @@ def test_dialects_give_the_same_record(tmp_path: Path, text: str) -> None:
     assert np.array_equal(other.disp_m, plain.disp_m)
 
 
+def test_first_column_behind_a_byte_order_mark_can_be_named(tmp_path: Path) -> None:
+    file = write(tmp_path, "\ufeff" + text_of(samples()))
+    assert len(read(file, "--time", "t_s").records[0]) == ROWS
+
+
 def test_lines_above_the_header_are_passed_over_on_request(tmp_path: Path) -> None:
     file = write(tmp_path, "rig 3\noperator\n" + text_of(samples()))
     assert len(read(file, "--skip-lines", "2").records[0]) == ROWS
@@ -204,6 +210,13 @@ def test_split_gaps_makes_records_and_leaves_short_ones_out(tmp_path: Path) -> N
     assert said(conditioned, "10 rows left out")
 
 
+def test_mapping_file_splits_gaps(tmp_path: Path) -> None:
+    lines = text_of(samples()).splitlines()
+    file = write(tmp_path, "\n".join(lines[:100] + lines[150:]))
+    (tmp_path / "map.toml").write_text("split_gaps = true\n")
+    assert len(read(file, "--columns", str(tmp_path / "map.toml")).records) == 2
+
+
 def test_uneven_samples_are_interpolated_on_request(tmp_path: Path) -> None:
     chance = np.random.default_rng(1)
     time_s = np.sort(np.arange(1200) / 400.0 + chance.uniform(-1.1e-3, 1.1e-3, 1200))
@@ -264,6 +277,15 @@ def test_derivatives_of_a_rounded_sine_are_accurate(rate_Hz: float, freq_Hz: flo
         limit = 1.1 * np.abs(true).max() + noise
         assert np.abs(found[:edge]).max() < limit and np.abs(found[-edge:]).max() < limit
         assert np.abs(found[inner]).max() < limit
+
+
+def test_derivatives_hold_up_to_a_fifth_of_the_sampling_rate() -> None:
+    time_s = np.arange(1000) / 100.0
+    omega = 2.0 * np.pi * 20.0
+    first, second = derivatives(np.sin(omega * time_s), 100.0)
+    inner = slice(100, -100)
+    assert np.abs(first - omega * np.cos(omega * time_s))[inner].max() < 2e-3 * omega
+    assert np.abs(second + omega**2 * np.sin(omega * time_s))[inner].max() < 0.02 * omega**2
 
 
 @pytest.mark.parametrize("rate_Hz", [200.0, 1000.0, 8000.0])
@@ -408,6 +430,11 @@ def test_average_is_that_of_the_neighbours() -> None:
     assert record.averaged(np.array([0.0, 3.0, 6.0, 3.0, 0.0])) == pytest.approx(
         [1.5, 3.0, 4.0, 3.0, 1.5]
     )
+
+
+@pytest.mark.parametrize(("length", "samples"), [(0.0, 1), (0.4, 1), (4.9, 5), (5.9, 5), (6.7, 7)])
+def test_average_has_the_nearest_odd_number_of_samples(length: float, samples: int) -> None:
+    assert odd_samples(length, []) == samples
 
 
 def test_options_do_not_clash_with_those_of_a_command() -> None:
