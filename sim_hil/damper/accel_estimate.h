@@ -32,6 +32,12 @@ class AccelEstimate final : public Damper {
     double fastest_rate_1_s(double current_A) const override {
         return std::max(1.0 / kLag_s, model_->fastest_rate_1_s(current_A));
     }
+    void after_step(const DamperInput &input, double *state, double dt_s) const override {
+        DamperInput with_accel = input;
+        with_accel.accel_m_s2 = (input.velocity_m_s - state[model_->state_count()]) / kLag_s;
+        model_->after_step(with_accel, state, dt_s);
+    }
+    bool is_sampled() const override { return model_->is_sampled(); }
     double lowest_position_m() const override { return model_->lowest_position_m(); }
 
   private:

@@ -42,6 +42,15 @@ class Damper {
     /// The force depends on the acceleration (on its sign): accel_estimate.h where there is none.
     virtual bool uses_accel() const { return false; }
 
+    /// For models that sample: called once after each integration step with its length and what the
+    /// damper sees at its end; may change the state, which is_sampled models leave constant in
+    /// between.
+    virtual void after_step(const DamperInput & /*input*/, double * /*state*/,
+                            double /*dt_s*/) const {}
+
+    /// The model runs at a sample time of its own (after_step).
+    virtual bool is_sampled() const { return false; }
+
     /// Positions at or below this are outside the model (plates that touch).
     virtual double lowest_position_m() const = 0;
 };

@@ -53,6 +53,10 @@ PeriodicOrbit::PeriodicOrbit(const PlantModel &model, const OrbitCase &orbit_cas
       step_s_(1.0 / (orbit_case.freq_Hz * static_cast<double>(steps_))),
       half_step_coil_(model.coil, 0.5 * step_s_), rk4_(equations_.state_count()),
       force_N_(2 * steps_ + 1), coil_A_(2 * steps_ + 1) {
+    if (equations_.is_sampled()) {
+        throw InputError("the plant's damper model runs at a sample time of its own, so its motion "
+                         "has no periodic solution; choose a model without delays");
+    }
     ShakerParams shaker = model.shaker;
     shaker.drive_V = orbit_case.drive_V;
     const double amplitude_N = Shaker(shaker).amplitude_N(orbit_case.freq_Hz);

@@ -38,6 +38,7 @@ void damper_over_motion(const Damper &damper, const MotionGrid &motion, double *
                      const auto half = 2 * step + static_cast<std::size_t>(at);
                      damper.force_N(input_at(motion, half), y.data(), out.data());
                  });
+        damper.after_step(input_at(motion, 2 * (step + 1)), state.data(), motion.step_s());
     }
 }
 

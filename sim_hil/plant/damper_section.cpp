@@ -6,6 +6,7 @@
 
 #include "accel_estimate.h"
 #include "kernel_models.h"
+#include "learned_section.h"
 #include "squeeze_biviscosity.h"
 #include "switched_stiffness.h"
 #include "viscous.h"
@@ -58,8 +59,15 @@ struct Model {
 };
 
 const Model kModels[] = {
+    {"anfis", read_anfis},
+    {"feed_forward_network", read_feed_forward_network},
+    {"hysteresis_network", read_hysteresis_network},
+    {"neuro_fuzzy_stf", read_neuro_fuzzy_stf},
+    {"recurrent_network", read_recurrent_network},
     {"squeeze_biviscosity", read_squeeze_biviscosity},
+    {"support_vector", read_support_vector},
     {"switched_stiffness", read_switched_stiffness},
+    {"ts_fuzzy", read_ts_fuzzy},
     {"viscous", read_viscous},
 };
 

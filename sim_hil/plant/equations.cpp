@@ -46,6 +46,13 @@ double Equations::rates(double force_N, double current_A, const std::vector<doub
     return damper_force_N;
 }
 
+void Equations::after_step(double current_A, std::vector<double> &y, double dt_s) const {
+    const auto count = static_cast<std::size_t>(structure_.mode_count());
+    damper_->after_step({dot(structure_.at_damper, y.data() + count),
+                         dot(structure_.at_damper, y.data()), current_A},
+                        y.data() + 2 * count, dt_s);
+}
+
 double Equations::displacement_m(const std::vector<double> &y) const {
     return dot(structure_.at_sensor, y.data());
 }

@@ -28,6 +28,11 @@ class Equations {
     double rates(double force_N, double current_A, const std::vector<double> &y,
                  std::vector<double> &out, double base_accel_m_s2 = 0.0) const;
 
+    /// What the damper does after an integration step of dt_s that ended in y.
+    void after_step(double current_A, std::vector<double> &y, double dt_s) const;
+    /// The damper samples: its force is no function of y that can be integrated at any step.
+    bool is_sampled() const { return damper_->is_sampled(); }
+
     /// At the sensor: relative to the base, and absolute.
     double displacement_m(const std::vector<double> &y) const;
     double accel_m_s2(const std::vector<double> &rates, double base_accel_m_s2 = 0.0) const;

@@ -73,6 +73,7 @@ void Plant::step() {
               });
     coil_A_ = stage[2].coil_A;
     effective_A_ = stage[2].effective_A;
+    equations_.after_step(effective_A_, y_, step_s_);
     ++step_count_;
     // A new segment's force may differ from what the old one ended with.
     const std::size_t segment = excitation_->segment_at(end_s);

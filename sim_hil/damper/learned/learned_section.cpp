@@ -1,0 +1,194 @@
+#include "learned_section.h"
+
+#include <algorithm>
+
+#include "anfis.h"
+#include "hysteresis_network.h"
+#include "learned_keys.h"
+#include "neuro_fuzzy_stf.h"
+#include "sampled_network.h"
+#include "static_network.h"
+#include "support_vector.h"
+#include "ts_fuzzy.h"
+
+namespace quiesce {
+
+namespace {
+
+constexpr int kMostLag = 10000;
+
+GaussianSet read_gaussians(TomlTable &input) {
+    GaussianSet set;
+    set.centres = input.numbers("centres", 0);
+    set.widths = positive_numbers(input, "widths", set.centres.size());
+    return set;
+}
+
+TriangleSet read_triangles(TomlTable keys) {
+    TriangleSet set{};
+    const std::vector<double> centres = keys.numbers("centres", kStfLabels);
+    const std::vector<double> bases = positive_numbers(keys, "bases", kStfLabels);
+    if (!std::is_sorted(centres.begin(), centres.end())) {
+        keys.fail("centres", "expected numbers that rise");
+    }
+    keys.reject_unknown_keys();
+    std::copy(centres.begin(), centres.end(), set.centres.begin());
+    std::copy(bases.begin(), bases.end(), set.bases.begin());
+    return set;
+}
+
+std::array<std::size_t, kStfRules> read_labels(TomlTable &keys) {
+    std::array<std::size_t, kStfRules> out{};
+    const std::vector<double> labels = keys.numbers("rules", kStfRules);
+    for (std::size_t r = 0; r < kStfRules; ++r) {
+        if (!(labels[r] >= 0.0 && labels[r] < static_cast<double>(kStfLabels) &&
+              labels[r] == static_cast<double>(static_cast<int>(labels[r])))) {
+            keys.fail("rules", "expected 25 integers in 0 .. 4, the output's label of each rule");
+        }
+        out[r] = static_cast<std::size_t>(labels[r]);
+    }
+    return out;
+}
+
+std::array<double, kStfLabels> read_five(TomlTable &keys, const char *key) {
+    std::array<double, kStfLabels> out{};
+    const std::vector<double> values = keys.numbers(key, kStfLabels);
+    std::copy(values.begin(), values.end(), out.begin());
+    return out;
+}
+
+FuzzyCluster read_cluster(TomlTable &table, std::size_t inputs) {
+    FuzzyCluster cluster;
+    cluster.centre = table.numbers("centre", inputs);
+    cluster.width = positive_numbers(table, "width", inputs);
+    cluster.gain_N = table.numbers("gain_N", inputs);
+    cluster.offset_N = table.number("offset_N", {-1e12, 1e12, "N"});
+    table.reject_unknown_keys();
+    return cluster;
+}
+
+void refuse_temperature(TomlTable &keys) {
+    if (keys.has("temperature_C")) {
+        keys.fail("temperature_C", "a network with delays has no temperature; drop this table");
+    }
+}
+
+std::shared_ptr<const Damper> read_sampled(TomlTable &keys, bool is_recurrent) {
+    SampledNetworkParams params{};
+    refuse_temperature(keys);
+    params.stroke_m = read_stroke_m(keys);
+    params.sample_time_s = keys.number("sample_time_s", {1e-6, 10.0, "s"});
+    params.force_scale_N = read_force_scale_N(keys);
+    params.lags = rising_integers(keys, "lags", 0, kMostLag);
+    if (is_recurrent) {
+        params.feedback = rising_integers(keys, "feedback", 1, kMostLag);
+    }
+    InputBox box = read_inputs(keys);
+    const std::size_t inputs = params.lags.size() * box.count() + params.feedback.size();
+    Network network = read_network(keys, inputs, 1);
+    return std::make_shared<SampledNetwork>(std::move(box), std::move(params), std::move(network));
+}
+
+} // namespace
+
+std::shared_ptr<const Damper> read_anfis(TomlTable &keys) {
+    const double stroke_m = read_stroke_m(keys);
+    std::vector<GaussianSet> sets;
+    InputBox box =
+        read_inputs(keys, [&sets](TomlTable &input) { sets.push_back(read_gaussians(input)); });
+    std::size_t rules = 1;
+    for (const GaussianSet &set : sets) {
+        rules *= std::min(set.centres.size(), kMostItems);
+        if (rules > kMostItems) {
+            keys.fail("consequents_N", "more than " + std::to_string(kMostItems) + " rules");
+        }
+    }
+    std::vector<double> consequents_N = keys.numbers("consequents_N", rules);
+    return std::make_shared<Anfis>(std::move(box), stroke_m, std::move(sets),
+                                   std::move(consequents_N));
+}
+
+std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys) {
+    const double stroke_m = read_stroke_m(keys);
+    InputBox box = read_inputs(keys);
+    std::vector<FuzzyCluster> clusters;
+    for (TomlTable &table : keys.tables("rule")) {
+        clusters.push_back(read_cluster(table, box.count()));
+    }
+    if (clusters.empty()) {
+        keys.fail("rule", "missing; expected tables [[...rule]] with centre, width, gain_N and "
+                          "offset_N");
+    }
+    return std::make_shared<TsFuzzy>(std::move(box), stroke_m, std::move(clusters));
+}
+
+std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys) {
+    StfParams params{};
+    params.force_scale_N = read_force_scale_N(keys);
+    params.stroke_m = read_stroke_m(keys);
+    params.disp_scale_m = keys.number("disp_scale_m", {1e-9, 100.0, "m"});
+    params.velocity_scale_m_s = keys.number("velocity_scale_m_s", {1e-9, 1000.0, "m/s"});
+    params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
+    params.uses_minimum = keys.choice("conjunction", {"product", "minimum"}) == "minimum";
+    params.disp = read_triangles(keys.table("displacement"));
+    params.velocity = read_triangles(keys.table("velocity"));
+    params.current = read_triangles(keys.table("current"));
+    params.outputs = read_five(keys, "outputs");
+    params.gains = read_five(keys, "gains");
+    params.labels = read_labels(keys);
+    return std::make_shared<NeuroFuzzyStf>(params);
+}
+
+std::shared_ptr<const Damper> read_feed_forward_network(TomlTable &keys) {
+    if (keys.has("lags")) {
+        return read_sampled(keys, false);
+    }
+    const double stroke_m = read_stroke_m(keys);
+    const double force_scale_N = read_force_scale_N(keys);
+    InputBox box = read_inputs(keys);
+    Network network = read_network(keys, box.count(), 1);
+    return std::make_shared<StaticNetwork>(std::move(box), stroke_m, std::move(network),
+                                           force_scale_N);
+}
+
+std::shared_ptr<const Damper> read_recurrent_network(TomlTable &keys) {
+    return read_sampled(keys, true);
+}
+
+std::shared_ptr<const Damper> read_support_vector(TomlTable &keys) {
+    SupportVectorParams params{};
+    const double stroke_m = read_stroke_m(keys);
+    params.force_scale_N = read_force_scale_N(keys);
+    params.gamma = keys.number("gamma", {1e-9, 1e9, "-"});
+    params.intercept = keys.number("intercept", {-1e12, 1e12, "of force_scale_N"});
+    params.coefficients = keys.numbers("coefficients", 0);
+    InputBox box = read_inputs(keys);
+    params.support_vectors =
+        keys.numbers("support_vectors", params.coefficients.size() * box.count());
+    return std::make_shared<SupportVector>(std::move(box), stroke_m, std::move(params));
+}
+
+std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys) {
+    HysteresisNetworkParams params{};
+    params.stroke_m = read_stroke_m(keys);
+    params.speed_m_s = keys.number("speed_m_s", {1e-9, 1000.0, "m/s"});
+    params.force_scale_N = read_force_scale_N(keys);
+    params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
+    params.uses_accel = keys.boolean("uses_accel", false);
+    params.coil_times_s = optional_positive_numbers(keys, "coil_times_s");
+    params.elastic_times_s = optional_positive_numbers(keys, "elastic_times_s");
+    params.chain_count = static_cast<std::size_t>(keys.integer("chain_count", 0, 1000, 0));
+    params.chain_time_s =
+        params.chain_count > 0 ? keys.number("chain_time_s", {1e-6, 10.0, "s"}) : 1.0;
+    params.stop_reaches_m = optional_positive_numbers(keys, "stop_reaches_m");
+    const std::size_t features = feature_count(params);
+    params.means = keys.numbers("feature_means", features);
+    params.scales = positive_numbers(keys, "feature_scales", features);
+    params.clip = keys.number("clip", {0.1, 1000.0, "of feature_scales"});
+    const auto heads = static_cast<std::size_t>(keys.integer("current_order", 0, 4) + 1);
+    params.skip = keys.numbers("skip", heads * features);
+    Network network = read_network(keys, features, heads);
+    return std::make_shared<HysteresisNetwork>(std::move(params), std::move(network));
+}
+
+} // namespace quiesce

@@ -1,0 +1,52 @@
+/// A network over delayed copies of what the damper sees and, where it is recurrent, over its own
+/// earlier forces; it runs at a sample time of its own and holds the force in between.
+///
+///   F[k] = force_scale N(inputs[k - lag] for each lag; F[k - lag] / force_scale for each feedback)
+///
+/// The state is the time since the last sample, whether there was one, the force held, and the
+/// delayed values; it changes in after_step, not by integration.
+#ifndef QUIESCE_SAMPLED_NETWORK_H
+#define QUIESCE_SAMPLED_NETWORK_H
+
+#include <vector>
+
+#include "input_box.h"
+#include "network.h"
+
+namespace quiesce {
+
+struct SampledNetworkParams {
+    double stroke_m;               ///< > 0; the model ends at -stroke_m
+    double sample_time_s;          ///< > 0
+    double force_scale_N;          ///< > 0
+    std::vector<std::size_t> lags; ///< of the inputs, in samples, at least one, rising from >= 0
+    std::vector<std::size_t> feedback; ///< of the force, rising from >= 1; may be empty
+};
+
+class SampledNetwork final : public Damper {
+  public:
+    /// network: lags x inputs + feedback inputs, one output.
+    SampledNetwork(InputBox box, SampledNetworkParams params, Network network);
+
+    std::size_t state_count() const override { return first_force_ + force_count_; }
+    double force_N(const DamperInput &input, const double *state, double *rates) const override;
+    void after_step(const DamperInput &input, double *state, double dt_s) const override;
+    bool is_sampled() const override { return true; }
+    double stiffest_N_s_m(double current_A) const override;
+    double lowest_position_m() const override { return -params_.stroke_m; }
+
+  private:
+    double evaluated_N(const double *state) const;
+    void take_sample(const DamperInput &input, double *state) const;
+
+    InputBox box_;
+    SampledNetworkParams params_;
+    Network network_;
+    std::size_t moment_count_; ///< delayed inputs: the latest sample and those before it
+    std::size_t force_count_;
+    std::size_t first_force_; ///< index of the first delayed force in the state
+};
+
+} // namespace quiesce
+
+#endif
