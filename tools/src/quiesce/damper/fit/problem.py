@@ -70,9 +70,7 @@ class Problem:
     [candidates, variables]. Every record counts the same (`weigh` "test": errors relative to its
     own force) or every sample does ("sample")."""
 
-    def __init__(
-        self, setting: Setting, segments: Sequence[Segment], weigh: str = "test"
-    ) -> None:
+    def __init__(self, setting: Setting, segments: Sequence[Segment], weigh: str = "test") -> None:
         self.setting = setting
         self.segments = list(segments)
         self.scales = Scales.of([segment.record for segment in segments])
@@ -116,7 +114,7 @@ class Problem:
 
     def simulate(self, values: np.ndarray, record: Record, finest: int = 0) -> np.ndarray:
         """Forces in N before any average, [candidates, samples]. Each candidate gets the steps that
-        its own rates ask for, rounded up to a power of two, at most `finest` where that is given."""
+        its own rates ask for, rounded up to a power of two, at most `finest` where given."""
         rows = self.rows(values)
         steps = self._steps(rows, record, finest)
         out = np.empty((len(rows), len(record)))

@@ -56,7 +56,9 @@ def nodes_of(segments: Sequence[Segment], most: int = MAX_ORDER) -> tuple[float,
         commands = np.concatenate([segment.record.command for segment in segments])
         low, high = np.quantile(commands, [0.02, 0.98])
         levels = [float(low), float(high)]
-        middle = np.mean((commands > low + 0.2 * (high - low)) & (commands < high - 0.2 * (high - low)))
+        middle = np.mean(
+            (commands > low + 0.2 * (high - low)) & (commands < high - 0.2 * (high - low))
+        )
         if middle > 0.2:  # the command is not just switched between its ends
             levels.insert(1, float(0.5 * (low + high)))
     count = min(most, len(levels), MAX_ORDER)

@@ -1,0 +1,115 @@
+"""Damper files (schema quiesce-damper): what identification writes and plants read."""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from quiesce.atomic import output_files
+from quiesce.damper.library import RIG, DamperFile, Model, models
+from quiesce.errors import UsageError, one_line
+from quiesce.paths import shown
+
+SCHEMA = "quiesce-damper"
+VERSION = 1
+
+
+@dataclass(frozen=True)
+class DamperModel:
+    """A damper model with its values. parameters: for a kernel coefficients against the current,
+    ascending; for a learned model whatever its own reader wants."""
+
+    name: str
+    model: str
+    stroke_m: float
+    speed_m_s: float
+    parameters: Mapping[str, Any]
+    rig: Mapping[str, float] = field(default_factory=dict)  # values of RIG that are not 0
+    source: Mapping[str, Any] = field(default_factory=dict)
+    valid: Mapping[str, Any] = field(default_factory=dict)
+    fit: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def is_kernel(self) -> bool:
+        return self.model in models()
+
+    def kernel_row(self) -> tuple[Model, list[int], np.ndarray]:
+        """Model, orders and the library's row, rig included."""
+        one = models()[self.model]
+        laws = [np.atleast_1d(np.asarray(self.parameters[p.name], float)) for p in one.parameters]
+        rig = [float(self.rig.get(name, 0.0)) for name in RIG]
+        return one, [len(law) for law in laws], np.concatenate([*laws, rig])
+
+    def to_toml(self) -> str:
+        table: dict[str, Any] = {
+            "schema": SCHEMA,
+            "version": VERSION,
+            "name": self.name,
+            "model": self.model,
+            "stroke_m": self.stroke_m,
+            "speed_m_s": self.speed_m_s,
+            "source": dict(self.source),
+            "valid": dict(self.valid),
+            "parameters": dict(self.parameters),
+        }
+        lags = {key: self.rig[key] for key in ("rise_s", "fall_s") if self.rig.get(key)}
+        if lags:
+            table["coil"] = {"rise_s": 0.0, "fall_s": 0.0} | lags
+        others = {key: self.rig[key] for key in RIG[2:] if self.rig.get(key)}
+        for key, value in (("rig", others), ("fit", dict(self.fit))):
+            if value:
+                table[key] = value
+        return tomli_w.dumps({key: value for key, value in table.items() if value != {}})
+
+
+def from_row(
+    one: Model,
+    orders: Sequence[int],
+    row: np.ndarray,
+    name: str,
+    stroke_m: float,
+    speed_m_s: float,
+    **more: Any,
+) -> DamperModel:
+    """A kernel's row as a damper model; `more`: source, valid, fit."""
+    parameters: dict[str, Any] = {}
+    first = 0
+    for parameter, order in zip(one.parameters, orders, strict=True):
+        values = [float(value) for value in row[first : first + order]]
+        parameters[parameter.name] = values[0] if order == 1 else values
+        first += order
+    rig = {key: float(value) for key, value in zip(RIG, row[first:], strict=True) if value}
+    return DamperModel(name, one.name, stroke_m, speed_m_s, parameters, rig, **more)
+
+
+def write_model(file: Path, damper: DamperModel) -> None:
+    with output_files(file.parent) as staging:
+        (staging / file.name).write_text(damper.to_toml(), encoding="utf-8")
+
+
+def read_model(file: Path) -> DamperModel:
+    """UsageError with file and key where it is wrong; the library checks the parameters."""
+    DamperFile(file)
+    try:
+        table = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise UsageError(f"{shown(file)}: {one_line(error)}") from None
+    rig = {key: float(value) for key, value in table.get("rig", {}).items() if key in RIG}
+    coil = table.get("coil", {})
+    rig |= {key: float(coil[key]) for key in ("rise_s", "fall_s") if key in coil}
+    keys = table.get("parameters", {})
+    return DamperModel(
+        table["name"],
+        table["model"],
+        float(table.get("stroke_m", 0.0)),
+        float(table.get("speed_m_s", 0.0)),
+        keys,
+        rig,
+        table.get("source", {}),
+        table.get("valid", {}),
+        table.get("fit", {}),
+    )
