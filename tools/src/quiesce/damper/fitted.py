@@ -1,0 +1,54 @@
+"""What one model came to: how `identify` hands results to reports, rankings and files."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quiesce.damper import library
+from quiesce.damper.data.record import Record
+from quiesce.damper.fit.intervals import Interval
+from quiesce.damper.model_file import DamperModel
+from quiesce.damper.passivity import Passivity
+from quiesce.damper.score import Score, Simulate
+
+PARAMETRIC = "parametric"
+BLACK_BOX = "black box"
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A model fitted to the training part. Errors are ||F - F_model|| / ||F||."""
+
+    name: str  # of the model; variants of one have different names
+    title: str
+    kind: str  # PARAMETRIC or BLACK_BOX
+    damper: DamperModel
+    parameter_count: int  # numbers that were fitted
+    train: Score
+    validation_error: float  # inside the training part, by a model that had not seen those rows
+    passivity: Passivity
+    seconds: float
+    is_complete: bool  # neither interrupted nor out of time
+    intervals: list[Interval] = field(default_factory=list)  # parametric only
+    test: Score | None = None
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def simulate(self) -> Simulate:
+        return simulator(self.damper)
+
+
+def simulator(damper: DamperModel) -> Simulate:
+    """The force in N of a damper model along a record, with its rig: lag, mass, skew, offset."""
+    if damper.is_kernel:
+        one, orders, row = damper.kernel_row()
+
+        def of_kernel(record: Record) -> np.ndarray:
+            rate = float(library.fastest_rates(one, orders, row, record)[0]) if one.states else 0.0
+            steps = library.substeps_for(rate, record.rate_Hz)
+            return library.simulate(one, orders, row, library.motion(record), steps)[0]
+
+        return of_kernel
+    from quiesce.damper.learned import simulator_of
+
+    return simulator_of(damper)
