@@ -59,15 +59,8 @@ struct Model {
 };
 
 const Model kModels[] = {
-    {"anfis", read_anfis},
-    {"feed_forward_network", read_feed_forward_network},
-    {"hysteresis_network", read_hysteresis_network},
-    {"neuro_fuzzy_stf", read_neuro_fuzzy_stf},
-    {"recurrent_network", read_recurrent_network},
     {"squeeze_biviscosity", read_squeeze_biviscosity},
-    {"support_vector", read_support_vector},
     {"switched_stiffness", read_switched_stiffness},
-    {"ts_fuzzy", read_ts_fuzzy},
     {"viscous", read_viscous},
 };
 
@@ -77,6 +70,9 @@ std::vector<std::string> model_names() {
         names.emplace_back(model.name);
     }
     for (const KernelModel &model : kernel_models()) {
+        names.emplace_back(model.name);
+    }
+    for (const LearnedModel &model : learned_models()) {
         names.emplace_back(model.name);
     }
     std::sort(names.begin(), names.end());
@@ -91,23 +87,49 @@ CurrentLaw read_law(TomlTable &keys, const ParameterInfo &info) {
     return law;
 }
 
+MotionLimits read_limits(TomlTable &section) {
+    return {section.number("stroke_m", {1e-9, 100.0, "m"}),
+            section.number("speed_m_s", {1e-9, 1000.0, "m/s"})};
+}
+
+std::shared_ptr<const Damper> read_learned(const LearnedModel &model, TomlTable &section) {
+    const MotionLimits limits = read_limits(section);
+    TomlTable keys = section.table("parameters");
+    std::shared_ptr<const Damper> damper = model.read(keys, limits);
+    keys.reject_unknown_keys();
+    return damper;
+}
+
 std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &section) {
-    const double stroke_m = section.number("stroke_m", {1e-9, 100.0, "m"});
-    const double speed_m_s = section.number("speed_m_s", {1e-9, 1000.0, "m/s"});
+    const MotionLimits limits = read_limits(section);
     TomlTable keys = section.table("parameters");
     std::vector<CurrentLaw> laws;
     for (std::size_t k = 0; k < model.parameter_count; ++k) {
         laws.push_back(read_law(keys, model.parameters[k]));
     }
     keys.reject_unknown_keys();
-    return model.make(laws.data(), stroke_m, speed_m_s);
+    return model.make(laws.data(), limits.stroke_m, limits.speed_m_s);
 }
 
-std::shared_ptr<const Damper> read_model(TomlTable &section) {
+DamperChoice with_accel_estimate(DamperChoice choice) {
+    if (choice.damper->uses_accel()) {
+        choice.damper = std::make_shared<AccelEstimate>(choice.damper);
+    }
+    return choice;
+}
+
+} // namespace
+
+std::shared_ptr<const Damper> read_damper_model(TomlTable &section) {
     const std::string chosen = section.choice("model", model_names());
     for (const KernelModel &model : kernel_models()) {
         if (chosen == model.name) {
             return read_kernel(model, section);
+        }
+    }
+    for (const LearnedModel &model : learned_models()) {
+        if (chosen == model.name) {
+            return read_learned(model, section);
         }
     }
     const Model *model = std::find_if(std::begin(kModels), std::end(kModels),
@@ -120,15 +142,6 @@ std::shared_ptr<const Damper> read_model(TomlTable &section) {
     keys.reject_unknown_keys();
     return damper;
 }
-
-DamperChoice with_accel_estimate(DamperChoice choice) {
-    if (choice.damper->uses_accel()) {
-        choice.damper = std::make_shared<AccelEstimate>(choice.damper);
-    }
-    return choice;
-}
-
-} // namespace
 
 CoilParams read_coil(TomlTable section) {
     CoilParams params{};
@@ -145,7 +158,7 @@ DamperChoice read_damper(TomlTable section, const std::string &plant_file) {
         const std::filesystem::path file = section.text("file");
         choice = load_damper((std::filesystem::path(plant_file).parent_path() / file).string());
     } else {
-        choice.damper = read_model(section);
+        choice.damper = read_damper_model(section);
     }
     section.reject_unknown_keys();
     return with_accel_estimate(choice);
@@ -158,7 +171,7 @@ DamperChoice load_damper(const std::string &file) {
     root.integer("version", 1, 1);
     root.text("name");
     DamperChoice choice;
-    choice.damper = read_model(root);
+    choice.damper = read_damper_model(root);
     if (std::optional<TomlTable> coil = root.optional_table("coil")) {
         choice.coil = read_coil(*coil);
     }

@@ -1,6 +1,6 @@
 /// Dampers in files: the [damper] section of a plant file and damper files (schema quiesce-damper).
-/// A kernel is found by its name (kernel_models.h); one line in damper_section.cpp adds a model of
-/// another kind.
+/// A kernel is found by its name (kernel_models.h), a learned model likewise (learned_section.h);
+/// one line in damper_section.cpp adds a model of another kind.
 #ifndef QUIESCE_DAMPER_SECTION_H
 #define QUIESCE_DAMPER_SECTION_H
 
@@ -27,6 +27,9 @@ DamperChoice read_damper(TomlTable section, const std::string &plant_file);
 
 /// The same from a damper file, as it is: without the estimate.
 DamperChoice load_damper(const std::string &file);
+
+/// `model` and its keys in any table; other keys are left to the caller.
+std::shared_ptr<const Damper> read_damper_model(TomlTable &section);
 
 /// Lag of coil and driver, and remanence: [coil] of plants and dampers.
 CoilParams read_coil(TomlTable section);

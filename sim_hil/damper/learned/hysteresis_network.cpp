@@ -1,8 +1,8 @@
 #include "hysteresis_network.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace quiesce {
 
@@ -15,29 +15,40 @@ constexpr int kPoints = 20;
 
 std::size_t feature_count(const HysteresisNetworkParams &p) {
     return 2 + (p.uses_accel ? 1 : 0) + p.coil_times_s.size() + p.elastic_times_s.size() +
-           p.chain_count + p.stop_reaches_m.size();
+           p.chain_times_s.size() + p.stop_reaches_m.size() + (p.base ? 1 : 0);
 }
 
-HysteresisNetwork::HysteresisNetwork(HysteresisNetworkParams params, Network network)
-    : params_(std::move(params)), network_(std::move(network)) {}
+HysteresisNetwork::HysteresisNetwork(HysteresisNetworkParams params, std::vector<Network> members)
+    : params_(std::move(params)), members_(std::move(members)) {}
+
+std::size_t HysteresisNetwork::own_states() const {
+    return params_.coil_times_s.size() + params_.elastic_times_s.size() +
+           params_.chain_times_s.size() + params_.stop_reaches_m.size();
+}
 
 std::size_t HysteresisNetwork::state_count() const {
-    return params_.coil_times_s.size() + params_.elastic_times_s.size() + params_.chain_count +
-           params_.stop_reaches_m.size();
+    return own_states() + (params_.base ? params_.base->state_count() : 0);
+}
+
+bool HysteresisNetwork::uses_accel() const {
+    return params_.uses_accel || (params_.base && params_.base->uses_accel());
 }
 
 void HysteresisNetwork::write_rates(const DamperInput &input, const double *state,
                                     double *rates) const {
     const double v = input.velocity_m_s;
-    for (const double time_s : params_.coil_times_s) {
-        *rates++ = (input.current_A - *state++) / time_s;
+    for (std::size_t j = 0; j < params_.coil_times_s.size(); ++j) {
+        const double rise_A = input.current_A - *state++;
+        const std::vector<double> &times =
+            rise_A > 0.0 ? params_.coil_times_s : params_.coil_fall_times_s;
+        *rates++ = rise_A / times[j];
     }
     for (const double time_s : params_.elastic_times_s) {
         *rates++ = v - *state++ / time_s;
     }
     double from = v;
-    for (std::size_t k = 0; k < params_.chain_count; ++k) {
-        *rates++ = (from - *state) / params_.chain_time_s;
+    for (const double time_s : params_.chain_times_s) {
+        *rates++ = (from - *state) / time_s;
         from = *state++;
     }
     for (const double reach_m : params_.stop_reaches_m) {
@@ -45,13 +56,17 @@ void HysteresisNetwork::write_rates(const DamperInput &input, const double *stat
     }
 }
 
-std::vector<double> HysteresisNetwork::features(const DamperInput &input,
-                                                const double *state) const {
+/// state: this model's own elements.
+std::vector<double> HysteresisNetwork::features(const DamperInput &input, const double *state,
+                                                double base_N) const {
     std::vector<double> out{input.position_m, input.velocity_m_s};
     if (params_.uses_accel) {
         out.push_back(input.accel_m_s2);
     }
-    out.insert(out.end(), state, state + state_count());
+    out.insert(out.end(), state, state + own_states());
+    if (params_.base) {
+        out.push_back(base_N);
+    }
     for (std::size_t k = 0; k < out.size(); ++k) {
         out[k] = std::clamp((out[k] - params_.means[k]) / params_.scales[k], -params_.clip,
                             params_.clip);
@@ -59,50 +74,75 @@ std::vector<double> HysteresisNetwork::features(const DamperInput &input,
     return out;
 }
 
-double HysteresisNetwork::force_N(const DamperInput &input, const double *state,
-                                  double *rates) const {
-    if (rates != nullptr) {
-        write_rates(input, state, rates);
+/// What the networks add to the base.
+double HysteresisNetwork::correction_N(const std::vector<double> &p, double current_A) const {
+    std::vector<double> heads(members_.front().output_count(), 0.0);
+    std::vector<double> one(heads.size());
+    for (const Network &member : members_) {
+        member.run(p.data(), one.data());
+        for (std::size_t k = 0; k < heads.size(); ++k) {
+            heads[k] += one[k] / static_cast<double>(members_.size());
+        }
     }
-    const std::vector<double> p = features(input, state);
-    std::vector<double> heads(network_.output_count());
-    network_.run(p.data(), heads.data());
-    const double current_A = params_.coil_times_s.empty() ? input.current_A : state[0];
     const double s = current_A / params_.current_scale_A;
     const double *skip = params_.skip.data();
     double power = 1.0;
     double sum = 0.0;
     for (const double head : heads) {
-        double linear = 0.0;
-        for (const double feature : p) {
-            linear += *skip++ * feature;
-        }
-        sum += power * (head + linear);
+        sum += power * std::inner_product(p.begin(), p.end(), skip, head);
+        skip += p.size();
         power *= s;
     }
     return params_.force_scale_N * sum;
 }
 
-/// The elements after a quick move from rest.
+/// 0 without a base. state and rates: those of all elements.
+double HysteresisNetwork::base_N(const DamperInput &input, double current_A, const double *state,
+                                 double *rates) const {
+    if (!params_.base) {
+        return 0.0;
+    }
+    DamperInput seen = input;
+    seen.current_A = current_A;
+    return params_.base->force_N(seen, state + own_states(),
+                                 rates == nullptr ? nullptr : rates + own_states());
+}
+
+double HysteresisNetwork::force_N(const DamperInput &input, const double *state,
+                                  double *rates) const {
+    // A base with states writes its rates in any case.
+    std::vector<double> unused(rates == nullptr ? state_count() : 0);
+    double *out = rates == nullptr ? unused.data() : rates;
+    write_rates(input, state, out);
+    const double current_A = params_.coil_times_s.empty() ? input.current_A : state[0];
+    const double from_base_N = base_N(input, current_A, state, out);
+    return from_base_N + correction_N(features(input, state, from_base_N), current_A);
+}
+
+/// The elements after a quick move from rest; those of a base stay at rest.
 std::vector<double> HysteresisNetwork::quick_state(double moved_m, double current_A) const {
     std::vector<double> out(params_.coil_times_s.size(), current_A);
     out.insert(out.end(), params_.elastic_times_s.size(), moved_m);
-    out.insert(out.end(), params_.chain_count, 0.0);
+    out.insert(out.end(), params_.chain_times_s.size(), 0.0);
     for (const double reach_m : params_.stop_reaches_m) {
         out.push_back(std::copysign(1.0 - std::exp(-std::abs(moved_m) / reach_m), moved_m));
     }
+    out.resize(state_count(), 0.0);
     return out;
+}
+
+double HysteresisNetwork::quick_force_N(double moved_m, double current_A) const {
+    return force_N({0.0, moved_m, current_A}, quick_state(moved_m, current_A).data(), nullptr);
 }
 
 double HysteresisNetwork::stiffest_N_s_m(double current_A) const {
     const std::vector<double> rest = quick_state(0.0, current_A);
     const double step_m_s = params_.speed_m_s / kPoints;
-    double most = 0.0;
-    double before_N = 0.0;
-    for (int k = -kPoints; k <= kPoints; ++k) {
-        const double now_N = force_N({step_m_s * k, 0.0, current_A}, rest.data(), nullptr);
-        most = k == -kPoints ? 0.0 : std::max(most, std::abs(now_N - before_N) / step_m_s);
-        before_N = now_N;
+    double most = params_.base ? params_.base->stiffest_N_s_m(current_A) : 0.0;
+    for (int k = -kPoints; k < kPoints; ++k) {
+        const double from_N = force_N({step_m_s * k, 0.0, current_A}, rest.data(), nullptr);
+        const double to_N = force_N({step_m_s * (k + 1), 0.0, current_A}, rest.data(), nullptr);
+        most = std::max(most, std::abs(to_N - from_N) / step_m_s);
     }
     return most;
 }
@@ -113,24 +153,22 @@ double HysteresisNetwork::stiffest_N_m(double current_A) const {
         smallest_m = std::min(smallest_m, reach_m);
     }
     const double step_m = 0.1 * smallest_m;
-    double most = 0.0;
+    double most = params_.base ? params_.base->stiffest_N_m(current_A) : 0.0;
     for (int k = -kPoints; k < kPoints; ++k) {
-        const std::vector<double> from = quick_state(step_m * k, current_A);
-        const std::vector<double> to = quick_state(step_m * (k + 1), current_A);
-        const double rise_N = force_N({0.0, step_m * (k + 1), current_A}, to.data(), nullptr) -
-                              force_N({0.0, step_m * k, current_A}, from.data(), nullptr);
+        const double rise_N =
+            quick_force_N(step_m * (k + 1), current_A) - quick_force_N(step_m * k, current_A);
         most = std::max(most, std::abs(rise_N) / step_m);
     }
     return most;
 }
 
-double HysteresisNetwork::fastest_rate_1_s(double /*current_A*/) const {
-    double most = params_.chain_count > 0 ? 1.0 / params_.chain_time_s : 0.0;
-    for (const double time_s : params_.coil_times_s) {
-        most = std::max(most, 1.0 / time_s);
-    }
-    for (const double time_s : params_.elastic_times_s) {
-        most = std::max(most, 1.0 / time_s);
+double HysteresisNetwork::fastest_rate_1_s(double current_A) const {
+    double most = params_.base ? params_.base->fastest_rate_1_s(current_A) : 0.0;
+    for (const std::vector<double> *times : {&params_.coil_times_s, &params_.coil_fall_times_s,
+                                             &params_.elastic_times_s, &params_.chain_times_s}) {
+        for (const double time_s : *times) {
+            most = std::max(most, 1.0 / time_s);
+        }
     }
     for (const double reach_m : params_.stop_reaches_m) {
         most = std::max(most, params_.speed_m_s / reach_m);

@@ -1,17 +1,19 @@
-/// A network over the states of simple hysteresis elements, all in continuous time: a black box
-/// that runs at any step and needs no measured force.
+/// Networks over the states of simple hysteresis elements, all in continuous time: a black box that
+/// runs at any step and needs no measured force. On top of another model it is a grey box.
 ///
-///   coil      c_j' = (i - c_j) / tau_j                              A
+///   coil      c_j' = (i - c_j) / tau_j, tau_j rising or falling     A
 ///   elastic   r_j' = v - r_j / tau_j                                m    (spring and dashpot)
-///   chain     g_1' = (v - g_1) / tau,  g_k' = (g_(k-1) - g_k) / tau m/s  (earlier velocities)
+///   chain     g_1' = (v - g_1) / tau_1,  g_k' = (g_(k-1) - g_k) / tau_k  m/s (earlier velocities)
 ///   stop      w_j' = (v - |v| w_j) / reach_j                        -1 .. 1 (spring and slider)
-///   features  p = clip((x, v, [a], c, r, g, w) - mean) / scale
-///   force     F = force_scale sum_k s^k (N_k(p) + skip_k p),  s = c_1 / current_scale
+///   features  p = clip(((x, v, [a], c, r, g, w, [F_base]) - mean) / scale)
+///   force     F = F_base + force_scale sum_k s^k (N_k(p) + skip_k p),  s = c_1 / current_scale
 ///
-/// N has one layer with tanh. Without coil times s is the current itself and no feature.
+/// N is the mean of the member networks. The base sees c_1 as its current. Without coil times the
+/// current itself takes the place of c_1 and is no feature.
 #ifndef QUIESCE_HYSTERESIS_NETWORK_H
 #define QUIESCE_HYSTERESIS_NETWORK_H
 
+#include <memory>
 #include <vector>
 
 #include "damper.h"
@@ -25,15 +27,16 @@ struct HysteresisNetworkParams {
     double force_scale_N;   ///< > 0
     double current_scale_A; ///< > 0
     bool uses_accel;
-    std::vector<double> coil_times_s;    ///< each > 0, as the following; may be empty
-    std::vector<double> elastic_times_s; ///< may be empty
-    double chain_time_s;
-    std::size_t chain_count;
-    std::vector<double> stop_reaches_m; ///< may be empty
+    std::vector<double> coil_times_s;      ///< each > 0, as the following; may be empty
+    std::vector<double> coil_fall_times_s; ///< as many
+    std::vector<double> elastic_times_s;   ///< may be empty, as the following
+    std::vector<double> chain_times_s;
+    std::vector<double> stop_reaches_m;
     std::vector<double> means;          ///< one a feature
     std::vector<double> scales;         ///< one a feature, > 0
     double clip;                        ///< > 0, of the scaled features
     std::vector<double> skip;           ///< a row of features for each power of s
+    std::shared_ptr<const Damper> base; ///< or null
 };
 
 /// Features that these elements make.
@@ -41,24 +44,30 @@ std::size_t feature_count(const HysteresisNetworkParams &params);
 
 class HysteresisNetwork final : public Damper {
   public:
-    /// network: from the features to one output for each power of s, from 0 on.
-    HysteresisNetwork(HysteresisNetworkParams params, Network network);
+    /// members: at least one, each from the features to one output for each power of s, from 0 on.
+    HysteresisNetwork(HysteresisNetworkParams params, std::vector<Network> members);
 
     std::size_t state_count() const override;
     double force_N(const DamperInput &input, const double *state, double *rates) const override;
     double stiffest_N_s_m(double current_A) const override;
     double stiffest_N_m(double current_A) const override;
     double fastest_rate_1_s(double current_A) const override;
-    bool uses_accel() const override { return params_.uses_accel; }
+    bool uses_accel() const override;
     double lowest_position_m() const override { return -params_.stroke_m; }
 
   private:
+    std::size_t own_states() const;
     void write_rates(const DamperInput &input, const double *state, double *rates) const;
-    std::vector<double> features(const DamperInput &input, const double *state) const;
+    std::vector<double> features(const DamperInput &input, const double *state,
+                                 double base_N) const;
+    double correction_N(const std::vector<double> &features, double current_A) const;
+    double base_N(const DamperInput &input, double current_A, const double *state,
+                  double *rates) const;
     std::vector<double> quick_state(double moved_m, double current_A) const;
+    double quick_force_N(double moved_m, double current_A) const;
 
     HysteresisNetworkParams params_;
-    Network network_;
+    std::vector<Network> members_;
 };
 
 } // namespace quiesce

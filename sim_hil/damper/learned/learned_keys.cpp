@@ -28,10 +28,6 @@ InputRange read_range(TomlTable &input, InputKind kind) {
 
 } // namespace
 
-double read_stroke_m(TomlTable &keys) {
-    return keys.number("stroke_m", {1e-9, 100.0, "m"});
-}
-
 double read_force_scale_N(TomlTable &keys) {
     return keys.number("force_scale_N", {1e-9, 1e12, "N"});
 }

@@ -16,7 +16,6 @@ namespace quiesce {
 /// Largest number of rules, vectors, features and so on that a file may hold.
 constexpr std::size_t kMostItems = 100000;
 
-double read_stroke_m(TomlTable &keys);
 double read_force_scale_N(TomlTable &keys);
 
 /// length numbers (any count >= 1 where it is 0), each > 0.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "anfis.h"
+#include "damper_section.h"
 #include "hysteresis_network.h"
 #include "learned_keys.h"
 #include "neuro_fuzzy_stf.h"
@@ -73,10 +74,11 @@ void refuse_temperature(TomlTable &keys) {
     }
 }
 
-std::shared_ptr<const Damper> read_sampled(TomlTable &keys, bool is_recurrent) {
+std::shared_ptr<const Damper> read_sampled(TomlTable &keys, const MotionLimits &limits,
+                                           bool is_recurrent) {
     SampledNetworkParams params{};
     refuse_temperature(keys);
-    params.stroke_m = read_stroke_m(keys);
+    params.stroke_m = limits.stroke_m;
     params.sample_time_s = keys.number("sample_time_s", {1e-6, 10.0, "s"});
     params.force_scale_N = read_force_scale_N(keys);
     params.lags = rising_integers(keys, "lags", 0, kMostLag);
@@ -89,10 +91,7 @@ std::shared_ptr<const Damper> read_sampled(TomlTable &keys, bool is_recurrent) {
     return std::make_shared<SampledNetwork>(std::move(box), std::move(params), std::move(network));
 }
 
-} // namespace
-
-std::shared_ptr<const Damper> read_anfis(TomlTable &keys) {
-    const double stroke_m = read_stroke_m(keys);
+std::shared_ptr<const Damper> read_anfis(TomlTable &keys, const MotionLimits &limits) {
     std::vector<GaussianSet> sets;
     InputBox box =
         read_inputs(keys, [&sets](TomlTable &input) { sets.push_back(read_gaussians(input)); });
@@ -104,12 +103,11 @@ std::shared_ptr<const Damper> read_anfis(TomlTable &keys) {
         }
     }
     std::vector<double> consequents_N = keys.numbers("consequents_N", rules);
-    return std::make_shared<Anfis>(std::move(box), stroke_m, std::move(sets),
+    return std::make_shared<Anfis>(std::move(box), limits.stroke_m, std::move(sets),
                                    std::move(consequents_N));
 }
 
-std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys) {
-    const double stroke_m = read_stroke_m(keys);
+std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys, const MotionLimits &limits) {
     InputBox box = read_inputs(keys);
     std::vector<FuzzyCluster> clusters;
     for (TomlTable &table : keys.tables("rule")) {
@@ -119,13 +117,13 @@ std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys) {
         keys.fail("rule", "missing; expected tables [[...rule]] with centre, width, gain_N and "
                           "offset_N");
     }
-    return std::make_shared<TsFuzzy>(std::move(box), stroke_m, std::move(clusters));
+    return std::make_shared<TsFuzzy>(std::move(box), limits.stroke_m, std::move(clusters));
 }
 
-std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys) {
+std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys, const MotionLimits &limits) {
     StfParams params{};
     params.force_scale_N = read_force_scale_N(keys);
-    params.stroke_m = read_stroke_m(keys);
+    params.stroke_m = limits.stroke_m;
     params.disp_scale_m = keys.number("disp_scale_m", {1e-9, 100.0, "m"});
     params.velocity_scale_m_s = keys.number("velocity_scale_m_s", {1e-9, 1000.0, "m/s"});
     params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
@@ -139,25 +137,24 @@ std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys) {
     return std::make_shared<NeuroFuzzyStf>(params);
 }
 
-std::shared_ptr<const Damper> read_feed_forward_network(TomlTable &keys) {
+std::shared_ptr<const Damper> read_feed_forward_network(TomlTable &keys,
+                                                        const MotionLimits &limits) {
     if (keys.has("lags")) {
-        return read_sampled(keys, false);
+        return read_sampled(keys, limits, false);
     }
-    const double stroke_m = read_stroke_m(keys);
     const double force_scale_N = read_force_scale_N(keys);
     InputBox box = read_inputs(keys);
     Network network = read_network(keys, box.count(), 1);
-    return std::make_shared<StaticNetwork>(std::move(box), stroke_m, std::move(network),
+    return std::make_shared<StaticNetwork>(std::move(box), limits.stroke_m, std::move(network),
                                            force_scale_N);
 }
 
-std::shared_ptr<const Damper> read_recurrent_network(TomlTable &keys) {
-    return read_sampled(keys, true);
+std::shared_ptr<const Damper> read_recurrent_network(TomlTable &keys, const MotionLimits &limits) {
+    return read_sampled(keys, limits, true);
 }
 
-std::shared_ptr<const Damper> read_support_vector(TomlTable &keys) {
+std::shared_ptr<const Damper> read_support_vector(TomlTable &keys, const MotionLimits &limits) {
     SupportVectorParams params{};
-    const double stroke_m = read_stroke_m(keys);
     params.force_scale_N = read_force_scale_N(keys);
     params.gamma = keys.number("gamma", {1e-9, 1e9, "-"});
     params.intercept = keys.number("intercept", {-1e12, 1e12, "of force_scale_N"});
@@ -165,30 +162,69 @@ std::shared_ptr<const Damper> read_support_vector(TomlTable &keys) {
     InputBox box = read_inputs(keys);
     params.support_vectors =
         keys.numbers("support_vectors", params.coefficients.size() * box.count());
-    return std::make_shared<SupportVector>(std::move(box), stroke_m, std::move(params));
+    return std::make_shared<SupportVector>(std::move(box), limits.stroke_m, std::move(params));
 }
 
-std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys) {
+/// Null where there is none.
+std::shared_ptr<const Damper> read_base(TomlTable &keys) {
+    std::optional<TomlTable> section = keys.optional_table("base");
+    if (!section) {
+        return nullptr;
+    }
+    std::shared_ptr<const Damper> base = read_damper_model(*section);
+    section->reject_unknown_keys();
+    if (base->is_sampled()) {
+        keys.fail("base", "a model with a sample time of its own cannot be a base");
+    }
+    return base;
+}
+
+std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys, const MotionLimits &limits) {
     HysteresisNetworkParams params{};
-    params.stroke_m = read_stroke_m(keys);
-    params.speed_m_s = keys.number("speed_m_s", {1e-9, 1000.0, "m/s"});
+    params.stroke_m = limits.stroke_m;
+    params.speed_m_s = limits.speed_m_s;
     params.force_scale_N = read_force_scale_N(keys);
     params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
     params.uses_accel = keys.boolean("uses_accel", false);
     params.coil_times_s = optional_positive_numbers(keys, "coil_times_s");
+    params.coil_fall_times_s =
+        keys.has("coil_fall_times_s")
+            ? positive_numbers(keys, "coil_fall_times_s", params.coil_times_s.size())
+            : params.coil_times_s;
     params.elastic_times_s = optional_positive_numbers(keys, "elastic_times_s");
-    params.chain_count = static_cast<std::size_t>(keys.integer("chain_count", 0, 1000, 0));
-    params.chain_time_s =
-        params.chain_count > 0 ? keys.number("chain_time_s", {1e-6, 10.0, "s"}) : 1.0;
+    params.chain_times_s = optional_positive_numbers(keys, "chain_times_s");
     params.stop_reaches_m = optional_positive_numbers(keys, "stop_reaches_m");
+    params.base = read_base(keys);
     const std::size_t features = feature_count(params);
     params.means = keys.numbers("feature_means", features);
     params.scales = positive_numbers(keys, "feature_scales", features);
     params.clip = keys.number("clip", {0.1, 1000.0, "of feature_scales"});
     const auto heads = static_cast<std::size_t>(keys.integer("current_order", 0, 4) + 1);
     params.skip = keys.numbers("skip", heads * features);
-    Network network = read_network(keys, features, heads);
-    return std::make_shared<HysteresisNetwork>(std::move(params), std::move(network));
+    std::vector<Network> members;
+    for (TomlTable &member : keys.tables("member")) {
+        members.push_back(read_network(member, features, heads));
+        member.reject_unknown_keys();
+    }
+    if (members.empty()) {
+        keys.fail("member", "missing; expected tables [[...member]] with layers");
+    }
+    return std::make_shared<HysteresisNetwork>(std::move(params), std::move(members));
+}
+
+} // namespace
+
+const std::vector<LearnedModel> &learned_models() {
+    static const std::vector<LearnedModel> models = {
+        {"anfis", read_anfis},
+        {"feed_forward_network", read_feed_forward_network},
+        {"hysteresis_network", read_hysteresis_network},
+        {"neuro_fuzzy_stf", read_neuro_fuzzy_stf},
+        {"recurrent_network", read_recurrent_network},
+        {"support_vector", read_support_vector},
+        {"ts_fuzzy", read_ts_fuzzy},
+    };
+    return models;
 }
 
 } // namespace quiesce
