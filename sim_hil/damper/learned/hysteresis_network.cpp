@@ -74,6 +74,13 @@ std::vector<double> HysteresisNetwork::features(const DamperInput &input, const 
     return out;
 }
 
+/// Of full current, 0 .. 1.
+double HysteresisNetwork::field(double current_A) const {
+    const double part = std::max(0.0, current_A / params_.current_scale_A);
+    const double toe = std::pow(part, params_.field_exponent);
+    return toe * (1.0 + params_.saturation) / (params_.saturation + toe);
+}
+
 /// What the networks add to the base.
 double HysteresisNetwork::correction_N(const std::vector<double> &p, double current_A) const {
     std::vector<double> heads(members_.front().output_count(), 0.0);
@@ -84,14 +91,14 @@ double HysteresisNetwork::correction_N(const std::vector<double> &p, double curr
             heads[k] += one[k] / static_cast<double>(members_.size());
         }
     }
-    const double s = current_A / params_.current_scale_A;
+    const double g = field(current_A);
     const double *skip = params_.skip.data();
     double power = 1.0;
     double sum = 0.0;
     for (const double head : heads) {
         sum += power * std::inner_product(p.begin(), p.end(), skip, head);
         skip += p.size();
-        power *= s;
+        power *= g;
     }
     return params_.force_scale_N * sum;
 }

@@ -6,7 +6,8 @@
 ///   chain     g_1' = (v - g_1) / tau_1,  g_k' = (g_(k-1) - g_k) / tau_k  m/s (earlier velocities)
 ///   stop      w_j' = (v - |v| w_j) / reach_j                        -1 .. 1 (spring and slider)
 ///   features  p = clip(((x, v, [a], c, r, g, w, [F_base]) - mean) / scale)
-///   force     F = F_base + force_scale sum_k s^k (N_k(p) + skip_k p),  s = c_1 / current_scale
+///   field     g = s^q (1 + K) / (K + s^q), s = c_1 / current_scale  (toe and saturation)
+///   force     F = F_base + force_scale sum_k g^k (N_k(p) + skip_k p)
 ///
 /// N is the mean of the member networks. The base sees c_1 as its current. Without coil times the
 /// current itself takes the place of c_1 and is no feature.
@@ -26,6 +27,8 @@ struct HysteresisNetworkParams {
     double speed_m_s;       ///< > 0; the largest that is expected
     double force_scale_N;   ///< > 0
     double current_scale_A; ///< > 0
+    double field_exponent;  ///< q > 0
+    double saturation;      ///< K > 0; large for none
     bool uses_accel;
     std::vector<double> coil_times_s;      ///< each > 0, as the following; may be empty
     std::vector<double> coil_fall_times_s; ///< as many
@@ -35,7 +38,7 @@ struct HysteresisNetworkParams {
     std::vector<double> means;          ///< one a feature
     std::vector<double> scales;         ///< one a feature, > 0
     double clip;                        ///< > 0, of the scaled features
-    std::vector<double> skip;           ///< a row of features for each power of s
+    std::vector<double> skip;           ///< a row of features for each power of g
     std::shared_ptr<const Damper> base; ///< or null
 };
 
@@ -44,7 +47,7 @@ std::size_t feature_count(const HysteresisNetworkParams &params);
 
 class HysteresisNetwork final : public Damper {
   public:
-    /// members: at least one, each from the features to one output for each power of s, from 0 on.
+    /// members: at least one, each from the features to one output for each power of g, from 0 on.
     HysteresisNetwork(HysteresisNetworkParams params, std::vector<Network> members);
 
     std::size_t state_count() const override;
@@ -60,6 +63,7 @@ class HysteresisNetwork final : public Damper {
     void write_rates(const DamperInput &input, const double *state, double *rates) const;
     std::vector<double> features(const DamperInput &input, const double *state,
                                  double base_N) const;
+    double field(double current_A) const;
     double correction_N(const std::vector<double> &features, double current_A) const;
     double base_N(const DamperInput &input, double current_A, const double *state,
                   double *rates) const;

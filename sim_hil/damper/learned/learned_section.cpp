@@ -185,6 +185,8 @@ std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys, const Mot
     params.speed_m_s = limits.speed_m_s;
     params.force_scale_N = read_force_scale_N(keys);
     params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
+    params.field_exponent = keys.number("field_exponent", {0.1, 10.0, "-"}, 1.0);
+    params.saturation = keys.number("saturation", {1e-3, 1e12, "-"}, 1e12);
     params.uses_accel = keys.boolean("uses_accel", false);
     params.coil_times_s = optional_positive_numbers(keys, "coil_times_s");
     params.coil_fall_times_s =
@@ -199,7 +201,7 @@ std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys, const Mot
     params.means = keys.numbers("feature_means", features);
     params.scales = positive_numbers(keys, "feature_scales", features);
     params.clip = keys.number("clip", {0.1, 1000.0, "of feature_scales"});
-    const auto heads = static_cast<std::size_t>(keys.integer("current_order", 0, 4) + 1);
+    const auto heads = static_cast<std::size_t>(keys.integer("field_order", 0, 4) + 1);
     params.skip = keys.numbers("skip", heads * features);
     std::vector<Network> members;
     for (TomlTable &member : keys.tables("member")) {

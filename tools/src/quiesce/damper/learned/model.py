@@ -1,0 +1,91 @@
+"""A trained model: the parameters that go into a damper file, run by the C++ library."""
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quiesce.damper import library
+from quiesce.damper.data.record import Record
+from quiesce.damper.data.split import Segment
+from quiesce.damper.library import DamperFile, Scales
+from quiesce.damper.model_file import DamperModel
+from quiesce.errors import UsageError
+
+# Called with one line for every piece of work done.
+Report = Callable[[str], None]
+
+# Parts by which stroke and speed of a file exceed those of the training data.
+_MARGIN = 1.25
+
+
+def silent(_text: str) -> None:
+    """A Report that nobody reads."""
+
+
+@dataclass(frozen=True)
+class LearnedDamper:
+    model: str  # name in damper files
+    stroke_m: float
+    speed_m_s: float
+    parameters: Mapping[str, Any]
+    parameter_count: int
+    notes: Sequence[str] = field(default=())  # what was done, in plain sentences
+
+    def to_toml(self) -> dict[str, Any]:
+        """What the [parameters] table holds."""
+        return dict(self.parameters)
+
+    def as_model(self, name: str, **more: Any) -> DamperModel:
+        """For files; `more`: source, valid, fit."""
+        return DamperModel(
+            name, self.model, self.stroke_m, self.speed_m_s, self.parameters, **more
+        )
+
+    @cached_property
+    def _damper(self) -> DamperFile:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "damper.toml"
+            file.write_text(self.as_model(self.model).to_toml(), encoding="utf-8")
+            return DamperFile(file)
+
+    def simulate(self, record: Record) -> np.ndarray:
+        """Force in N at the samples, free-running, before the record's moving average."""
+        steps = self._damper.substeps(record)
+        return self._damper.simulate(library.motion(record), steps)
+
+
+def limits_of(scales: Scales) -> dict[str, float]:
+    """stroke_m and speed_m_s of a model trained on data of these scales."""
+    return {
+        "stroke_m": _MARGIN * positive(scales.disp_m, "displacement"),
+        "speed_m_s": _MARGIN * positive(scales.speed_m_s, "velocity"),
+    }
+
+
+def positive(value: float, what: str) -> float:
+    if not (np.isfinite(value) and value > 0.0):
+        raise UsageError(f"the {what} is zero throughout; nothing can be learned from it")
+    return value
+
+
+def records_of(segments: Sequence[Segment]) -> list[Record]:
+    return list({id(segment.record): segment.record for segment in segments}.values())
+
+
+def relative_error(model: LearnedDamper, segments: Sequence[Segment]) -> float:
+    """||F - F_model|| / ||F|| over the segments, free-running."""
+    forces = {
+        id(record): record.averaged(model.simulate(record)) for record in records_of(segments)
+    }
+    errors = [
+        forces[id(one.record)][one.rows] - one.record.force_N[one.rows] for one in segments
+    ]
+    measured = [one.record.force_N[one.rows] for one in segments]
+    return float(
+        np.linalg.norm(np.concatenate(errors)) / np.linalg.norm(np.concatenate(measured))
+    )
