@@ -64,9 +64,8 @@ const Mistake kModesPlantMistakes[] = {
     {"mode_is_a_number", "kind = \"modes\"\n", "kind = \"modes\"\nmodes = 2\n",
      "structure.modes: unknown key"},
     {"no_damper", "[damper]", "[dampr]", "damper: missing; expected a table [damper]"},
-    {"unknown_damper", "\"squeeze_biviscosity\"", "\"bouc_wen\"",
-     "damper.model: expected one of: squeeze_biviscosity, switched_stiffness, viscous; "
-     "found 'bouc_wen'"},
+    {"unknown_damper", "\"squeeze_biviscosity\"", "\"sponge\"",
+     "viscous, viscous_dahl, zhang_tanh; found 'sponge'"},
     {"zero_gap", "gap_m = 0.002", "gap_m = 0", "damper.gap_m: expected a number in 1e-06 .. 0.1"},
     {"gap_in_millimetres", "gap_m = 0.002", "gap_m = 2.0", "damper.gap_m: expected a number"},
     {"min_gap_above_gap", "gap_m = 0.002", "gap_m = 0.002\nmin_gap_m = 0.003",
