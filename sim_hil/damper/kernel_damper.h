@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "damper.h"
+#include "field_law.h"
 #include "kernel.h"
 
 namespace quiesce {
@@ -19,8 +20,9 @@ class KernelDamper final : public Damper {
   public:
     /// laws: Kernel::kParameters.size() of them. stroke_m: the model ends at -stroke_m; speed_m_s:
     /// the largest that is expected.
-    KernelDamper(const CurrentLaw *laws, double stroke_m, double speed_m_s)
-        : stroke_m_(stroke_m), speed_m_s_(speed_m_s) {
+    KernelDamper(const CurrentLaw *laws, double stroke_m, double speed_m_s,
+                 const FieldLaw<double> &field = {})
+        : stroke_m_(stroke_m), speed_m_s_(speed_m_s), field_(field) {
         std::copy(laws, laws + kCount, laws_.begin());
     }
 
@@ -48,7 +50,8 @@ class KernelDamper final : public Damper {
     static constexpr std::size_t kCount = Kernel::kParameters.size();
     using Parameters = std::array<double, kCount>;
 
-    Parameters parameters(double current_A) const {
+    Parameters parameters(double coil_current_A) const {
+        const double current_A = field_.effective(coil_current_A);
         Parameters p{};
         for (std::size_t k = 0; k < kCount; ++k) {
             const CurrentLaw &c = laws_[k];
@@ -61,6 +64,7 @@ class KernelDamper final : public Damper {
     std::array<CurrentLaw, kCount> laws_;
     double stroke_m_;
     double speed_m_s_;
+    FieldLaw<double> field_;
 };
 
 } // namespace quiesce

@@ -17,9 +17,9 @@ KernelModel describe() {
             Kernel::kUsesAccel,
             Kernel::fastest_rate_1_s,
             Kernel::is_passive,
-            [](const CurrentLaw *laws, double stroke_m,
-               double speed_m_s) -> std::shared_ptr<const Damper> {
-                return std::make_shared<KernelDamper<Kernel>>(laws, stroke_m, speed_m_s);
+            [](const CurrentLaw *laws, double stroke_m, double speed_m_s,
+               const FieldLaw<double> &field) -> std::shared_ptr<const Damper> {
+                return std::make_shared<KernelDamper<Kernel>>(laws, stroke_m, speed_m_s, field);
             }};
 }
 

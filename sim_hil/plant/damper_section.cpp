@@ -100,6 +100,19 @@ std::shared_ptr<const Damper> read_learned(const LearnedModel &model, TomlTable 
     return damper;
 }
 
+FieldLaw<double> read_field(TomlTable &section) {
+    std::optional<TomlTable> keys = section.optional_table("field");
+    if (!keys) {
+        return {};
+    }
+    FieldLaw<double> field{};
+    field.exponent = keys->number("exponent", {0.05, 20.0, "-"});
+    field.saturation = keys->number("saturation", {0.0, 1e6, "-"}, 0.0);
+    field.reference = keys->number("reference_A", {1e-6, 1e6, "A"});
+    keys->reject_unknown_keys();
+    return field;
+}
+
 std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &section) {
     const MotionLimits limits = read_limits(section);
     TomlTable keys = section.table("parameters");
@@ -108,7 +121,7 @@ std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &s
         laws.push_back(read_law(keys, model.parameters[k]));
     }
     keys.reject_unknown_keys();
-    return model.make(laws.data(), limits.stroke_m, limits.speed_m_s);
+    return model.make(laws.data(), limits.stroke_m, limits.speed_m_s, read_field(section));
 }
 
 DamperChoice with_accel_estimate(DamperChoice choice) {

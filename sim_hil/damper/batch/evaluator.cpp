@@ -52,6 +52,16 @@ bool has_current_law(const CandidateRows &candidates) {
                        [](int order) { return order > 1; });
 }
 
+bool has_field_law(const CandidateRows &candidates) {
+    const std::size_t length = row_length(candidates.model, candidates.orders);
+    bool found = false;
+    for (std::size_t row = 0; row < candidates.count; ++row) {
+        const double *rig = candidates.rows + (row + 1) * length - kRigCount;
+        found = found || rig[kRigFieldExponent] > 0.0;
+    }
+    return found;
+}
+
 /// Rows first, first + 1, ... side by side; lanes beyond the last row repeat it.
 void lay_out(const CandidateRows &candidates, std::size_t first, std::size_t lanes,
              std::vector<double> &coefficients, std::vector<double> &rig) {
@@ -84,7 +94,11 @@ void for_groups(
     std::vector<double> force_N(motion.samples() * lanes);
     for (std::size_t first = 0; first < candidates.count; first += lanes) {
         lay_out(candidates, first, lanes, coefficients, rig);
-        const GroupJob job{&motion, coefficients.data(), rig.data(), has_current_law(candidates),
+        const GroupJob job{&motion,
+                           coefficients.data(),
+                           rig.data(),
+                           has_current_law(candidates),
+                           has_field_law(candidates),
                            force_N.data()};
         set.functions[candidates.model](job);
         done(first, std::min(lanes, candidates.count - first), force_N);

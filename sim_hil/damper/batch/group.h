@@ -11,7 +11,7 @@ namespace quiesce {
 
 /// Around the model, each 0 where absent: lag of coil and driver (time constants of a rising and a
 /// falling current), mass of fixture and piston, time by which the force channel lags the motion,
-/// force at rest and its change.
+/// force at rest and its change, the field law (field_law.h).
 enum RigParameter : std::size_t {
     kRigRise,
     kRigFall,
@@ -19,6 +19,9 @@ enum RigParameter : std::size_t {
     kRigSkew,
     kRigOffset,
     kRigDrift,
+    kRigFieldExponent,
+    kRigFieldSaturation,
+    kRigFieldReference,
     kRigCount
 };
 
@@ -31,6 +34,7 @@ struct GroupJob {
     const double *coefficients; ///< [parameters * kMaxCoefficients][lanes]; unused ones are 0
     const double *rig;          ///< [kRigCount][lanes]
     bool has_current_law;       ///< some coefficient beyond the constants is in use
+    bool has_field_law;         ///< some candidate has a field exponent
     double *force_N;            ///< out: [samples][lanes]
 };
 

@@ -4,6 +4,7 @@
 #define QUIESCE_RUN_GROUP_H
 
 #include "elementary.h"
+#include "field_law.h"
 #include "group.h"
 #include "kernel.h"
 
@@ -23,6 +24,7 @@ class GroupRun {
         for (std::size_t k = 0; k < kRigCount; ++k) {
             rig_[k] = load(job.rig, k);
         }
+        field_ = {rig_[kRigFieldExponent], rig_[kRigFieldSaturation], rig_[kRigFieldReference]};
         const T half = T(-0.5 * step_s_);
         rise_left_ = lag_left(half, rig_[kRigRise]);
         fall_left_ = lag_left(half, rig_[kRigFall]);
@@ -79,7 +81,8 @@ class GroupRun {
         return {T(at[0]) - rig_[kRigSkew] * v, v - rig_[kRigSkew] * a, a, current};
     }
 
-    void parameters(const T &current, T *p) const {
+    void parameters(const T &coil_current, T *p) const {
+        const T current = job_.has_field_law ? field_.effective(coil_current) : coil_current;
         for (std::size_t k = 0; k < kCount; ++k) {
             const T *c = coefficients_ + k * kMaxCoefficients;
             const ParameterInfo &info = Kernel::kParameters[k];
@@ -149,6 +152,7 @@ class GroupRun {
     double step_s_;
     T coefficients_[kCount * kMaxCoefficients];
     T rig_[kRigCount];
+    FieldLaw<T> field_;
     T rise_left_;
     T fall_left_;
 };

@@ -23,7 +23,20 @@ from quiesce.paths import build_folder
 # Around every model, 0 where absent: time constants of a rising and a falling current (s), mass
 # that moves with the force sensor (kg), time by which the force lags the motion (s), force at rest
 # (N) and its change (N/s).
-RIG = ("rise_s", "fall_s", "inertia_kg", "skew_s", "offset_N", "drift_N_s")
+# Last the field law: exponent (0: none), saturation, and the current (A) at which the effective
+# current is the current (sim_hil/damper/field_law.h).
+RIG = (
+    "rise_s",
+    "fall_s",
+    "inertia_kg",
+    "skew_s",
+    "offset_N",
+    "drift_N_s",
+    "field_exponent",
+    "field_saturation",
+    "field_ref_A",
+)
+FIELD = RIG[6:]
 
 # Classical Runge-Kutta is stable below 2.78; this leaves it accurate.
 STEP_RATE = 1.0

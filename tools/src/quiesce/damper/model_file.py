@@ -10,12 +10,13 @@ import numpy as np
 import tomli_w
 
 from quiesce.atomic import output_files
-from quiesce.damper.library import RIG, DamperFile, Model, models
+from quiesce.damper.library import FIELD, RIG, DamperFile, Model, models
 from quiesce.errors import UsageError, one_line
 from quiesce.paths import shown
 
 SCHEMA = "quiesce-damper"
 VERSION = 1
+_FIELD_KEYS = tuple(zip(("exponent", "saturation", "reference_A"), FIELD, strict=True))
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,10 @@ class DamperModel:
         lags = {key: self.rig[key] for key in ("rise_s", "fall_s") if self.rig.get(key)}
         if lags:
             table["coil"] = {"rise_s": 0.0, "fall_s": 0.0} | lags
-        others = {key: self.rig[key] for key in RIG[2:] if self.rig.get(key)}
+        if self.rig.get("field_exponent"):
+            table["field"] = {key: float(self.rig.get(name, 0.0)) for key, name in _FIELD_KEYS}
+        others = {key: self.rig[key] for key in RIG if self.rig.get(key)}
+        others = {key: value for key, value in others.items() if key not in (*lags, *FIELD)}
         for key, value in (("rig", others), ("fit", dict(self.fit))):
             if value:
                 table[key] = value
@@ -101,6 +105,8 @@ def read_model(file: Path) -> DamperModel:
     rig = {key: float(value) for key, value in table.get("rig", {}).items() if key in RIG}
     coil = table.get("coil", {})
     rig |= {key: float(coil[key]) for key in ("rise_s", "fall_s") if key in coil}
+    field_law = table.get("field", {})
+    rig |= {name: float(field_law[key]) for key, name in _FIELD_KEYS if key in field_law}
     keys = table.get("parameters", {})
     return DamperModel(
         table["name"],

@@ -3,7 +3,7 @@
 import numpy as np
 
 _SWEEPS = 200
-_RIDGE = 1e-12
+_RIDGE = 1e-8
 
 
 def bounded_least_squares(

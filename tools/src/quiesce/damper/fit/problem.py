@@ -21,12 +21,20 @@ from quiesce.errors import UsageError
 
 # The rig's values: natural size, search range in it, and whether the force is linear in it.
 _RIG_LINEAR = {"inertia_kg", "offset_N", "drift_N_s"}
-_RIG_SEARCH = {"rise_s": (1e-4, 0.1), "fall_s": (1e-4, 0.1), "skew_s": (-0.01, 0.01)}
+_RIG_SEARCH = {
+    "rise_s": (1e-4, 0.1),
+    "fall_s": (1e-4, 0.1),
+    "skew_s": (-0.01, 0.01),
+    "field_exponent": (0.6, 6.0),
+    "field_saturation": (0.02, 20.0),
+}
 _RIG_BOUNDS = {
     "rise_s": (1e-6, 2.0),
     "fall_s": (1e-6, 2.0),
     "skew_s": (-0.05, 0.05),
     "inertia_kg": (0.0, 1e9),
+    "field_exponent": (0.3, 12.0),
+    "field_saturation": (1e-4, 100.0),
 }
 
 # Searched logarithmically: positive ranges wider than this.
@@ -103,6 +111,12 @@ class Problem:
         for name, value in self.setting.fixed.items():
             slot = RIG.index(name) + firsts[-1] if name in RIG else firsts[self.model.index(name)]
             out[:, slot] = value
+        for slot, parameter in enumerate(self.model.parameters):
+            order = self.orders[slot]
+            if is_given(self.setting, slot, order - 1) and parameter.name not in self.setting.fixed:
+                law = self._law[:, -1] if order > 1 else np.ones(1)
+                value = parameter.search_low * parameter.natural(self.scales)
+                out[:, firsts[slot] : firsts[slot] + order] += value * law
         for k, one in enumerate(self.variables):
             if one.slot >= count:
                 out[:, firsts[-1] + one.slot - count] = values[:, k]
@@ -250,10 +264,10 @@ def variables_of(setting: Setting, scales: Scales) -> list[Variable]:
         if parameter.name in setting.fixed:
             continue
         search = parameter.search_range(scales)
-        if search[0] == search[1] and parameter.name not in setting.bounds:
-            continue  # stays at its default
         count = setting.orders[slot]
         for node in range(count):
+            if is_given(setting, slot, node):
+                continue
             suffix = f"@{setting.nodes_A[node]:g}A" if count > 1 else ""
             out.append(
                 make_variable(
@@ -273,6 +287,15 @@ def variables_of(setting: Setting, scales: Scales) -> list[Variable]:
     return out
 
 
+def is_given(setting: Setting, slot: int, node: int) -> bool:
+    """Whether a parameter's value at this node is not searched: its range is one point, and it does
+    not follow the current or the node is the last, where such parameters (ratios) are normalised."""
+    parameter = setting.model.parameters[slot]
+    is_point = parameter.search_low == parameter.search_high
+    last = setting.orders[slot] - 1
+    return is_point and parameter.name not in setting.bounds and node == last
+
+
 def rig_variable(name: str, setting: Setting, scales: Scales) -> Variable:
     natural = {
         "inertia_kg": scales.force_N * scales.disp_m / scales.speed_m_s**2,
@@ -281,6 +304,8 @@ def rig_variable(name: str, setting: Setting, scales: Scales) -> Variable:
         "skew_s": 1e-3,
         "rise_s": 1e-2,
         "fall_s": 1e-2,
+        "field_exponent": 1.0,
+        "field_saturation": 1.0,
     }[name]
     return make_variable(
         name,
@@ -307,6 +332,8 @@ def make_variable(
     natural: float,
 ) -> Variable:
     bounds = admissible
+    if search[0] == search[1]:  # a ratio: one at the last node, as far as that above others
+        search = (0.01 * search[0], 1.5 * search[0])
     if given is not None:
         bounds = (max(given[0], admissible[0]), min(given[1], admissible[1]))
         if not bounds[0] < bounds[1]:

@@ -117,7 +117,7 @@ def search(
     """Candidates worth polishing, best first."""
     dimensions = len(problem.nonlinear)
     rng = np.random.default_rng(seed)
-    initial = qmc.Sobol(dimensions, seed=rng).random(effort.population)
+    initial = sobol(dimensions, effort.population, rng)
     if starts is not None:
         parts = np.column_stack(
             [problem.variables[k].to_part(starts[:, k]) for k in problem.nonlinear]
@@ -151,6 +151,12 @@ def search(
     chosen = spread(ended.population[order], effort.polished)
     values, _errors = problem.project(values_from(problem, chosen), SEARCH_SUBSTEPS)
     return values
+
+
+def sobol(dimensions: int, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Evenly spread points of the unit cube, [count, dimensions]."""
+    whole = 1 << (count - 1).bit_length()
+    return qmc.Sobol(max(1, dimensions), seed=rng).random(whole)[:count, :dimensions]
 
 
 def spread(parts: np.ndarray, count: int, apart: float = 0.05) -> np.ndarray:
@@ -238,8 +244,7 @@ def from_starts(
     clock = _Clock(problem, effort, progress)
     errors: list[float] = []
     try:
-        parts = qmc.Sobol(max(1, len(problem.nonlinear)), seed=np.random.default_rng(seed))
-        chosen = parts.random(count)[:, : len(problem.nonlinear)]
+        chosen = sobol(len(problem.nonlinear), count, np.random.default_rng(seed))
         values, found = problem.project(values_from(problem, chosen), SEARCH_SUBSTEPS)
         clock.offer(values, found, "starting")
         errors = polish_all(problem, values, effort, clock)
