@@ -1,0 +1,267 @@
+"""Self-tuning fuzzy model of a damper: trained while it runs, by error backpropagation.
+
+  F = force_scale k(i) u(x, v),  u = sum_r mu_r w_r / sum_r mu_r over 25 rules
+
+On line (SelfTuning.update) it needs the measured force after every sample: it is then an adaptive
+estimator, not a prediction. `train` runs it over the data a few times and freezes it: what comes
+out is a forward model, to be judged free-running. Source: STF model of the RD-1005-3 damper, with
+its gradients completed: force_scale, the other antecedent's grade, and sums over all rules that
+share a membership or an output.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from quiesce.damper.data.split import Segment
+from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, positive, silent
+from quiesce.damper.library import Scales
+
+LABELS = 5
+NB, NS, ZE, PS, PB = range(LABELS)
+# Rows displacement, columns velocity, both NB .. PB.
+RULES = np.array(
+    [
+        [NB, NB, NS, ZE, PB],
+        [NB, NS, NS, PS, PB],
+        [NB, NS, ZE, PS, PB],
+        [NB, NS, PS, PS, PB],
+        [NB, ZE, PS, PB, PB],
+    ]
+)
+LEAST_WEIGHT = 1e-6
+
+# What updates may not do: memberships keep apart, overlap and stay near the inputs' range.
+_LEAST_GAP = 0.05
+_OVERLAP = 1.1
+_MOST_BASE = 3.0
+_MOST_CENTRE = 1.2
+_MOST_OUTPUT = 3.0
+
+
+@dataclass
+class Rates:
+    """Of outputs, centres and bases, for errors in parts of force_scale."""
+
+    output: float = 0.1
+    centre: float = 0.01
+    base: float = 0.01
+
+
+@dataclass(frozen=True)
+class Settings:
+    cycles: int = 15  # over the training data
+    most_rows: int = 2500  # of a cycle
+    rates: Rates = field(default_factory=Rates)
+    conjunction: str = "product"  # or "minimum"
+
+
+@dataclass
+class Triangles:
+    """mu = max(0, 1 - 2 |value - centre| / base)."""
+
+    centres: np.ndarray
+    bases: np.ndarray
+
+    @staticmethod
+    def even(low: float, high: float) -> "Triangles":
+        """Neighbours cross at one half."""
+        centres = np.linspace(low, high, LABELS)
+        return Triangles(centres, np.full(LABELS, 2.0 * (centres[1] - centres[0])))
+
+    def grades(self, value: float) -> np.ndarray:
+        return np.maximum(0.0, 1.0 - 2.0 * np.abs(value - self.centres) / self.bases)
+
+    def slopes(self, value: float) -> tuple[np.ndarray, np.ndarray]:
+        """d mu / d centre and d mu / d base; 0 outside of the support."""
+        distance = value - self.centres
+        inside = 2.0 * np.abs(distance) < self.bases
+        return (
+            np.where(inside, 2.0 * np.sign(distance) / self.bases, 0.0),
+            np.where(inside, 2.0 * np.abs(distance) / self.bases**2, 0.0),
+        )
+
+    def guard(self) -> None:
+        """Centres in order and apart, each base wide enough to reach its neighbours and the ends
+        of -1 .. 1: some membership holds everywhere."""
+        low = -_MOST_CENTRE + _LEAST_GAP * np.arange(LABELS)
+        for k in range(LABELS):
+            least = low[k] if k == 0 else max(low[k], self.centres[k - 1] + _LEAST_GAP)
+            most = _MOST_CENTRE - _LEAST_GAP * (LABELS - 1 - k)
+            self.centres[k] = min(max(self.centres[k], least), most)
+        gaps = np.diff(self.centres)
+        least = _OVERLAP * np.maximum(
+            np.append(gaps, 2.0 * (1.0 - self.centres[-1])),
+            np.append(2.0 * (self.centres[0] + 1.0), gaps),
+        )
+        least = np.maximum(least, _LEAST_GAP)
+        self.bases[:] = np.maximum(np.minimum(self.bases, _MOST_BASE), least)
+
+
+@dataclass(frozen=True)
+class Gradients:
+    """Of u."""
+
+    outputs: np.ndarray
+    centres: tuple[np.ndarray, np.ndarray]  # displacement, velocity
+    bases: tuple[np.ndarray, np.ndarray]
+
+
+@dataclass
+class SelfTuning:
+    """Inputs: displacement and velocity in parts of their scales, cut off at +-1, the current in
+    parts of its scale, cut off at 0 and 1."""
+
+    force_scale_N: float
+    disp_scale_m: float
+    velocity_scale_m_s: float
+    current_scale_A: float
+    gains: np.ndarray  # of the current's five labels
+    uses_minimum: bool = False
+    disp: Triangles = field(default_factory=lambda: Triangles.even(-1.0, 1.0))
+    velocity: Triangles = field(default_factory=lambda: Triangles.even(-1.0, 1.0))
+    current: Triangles = field(default_factory=lambda: Triangles.even(0.0, 1.0))
+    outputs: np.ndarray = field(default_factory=lambda: np.array([-1.0, -0.7, 0.0, 0.7, 1.0]))
+
+    def __post_init__(self) -> None:
+        self.gains = np.array(self.gains, dtype=float)
+        positive(self.force_scale_N, "force")
+        positive(self.disp_scale_m, "displacement")
+        positive(self.velocity_scale_m_s, "velocity")
+        positive(self.current_scale_A, "scale of the current")
+
+    def gain(self, current_A: float) -> float:
+        """k."""
+        grades = self.current.grades(min(max(current_A / self.current_scale_A, 0.0), 1.0))
+        return float(grades @ self.gains) / max(float(grades.sum()), LEAST_WEIGHT)
+
+    def _grades(self, disp_m: float, velocity_m_s: float) -> tuple[np.ndarray, ...]:
+        x = min(max(disp_m / self.disp_scale_m, -1.0), 1.0)
+        v = min(max(velocity_m_s / self.velocity_scale_m_s, -1.0), 1.0)
+        by_x, by_v = self.disp.grades(x), self.velocity.grades(v)
+        if self.uses_minimum:
+            heights = np.minimum(by_x[:, None], by_v[None, :])
+        else:
+            heights = by_x[:, None] * by_v[None, :]
+        return np.array([x, v]), by_x, by_v, heights
+
+    def output(self, disp_m: float, velocity_m_s: float) -> float:
+        """u."""
+        heights = self._grades(disp_m, velocity_m_s)[-1]
+        total = max(float(heights.sum()), LEAST_WEIGHT)
+        return float(np.sum(heights * self.outputs[RULES])) / total
+
+    def force_N(self, disp_m: float, velocity_m_s: float, current_A: float) -> float:
+        return self.force_scale_N * self.gain(current_A) * self.output(disp_m, velocity_m_s)
+
+    def gradients(self, disp_m: float, velocity_m_s: float) -> Gradients:
+        """Of u. With the minimum only the smaller grade of a rule passes its gradient on."""
+        (x, v), by_x, by_v, heights = self._grades(disp_m, velocity_m_s)
+        total = float(heights.sum())
+        floored = max(total, LEAST_WEIGHT)
+        u = float(np.sum(heights * self.outputs[RULES])) / floored
+        by_height = (self.outputs[RULES] - (u if total >= LEAST_WEIGHT else 0.0)) / floored
+        if self.uses_minimum:
+            to_x = (by_height * (by_x[:, None] <= by_v[None, :])).sum(axis=1)
+            to_v = (by_height * (by_v[None, :] < by_x[:, None])).sum(axis=0)
+        else:
+            to_x = (by_height * by_v[None, :]).sum(axis=1)
+            to_v = (by_height * by_x[:, None]).sum(axis=0)
+        x_slopes, v_slopes = self.disp.slopes(x), self.velocity.slopes(v)
+        outputs = np.bincount(RULES.ravel(), heights.ravel(), LABELS) / floored
+        return Gradients(
+            outputs,
+            (to_x * x_slopes[0], to_v * v_slopes[0]),
+            (to_x * x_slopes[1], to_v * v_slopes[1]),
+        )
+
+    def update(
+        self, disp_m: float, velocity_m_s: float, current_A: float, measured_N: float, rates: Rates
+    ) -> float:
+        """One sample on line: the force before the update, in N."""
+        k = self.gain(current_A)
+        force_N = self.force_scale_N * k * self.output(disp_m, velocity_m_s)
+        step = k * (force_N - measured_N) / self.force_scale_N
+        gradients = self.gradients(disp_m, velocity_m_s)
+        self.outputs -= rates.output * step * gradients.outputs
+        np.clip(self.outputs, -_MOST_OUTPUT, _MOST_OUTPUT, out=self.outputs)
+        for k_input, triangles in enumerate((self.disp, self.velocity)):
+            triangles.centres -= rates.centre * step * gradients.centres[k_input]
+            triangles.bases -= rates.base * step * gradients.bases[k_input]
+            triangles.guard()
+        return force_N
+
+    def parameters(self) -> dict[str, Any]:
+        """The frozen model's [parameters]."""
+        sets = {"displacement": self.disp, "velocity": self.velocity, "current": self.current}
+        return {
+            "force_scale_N": float(self.force_scale_N),
+            "disp_scale_m": float(self.disp_scale_m),
+            "velocity_scale_m_s": float(self.velocity_scale_m_s),
+            "current_scale_A": float(self.current_scale_A),
+            "conjunction": "minimum" if self.uses_minimum else "product",
+            "outputs": self.outputs.tolist(),
+            "gains": self.gains.tolist(),
+            "rules": RULES.ravel().tolist(),
+            **{
+                name: {"centres": one.centres.tolist(), "bases": one.bases.tolist()}
+                for name, one in sets.items()
+            },
+        }
+
+
+def scheduled_gains(
+    current_A: np.ndarray, force_N: np.ndarray, scale_A: float, force_scale_N: float
+) -> np.ndarray:
+    """Gains of the five labels from the sizes of the forces at the currents that there are:
+    straight lines between them, so that the largest force has a gain of about 1."""
+    levels = np.round(current_A / scale_A, 2)
+    named = np.unique(levels)
+    sizes = np.array([np.quantile(np.abs(force_N[levels == one]), 0.98) for one in named])
+    counts = np.array([np.sum(levels == one) for one in named])
+    kept = counts >= 0.02 * counts.max()
+    nodes = np.linspace(0.0, 1.0, LABELS)
+    return np.interp(nodes, named[kept], sizes[kept]) / force_scale_N
+
+
+def train(
+    segments: Sequence[Segment],
+    scales: Scales,
+    seed: int = 0,
+    settings: Settings | None = None,
+    progress: Report = silent,
+) -> LearnedDamper:
+    """Frozen after the last cycle. The seed is not used: samples come in the order of time."""
+    settings = settings or Settings()
+    disp_m, velocity_m_s, current_A, force_N = (
+        np.concatenate([getattr(one.record, name)[one.rows] for one in segments])
+        for name in ("disp_m", "velocity_m_s", "command", "force_N")
+    )
+    scale_A = max(float(current_A.max()), 1e-9)
+    gains = scheduled_gains(current_A, force_N, scale_A, scales.force_N)
+    model = SelfTuning(
+        scales.force_N, scales.disp_m, scales.speed_m_s, scale_A, gains,
+        settings.conjunction == "minimum",
+    )  # fmt: skip
+    every = max(1, len(force_N) // settings.most_rows)
+    errors: list[float] = []
+    for cycle in range(settings.cycles):
+        before = [
+            model.update(disp_m[k], velocity_m_s[k], current_A[k], force_N[k], settings.rates)
+            for k in range(cycle % every, len(force_N), every)
+        ]
+        rest = np.array(before) - force_N[cycle % every :: every]
+        errors.append(float(np.sqrt(np.mean(rest**2))))
+        progress(f"neuro_fuzzy_stf: cycle {cycle + 1}, {errors[-1]:.4g} N while adapting")
+    return LearnedDamper(
+        "neuro_fuzzy_stf",
+        **limits_of(scales),
+        parameters=model.parameters(),
+        parameter_count=LABELS * 6,
+        notes=(
+            f"root mean square while adapting {errors[0]:.4g} N in the first cycle, "
+            f"{errors[-1]:.4g} N in the last; frozen then",
+        ),
+    )
