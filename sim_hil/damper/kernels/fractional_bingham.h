@@ -56,7 +56,7 @@ struct FractionalBingham {
     /// rate z.
     template <class T>
     static T fractional_derivative(const T &order, const T &v, const T *z, T *rates) {
-        const T phi = clipped(order, T(1e-4), T(1.0 - 1e-4));
+        const T phi = clipped(order, T(1e-6), T(1.0 - 1e-6));
         const T step = exponential(T(kLogRatio) * phi);
         const T slow = exponential(T(kLogSlowest) * phi);
         const T slow_rate = T(kSlowest_rad_s) * (step - T(1.0)) / (step * T(kRatio) - T(1.0));
