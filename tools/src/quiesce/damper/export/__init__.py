@@ -1,0 +1,1 @@
+"""Damper models for other programs: C and MAT files."""
