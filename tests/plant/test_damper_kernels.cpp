@@ -204,7 +204,7 @@ std::size_t different_forces(const quiesce::CandidateRows &candidates, const Sam
     for (const std::string &set : quiesce::instruction_sets()) {
         quiesce::simulate(candidates, grid, set, lanes.data());
         for (std::size_t k = 0; k < scalar.size(); ++k) {
-            different += same_bits(scalar[k], lanes[k]) ? 0 : 1;
+            different += same_bits(scalar[k], lanes[k]) ? 0U : 1U;
         }
     }
     return different;
