@@ -17,10 +17,10 @@ NAME = "export"
 HELP = "a model file as C or MAT"
 ENDINGS = {"c": (".c", ".cpp", ".h"), "mat": (".mat",)}
 EPILOG = """--to c writes two files, FILE.h and the source. A model of equations becomes C++17
-(.cpp) that any such compiler builds and C calls: it holds the library's own text, the numbers and the
-integration. Learned models without memory (anfis, feed_forward_network, support_vector) become
-plain C11 (.c). Functions and types begin with the file's name. The coil's lag and the field law are
-part of it; mass, skew, offset and drift of the rig only with --with-rig.
+(.cpp) that any such compiler builds and C calls: it holds the library's own text, the numbers and
+the integration. Learned models without memory (anfis, feed_forward_network, support_vector) become
+plain C11 (.c). Functions and types begin with the file's name. The coil's lag and the field law
+are part of it; mass, skew, offset and drift of the rig only with --with-rig.
 
 --to mat writes one struct `damper` with parameters, units, laws, rig and validity; any model.
 
