@@ -16,7 +16,7 @@ struct ExtendedTanhBingham {
     using Shape = TanhOfShiftedSpeed;
     static constexpr const char *kName = "extended_tanh_bingham";
     static constexpr const char *kTitle = "extended hyperbolic tangent Bingham (Guo)";
-    static constexpr const char *kSource = "Guo et al. 2006";
+    static constexpr const char *kSource = "Guo et al.";
     static constexpr std::array<ParameterInfo, 4> kParameters{
         {Shape::kSize, Shape::kSlope, Shape::kDamping, Shape::kShift}};
     static constexpr int kStates = 0;

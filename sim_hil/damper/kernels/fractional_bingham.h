@@ -1,4 +1,4 @@
-/// Fractional-derivative Bingham model (Li et al., in the review of 2021):
+/// Fractional-derivative Bingham model (Li et al. 2015):
 ///
 ///   F = fc tanh(D / eps) + c D + f0,   D = d^phi x / dt^phi,   0 <= phi <= 1
 ///
@@ -8,8 +8,9 @@
 /// phase phi pi/2 in 0.2 .. 100 Hz, within 6 % in 0.05 .. 500 Hz. All weights are positive, which
 /// keeps the model dissipative.
 ///
-/// With phi = 0 D is x from where the motion starts, with phi = 1 it is v. D has the unit m/s^phi,
-/// c has N s^phi/m.
+/// With phi = 0 D is x from where the motion starts, with phi = 1 it is v. Before the motion there
+/// is rest: where a recording starts at x0 in full motion, about x0 t^-phi is missing at first. D
+/// has the unit m/s^phi, c has N s^phi/m.
 #ifndef QUIESCE_FRACTIONAL_BINGHAM_H
 #define QUIESCE_FRACTIONAL_BINGHAM_H
 
@@ -23,7 +24,7 @@ namespace quiesce {
 struct FractionalBingham {
     static constexpr const char *kName = "fractional_bingham";
     static constexpr const char *kTitle = "fractional-derivative Bingham";
-    static constexpr const char *kSource = "Li et al., diffusive representation";
+    static constexpr const char *kSource = "Li et al. 2015";
     static constexpr std::array<ParameterInfo, 5> kParameters{{
         {"fc_N", "N", 0.0, kUnbounded, 0.0, 1.5, kForceScale, true, true, "friction"},
         {"c_N_sphi_m", "N s^phi/m", -kUnbounded, kUnbounded, -0.5, 4.0, kDampingScale, true, true,

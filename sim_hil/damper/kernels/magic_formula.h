@@ -6,7 +6,8 @@
 /// Print: A is the shape C, gamma the stiffness B, beta (named B where it occurs again) the
 /// curvature E. The force of the quasi-static design is yield plus viscous; its viscous part is
 /// taken at the shifted speed, which keeps the model dissipative. The printed switch from S_a (a
-/// >= 0) to S_b is blended over a_s. Static; looks at the acceleration.
+/// >= 0) to S_b is blended over a_s. Odd only with S_a = S_b. Static;
+/// looks at the acceleration.
 #ifndef QUIESCE_MAGIC_FORMULA_H
 #define QUIESCE_MAGIC_FORMULA_H
 
