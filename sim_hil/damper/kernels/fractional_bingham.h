@@ -4,8 +4,8 @@
 ///
 /// D is the integral of order 1 - phi of v from rest, a positive sum of first-order lags of v
 /// (diffusive representation), here nine with rates of 0.4 .. 4000 rad/s and one for all slower
-/// ones; the faster ones answer at once. On a sinusoid it is within 1.1 % of X w^phi with the
-/// phase phi pi/2 in 0.2 .. 100 Hz, within 6 % in 0.05 .. 500 Hz. All weights are positive, which
+/// ones; the faster ones answer at once. On a sinusoid it is within 1 % of X w^phi with the
+/// phase phi pi/2 in 0.2 .. 100 Hz, within 7 % in 0.05 .. 500 Hz. All weights are positive, which
 /// keeps the model dissipative.
 ///
 /// With phi = 0 D is x from where the motion starts, with phi = 1 it is v. Before the motion there
