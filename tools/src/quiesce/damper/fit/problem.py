@@ -288,8 +288,8 @@ def variables_of(setting: Setting, scales: Scales) -> list[Variable]:
 
 
 def is_given(setting: Setting, slot: int, node: int) -> bool:
-    """Whether a parameter's value at this node is not searched: its range is one point, and it does
-    not follow the current or the node is the last, where such parameters (ratios) are normalised."""
+    """Whether a parameter's value at this node is not searched: its range is one point, and the node
+    is the last, where such parameters (ratios) are normalised."""
     parameter = setting.model.parameters[slot]
     is_point = parameter.search_low == parameter.search_high
     last = setting.orders[slot] - 1

@@ -1,5 +1,6 @@
 """Fitting: a global search over the nonlinear variables, then least squares over all."""
 
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -22,6 +23,10 @@ class Effort:
     polished: int = 4  # candidates that are polished
     polish_evaluations: int = 60
     seconds: float = np.inf  # of the whole fit
+    stop: threading.Event | None = None  # set from outside: end with the best so far
+
+
+EFFORT = Effort()
 
 
 @dataclass
@@ -36,7 +41,7 @@ class Fit:
     others: list[float] = field(default_factory=list)  # errors of the other polished candidates
 
 
-class _Clock:
+class Clock:
     """Remembers the best candidate; knows when time is up."""
 
     def __init__(self, problem: Problem, effort: Effort, progress: Progress | None) -> None:
@@ -44,6 +49,7 @@ class _Clock:
         self.progress = progress
         self.start_s = time.monotonic()
         self.seconds = effort.seconds
+        self.stop = effort.stop
         self.best: np.ndarray | None = None
         self.error = np.inf
         self.was_stopped = False
@@ -56,7 +62,8 @@ class _Clock:
             self.progress(what, self.error)
 
     def is_over(self) -> bool:
-        if time.monotonic() - self.start_s > self.seconds:
+        is_stopped = self.stop is not None and self.stop.is_set()
+        if is_stopped or time.monotonic() - self.start_s > self.seconds:
             self.was_stopped = True
         return self.was_stopped
 
@@ -90,14 +97,14 @@ def values_from(problem: Problem, parts: np.ndarray) -> np.ndarray:
 def fit(
     problem: Problem,
     seed: int,
-    effort: Effort = Effort(),
+    effort: Effort = EFFORT,
     progress: Progress | None = None,
     starts: np.ndarray | None = None,
 ) -> Fit:
     """Differential evolution over the nonlinear variables (the linear ones projected out), then
     the best few polished. starts: values to begin with among others, [any, variables]. Ctrl-C or
     the end of `effort.seconds` ends it with the best so far."""
-    clock = _Clock(problem, effort, progress)
+    clock = Clock(problem, effort, progress)
     errors: list[float] = []
     try:
         if not problem.nonlinear:
@@ -112,7 +119,7 @@ def fit(
 
 
 def search(
-    problem: Problem, seed: int, effort: Effort, clock: _Clock, starts: np.ndarray | None
+    problem: Problem, seed: int, effort: Effort, clock: Clock, starts: np.ndarray | None
 ) -> np.ndarray:
     """Candidates worth polishing, best first."""
     dimensions = len(problem.nonlinear)
@@ -169,7 +176,7 @@ def spread(parts: np.ndarray, count: int, apart: float = 0.05) -> np.ndarray:
 
 
 def polish_all(
-    problem: Problem, candidates: np.ndarray, effort: Effort, clock: _Clock
+    problem: Problem, candidates: np.ndarray, effort: Effort, clock: Clock
 ) -> list[float]:
     errors = []
     for k, values in enumerate(candidates):
@@ -241,7 +248,7 @@ def from_starts(
     problem: Problem, seed: int, count: int, effort: Effort, progress: Progress | None = None
 ) -> Fit:
     """Least squares from `count` random starts: what baselines get."""
-    clock = _Clock(problem, effort, progress)
+    clock = Clock(problem, effort, progress)
     errors: list[float] = []
     try:
         chosen = sobol(len(problem.nonlinear), count, np.random.default_rng(seed))

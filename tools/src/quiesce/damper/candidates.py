@@ -1,0 +1,109 @@
+"""Which models `identify` tries, and how each is set up for the data.
+
+Published models: parameters up to quadratic in the command, as far as the data have levels, and the
+coil's lag where the command is switched. Networks (viscoplastic_N): parameters linear in the
+effective current of the field law; each starts from the fit of the one with an element less.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from quiesce.damper.data.split import Segment
+from quiesce.damper.fit.setting import Setting, nodes_of
+from quiesce.damper.library import model, models
+
+NETWORK = "viscoplastic_"
+MOST_ELEMENTS = 4
+# Ginder's exponent of particles in a field below saturation: with few levels the data do not tell.
+FIELD_EXPONENT = 1.5
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What the user says about parameters; names that a model does not have are left out."""
+
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    rig: tuple[str, ...] | None = None  # None: chosen by the data
+    most_coefficients: int = 3  # against the current
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model as it is fitted. `grows_from`: the candidate whose fit is a start for this one."""
+
+    name: str
+    model: str
+    is_passive: bool = False  # held passive by bounds
+    grows_from: str | None = None
+
+
+def network_candidates() -> list[Candidate]:
+    """Passive networks, and the larger ones with a stiffness of either sign."""
+    out = []
+    for suffix, passive in (("", True), ("_free", False)):
+        before = None
+        for count in range(1, MOST_ELEMENTS + 1):
+            name = f"{NETWORK}{count}{suffix}"
+            out.append(Candidate(name, f"{NETWORK}{count}", passive, before))
+            before = name
+    return out
+
+
+def parametric_candidates() -> dict[str, Candidate]:
+    """By name: every kernel, networks in the order in which they grow."""
+    published = [Candidate(name, name) for name in models() if not name.startswith(NETWORK)]
+    return {one.name: one for one in [*published, *network_candidates()]}
+
+
+def is_switched(segments: Sequence[Segment]) -> bool:
+    return any(segment.record.level is None for segment in segments)
+
+
+def rig_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice) -> tuple[str, ...]:
+    """What around the model is fitted."""
+    lag = ("rise_s", "fall_s") if is_switched(segments) else ()
+    rig: tuple[str, ...] = ("inertia_kg", "skew_s", *lag) if choice.rig is None else choice.rig
+    if not has_offset(candidate.model) and choice.rig is None:
+        rig += ("offset_N",)
+    if candidate.model.startswith(NETWORK) and len(nodes_of(segments, 2)) > 1:
+        rig += ("field_saturation",)
+        if is_switched(segments) or len(nodes_of(segments)) > 3:
+            rig += ("field_exponent",)
+    return tuple(name for name in rig if name not in choice.fixed)
+
+
+def has_offset(model_name: str) -> bool:
+    return any(one.name == "f0_N" for one in model(model_name).parameters)
+
+
+def setting_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice) -> Setting:
+    """The model of a candidate set up for these segments."""
+    one = model(candidate.model)
+    known = {parameter.name for parameter in one.parameters}
+    rig = rig_of(candidate, segments, choice)
+    fixed = {
+        name: value for name, value in choice.fixed.items() if name in known or name not in rig
+    }
+    fixed = {name: value for name, value in fixed.items() if name in known or is_rig(name)}
+    bounds = {name: value for name, value in choice.bounds.items() if name in known or name in rig}
+    most = min(choice.most_coefficients, 2 if candidate.model.startswith(NETWORK) else 3)
+    nodes = nodes_of(segments, most)
+    if "field_saturation" in rig:
+        nodes = (0.0, nodes[-1])
+        fixed["field_ref_A"] = nodes[-1]
+        if "field_exponent" not in rig:
+            fixed.setdefault("field_exponent", FIELD_EXPONENT)
+    elif is_switched(segments) and most == 3:
+        # While the coil's current moves it passes every level in between.
+        nodes = (nodes[0], 0.5 * (nodes[0] + nodes[-1]), nodes[-1])
+    if candidate.is_passive:
+        low, high = bounds.get("k_N_m", (0.0, 1e15))
+        bounds["k_N_m"] = (max(low, 0.0), high)
+    return Setting(one, nodes, fixed=fixed, bounds=bounds, rig=rig)
+
+
+def is_rig(name: str) -> bool:
+    from quiesce.damper.library import RIG
+
+    return name in RIG

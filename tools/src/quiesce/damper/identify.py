@@ -1,0 +1,372 @@
+"""Every model that was asked for, fitted, validated inside the training part, and judged."""
+
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from time import monotonic
+from typing import Any
+
+import numpy as np
+
+from quiesce.damper import library, passivity
+from quiesce.damper.candidates import (
+    NETWORK,
+    Candidate,
+    Choice,
+    parametric_candidates,
+    setting_of,
+)
+from quiesce.damper.data.record import Record
+from quiesce.damper.data.split import Fold, Segment, inner_split, levels_of
+from quiesce.damper.fit.grown import grown_fit
+from quiesce.damper.fit.intervals import intervals
+from quiesce.damper.fit.problem import Problem
+from quiesce.damper.fit.search import Effort, Fit, fit
+from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted, simulator
+from quiesce.damper.library import FIELD, Scales
+from quiesce.damper.model_file import DamperModel, from_row
+from quiesce.damper.ranking import ranked
+from quiesce.damper.score import Simulate, score
+
+# Stroke and speed that a model file allows, over those in the data.
+MARGIN = 1.25
+# Folds of the inner validation at most.
+MOST_FOLDS = 2
+GREY_BOX = "grey_box"
+
+Told = Callable[[Fitted], None]
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to do: candidates by name (parametric_candidates, learned models, GREY_BOX)."""
+
+    names: Sequence[str]
+    choice: Choice = Choice()
+    seed: int = 1
+    seconds: float = 300.0  # for each model
+    quick: bool = False
+    jobs: int = 2
+    source: dict[str, Any] = field(default_factory=dict)  # of the model files
+    stop: threading.Event = field(default_factory=threading.Event)
+
+
+@dataclass(frozen=True)
+class _Parts:
+    train: list[Segment]
+    test: list[Segment]
+    folds: list[Fold]
+    scales: Scales
+
+
+def all_names() -> list[str]:
+    from quiesce.damper.learned import MODELS
+
+    return [*parametric_candidates(), *MODELS, GREY_BOX]
+
+
+def identify(
+    train: Sequence[Segment],
+    test: Sequence[Segment],
+    plan: Plan,
+    done: Sequence[Fitted] = (),
+    told: Told = lambda _one: None,
+    say: Say = lambda _text: None,
+) -> list[Fitted]:
+    """The models of `plan`, `done` (from an earlier run) included; told: called as each is ready.
+    When plan.stop is set, models under way end with their best so far, others are left out."""
+    folds = inner_split(train)
+    parts = _Parts(
+        list(train),
+        list(test),
+        folds[:: max(1, len(folds) // MOST_FOLDS)][:MOST_FOLDS],
+        Scales.of([segment.record for segment in train]),
+    )
+    results = {one.name: one for one in done}
+    by_fold: dict[str, list[DamperModel]] = {}
+    lock = threading.Lock()
+
+    def keep(one: Fitted) -> None:
+        with lock:
+            results[one.name] = one
+            told(one)
+
+    chains, grey = chains_of([name for name in plan.names if name not in results])
+    with ThreadPoolExecutor(plan.jobs) as pool:
+        futures = [
+            pool.submit(run_chain, chain, parts, plan, by_fold, keep, say) for chain in chains
+        ]
+        try:
+            for future in futures:
+                future.result()
+        except BaseException:
+            plan.stop.set()
+            for future in futures:
+                future.cancel()
+            raise
+    if grey and not plan.stop.is_set():
+        run_grey_box(list(results.values()), parts, plan, by_fold, keep, say)
+    return [results[name] for name in [*plan.names] if name in results]
+
+
+def chains_of(names: Sequence[str]) -> tuple[list[list[Candidate | str]], bool]:
+    """Lists to be done one after the other; and whether a grey box comes at the end. Long ones come
+    first, so that the short ones fill the gaps."""
+    known = parametric_candidates()
+    networks: dict[bool, list[Candidate | str]] = {True: [], False: []}
+    single: list[list[Candidate | str]] = []
+    for name in names:
+        if name == GREY_BOX:
+            continue
+        if name.startswith(NETWORK):
+            networks[known[name].is_passive].append(known[name])
+        else:
+            single.append([known.get(name, name)])
+    return [chain for chain in networks.values() if chain] + single, GREY_BOX in names
+
+
+def run_chain(
+    chain: Sequence[Candidate | str],
+    parts: _Parts,
+    plan: Plan,
+    by_fold: dict[str, list[DamperModel]],
+    keep: Told,
+    say: Say,
+) -> None:
+    before: list[tuple[Problem, Fit]] | None = None
+    for one in chain:
+        if plan.stop.is_set():
+            return
+        if isinstance(one, str):
+            say(f"{one}: learning")
+            keep(fit_learned(one, parts, plan))
+        else:
+            say(f"{one.name}: fitting")
+            fitted, before = fit_candidate(one, parts, plan, before)
+            by_fold[one.name] = [damper_of(one, *fit, parts, plan) for fit in before[:-1]]
+            keep(fitted)
+
+
+# Models with named parameters
+
+
+def fit_candidate(
+    candidate: Candidate,
+    parts: _Parts,
+    plan: Plan,
+    before: list[tuple[Problem, Fit]] | None,
+) -> tuple[Fitted, list[tuple[Problem, Fit]]]:
+    """Fits every fold and the whole training part; `before`: the same of the candidate that this
+    one grows from."""
+    start_s = monotonic()
+    errors, fits = [], []
+    last: tuple[Problem, Fit] | None = None
+    for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
+        setting = setting_of(candidate, parts.train, plan.choice)
+        problem = Problem(setting, rows, "test" if len(rows) > 1 else "sample")
+        smaller = before[k] if before is not None else None
+        found = fit_problem(candidate, problem, plan, smaller, last, start_s)
+        fits.append((problem, found))
+        if validation:
+            last = (problem, found)
+            errors.append(score(simulate_values(problem, found.values), validation).mean_error)
+    problem, found = fits[-1]
+    return judged(candidate, problem, found, errors, parts, plan, monotonic() - start_s), fits
+
+
+def fit_problem(
+    candidate: Candidate,
+    problem: Problem,
+    plan: Plan,
+    smaller: tuple[Problem, Fit] | None,
+    last: tuple[Problem, Fit] | None,
+    start_s: float,
+) -> Fit:
+    left_s = max(1.0, plan.seconds - (monotonic() - start_s))
+    effort = Effort(
+        population=16 if plan.quick else 32,
+        generations=8 if plan.quick else 20,
+        polished=2 if plan.quick else 4,
+        polish_evaluations=20 if plan.quick else 50,
+        seconds=left_s,
+        stop=plan.stop,
+    )
+    if candidate.model.startswith(NETWORK):
+        return grown_fit(problem, plan.seed, [smaller, last], effort)
+    starts = None if last is None else last[1].values[None, :]
+    return fit(problem, plan.seed, effort, starts=starts)
+
+
+def simulate_values(problem: Problem, values: np.ndarray) -> Simulate:
+    row = problem.rows(values)
+
+    def run(record: Record) -> np.ndarray:
+        one, orders = problem.model, problem.orders
+        rate = float(library.fastest_rates(one, orders, row, record)[0]) if one.states else 0.0
+        steps = library.substeps_for(rate, record.rate_Hz)
+        return library.simulate(one, orders, row, library.motion(record), steps)[0]
+
+    return run
+
+
+def judged(
+    candidate: Candidate,
+    problem: Problem,
+    found: Fit,
+    errors: Sequence[float],
+    parts: _Parts,
+    plan: Plan,
+    seconds: float,
+) -> Fitted:
+    damper = damper_of(candidate, problem, found, parts, plan)
+    damper = replace(damper, fit=fit_table(problem, found, errors))
+    simulate = simulator(damper)
+    return Fitted(
+        candidate.name,
+        title_of(candidate),
+        PARAMETRIC,
+        damper,
+        len(problem.variables),
+        score(simulate, parts.train),
+        float(np.mean(errors)),
+        kernel_passivity(damper, parts),
+        seconds,
+        found.is_complete,
+        intervals(problem, found.values) if found.is_complete else [],
+        score(simulate, parts.test) if parts.test else None,
+    )
+
+
+def damper_of(
+    candidate: Candidate, problem: Problem, found: Fit, parts: _Parts, plan: Plan
+) -> DamperModel:
+    return from_row(
+        problem.model,
+        problem.orders,
+        problem.rows(found.values)[0],
+        candidate.name,
+        MARGIN * parts.scales.disp_m,
+        MARGIN * parts.scales.speed_m_s,
+        source=plan.source,
+        valid=valid_of(parts.train),
+    )
+
+
+def title_of(candidate: Candidate) -> str:
+    free = candidate.model.startswith(NETWORK) and not candidate.is_passive
+    return library.model(candidate.model).title + (", stiffness of either sign" if free else "")
+
+
+def fit_table(problem: Problem, found: Fit, errors: Sequence[float]) -> dict[str, Any]:
+    return {
+        "train_error": found.error,
+        "validation_error": float(np.mean(errors)),
+        "evaluations": found.evaluations,
+        "is_complete": found.is_complete,
+        "data": [segment.record.name for segment in problem.segments],
+    }
+
+
+def valid_of(segments: Sequence[Segment]) -> dict[str, Any]:
+    """Ranges in the data."""
+    commands = np.concatenate([one.record.command for one in segments])
+    scales = Scales.of([one.record for one in segments])
+    return {
+        "command": [float(commands.min()), float(commands.max())],
+        "command_unit": segments[0].record.command_unit,
+        "stroke_m": scales.disp_m,
+        "speed_m_s": scales.speed_m_s,
+        "force_N": scales.force_N,
+    }
+
+
+def currents_of(segments: Sequence[Segment]) -> list[float]:
+    levels = levels_of(segments)
+    if len(levels) >= 2:
+        return [levels[0], levels[len(levels) // 2], levels[-1]]
+    commands = np.concatenate([one.record.command for one in segments])
+    return sorted({float(np.quantile(commands, part)) for part in (0.02, 0.5, 0.98)})
+
+
+def kernel_passivity(damper: DamperModel, parts: _Parts) -> passivity.Passivity:
+    one, orders, row = damper.kernel_row()
+    currents = currents_of(parts.train)
+    if passivity.is_proved(one, orders, row, currents):
+        return passivity.Passivity(True, 0.0)
+    offsets = {"f0_N": [0.0] * orders[one.index("f0_N")]} if "f0_N" in damper.parameters else {}
+    keep = {name: value for name, value in damper.rig.items() if name in FIELD}
+    alone = replace(damper, parameters={**damper.parameters, **offsets}, rig=keep)
+    return passivity.Passivity(False, passivity.trial(simulator(alone), parts.scales, currents))
+
+
+# Learned models
+
+
+def fit_learned(name: str, parts: _Parts, plan: Plan, bases: Sequence[DamperModel] = ()) -> Fitted:
+    """bases: what a grey box stands on, fitted to each fold and to the whole training part."""
+    from quiesce.damper.learned import learner
+
+    module = learner("hysteresis_network" if name == GREY_BOX else name)
+    start_s = monotonic()
+    errors = []
+    trained = None
+    for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
+        settings = module.Settings(base=bases[k]) if bases else module.Settings()
+        trained = module.train(rows, parts.scales, plan.seed, settings)
+        if validation:
+            errors.append(score(trained.simulate, validation).mean_error)
+    damper = trained.as_model(name, source=plan.source, valid=valid_of(parts.train))
+    worst = passivity.trial(without_rest(trained.simulate), parts.scales, currents_of(parts.train))
+    return Fitted(
+        name,
+        title_learned(name),
+        BLACK_BOX,
+        damper,
+        trained.parameter_count,
+        score(trained.simulate, parts.train),
+        float(np.mean(errors)),
+        passivity.Passivity(False, worst),
+        monotonic() - start_s,
+        True,
+        [],
+        score(trained.simulate, parts.test) if parts.test else None,
+        list(trained.notes),
+    )
+
+
+def title_learned(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def without_rest(simulate: Simulate) -> Simulate:
+    """Without the force at the first instant, when all is at rest."""
+
+    def run(record: Record) -> np.ndarray:
+        force_N = simulate(record)
+        return force_N - force_N[0]
+
+    return run
+
+
+def run_grey_box(
+    results: Sequence[Fitted],
+    parts: _Parts,
+    plan: Plan,
+    by_fold: dict[str, list[DamperModel]],
+    keep: Told,
+    say: Say,
+) -> None:
+    """A network on top of the best parametric model. What validates it stands on a base that has
+    not seen the validation rows either."""
+    parametric = [one for one in results if one.kind == PARAMETRIC]
+    if not parametric:
+        return
+    base = ranked(parametric)[0]
+    if base.name not in by_fold:  # from an earlier run
+        candidate = parametric_candidates()[base.name]
+        _, fits = fit_candidate(candidate, parts, plan, None)
+        by_fold[base.name] = [damper_of(candidate, *one, parts, plan) for one in fits[:-1]]
+    say(f"{GREY_BOX}: learning what {base.name} leaves")
+    keep(fit_learned(GREY_BOX, parts, plan, [*by_fold[base.name], base.damper]))
