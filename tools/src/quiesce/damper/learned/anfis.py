@@ -25,7 +25,7 @@ _LEAST_STEP = 1e-6
 @dataclass(frozen=True)
 class Settings:
     memberships: int = 3  # of each input
-    epochs: int = 60
+    epochs: int = 120
     ridge: float = 1e-6  # of the mean square of the weights
     first_step: float = 0.02  # of the premises, scaled
 
@@ -62,9 +62,7 @@ def consequents(weights: np.ndarray, force: np.ndarray, ridge: float) -> np.ndar
     """Least squares of force = weights z, [rules]."""
     rules = weights.shape[1]
     gram = weights.T @ weights
-    return np.linalg.solve(
-        gram + ridge * np.trace(gram) / rules * np.eye(rules), weights.T @ force
-    )
+    return np.linalg.solve(gram + ridge * np.trace(gram) / rules * np.eye(rules), weights.T @ force)
 
 
 def premise_gradient(

@@ -111,11 +111,13 @@ def half_steps(records: Sequence[Record], steps: int) -> tuple[np.ndarray, np.nd
     )
 
 
-def states_of(elements: Elements, records: Sequence[Record]) -> dict[int, np.ndarray]:
-    """States [samples, count] by id of the record; equal lengths and rates run together."""
+def states_of(
+    elements: Elements, records: Sequence[Record], speed_m_s: float
+) -> dict[int, np.ndarray]:
+    """States [samples, count] by id of the record, with the steps that a model for this speed gets;
+    equal lengths and rates run together."""
     groups: dict[tuple[int, float, int], list[Record]] = {}
     for record in records:
-        speed_m_s = float(np.abs(record.velocity_m_s).max())
         steps = library.substeps_for(elements.fastest_1_s(speed_m_s), record.rate_Hz)
         groups.setdefault((len(record), record.rate_Hz, steps), []).append(record)
     out = {}

@@ -32,6 +32,8 @@ _COIL_TIMES_S = (0.003, 0.01, 0.03)
 _FIELD_EXPONENT = 1.5
 _SATURATIONS = np.geomspace(0.1, 100.0, 61)
 _NO_SATURATION = 1e12
+# Where two levels tell nothing about it: half the way to saturation at full current.
+_USUAL_SATURATION = 1.0
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,7 @@ def field_for(segments: Sequence[Segment]) -> Field:
     if is_switched(segments) or len(levels) < 2:
         return Field(scale_A, 0, exponent=1.0)
     if len(levels) < 3:
-        return Field(scale_A, 1)
+        return Field(scale_A, 1, saturation=_USUAL_SATURATION)
     return Field(scale_A, 1 if len(levels) < 5 else 2, saturation=saturation_of(segments, scale_A))
 
 
@@ -163,9 +165,7 @@ def saturation_of(segments: Sequence[Segment], scale_A: float) -> float:
 # Features
 
 
-def raw_features(
-    record: Record, states: np.ndarray, base_N: np.ndarray | None
-) -> np.ndarray:
+def raw_features(record: Record, states: np.ndarray, base_N: np.ndarray | None) -> np.ndarray:
     """In the order of the C++ library, SI: [samples, features]."""
     motion = [record.disp_m, record.velocity_m_s, record.accel_m_s2]
     parts = [np.stack(motion, axis=1), states]
@@ -199,10 +199,10 @@ def prepare(
     segments: Sequence[Segment],
     elements: Elements,
     field_law: Field,
-    force_N: float,
+    scales: Scales,
     settings: Settings,
 ) -> Prepared:
-    states = states_of(elements, records_of(segments))
+    states = states_of(elements, records_of(segments), limits_of(scales)["speed_m_s"])
     base = base_file(settings.base) if settings.base else None
     features, powers, targets, blocks = [], [], [], []
     at = 0
@@ -216,15 +216,15 @@ def prepare(
         features.append(raw_features(record, own, base_N)[rows])
         powers.append(field_law.powers(seen_A[rows]))
         above = record.force_N if base_N is None else record.force_N - record.averaged(base_N)
-        targets.append(above[rows] / force_N)
+        targets.append(above[rows] / scales.force_N)
         blocks.append((slice(at, at + one.end - first), record))
         at += one.end - first
     raw = np.concatenate(features)
     means = raw.mean(axis=0)
-    scales = np.maximum(raw.std(axis=0), 1e-9 * np.abs(raw).max(axis=0) + 1e-12)
-    scaled = np.clip((raw - means) / scales, -settings.clip, settings.clip)
+    sizes = np.maximum(raw.std(axis=0), 1e-9 * np.abs(raw).max(axis=0) + 1e-12)
+    scaled = np.clip((raw - means) / sizes, -settings.clip, settings.clip)
     examples = Examples(scaled, np.concatenate(powers), np.concatenate(targets), blocks)
-    return Prepared(examples, means, scales)
+    return Prepared(examples, means, sizes)
 
 
 # Training
@@ -274,9 +274,7 @@ def error_on(member: Corrector, examples: Examples) -> float:
     return float(np.mean((force - examples.target) ** 2))
 
 
-def chosen_decay(
-    examples: Examples, settings: Settings, seed: int, progress: Report
-) -> float:
+def chosen_decay(examples: Examples, settings: Settings, seed: int, progress: Report) -> float:
     """The decay with the least error on contiguous blocks left out in turn."""
     if len(settings.decays) == 1 or settings.folds < 2:
         return settings.decays[0]
@@ -310,7 +308,7 @@ def train(
         raise UsageError("some tests command a current and some a voltage; train on one kind")
     elements = elements_for(segments, settings.base)
     field_law = field_for(segments)
-    prepared = prepare(segments, elements, field_law, scales.force_N, settings)
+    prepared = prepare(segments, elements, field_law, scales, settings)
     decay = chosen_decay(prepared.examples, settings, seed, progress)
     members = []
     for k in range(settings.members):

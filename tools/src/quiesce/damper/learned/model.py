@@ -42,9 +42,7 @@ class LearnedDamper:
 
     def as_model(self, name: str, **more: Any) -> DamperModel:
         """For files; `more`: source, valid, fit."""
-        return DamperModel(
-            name, self.model, self.stroke_m, self.speed_m_s, self.parameters, **more
-        )
+        return DamperModel(name, self.model, self.stroke_m, self.speed_m_s, self.parameters, **more)
 
     @cached_property
     def _damper(self) -> DamperFile:
@@ -82,10 +80,6 @@ def relative_error(model: LearnedDamper, segments: Sequence[Segment]) -> float:
     forces = {
         id(record): record.averaged(model.simulate(record)) for record in records_of(segments)
     }
-    errors = [
-        forces[id(one.record)][one.rows] - one.record.force_N[one.rows] for one in segments
-    ]
+    errors = [forces[id(one.record)][one.rows] - one.record.force_N[one.rows] for one in segments]
     measured = [one.record.force_N[one.rows] for one in segments]
-    return float(
-        np.linalg.norm(np.concatenate(errors)) / np.linalg.norm(np.concatenate(measured))
-    )
+    return float(np.linalg.norm(np.concatenate(errors)) / np.linalg.norm(np.concatenate(measured)))

@@ -25,9 +25,7 @@ class Network:
     @property
     def values(self) -> list[np.ndarray]:
         """All parameters, layer by layer; the arrays themselves."""
-        return [
-            one for pair in zip(self.weights, self.biases, strict=True) for one in pair
-        ]
+        return [one for pair in zip(self.weights, self.biases, strict=True) for one in pair]
 
     @property
     def parameter_count(self) -> int:

@@ -35,9 +35,7 @@ def earlier(force: np.ndarray, feedback: Sequence[int]) -> np.ndarray:
     """Delayed forces [samples, feedback]; 0 before the first."""
     padded = np.concatenate([np.zeros(max(feedback)), force])
     first = max(feedback)
-    return np.stack(
-        [padded[first - lag : first - lag + len(force)] for lag in feedback], axis=1
-    )
+    return np.stack([padded[first - lag : first - lag + len(force)] for lag in feedback], axis=1)
 
 
 def free_run(network: Network, inputs: np.ndarray, feedback: Sequence[int]) -> np.ndarray:
@@ -55,9 +53,7 @@ def free_run(network: Network, inputs: np.ndarray, feedback: Sequence[int]) -> n
 
 def free_error(network: Network, series: Sequence[Series], feedback: Sequence[int]) -> float:
     """Root mean square over what is to be learned, of the largest force."""
-    errors = [
-        (free_run(network, one.inputs, feedback) - one.force)[one.first :] for one in series
-    ]
+    errors = [(free_run(network, one.inputs, feedback) - one.force)[one.first :] for one in series]
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 

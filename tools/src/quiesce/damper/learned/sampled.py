@@ -63,6 +63,8 @@ def series_of(
         rows = rows[rows < one.end]
         inputs = delayed(box.picked(one.record)[rows], box, lags)
         out.append(
-            Series(inputs, one.record.force_N[rows] / force_N, int(np.searchsorted(rows, one.first)))
+            Series(
+                inputs, one.record.force_N[rows] / force_N, int(np.searchsorted(rows, one.first))
+            )
         )
     return out
