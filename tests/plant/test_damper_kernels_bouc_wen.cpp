@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <type_traits>
 
 #include "damper_motion.h"
@@ -162,7 +163,13 @@ TEST(ViscousDahl, asymmetry_by_hand) {
 template <class Kernel>
 class Hysteresis : public testing::Test {};
 using Kernels = testing::Types<BoucWen, KwokBoucWen, ModifiedBoucWen, ModifiedDahl, ViscousDahl>;
-TYPED_TEST_SUITE(Hysteresis, Kernels);
+struct KernelName {
+    template <class Kernel>
+    static std::string GetName(int /*index*/) {
+        return Kernel::kName;
+    }
+};
+TYPED_TEST_SUITE(Hysteresis, Kernels, KernelName);
 
 /// Random parameters without offset, k >= 0 and, for the passive ones, the rest as it must be.
 template <class Kernel>
