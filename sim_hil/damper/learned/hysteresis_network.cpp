@@ -82,22 +82,23 @@ double HysteresisNetwork::field(double current_A) const {
 }
 
 /// What the networks add to the base.
-double HysteresisNetwork::correction_N(const std::vector<double> &p, double current_A) const {
+double HysteresisNetwork::correction_N(const std::vector<double> &features,
+                                       double current_A) const {
     std::vector<double> heads(members_.front().output_count(), 0.0);
     std::vector<double> one(heads.size());
     for (const Network &member : members_) {
-        member.run(p.data(), one.data());
+        member.run(features.data(), one.data());
         for (std::size_t k = 0; k < heads.size(); ++k) {
             heads[k] += one[k] / static_cast<double>(members_.size());
         }
     }
     const double g = field(current_A);
-    const double *skip = params_.skip.data();
+    const double *skip = params_.skifeatures.data();
     double power = 1.0;
     double sum = 0.0;
     for (const double head : heads) {
-        sum += power * std::inner_product(p.begin(), p.end(), skip, head);
-        skip += p.size();
+        sum += power * std::inner_product(features.begin(), features.end(), skip, head);
+        skip += features.size();
         power *= g;
     }
     return params_.force_scale_N * sum;
