@@ -413,8 +413,12 @@ def test_validation_takes_the_last_quarter_or_leaves_a_level_out() -> None:
     three = [whole(plain_record(np.full(100, level))) for level in (0.0, 0.5, 1.0, 0.5)]
     assert levels_of(three) == [0.0, 0.5, 1.0]
     (fit, validation), = inner_split(three)  # fmt: skip
-    assert len(fit) == 2 and [s.record.level for s in validation] == [0.5, 0.5]
-    assert len(inner_split(three, ends=True)) == 3
+    assert [s.record.level for s in fit] == [0.0, 1.0, 0.5]
+    assert [s.record.level for s in validation] == [0.5]
+    four = [whole(plain_record(np.full(100, level))) for level in (0.0, 0.5, 1.0, 1.5)]
+    left_out = [[s.record.level for s in part] for _, part in inner_split(four)]
+    assert left_out == [[0.5], [1.0]]
+    assert len(inner_split(four, ends=True)) == 4
     switched = [Segment(plain_record(np.arange(400) % 100 / 50.0), 100, 300)]
     (fit, validation), = inner_split([*three, *switched])  # fmt: skip
     assert (validation[-1].first, validation[-1].end) == (250, 300)

@@ -52,9 +52,9 @@ struct KwokTanh {
     }
     static double stiffest_N_m(const double *p) { return std::abs(p[kK]); }
 
-    /// Only without the hysteresis' displacement term: it gives force at rest.
+    /// From rest at mid-stroke: the force rises with v, and at v = 0 it is the slope of a potential.
     static bool is_passive(const double *p) {
-        return p[kC] >= 0.0 && p[kK] >= 0.0 && p[kAlpha] >= 0.0 && p[kDelta] == 0.0;
+        return p[kC] >= 0.0 && p[kK] >= 0.0 && p[kAlpha] >= 0.0 && p[kDelta] >= 0.0;
     }
 };
 

@@ -1,161 +1,132 @@
-"""`quiesce bench identify`: plants with known truth, recorded in simulation and identified."""
+"""`quiesce bench identify`: damper models on measured dampers, on synthetic truth, and speed."""
 
 import argparse
-import math
-import tempfile
-from dataclasses import replace
+import json
+import os
+from collections.abc import Callable
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 from quiesce.bench_report import Figure, Report
-from quiesce.control.sweep import SweepPlan
 from quiesce.errors import UsageError
 from quiesce.progress import Progress
-from quiesce.table import format_table
 
 NAME = "identify"
-HELP = "plants with known truth, identified from simulated recordings"
-DESCRIPTION = """Records simulated plants with their sensor's noise, identifies each from its
-recording and compares: frequencies, damping, force, lag, and what matters, the reductions under
-constant current and under pulses. Repeats one plant with other noise: do the reported 95 %
-intervals hold the truth in 95 % of the cases?"""
+HELP = "damper models: measured dampers held out, synthetic truth, speed"
+DESCRIPTION = """Measured dampers by the rules of bench/dampers/scoring.toml: the better of two
+static baselines, and our models, chosen by validation inside the training part and scored on held-out
+rows. One parameter set over five currents. Synthetic truth: are parameters and intervals right?
+Speed of the batched evaluator against scipy's integrator and against ourselves, one by one, and of
+a whole fit against scipy's differential evolution."""
 
-QUICK_CASES = ("nominal", "lag 10 ms", "frequencies +10 %")
-# The repeated recordings: short, since intervals must hold whatever their width.
-SEED_PLAN = SweepPlan(sweep_s=20.0, dwell_Hz=(5.0, 12.0), hold_s=0.5, rest_s=1.5)
-# The 95 % intervals of 1.96 standard errors.
-SIGMAS = 1.96
+PARTS = ("real", "one-set", "truth", "bw7", "speed")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--case", metavar="TEXT", help="only cases whose name contains this")
-    parser.add_argument("--seeds", type=int, metavar="N", help="noise seeds (20; --quick 6)")
-
-
-def true_values() -> dict[str, float]:
-    """Of squeeze_2012, by the names of the parameters, for a modal mass of 1 kg."""
-    from quiesce.control.identify_cases import PLANTS
-    from quiesce.control.plant import Plant
-    from quiesce.control.variant import read_plant_data
-    from quiesce.paths import root
-
-    file = root() / PLANTS / "squeeze_2012.toml"
-    table, modes = read_plant_data(file), Plant(file).modes
-    values = {"delay_ms": 0.0, "corner_Hz": table["shaker"]["corner_Hz"], "yield_exponent": 1.0}
-    for i, mode in enumerate(modes, 1):
-        values[f"mode{i}_freq_Hz"] = mode.freq_Hz
-        values[f"mode{i}_damping_ratio"] = mode.damping_ratio
-        values[f"mode{i}_residue_m_s2_V"] = (
-            mode.at_force * mode.at_sensor * table["shaker"]["gain_N_V"]
-        )
-    values["mode2_shape_ratio"] = abs(modes[1].at_sensor / modes[0].at_sensor)
-    values["force_scale"] = table["damper"]["force_scale"] * modes[0].at_damper ** 2
-    values["viscosity_ratio"] = table["damper"]["viscosity_ratio"]
-    return values | {"rise_s": table["coil"]["rise_s"], "fall_s": table["coil"]["fall_s"]}
-
-
-def scores(seeds: int, progress: Progress) -> dict[str, list[float]]:
-    """Distance from the truth in standard errors, by parameter, one a seed."""
-    from quiesce.control.identify_cases import Case, compare
-    from quiesce.control.identify_fit import is_linear
-
-    truth = true_values()
-    found: dict[str, list[float]] = {name: [] for name in truth}
-    case = Case("nominal, short recording", plan=SEED_PLAN)
-    for seed in range(101, 101 + seeds):
-        with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
-            fit = compare(case, Path(folder), seed).found.fit
-        for name, true in truth.items():
-            value = fit.values[name]
-            error = value - true if is_linear(name) else math.log(value / true)
-            found[name].append(error / fit.error(name))
-        progress.done(f"seed {seed}")
-    return found
-
-
-def coverage_table(found: dict[str, list[float]]) -> str:
-    rows = [
-        [
-            name,
-            f"{np.mean(values):.2f}",
-            f"{np.std(values):.2f}",
-            f"{100.0 * np.mean(np.abs(values) < SIGMAS):.0f}",
-        ]
-        for name, values in found.items()
-    ]
-    head = ["parameter", "mean error / s.e.", "spread / s.e.", "truth in 95 % interval, %"]
-    return format_table(head, rows)
-
-
-def case_row(one) -> list[str]:
-    fit = one.found.fit
-    return [
-        one.case.name,
-        f"{one.freq_pct:.4f}",
-        "-" if math.isnan(one.damping_pct) else f"{one.damping_pct:.2f}",
-        "-" if math.isnan(one.force_pct) else f"{one.force_pct:+.2f}",
-        f"{one.rise_ms:+.2f} / {one.fall_ms:+.2f}",
-        *(f"{value:.2f}" for value in one.points.values()),
-        f"{fit.misfit:.2f}",
-        str(len(one.found.warnings)),
-    ]
-
-
-CASE_HEAD = (
-    "plant",
-    "freq %",
-    "damping %",
-    "force %",
-    "lag rise/fall ms",
-    "const amp",
-    "accel",
-    "pulse amp",
-    "accel",
-    "misfit",
-    "warnings",
-)
-
-
-def chosen_cases(args: argparse.Namespace):
-    from quiesce.control.identify_cases import CASES
-
-    cases = [one for one in CASES if not args.quick or one.name in QUICK_CASES]
-    cases = [one for one in cases if args.case is None or args.case in one.name]
-    if not cases:
-        raise UsageError(f"--case {args.case}: there are: {', '.join(c.name for c in CASES)}")
-    return cases
+    parser.add_argument("--part", action="append", choices=PARTS, help="only this; repeatable")
+    parser.add_argument("--set", action="append", metavar="NAME", help="only this measured set")
+    parser.add_argument(
+        "--models", metavar="NAMES", help="models for the measured sets, with commas, or all"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="(%(default)d)")
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="threads (%(default)s)"
+    )
 
 
 def measure(args: argparse.Namespace, folder: Path) -> Report:
-    from quiesce.control.identify_cases import compare
-
-    cases = chosen_cases(args)
-    seeds = (6 if args.quick else 20) if args.seeds is None else args.seeds
-    progress = Progress(len(cases) + seeds)
-    compared = []
-    for case in cases:
-        with tempfile.TemporaryDirectory(prefix="quiesce-") as scratch:
-            compared.append(replace(compare(case, Path(scratch), seed=1), case=case))
-        progress.done(case.name)
-    found = scores(seeds, progress)
-    tables = [format_table(CASE_HEAD, [case_row(one) for one in compared])]
-    tables += [coverage_table(found)] if seeds else []
-    context = {"cases": len(cases), "seeds": seeds, "noise_mg": 0.5}
-    return Report(NAME, figures_of(compared, found, seeds), context, tables)
+    parts = args.part or list(PARTS)
+    figures: list[Figure] = []
+    tables: list[str] = []
+    absent: list[str] = []
+    if "real" in parts:
+        collect(real_part(args, folder), figures, tables, absent)
+    if "one-set" in parts:
+        collect(one_set_part(args), figures, tables, absent)
+    for name in ("truth", "bw7", "speed"):
+        if name in parts:
+            collect(module_part(name, args, folder), figures, tables, absent)
+    context: dict[str, Any] = {"seed": args.seed, "quick": args.quick, "parts": list(parts)}
+    return Report(NAME, figures, context, tables, absent)
 
 
-def figures_of(compared: list, found: dict[str, list[float]], seeds: int) -> list[Figure]:
-    held = [abs(value) < SIGMAS for values in found.values() for value in values]
-    lags = [abs(lag) for one in compared for lag in (one.rise_ms, one.fall_ms)]
-    forces = [abs(one.force_pct) for one in compared if not math.isnan(one.force_pct)]
-    dampings = [one.damping_pct for one in compared if not math.isnan(one.damping_pct)]
-    coverage = 100.0 * float(np.mean(held)) if seeds else None
+def collect(
+    found: tuple[list[Figure], list[str], list[str]],
+    figures: list[Figure],
+    tables: list[str],
+    absent: list[str],
+) -> None:
+    for out, new in zip((figures, tables, absent), found, strict=True):
+        out.extend(new)
+
+
+def real_part(args: argparse.Namespace, folder: Path) -> tuple[list[Figure], list[str], list[str]]:
+    from quiesce import damper_real as real
+    from quiesce.cmd_identify import names_of
+
+    entries = real.rules()["set"]
+    known = [entry["name"] for entry in entries]
+    for name in args.set or []:
+        if name not in known:
+            raise UsageError(f"--set {name}: there are {', '.join(known)}")
+    chosen = [one for one in entries if not args.set or one["name"] in args.set]
+    models = names_of(args.models) if args.models else list(real.MODELS)
+    data = real.data_folder()
+    if data is None:
+        return absent_figures(chosen), [], [f"no measurements at {real.DATA}: sets not judged"]
+    figures, tables = [], []
+    progress = Progress(len(chosen) * (len(models) + 1))
+    for entry in chosen:
+        result = real.run_set(entry, data, models, args.seed, args.quick, args.jobs, progress.done)
+        figures += result.figures()
+        tables.append(result.table())
+        write_models(folder, result)
+    return figures, tables, []
+
+
+def write_models(folder: Path, result: Any) -> None:
+    """The models of a set's winners, and all errors, for reports."""
+    from quiesce.damper.report.tables import json_model
+
+    rows = [json_model(one) for one in result.fitted]
+    text = json.dumps(rows, indent=1, default=str)
+    (folder / f"{result.name}.json").write_text(text + "\n", encoding="utf-8")
+    winner = result.winner.damper.to_toml()
+    (folder / f"{result.name}.toml").write_text(winner, encoding="utf-8")
+
+
+def absent_figures(entries: list[dict[str, Any]]) -> list[Figure]:
+    from quiesce.damper_real import GOALS
+
     return [
-        Figure("worst_reduction_pts", max(c.worst_points for c in compared), "point", 1.0, "lower"),
-        Figure("worst_freq_pct", max(c.freq_pct for c in compared), "%", 0.1, "lower"),
-        Figure("worst_damping_pct", max(dampings, default=None), "%", 5.0, "lower"),
-        Figure("worst_force_pct", max(forces, default=None), "%", None, "lower"),
-        Figure("worst_lag_ms", max(lags), "ms", 0.5, "lower"),
-        Figure("interval_95_holds_pct", coverage, "%", 90.0, "higher"),
+        Figure(f"unexplained_ratio_{one['name']}", None, "1", GOALS[one["name"]][0], "lower")
+        for one in entries
     ]
+
+
+def one_set_part(args: argparse.Namespace) -> tuple[list[Figure], list[str], list[str]]:
+    from quiesce import damper_one_set as one
+    from quiesce.damper_real import DATA, data_folder
+
+    data = data_folder()
+    if data is None:
+        goal = one.IN_SAMPLE_GOAL_pct
+        missing = [Figure("one_set_in_sample_pct", None, "%", goal, "lower")]
+        return missing, [], [f"no measurements at {DATA}: the five currents were not judged"]
+    records = one.records_of_test(data)
+    say: Callable[[str], None] = Progress(4 if args.quick else 8).done
+    figures, table = one.one_set(records, args.seed, say)
+    tables = [table]
+    if not args.quick:
+        tables.append(one.scenarios(records, args.seed, say))
+    return figures, tables, []
+
+
+def module_part(
+    name: str, args: argparse.Namespace, folder: Path
+) -> tuple[list[Figure], list[str], list[str]]:
+    """Parts that need no data: modules with measure(quick, seed, folder)."""
+    from importlib import import_module
+
+    figures, text = import_module(f"quiesce.damper_{name}").measure(args.quick, args.seed, folder)
+    return figures, [text], []

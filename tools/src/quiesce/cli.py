@@ -10,6 +10,7 @@ from quiesce import (
     cmd_bench,
     cmd_chain,
     cmd_hil,
+    cmd_identify,
     cmd_params,
     cmd_plant,
     cmd_record,
@@ -36,6 +37,7 @@ COMMANDS = (
     cmd_chain,
     cmd_rules,
     cmd_sweep,
+    cmd_identify,
     cmd_tune,
     cmd_bench,
 )
@@ -47,6 +49,7 @@ EPILOG = """examples:
   quiesce params                                every parameter of the controller
   quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
   quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
+  quiesce identify FILE.csv --model all         damper models from a test rig's recording
   quiesce tune my_plant.toml                    pulses of current for my own plant
   quiesce bench signal --check                  the sensing chain's figures and goals
 
@@ -85,7 +88,7 @@ def say(message: object) -> None:
 
 
 def run(arguments: list[str]) -> int:
-    args = make_parser().parse_args(arguments)
+    args = make_parser().parse_args(cmd_identify.with_action(arguments))
     status = args.run(args)
     sys.stdout.flush()
     return status

@@ -17,7 +17,8 @@ def simulator_of_file(file: Path) -> tuple[DamperModel, Simulate]:
     damper = read_model(file)
     if damper.is_kernel:
         return damper, simulator(damper)
-    return damper, with_rig(DamperFile(file), damper.rig)
+    # The file itself: keys that only its own model knows stay as they are.
+    return damper, with_rig(DamperFile(file), dict(damper.rig))
 
 
 def with_rig(model: DamperFile, rig: dict[str, float]) -> Simulate:

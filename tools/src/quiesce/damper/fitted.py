@@ -7,7 +7,7 @@ import numpy as np
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
 from quiesce.damper.fit.intervals import Interval
-from quiesce.damper.model_file import DamperModel
+from quiesce.damper.model_file import DamperModel, opened
 from quiesce.damper.passivity import Passivity
 from quiesce.damper.score import Score, Simulate
 
@@ -49,6 +49,6 @@ def simulator(damper: DamperModel) -> Simulate:
             return library.simulate(one, orders, row, library.motion(record), steps)[0]
 
         return of_kernel
-    from quiesce.damper.learned import simulator_of
+    from quiesce.damper.file_force import with_rig
 
-    return simulator_of(damper)
+    return with_rig(opened(damper), dict(damper.rig))

@@ -193,10 +193,20 @@ def fit_problem(
         seconds=left_s,
         stop=plan.stop,
     )
+    if plan.choice.method != "default":
+        return paper_method(plan.choice.method)(problem, plan.seed, effort)
     if candidate.model.startswith(NETWORK):
         return grown_fit(problem, plan.seed, [smaller, last], effort)
     starts = None if last is None else last[1].values[None, :]
     return fit(problem, plan.seed, effort, starts=starts)
+
+
+def paper_method(name: str) -> Callable[[Problem, int, Effort], Fit]:
+    """The searches that the papers used, over all variables."""
+    from quiesce.damper.fit.binary_ga import fit_binary_ga
+    from quiesce.damper.fit.thesis_de import fit_thesis_de
+
+    return {"ga": fit_binary_ga, "de": fit_thesis_de}[name]
 
 
 def simulate_values(problem: Problem, values: np.ndarray) -> Simulate:

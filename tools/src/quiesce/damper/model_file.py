@@ -1,5 +1,6 @@
 """Damper files (schema quiesce-damper): what identification writes and plants read."""
 
+import tempfile
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -93,6 +94,14 @@ def from_row(
 def write_model(file: Path, damper: DamperModel) -> None:
     with output_files(file.parent) as staging:
         (staging / file.name).write_text(damper.to_toml(), encoding="utf-8")
+
+
+def opened(damper: DamperModel) -> DamperFile:
+    """A model that is in no file yet, in the library."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "damper.toml"
+        file.write_text(damper.to_toml(), encoding="utf-8")
+        return DamperFile(file)
 
 
 def read_model(file: Path) -> DamperModel:

@@ -163,16 +163,22 @@ def levels_of(segments: Sequence[Segment]) -> list[float]:
 def inner_split(segments: Sequence[Segment], ends: bool = False) -> list[Fold]:
     """(fit, validation) folds.
 
-    With three or more constant levels of the command, each level is left out once; the lowest and
-    the highest only with `ends`, since without them a model would have to extrapolate. Otherwise
-    one fold: the last quarter of every segment is for validation.
+    With four or more constant levels of the command, each level is left out once; the lowest and
+    the highest only with `ends`, since without them a model would have to extrapolate. With three
+    levels a model needs all of them to know how it follows the command: every other test of the
+    middle one is for validation, where that has several. Otherwise one fold: the last quarter of
+    every segment is for validation.
     """
     levels = levels_of(segments)
     is_constant = all(segment.record.level is not None for segment in segments)
-    if len(levels) < 3 or not is_constant:
-        return [last_quarter(segments)]
-    left_out = levels if ends else levels[1:-1]
-    return [leave_out(segments, level) for level in left_out]
+    if is_constant and len(levels) >= 4:
+        left_out = levels if ends else levels[1:-1]
+        return [leave_out(segments, level) for level in left_out]
+    if is_constant and len(levels) == 3:
+        fit, middle = leave_out(segments, levels[1])
+        if len(middle) >= 2:
+            return [(fit + middle[::2], middle[1::2])]
+    return [last_quarter(segments)]
 
 
 def leave_out(segments: Sequence[Segment], level: float) -> Fold:

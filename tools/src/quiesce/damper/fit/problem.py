@@ -80,16 +80,16 @@ class Problem:
 
     def __init__(self, setting: Setting, segments: Sequence[Segment], weigh: str = "test") -> None:
         self.setting = setting
-        self.segments = list(segments)
-        self.scales = Scales.of([segment.record for segment in segments])
-        self.records = unique_records(segments)
+        self.segments = trimmed(segments)
+        self.scales = Scales.of([segment.record for segment in self.segments])
+        self.records = unique_records(self.segments)
         self._motions = {id(record): library.motion(record) for record in self.records}
         self.variables = variables_of(setting, self.scales)
         self.nonlinear = [k for k, one in enumerate(self.variables) if not one.is_linear]
         self.linear = [k for k, one in enumerate(self.variables) if one.is_linear]
         self.orders = setting.orders
         self._law = law_matrix(setting.nodes_A)
-        self._weights = weights_of(segments, weigh)
+        self._weights = weights_of(self.segments, weigh)
         self.target = self._scored(
             {id(record): record.force_N[None, :] for record in self.records}
         )[0]
@@ -236,6 +236,21 @@ class Problem:
         return out
 
 
+def trimmed(segments: Sequence[Segment]) -> list[Segment]:
+    """The same rows, of records that end with the last one that is scored: what follows need not
+    be simulated. A record whose force is averaged stays as it is."""
+    ends: dict[int, int] = {}
+    for one in segments:
+        ends[id(one.record)] = max(ends.get(id(one.record), 0), one.end)
+    cut: dict[int, Record] = {}
+    for one in segments:
+        key, end = id(one.record), ends[id(one.record)]
+        if key not in cut:
+            is_whole = end == len(one.record) or one.record.average_samples > 1
+            cut[key] = one.record if is_whole else one.record.rows(0, end)
+    return [Segment(cut[id(one.record)], one.first, one.end) for one in segments]
+
+
 def unique_records(segments: Sequence[Segment]) -> list[Record]:
     return list({id(segment.record): segment.record for segment in segments}.values())
 
@@ -288,8 +303,8 @@ def variables_of(setting: Setting, scales: Scales) -> list[Variable]:
 
 
 def is_given(setting: Setting, slot: int, node: int) -> bool:
-    """Whether a parameter's value at this node is not searched: its range is one point, and the node
-    is the last, where such parameters (ratios) are normalised."""
+    """Whether a parameter's value at this node is not searched: its range is one point, and the
+    node is the last, where such parameters (ratios) are normalised."""
     parameter = setting.model.parameters[slot]
     is_point = parameter.search_low == parameter.search_high
     last = setting.orders[slot] - 1
