@@ -93,7 +93,7 @@ double HysteresisNetwork::correction_N(const std::vector<double> &features,
         }
     }
     const double g = field(current_A);
-    const double *skip = params_.skifeatures.data();
+    const double *skip = params_.skip.data();
     double power = 1.0;
     double sum = 0.0;
     for (const double head : heads) {
