@@ -16,6 +16,7 @@ from quiesce.damper.fit.intervals import Interval
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted, simulator
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.passivity import Passivity
+from quiesce.damper.plain import plain
 from quiesce.damper.report.page import write_report
 from quiesce.damper.report.plots import errors_by_command, window
 from quiesce.damper.report.runs import (
@@ -28,7 +29,6 @@ from quiesce.damper.report.runs import (
 from quiesce.damper.report.tables import (
     json_report,
     percent,
-    plain,
     ranking_table,
     status_of,
     text_report,

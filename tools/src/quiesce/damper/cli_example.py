@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from quiesce.damper.example import EXAMPLE, truth_file, write_example
+from quiesce.damper.cli_help import fill
 from quiesce.errors import UsageError
 from quiesce.paths import shown
 
@@ -20,6 +20,7 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
+    fill(parser, EPILOG)
     parser.add_argument(
         "--out", type=Path, default=Path("example.csv"), metavar="FILE.csv",
         help="file to write (%(default)s)",
@@ -27,6 +28,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.damper.example import EXAMPLE, truth_file, write_example
+
     if args.out.suffix.lower() != ".csv":
         raise UsageError(f"--out {args.out}: the example is a CSV file; name it FILE.csv")
     write_example(args.out)

@@ -8,8 +8,8 @@ import tomli_w
 
 from quiesce.atomic import output_files
 from quiesce.damper.cli_help import fill, number
+from quiesce.damper.plain import plain
 from quiesce.damper.plan import KINDS, Damper, Plan, Test, excitation, make_plan, needs
-from quiesce.damper.report.tables import plain
 from quiesce.paths import shown
 from quiesce.table import format_table
 

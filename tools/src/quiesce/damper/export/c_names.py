@@ -1,7 +1,7 @@
 """What every exported C model shares: its header, its numbers, and the names of its functions."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from quiesce.damper.library import RIG
@@ -66,8 +66,9 @@ def facts(damper: DamperModel, title: str, with_rig: bool) -> list[str]:
         f"{comment(damper.name)}: {comment(title)}",
         f"stroke {damper.stroke_m:g} m, speed {damper.speed_m_s:g} m/s",
     ]
-    lines += [f"source, {comment(key)}: {comment(text)}" for key, text in damper.source.items()]
-    lines += [f"valid, {comment(key)}: {comment(text)}" for key, text in damper.valid.items()]
+    for what, table in (("source", damper.source), ("valid", damper.valid)):
+        pairs = table.items() if isinstance(table, Mapping) else [("text", table)]
+        lines += [f"{what}, {comment(key)}: {comment(text)}" for key, text in pairs]
     left_out = [name for name in RIG[2:6] if damper.rig.get(name)] if not with_rig else []
     if left_out:
         lines.append(f"left out, of the rig it was measured on: {', '.join(left_out)}")

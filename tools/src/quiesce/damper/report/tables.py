@@ -5,11 +5,10 @@ import tomllib
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from quiesce.damper.data.split import Segment, levels_of
 from quiesce.damper.fit.intervals import Interval, Whiteness
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
+from quiesce.damper.plain import plain
 from quiesce.damper.ranking import best, ranked
 from quiesce.damper.score import Score, SegmentScore
 from quiesce.table import format_table
@@ -239,18 +238,3 @@ def json_segment(one: SegmentScore) -> dict[str, Any]:
         "error": one.error,
         "largest_error_N": one.largest_N,
     }
-
-
-def plain(value: Any) -> Any:
-    """Numbers, texts, lists and dicts only, so that any JSON reader takes it."""
-    if isinstance(value, dict):
-        return {str(key): plain(one) for key, one in value.items()}
-    if isinstance(value, list | tuple | np.ndarray):
-        return [plain(one) for one in value]
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    return value if value is None or isinstance(value, str) else str(value)
