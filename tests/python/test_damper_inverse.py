@@ -23,7 +23,7 @@ from quiesce.damper.inverse import (
     steady_forces,
     why_no_closed_form,
 )
-from quiesce.damper.model_file import DamperModel
+from quiesce.damper.model_file import DamperModel, read_model
 from quiesce.errors import UsageError
 
 pytestmark = pytest.mark.usefixtures("build")
@@ -179,6 +179,12 @@ def test_largest_current_has_to_be_above_zero(current_A: float) -> None:
     for make in (ClosedForm, InverseByInterpolation, monotone_range):
         with pytest.raises(UsageError, match="above 0"):
             make(dissipative_tanh(), current_A)
+
+
+def test_published_file_of_kwoks_model_is_monotone_to_about_1_88_A() -> None:
+    """With its sign of the displacement: mid-stroke is neither side."""
+    damper = read_model(ROOT / "sim_hil/dampers/rd1005_kwok_tanh.toml")
+    assert monotone_range(damper, 3.0).limit_A == pytest.approx(1.88, abs=0.1)
 
 
 # Command line

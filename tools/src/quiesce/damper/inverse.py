@@ -43,13 +43,16 @@ def forces_at(damper: DamperModel, record: Record, currents_A: Sequence[float]) 
     for name in library.RIG[:6]:
         bare[first + library.RIG.index(name)] = 0.0
     currents = np.atleast_1d(np.asarray(currents_A, dtype=float))
-    out = np.empty((len(currents), len(record)))
     rates = [library.fastest_rates(one, orders, bare, at(record, i))[0] for i in currents]
     steps = library.substeps_for(max(rates), record.rate_Hz) if one.states else 1
-    for k, current_A in enumerate(currents):
-        motion = library.motion(at(record, current_A))
-        out[k] = library.simulate(one, orders, bare, motion, steps)[0]
-    return out
+    if not damper.rig.get("field_exponent"):
+        # At a constant current every parameter is a constant: all currents run side by side.
+        rig = bare[first:]
+        rows = [np.concatenate([library.values_at(one, orders, bare, i), rig]) for i in currents]
+        motion = library.motion(record)
+        return library.simulate(one, [1] * len(orders), np.array(rows), motion, steps)
+    motions = [library.motion(at(record, i)) for i in currents]
+    return np.concatenate([library.simulate(one, orders, bare, m, steps) for m in motions])
 
 
 def at(record: Record, current_A: float) -> Record:
@@ -215,13 +218,16 @@ def sine_at(speed_m_s: float, amplitude_m: float, is_back: bool) -> tuple[Record
     freq_Hz = speed_m_s / (2.0 * np.pi * amplitude_m)
     rate_Hz = _SAMPLES_A_CYCLE * freq_Hz
     time_s = np.arange(_CYCLES * _SAMPLES_A_CYCLE + 1) / rate_Hz
+    place = len(time_s) - 1 - (_SAMPLES_A_CYCLE // 2 if is_back else 0)
     w, zero = 2.0 * np.pi * freq_Hz, np.zeros(len(time_s))
+    disp_m = amplitude_m * np.sin(w * time_s)
+    disp_m[place] = 0.0  # models look at its sign
     record = Record(
-        "sine", rate_Hz, time_s, amplitude_m * np.sin(w * time_s),
+        "sine", rate_Hz, time_s, disp_m,
         amplitude_m * w * np.cos(w * time_s), -amplitude_m * w**2 * np.sin(w * time_s),
         zero, zero, "A",
     )  # fmt: skip
-    return record, len(time_s) - 1 - (_SAMPLES_A_CYCLE // 2 if is_back else 0)
+    return record, place
 
 
 @dataclass(frozen=True)
