@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from damper_actions import act, refused
 from damper_files import read
 from quiesce.damper import cli_example
@@ -39,6 +40,15 @@ def test_example_is_the_same_every_time_and_small() -> None:
     assert text == example_text()
     assert len(text) < 300_000
     assert text != example_text(Recipe(seed=7))
+
+
+def test_shipped_example_is_what_the_library_makes() -> None:
+    folder = ROOT / "sim_hil/dampers/example"
+    shipped = np.loadtxt(folder / "example.csv", delimiter=",", skiprows=1)
+    made = np.column_stack(list(example_columns().values()))
+    # Printed to 0.01 N, 0.001 mm.
+    assert np.abs(shipped - made).max(axis=0) == pytest.approx(np.zeros(4), abs=0.011)
+    assert (folder / "example_truth.toml").read_text(encoding="utf-8") == EXAMPLE.to_toml()
 
 
 def test_noise_and_rounding_are_those_of_the_recipe() -> None:
