@@ -18,6 +18,8 @@ STARTS = 8
 TRIED = 3
 # Ends whose errors are this close agree.
 _AGREEMENT = 1.001
+# A residual this small is nothing but integration error.
+EXPLAINED = 5e-4
 _STEP = 1e-5  # of derivatives, in search coordinates
 _FIRST_DAMPING = 1e-3
 _LEAST_DAMPING = 1e-9
@@ -47,7 +49,7 @@ def fit_small(
                 return fit(problem, seed, effort, progress)
             ends.append(error)
             clock.offer(values[None, :], np.array([error]), f"start {len(ends)}")
-            if is_white or (len(ends) > 1 and agree(ends)):
+            if is_white or error <= EXPLAINED or (len(ends) > 1 and agree(ends)):
                 return clock.result(sorted(ends))
         if not clock.is_over():
             found = fit(problem, seed, effort, progress, starts=np.array([clock.best]))
