@@ -236,13 +236,16 @@ def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[li
             results.extend(identify(train, test, plan, done, told))
         except BaseException as error:  # handed on to the main thread
             failure.append(error)
+        finally:
+            finished.set()
 
-    worker = threading.Thread(target=work)
-    worker.start()
+    finished = threading.Event()
+    threading.Thread(target=work).start()
     was_stopped = False
-    while worker.is_alive():
+    # Not join: one that Ctrl-C interrupts may take the thread for ended.
+    while not finished.is_set():
         try:
-            worker.join(0.2)
+            finished.wait(0.2)
         except KeyboardInterrupt:
             if not was_stopped:
                 print("quiesce: ending with the best so far", file=sys.stderr, flush=True)

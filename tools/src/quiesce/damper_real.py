@@ -23,12 +23,9 @@ DATA = "../shared/data"
 # What `quiesce bench identify` fits to every set; --models all adds every other one.
 MODELS = (
     "normalised_bouc_wen",
-    "modified_bouc_wen",
     "viscoplastic_1",
     "viscoplastic_2",
     "viscoplastic_3",
-    "viscoplastic_1_free",
-    "viscoplastic_2_free",
     "viscoplastic_3_free",
     "viscoplastic_4_free",
     "hysteresis_network",

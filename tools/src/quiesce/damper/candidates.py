@@ -13,6 +13,7 @@ from quiesce.damper.fit.setting import Setting, nodes_of
 from quiesce.damper.library import model, models
 
 NETWORK = "viscoplastic_"
+MOST_PASSIVE = 3
 MOST_ELEMENTS = 4
 # Ginder's exponent of particles in a field below saturation: with few levels the data do not tell.
 FIELD_EXPONENT = 1.5
@@ -31,24 +32,23 @@ class Choice:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A model as it is fitted. `grows_from`: the candidate whose fit is a start for this one."""
+    """A model as it is fitted."""
 
     name: str
     model: str
     is_passive: bool = False  # held passive by bounds
-    grows_from: str | None = None
 
 
 def network_candidates() -> list[Candidate]:
-    """Passive networks, and the larger ones with a stiffness of either sign."""
-    out = []
-    for suffix, passive in (("", True), ("_free", False)):
-        before = None
-        for count in range(1, MOST_ELEMENTS + 1):
-            name = f"{NETWORK}{count}{suffix}"
-            out.append(Candidate(name, f"{NETWORK}{count}", passive, before))
-            before = name
-    return out
+    """One chain: passive networks, then the largest with a stiffness of either sign."""
+    passive = [
+        Candidate(f"{NETWORK}{n}", f"{NETWORK}{n}", True) for n in range(1, MOST_PASSIVE + 1)
+    ]
+    free = [
+        Candidate(f"{NETWORK}{n}_free", f"{NETWORK}{n}")
+        for n in range(MOST_PASSIVE, MOST_ELEMENTS + 1)
+    ]
+    return [*passive, *free]
 
 
 def parametric_candidates() -> dict[str, Candidate]:

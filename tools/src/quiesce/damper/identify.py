@@ -115,16 +115,14 @@ def chains_of(names: Sequence[str]) -> tuple[list[list[Candidate | str]], bool]:
     """Lists to be done one after the other; and whether a grey box comes at the end. Long ones come
     first, so that the short ones fill the gaps."""
     known = parametric_candidates()
-    networks: dict[bool, list[Candidate | str]] = {True: [], False: []}
+    networks: list[Candidate | str] = []
     single: list[list[Candidate | str]] = []
     for name in names:
-        if name == GREY_BOX:
-            continue
         if name.startswith(NETWORK):
-            networks[known[name].is_passive].append(known[name])
-        else:
+            networks.append(known[name])
+        elif name != GREY_BOX:
             single.append([known.get(name, name)])
-    return [chain for chain in networks.values() if chain] + single, GREY_BOX in names
+    return [networks, *single] if networks else single, GREY_BOX in names
 
 
 def run_chain(
