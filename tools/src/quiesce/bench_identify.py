@@ -125,8 +125,8 @@ def one_set_part(args: argparse.Namespace) -> tuple[list[Figure], list[str], lis
 def module_part(
     name: str, args: argparse.Namespace, folder: Path
 ) -> tuple[list[Figure], list[str], list[str]]:
-    """Parts that need no data: modules with measure(quick, seed, folder)."""
+    """Parts that need no data: modules with figures(quick, folder) -> figures and tables."""
     from importlib import import_module
 
-    figures, text = import_module(f"quiesce.damper_{name}").measure(args.quick, args.seed, folder)
-    return figures, [text], []
+    figures, tables = import_module(f"quiesce.damper_{name}").figures(args.quick, folder)
+    return figures, tables, []
