@@ -52,7 +52,8 @@ struct KwokTanh {
     }
     static double stiffest_N_m(const double *p) { return std::abs(p[kK]); }
 
-    /// From rest at mid-stroke: the force rises with v, and at v = 0 it is the slope of a potential.
+    /// From rest at mid-stroke: the force rises with v, and at v = 0 it is the slope of a
+    /// potential.
     static bool is_passive(const double *p) {
         return p[kC] >= 0.0 && p[kK] >= 0.0 && p[kAlpha] >= 0.0 && p[kDelta] >= 0.0;
     }
