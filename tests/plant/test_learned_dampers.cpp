@@ -72,7 +72,7 @@ double deviation(const std::vector<double> &model, const std::vector<double> &tr
 }
 
 std::shared_ptr<const Damper> published(const std::string &name) {
-    return quiesce::load_damper("sim_hil/dampers/rd_8040_1_" + name + ".toml").damper;
+    return quiesce::load_damper("sim_hil/dampers/rd8040_" + name + ".toml").damper;
 }
 
 // Published sets

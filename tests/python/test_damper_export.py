@@ -205,7 +205,7 @@ def test_learned_model_as_c_gives_the_librarys_force(damper: DamperModel, tmp_pa
     assert np.abs(found - expected).max() <= 1e-9 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("name", ["rd_8040_1_anfis27", "rd_8040_1_anfis9_1.0A"])
+@pytest.mark.parametrize("name", ["rd8040_anfis27", "rd8040_anfis9_1.0A"])
 def test_published_anfis_as_c_gives_the_librarys_force(name: str, tmp_path: Path) -> None:
     file = ROOT / f"sim_hil/dampers/{name}.toml"
     record = two_tones(current_A=0.6)

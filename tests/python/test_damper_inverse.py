@@ -210,7 +210,7 @@ def test_command_tells_the_range_as_json(tmp_path: Path, capsys) -> None:
 
 
 def test_model_that_is_no_kernel_has_an_inverse_as_well(capsys) -> None:
-    file = ROOT / "sim_hil/dampers/rd_8040_1_anfis27.toml"
+    file = ROOT / "sim_hil/dampers/rd8040_anfis27.toml"
     assert act(cli_inverse, file, "--max-current-A", "1", "--max-speed-m-s", "0.09") == 0
     assert "velocity" in capsys.readouterr().out
 

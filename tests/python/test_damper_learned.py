@@ -27,7 +27,7 @@ def three_currents():
 
 
 def published(name: str) -> dict:
-    return tomllib.loads((root() / f"sim_hil/dampers/rd_8040_1_{name}.toml").read_text())
+    return tomllib.loads((root() / f"sim_hil/dampers/rd8040_{name}.toml").read_text())
 
 
 def published_numpy(name: str, current_A: float, combine) -> np.ndarray:
@@ -75,7 +75,7 @@ def test_published_anfis_needs_the_product_and_not_the_minimum():
 
 def test_published_anfis_is_the_same_in_numpy_and_in_the_library():
     record = sine(10.0, 1.5e-3, 0.4, cycles=1.0, rate_Hz=10_000.0)
-    file = root() / "sim_hil/dampers/rd_8040_1_anfis27.toml"
+    file = root() / "sim_hil/dampers/rd8040_anfis27.toml"
     forces = DamperFile(file).simulate(motion(record), 1)[:1000]
     expected = published_numpy("anfis27", 0.4, np.multiply)
     np.testing.assert_allclose(forces, expected, atol=1e-10 * np.abs(expected).max())
@@ -120,7 +120,7 @@ def test_anfis_starts_at_the_least_squares_optimum_and_improves_it():
 
 
 def test_anfis_recovers_a_model_of_its_own_kind():
-    file = DamperFile(root() / "sim_hil/dampers/rd_8040_1_anfis27.toml")
+    file = DamperFile(root() / "sim_hil/dampers/rd8040_anfis27.toml")
     records = [sine(10.0, 1.5e-3, at, cycles=3.0, rate_Hz=2000.0) for at in (0, 0.2, 0.6, 1.0)]
     records = [replace(one, force_N=file.simulate(motion(one), 1)) for one in records]
     segments, scales = segments_of(*records)

@@ -266,22 +266,24 @@ def report(
     was_stopped: bool,
 ) -> int:
     from quiesce.damper.model_file import write_model
-    from quiesce.damper.ranking import best
+    from quiesce.damper.ranking import best, ranked
     from quiesce.damper.report.page import write_report
+    from quiesce.damper.report.runs import runs_of, shown_part, whiteness_of
     from quiesce.damper.report.tables import json_report, text_report
 
     if not fitted:
         print("quiesce: no model was finished; nothing was written", file=sys.stderr)
         return EXIT_INTERRUPTED
+    white = whiteness_of(shown_part(runs_of(ranked(fitted)[0].simulate, train, test)))
     context = {"title": args.files[0].stem, "command": "quiesce " + " ".join(sys.argv[1:])}
     write_report(out, fitted, train, test, notes, context)
     passive = best(fitted).get("passive")
     if passive is not None:
         write_model(out / "damper.toml", passive.damper)
     if args.json:
-        print(json.dumps(json_report(fitted, train, test, notes, context)))
+        print(json.dumps(json_report(fitted, train, test, notes, context, white)))
     else:
-        print(text_report(fitted, train, test, notes))
+        print(text_report(fitted, train, test, notes, white))
         written = ["report.html", "report.json", "models/"]
         written += ["damper.toml"] if passive is not None else []
         print(f"\nwritten    {', '.join(shown(out / name) for name in written)}")

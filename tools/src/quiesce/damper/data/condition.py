@@ -5,7 +5,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from quiesce.damper.data.check import (
     MIN_ROWS,
@@ -133,6 +132,8 @@ def check_count(raw: RawTest, rows: int, rate_Hz: float) -> None:
 
 
 def on_grid(role: str, time_s: np.ndarray, values: np.ndarray, even_s: np.ndarray) -> np.ndarray:
+    from scipy.interpolate import CubicSpline
+
     if role in ("displacement", "velocity", "acceleration"):
         return CubicSpline(time_s, values)(even_s)
     if role in ("current", "command"):

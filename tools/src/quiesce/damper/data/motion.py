@@ -6,9 +6,6 @@ the ends no continuation of the record is assumed, and polynomials below the ord
 """
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
-from scipy.linalg import solveh_banded
-from scipy.signal import butter, sosfiltfilt
 
 ORDER = 4
 # The equations are well conditioned up to this many samples a period of the corner; above it, they
@@ -26,6 +23,8 @@ def free_end_filter(values: np.ndarray, corner: float, order: int) -> np.ndarray
     Minimises |S (y - x)|^2 + weight |D y|^2 over y, with S and D the sums and the differences of
     `order` + 1 neighbours: the bilinear Butterworth response squared.
     """
+    from scipy.linalg import solveh_banded
+
     order = min(order, len(values) - 1)
     weight = np.tan(np.pi * corner) ** (-2 * order)
     sums = _squared(_weights(order, 1.0), len(values))
@@ -63,6 +62,9 @@ def _times(bands: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 def low_passed(values: np.ndarray, rate_Hz: float, corner_Hz: float) -> np.ndarray:
     """Butterworth of 4th order forth and back: half the amplitude at the corner, no delay."""
+    from scipy.interpolate import make_interp_spline
+    from scipy.signal import butter, sosfiltfilt
+
     if rate_Hz <= _MOST_A_PERIOD * corner_Hz:
         return free_end_filter(values, corner_Hz / rate_Hz, ORDER)
     step = int(rate_Hz / (_SOLVED_A_PERIOD * corner_Hz))
@@ -76,6 +78,8 @@ def low_passed(values: np.ndarray, rate_Hz: float, corner_Hz: float) -> np.ndarr
 
 def derivatives(values: np.ndarray, rate_Hz: float) -> tuple[np.ndarray, np.ndarray]:
     """First and second derivative of the spline of 5th order through the samples."""
+    from scipy.interpolate import make_interp_spline
+
     time_s = np.arange(len(values)) / rate_Hz
     spline = make_interp_spline(time_s, values, k=5)
     return spline.derivative(1)(time_s), spline.derivative(2)(time_s)
@@ -84,6 +88,8 @@ def derivatives(values: np.ndarray, rate_Hz: float) -> tuple[np.ndarray, np.ndar
 def integrated(velocity_m_s: np.ndarray, rate_Hz: float, corner_Hz: float) -> np.ndarray:
     """Displacement from velocity: the integral of its cubic spline, less what is slower than
     `corner_Hz` (2nd order, forth and back)."""
+    from scipy.interpolate import make_interp_spline
+
     time_s = np.arange(len(velocity_m_s)) / rate_Hz
     disp_m = make_interp_spline(time_s, velocity_m_s, k=3).antiderivative()(time_s)
     disp_m = disp_m - np.polynomial.Polynomial.fit(time_s, disp_m, 1)(time_s)
@@ -91,6 +97,8 @@ def integrated(velocity_m_s: np.ndarray, rate_Hz: float, corner_Hz: float) -> np
 
 
 def slow_part(values: np.ndarray, rate_Hz: float, corner_Hz: float) -> np.ndarray:
+    from scipy.interpolate import make_interp_spline
+
     size = max(1, int(rate_Hz / (_MEANS_A_PERIOD * corner_Hz)))
     count = len(values) // size
     means = values[: count * size].reshape(count, size).mean(axis=1)

@@ -43,6 +43,8 @@ _LOG_RATIO = 8.0
 _ROOM = 30.0
 # Substeps a sample at most while searching; stiffer candidates are cut off there.
 SEARCH_SUBSTEPS = 16
+# Time constants of a model below this part of a sampling interval cannot be told from zero.
+_FASTEST = 0.25
 # Numbers that one evaluation may hold: candidates times samples.
 _CHUNK = 4_000_000
 
@@ -84,7 +86,8 @@ class Problem:
         self.scales = Scales.of([segment.record for segment in self.segments])
         self.records = unique_records(self.segments)
         self._motions = {id(record): library.motion(record) for record in self.records}
-        self.variables = variables_of(setting, self.scales)
+        fastest_s = _FASTEST / max(record.rate_Hz for record in self.records)
+        self.variables = variables_of(setting, self.scales, fastest_s)
         self.nonlinear = [k for k, one in enumerate(self.variables) if not one.is_linear]
         self.linear = [k for k, one in enumerate(self.variables) if one.is_linear]
         self.orders = setting.orders
@@ -273,7 +276,8 @@ def weights_of(segments: Sequence[Segment], weigh: str) -> list[float]:
     return [largest / max(norm, 1e-6 * largest) for norm in norms]
 
 
-def variables_of(setting: Setting, scales: Scales) -> list[Variable]:
+def variables_of(setting: Setting, scales: Scales, fastest_s: float) -> list[Variable]:
+    """fastest_s: the shortest time constant that is looked for."""
     out = []
     for slot, parameter in enumerate(setting.model.parameters):
         if parameter.name in setting.fixed:
@@ -292,7 +296,10 @@ def variables_of(setting: Setting, scales: Scales) -> list[Variable]:
                     node,
                     setting.bounds.get(parameter.name),
                     search,
-                    (parameter.min, parameter.max),
+                    (
+                        max(parameter.min, fastest_s if parameter.unit == "s" else -np.inf),
+                        parameter.max,
+                    ),
                     parameter.is_linear,
                     parameter.natural(scales),
                 )
@@ -349,6 +356,7 @@ def make_variable(
     bounds = admissible
     if search[0] == search[1]:  # a ratio: one at the last node, as far as that above others
         search = (0.01 * search[0], 1.5 * search[0])
+    search = (max(search[0], admissible[0]), min(search[1], admissible[1]))
     if given is not None:
         bounds = (max(given[0], admissible[0]), min(given[1], admissible[1]))
         if not bounds[0] < bounds[1]:
