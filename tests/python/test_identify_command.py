@@ -183,3 +183,36 @@ def test_ctrl_c_keeps_the_best_so_far(example: Path, tmp_path: Path) -> None:
     assert process.returncode == 130, err
     assert "ending with the best so far" in err and "Traceback" not in err
     assert (tmp_path / "report.html").is_file() and "written" in out
+
+
+def write_sine(file: Path, mean_mm: float, freq_Hz: float) -> None:
+    """Ten cycles of the damper TRUTH about mean_mm, 2 kHz."""
+    rate_Hz = 2000.0
+    time_s = np.arange(round(10.0 / freq_Hz * rate_Hz)) / rate_Hz
+    omega = 2.0 * np.pi * freq_Hz
+    disp_m = 1e-3 * mean_mm + 5e-3 * np.sin(omega * time_s)
+    velocity = 5e-3 * omega * np.cos(omega * time_s)
+    zero = np.zeros(len(time_s))
+    accel = -5e-3 * omega**2 * np.sin(omega * time_s)
+    record = Record("made", rate_Hz, time_s, disp_m, velocity, accel, zero, zero, "A")
+    row = np.array([*TRUTH.values(), *np.zeros(len(library.RIG))])
+    model = library.model("normalised_bouc_wen")
+    force_N = library.simulate(model, [1] * 7, row, library.motion(record), 2)[0]
+    rows = zip(time_s, 1e3 * disp_m, force_N, strict=True)
+    lines = [f"{t:.5f},{x:.7f},{f:.6f}" for t, x, f in rows]
+    file.write_text("\n".join(["time_s,disp_mm,force_N", *lines]) + "\n", encoding="utf-8")
+
+
+def test_least_squares_from_three_sines(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = [tmp_path / name for name in ("still.csv", "shifted.csv", "faster.csv")]
+    for file, mean_mm, freq_Hz in zip(files, (0.0, 3.0, 0.0), (1.0, 1.0, 2.0), strict=True):
+        write_sine(file, mean_mm, freq_Hz)
+    words = ["identify", *map(str, files), "--current-a", "0", "--low-pass-hz", "300"]
+    words += ["--keep-offset", "--method", "ls", "--out", str(tmp_path / "out")]
+    assert main(words) == 0
+    model, _ = simulator_of_file(tmp_path / "out/damper.toml")
+    for name in ("c_N_s_m", "k_N_m", "kw_N", "rho_1_m", "n"):
+        assert model.parameters[name] == pytest.approx(TRUTH[name], rel=0.03), name
+    capsys.readouterr()
+    assert main([*words[:3], *words[4:]]) == 2
+    assert "three tests" in capsys.readouterr().err

@@ -93,9 +93,10 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         help="highest power of the current in a parameter (%(default)s)",
     )  # fmt: skip
     group.add_argument(
-        "--method", choices=("default", "ga", "de"), default="default",
+        "--method", choices=("default", "ga", "de", "ls"), default="default",
         help="default: variable projection, differential evolution, least squares; ga: the binary "
-        "genetic algorithm of the squeeze-mode paper; de: the thesis' differential evolution",
+        "genetic algorithm of the squeeze-mode paper; de: the thesis' differential evolution; ls: "
+        "Bouc-Wen by least squares from three sines a current",
     )  # fmt: skip
     group.add_argument(
         "--time-limit", type=float, default=300.0, metavar="s", help="for each model (%(default)g)"
@@ -211,8 +212,19 @@ def run(args: argparse.Namespace) -> int:
         args.jobs,
         {"data": [file.name for file in args.files], "command": "quiesce identify"},
     )
-    fitted, was_stopped = fit_all(train, test, plan, done, store)
+    if args.method == "ls":
+        fitted, was_stopped = [by_least_squares(train, test, plan, store)], False
+    else:
+        fitted, was_stopped = fit_all(train, test, plan, done, store)
     return report(args, out, fitted, train, test, data.notes, was_stopped)
+
+
+def by_least_squares(train: Any, test: Any, plan: Any, store: Any) -> Any:
+    from quiesce.damper.closed_form import closed_form
+
+    fitted = closed_form(train, test, plan)
+    store.keep(fitted)
+    return fitted
 
 
 def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[list[Any], bool]:

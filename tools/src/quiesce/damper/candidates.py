@@ -8,7 +8,7 @@ effective current of the field law; each starts from the fit of the one with an 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from quiesce.damper.data.split import Segment
+from quiesce.damper.data.split import Segment, levels_of
 from quiesce.damper.fit.setting import Setting, nodes_of
 from quiesce.damper.library import model, models
 
@@ -17,6 +17,7 @@ MOST_PASSIVE = 3
 MOST_ELEMENTS = 4
 # Ginder's exponent of particles in a field below saturation: with few levels the data do not tell.
 FIELD_EXPONENT = 1.5
+LEVELS_FOR_EXPONENT = 4
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ def rig_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice) ->
         rig += ("offset_N",)
     if candidate.model.startswith(NETWORK) and len(nodes_of(segments, 2)) > 1:
         rig += ("field_saturation",)
-        if is_switched(segments) or len(nodes_of(segments)) > 3:
+        if is_switched(segments) or len(levels_of(segments)) >= LEVELS_FOR_EXPONENT:
             rig += ("field_exponent",)
     return tuple(name for name in rig if name not in choice.fixed)
 
