@@ -8,10 +8,9 @@ from typing import Any
 
 import tomli_w
 
+from quiesce.control.plant_damper import scale_force, with_own_damper
 from quiesce.errors import UsageError, one_line
 from quiesce.paths import shown
-
-DAMPER_FORCE_KEYS = ("force_scale", "base_N_s_m", "per_A_N_s_m")
 
 
 @dataclass(frozen=True)
@@ -42,9 +41,10 @@ class Variant:
 
 
 def read_plant_data(file: Path) -> dict[str, Any]:
-    """The file's TOML; the plant library checks what is in it."""
+    """The file's TOML, with its damper file's contents in place of its name; the plant library
+    checks what is in it."""
     try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
+        return with_own_damper(tomllib.loads(file.read_text(encoding="utf-8")), file.parent)
     except OSError as error:
         raise UsageError(f"{shown(file)}: {error.strerror}; name a plant file")
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -54,7 +54,8 @@ def read_plant_data(file: Path) -> dict[str, Any]:
 def changed(data: dict[str, Any], variant: Variant) -> dict[str, Any]:
     """A copy of a valid plant's data with the variant's changes."""
     out = copy.deepcopy(data)
-    _scale_force(out["damper"], variant.force)
+    if variant.force != 1.0:
+        scale_force(out["damper"], variant.force)
     _scale_frequencies(out["structure"], variant.freq)
     if variant.rise_s is not None:
         out["coil"] = {**out["coil"], "rise_s": variant.rise_s, "fall_s": variant.rise_s}
@@ -69,16 +70,6 @@ def changed(data: dict[str, Any], variant: Variant) -> dict[str, Any]:
 
 def write_variant(plant: Path, variant: Variant, file: Path) -> None:
     file.write_text(tomli_w.dumps(changed(read_plant_data(plant), variant)), encoding="utf-8")
-
-
-def _scale_force(damper: dict[str, Any], factor: float) -> None:
-    if factor == 1.0:
-        return
-    if damper["model"] != "viscous":
-        damper.setdefault("force_scale", 1.0)
-    for key in DAMPER_FORCE_KEYS:
-        if key in damper:
-            damper[key] *= factor
 
 
 def _scale_frequencies(structure: dict[str, Any], factor: float) -> None:
