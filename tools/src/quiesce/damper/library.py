@@ -154,17 +154,21 @@ def row_length(one: Model, orders: Sequence[int]) -> int:
     return sum(orders) + len(RIG)
 
 
-def values_at(one: Model, orders: Sequence[int], row: np.ndarray, current_A: float) -> np.ndarray:
-    """The model's parameters at this current, cut off at their admissible values: [parameters]."""
-    out = np.empty(len(one.parameters))
+def values_at(one: Model, orders: Sequence[int], rows: np.ndarray, current_A: float) -> np.ndarray:
+    """The model's parameters at this current, cut off at their admissible values: [parameters] for
+    one row, [rows, parameters] for several."""
+    rows = np.asarray(rows)
+    columns = []
     first = 0
-    for k, order in enumerate(orders):
-        value = 0.0
-        for coefficient in row[first : first + order][::-1]:
-            value = value * current_A + coefficient
-        out[k] = min(max(value, one.parameters[k].min), one.parameters[k].max)
+    for order in orders:
+        value = np.zeros(rows.shape[:-1])
+        for k in range(first + order - 1, first - 1, -1):
+            value = value * current_A + rows[..., k]
+        columns.append(value)
         first += order
-    return out
+    low = [parameter.min for parameter in one.parameters]
+    high = [parameter.max for parameter in one.parameters]
+    return np.clip(np.stack(columns, axis=-1), low, high)
 
 
 def substeps_for(rate_1_s: float, rate_Hz: float) -> int:
@@ -179,17 +183,14 @@ def fastest_rates(
     largest command: [rows]."""
     speed_m_s = float(np.max(np.abs(record.velocity_m_s)))
     currents_A = np.unique([record.command.min(), record.command.max()])
-    return np.array(
-        [
-            max(
-                module().fastest_rate_1_s(
-                    one.name, values_at(one, orders, row, current_A), speed_m_s
-                )
-                for current_A in currents_A
-            )
-            for row in np.atleast_2d(rows)
-        ]
-    )
+    rows = np.atleast_2d(rows)
+    fastest = np.zeros(len(rows))
+    rate_of = module().fastest_rate_1_s
+    for current_A in currents_A:
+        values = np.ascontiguousarray(values_at(one, orders, rows, float(current_A)))
+        rates = [rate_of(one.name, row, speed_m_s) for row in values]
+        fastest = np.maximum(fastest, rates)
+    return fastest
 
 
 def simulate(
