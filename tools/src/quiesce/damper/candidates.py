@@ -17,7 +17,7 @@ MOST_PASSIVE = 3
 MOST_ELEMENTS = 4
 # Ginder's exponent of particles in a field below saturation: with few levels the data do not tell.
 FIELD_EXPONENT = 1.5
-LEVELS_FOR_EXPONENT = 4
+LEVELS_FOR_EXPONENT = 5
 
 
 @dataclass(frozen=True)

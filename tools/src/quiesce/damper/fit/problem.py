@@ -195,7 +195,8 @@ class Problem:
             outputs = outputs.reshape(count, linear + 1, -1)
             base = outputs[:, 0]
             basis = outputs[:, 1:] - base[:, None, :]
-            finite = np.isfinite(basis).all(axis=(1, 2)) & np.isfinite(base).all(axis=1)
+            # Columns beyond this diverge, and their squares would overflow.
+            finite = (np.abs(basis) < 1e100).all(axis=(1, 2)) & (np.abs(base) < 1e100).all(axis=1)
         basis[~finite], base[~finite] = 0.0, 0.0
         if linear:
             low, high = np.array([self.variables[k].bounds for k in self.linear]).T
