@@ -5,7 +5,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -46,16 +48,29 @@ class RecordedMotion {
 
     std::size_t count() const { return count_; }
 
-    MotionGrid grid(int substeps) const {
+    /// Made at the first call for this many steps; coarse ones are kept.
+    std::shared_ptr<const MotionGrid> grid(int substeps) const {
         if (substeps < 1 || substeps > 10000) {
             refuse("substeps must be 1 .. 10000");
         }
-        return MotionGrid({count_, step_s_, disp_m_.data(), velocity_m_s_.data(),
-                           accel_m_s2_.data(), command_.data()},
-                          substeps);
+        const std::scoped_lock held(lock_);
+        const auto known = grids_.find(substeps);
+        if (known != grids_.end()) {
+            return known->second;
+        }
+        const MotionSamples samples{
+            count_,         step_s_, disp_m_.data(), velocity_m_s_.data(), accel_m_s2_.data(),
+            command_.data()};
+        const auto made = std::make_shared<const MotionGrid>(samples, substeps);
+        if (substeps <= kMostKept) {
+            grids_[substeps] = made;
+        }
+        return made;
     }
 
   private:
+    static constexpr int kMostKept = 16;
+
     static std::vector<double> copy(const Row &values) {
         return {values.data(), values.data() + values.shape(0)};
     }
@@ -66,6 +81,8 @@ class RecordedMotion {
     std::vector<double> velocity_m_s_;
     std::vector<double> accel_m_s2_;
     std::vector<double> command_;
+    mutable std::mutex lock_;
+    mutable std::map<int, std::shared_ptr<const MotionGrid>> grids_;
 };
 
 std::size_t model_index(const std::string &name) {
@@ -96,8 +113,8 @@ CandidateRows candidates_of(const std::string &model, const std::vector<int> &or
     return {index, orders.data(), rows.data(), rows.shape(0)};
 }
 
-std::string set_or_fastest(const std::string &set) {
-    return set.empty() ? instruction_sets().front() : set;
+std::string set_or_best(const std::string &set, const CandidateRows &candidates) {
+    return set.empty() ? set_for(candidates.count) : set;
 }
 
 /// Fresh memory that Python owns.
@@ -115,7 +132,7 @@ Out2 simulate_rows(const std::string &model, const std::vector<int> &orders, con
     auto out = std::make_unique<double[]>(candidates.count * motion.count());
     {
         const nb::gil_scoped_release released;
-        simulate(candidates, motion.grid(substeps), set_or_fastest(set), out.get());
+        simulate(candidates, *motion.grid(substeps), set_or_best(set, candidates), out.get());
     }
     return owned<Out2>(std::move(out), {candidates.count, motion.count()});
 }
@@ -130,9 +147,9 @@ Out1 error_of_rows(const std::string &model, const std::vector<int> &orders, con
     auto out = std::make_unique<double[]>(candidates.count);
     {
         const nb::gil_scoped_release released;
-        squared_error(candidates, motion.grid(substeps),
-                      {force_N.data(), weight.data(), average_samples}, set_or_fastest(set),
-                      out.get());
+        squared_error(candidates, *motion.grid(substeps),
+                      {force_N.data(), weight.data(), average_samples},
+                      set_or_best(set, candidates), out.get());
     }
     return owned<Out1>(std::move(out), {candidates.count});
 }
@@ -188,7 +205,7 @@ class DamperFile {
         auto out = std::make_unique<double[]>(motion.count());
         {
             const nb::gil_scoped_release released;
-            damper_over_motion(*damper_, motion.grid(substeps), out.get());
+            damper_over_motion(*damper_, *motion.grid(substeps), out.get());
         }
         return owned<Out1>(std::move(out), {motion.count()});
     }

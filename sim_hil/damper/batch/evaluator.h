@@ -28,6 +28,10 @@ std::size_t row_length(std::size_t model, const int *orders);
 /// "scalar", one candidate at a time. All give the same bits.
 std::vector<std::string> instruction_sets();
 
+/// The set that suits this many candidates: the narrowest that takes all of them at once, since a
+/// group costs the same when some of its lanes are idle; else the fastest.
+std::string set_for(std::size_t count);
+
 /// Forces in N at the samples: [count][samples]. set: a name of instruction_sets(), which must
 /// exist. A candidate whose integration diverges has infinities or NaN.
 void simulate(const CandidateRows &candidates, const MotionGrid &motion, const std::string &set,
