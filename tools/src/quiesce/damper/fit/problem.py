@@ -43,6 +43,8 @@ _LOG_RATIO = 8.0
 _ROOM = 30.0
 # Substeps a sample at most while searching; stiffer candidates are cut off there.
 SEARCH_SUBSTEPS = 16
+# The same while polishing: stiffer ones are cut off beyond what is stable, and so refused.
+FIT_SUBSTEPS = 64
 # Time constants of a model below this part of a sampling interval cannot be told from zero.
 _FASTEST = 0.25
 # Numbers that one evaluation may hold: candidates times samples.
@@ -208,7 +210,7 @@ class Problem:
 
     def residuals(self, values: np.ndarray) -> np.ndarray:
         """(model - measured) / ||measured||, weighted, [scored samples]."""
-        return (self.outputs(values)[0] - self.target) / self.size
+        return (self.outputs(values, FIT_SUBSTEPS)[0] - self.target) / self.size
 
     def error(self, values: np.ndarray) -> float:
         """||F - F_model|| / ||F|| over the scored samples, weighted."""
@@ -224,7 +226,7 @@ class Problem:
         base = None
         columns = []
         for first in range(0, len(moved), most):
-            outputs = self.outputs(moved[first : first + most])
+            outputs = self.outputs(moved[first : first + most], FIT_SUBSTEPS)
             base = outputs[0] if base is None else base
             columns.append(outputs)
         outputs = np.concatenate(columns)
