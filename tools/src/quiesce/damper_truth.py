@@ -39,7 +39,7 @@ COVERAGE_GOAL_pct = (90.0, 99.0)
 ATTEMPTS = 3
 EFFORT = Effort(population=32, generations=20, seconds=120.0)
 POLISH_EVALUATIONS = 200
-SEED_EVALUATIONS = 15
+SEED_EVALUATIONS = 8
 
 Say = Callable[[str], None]
 
@@ -158,7 +158,7 @@ def orders_of(problem: Problem) -> list[np.ndarray]:
         return [plain]
     slots: dict[str, list[int]] = {}
     for k, one in enumerate(problem.variables):
-        numbered = re.fullmatch(r"([a-z]+)(\d)(_.*)?", one.name)
+        numbered = re.fullmatch(r"([a-z]+)([1-9])(_.*)?", one.name)
         if numbered:
             slots.setdefault(numbered[1], []).append(k)
     count = max(len(some) for some in slots.values())

@@ -42,7 +42,7 @@ DRAWS = 24
 # Cramer-Rao standard deviation of every parameter over its value, at 1 % noise.
 DETERMINED = 0.3
 NOISE_PART = 0.01
-MOST_SUBSTEPS = 16
+MOST_SUBSTEPS = 6
 _FORCES_N = (0.25 * FORCE_N, 4.0 * FORCE_N)
 
 
