@@ -105,8 +105,8 @@ def test_learned_model_on_a_base_has_no_factor(build) -> None:
 
 def test_tune_works_with_a_damper_that_remembers(build, small: Path, tmp_path: Path) -> None:
     result = run_quiesce(
-        tmp_path, "tune", small, "--quick", "--from-Hz", "16", "--to-Hz", "16", "--robustness",
-        "none", "--no-closed-loop", "--out", "out", "--jobs", "1",
+        tmp_path, "tune", small, "--quick", "--from-Hz", "14", "--to-Hz", "16", "--step-Hz", "2",
+        "--robustness", "none", "--no-closed-loop", "--out", "out", "--jobs", "1",
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "out/report.html").stat().st_size > 0
