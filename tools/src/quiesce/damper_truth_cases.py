@@ -42,7 +42,9 @@ DRAWS = 24
 # Cramer-Rao standard deviation of every parameter over its value, at 1 % noise.
 DETERMINED = 0.3
 NOISE_PART = 0.01
-MOST_SUBSTEPS = 6
+# Substeps a sample that a truth may need, in the first and in later draws: soft ones are preferred.
+MOST_SUBSTEPS = (6, 16)
+FIRST_DRAWS = 200
 _FORCES_N = (0.25 * FORCE_N, 4.0 * FORCE_N)
 
 
@@ -124,9 +126,9 @@ def make_truth(one: Model, seed: int) -> Truth:
     )
     best: tuple[float, Truth] | None = None
     found = 0
-    for _ in range(MOST_DRAWS):
+    for draw in range(MOST_DRAWS):
         row = row_of(one, [drawn(parameter, scales, rng) for parameter in one.parameters])
-        truth = simulated(one, row, empty)
+        truth = simulated(one, row, empty, MOST_SUBSTEPS[draw >= FIRST_DRAWS])
         if truth is None or not is_inside(truth):
             continue
         worst = float(np.max(truth.deviations()))
@@ -161,11 +163,11 @@ def drawn(parameter: library.Parameter, scales: Scales, rng: np.random.Generator
             return value
 
 
-def simulated(one: Model, row: np.ndarray, empty: list[Record]) -> Truth | None:
+def simulated(one: Model, row: np.ndarray, empty: list[Record], most_substeps: int) -> Truth | None:
     """None where the force is not sensible or takes too many steps."""
     records = []
     for record in empty:
-        if finest_steps(one, row, record, 1) > MOST_SUBSTEPS:
+        if finest_steps(one, row, record, 1) > most_substeps:
             return None
         force_N = force_of(one, row, record, finest_steps(one, row, record))
         records.append(with_force(record, force_N))
