@@ -124,6 +124,34 @@ std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &s
     return model.make(laws.data(), limits.stroke_m, limits.speed_m_s, read_field(section));
 }
 
+/// Where a damper file says that it holds: [valid].
+void read_validity(TomlTable valid, DamperChoice &choice) {
+    choice.is_usable = valid.boolean("usable", true);
+    for (const char *key : {"current_A", "command_V"}) {
+        if (valid.has(key)) {
+            const std::vector<double> range = valid.numbers(key, 0);
+            choice.max_current_A = range.back();
+            choice.is_in_volts = std::string(key) == "command_V";
+        }
+    }
+}
+
+/// A plant must not use a set that is marked unusable, nor take amperes for volts unknowingly.
+void check_for_plant(TomlTable &section, const DamperChoice &choice) {
+    if (!choice.is_usable) {
+        section.fail("file", "this set is marked as not usable ([valid] in it says why)");
+    }
+    const bool has_unit = section.has("command_unit");
+    const std::string unit = has_unit ? section.choice("command_unit", {"A", "V"}) : "A";
+    if (choice.is_in_volts != (unit == "V")) {
+        section.fail(has_unit ? "command_unit" : "file",
+                     choice.is_in_volts
+                         ? "its command is a voltage; let the plant's driver be one of volts and "
+                           "say command_unit = \"V\""
+                         : "its command is a current, not a voltage");
+    }
+}
+
 DamperChoice with_accel_estimate(DamperChoice choice) {
     if (choice.damper->uses_accel()) {
         choice.damper = std::make_shared<AccelEstimate>(choice.damper);
@@ -170,6 +198,7 @@ DamperChoice read_damper(TomlTable section, const std::string &plant_file) {
     if (section.has("file")) {
         const std::filesystem::path file = section.text("file");
         choice = load_damper((std::filesystem::path(plant_file).parent_path() / file).string());
+        check_for_plant(section, choice);
     } else {
         choice.damper = read_damper_model(section);
     }
@@ -189,7 +218,10 @@ DamperChoice load_damper(const std::string &file) {
         choice.coil = read_coil(*coil);
     }
     // For people and for other readers: where it comes from, where it holds, the rig it was on.
-    for (const char *key : {"source", "rig", "valid", "fit"}) {
+    if (std::optional<TomlTable> valid = root.optional_table("valid")) {
+        read_validity(*valid, choice);
+    }
+    for (const char *key : {"source", "rig", "fit"}) {
         root.accept(key);
     }
     root.reject_unknown_keys();

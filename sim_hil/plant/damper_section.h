@@ -18,6 +18,10 @@ namespace quiesce {
 struct DamperChoice {
     std::shared_ptr<const Damper> damper;
     std::optional<CoilParams> coil;
+    /// Up to which its file says that it holds: A, or V where the command is a voltage.
+    std::optional<double> max_current_A;
+    bool is_in_volts = false;
+    bool is_usable = true; ///< false: published, but of no use (its file says why)
 };
 
 /// The damper that a plant's section describes, either by `model` and its keys or by `file`, a path

@@ -72,6 +72,12 @@ PlantModel load_plant(const std::string &file) {
     const DamperChoice damper = read_damper(root.table("damper"), file);
     model.damper = damper.damper;
     model.driver = read_driver(root.table("driver"));
+    if (damper.max_current_A && model.driver.max_current_A > 1.001 * *damper.max_current_A) {
+        std::ostringstream message;
+        message << model.driver.max_current_A << " is beyond the " << *damper.max_current_A
+                << " up to which the damper's file holds; lower it, or widen [valid] there";
+        root.table("driver").fail("max_current_A", message.str());
+    }
     model.coil = damper.coil && !root.has("coil") ? *damper.coil : read_coil(root.table("coil"));
     model.shaker = read_shaker(root.table("shaker"));
     model.sensor = read_sensor(root.table("sensor"));

@@ -147,12 +147,26 @@ TEST(PlantDamper, every_usable_published_set_runs_in_a_plant) {
 TEST(PlantDamper, takes_the_coil_of_its_file_unless_it_has_one) {
     const std::string file = "sim_hil/dampers/spencer_prototype.toml";
     const std::string coil = "[coil]\nrise_s = 0.010\nfall_s = 0.010\n";
-    const std::string with_both = with_file(file) + "\n[integration]\nmax_step_us = 30\n";
+    const std::string volts = file + "\"\ncommand_unit = \"V";
+    const std::string with_both = with_file(volts) + "\n[integration]\nmax_step_us = 30\n";
     EXPECT_EQ(loaded(with_both).coil.rise_s, 0.010);
     EXPECT_EQ(loaded(spoilt(with_both, {"coil", coil.c_str(), "", ""})).coil.rise_s, 5.263e-3);
     const std::string without = with_file("sim_hil/dampers/rd1005_kwok_tanh.toml");
     expect_message(spoilt(without, {"coil", coil.c_str(), "", ""}), "coil: missing",
                    quiesce::load_plant);
+}
+
+TEST(PlantDamper, is_asked_about_volts_currents_and_use) {
+    const std::string volts = "sim_hil/dampers/spencer_prototype.toml";
+    expect_message(with_file(volts), "its command is a voltage", quiesce::load_plant);
+    const std::string kwok = "sim_hil/dampers/rd1005_kwok_tanh_smooth.toml";
+    expect_message(with_file(kwok + "\"\ncommand_unit = \"V"), "a current, not a voltage",
+                   quiesce::load_plant);
+    expect_message(with_file("sim_hil/dampers/rd8040_modified_bouc_wen_0.6A.toml"), "not usable",
+                   quiesce::load_plant);
+    expect_message(
+        spoilt(with_file(kwok), {"driver", "max_current_A = 1.88", "max_current_A = 5.0", ""}),
+        "is beyond the 1.88", quiesce::load_plant);
 }
 
 class DamperMistakes : public testing::TestWithParam<Mistake> {};

@@ -79,7 +79,8 @@ def random_motion(seed: int, seconds: float = 6.0, current_A: float = 0.5, **mor
 
 
 def segments_of(*records: Record) -> tuple[list[Segment], Scales]:
-    return [whole(one) for one in records], Scales.of(records)
+    segments = [whole(one) for one in records]
+    return segments, Scales.of(segments)
 
 
 def backlash_N(disp_m: np.ndarray, velocity_m_s: np.ndarray, current_A: np.ndarray) -> np.ndarray:

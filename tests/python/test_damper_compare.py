@@ -116,7 +116,7 @@ def test_data_beyond_the_models_range_are_told() -> None:
     record = measured(EXAMPLE, two_tones(current_A=3.0))
     slow = replace(EXAMPLE, speed_m_s=0.01, stroke_m=0.001)
     text = " ".join(compared(slow, record).warnings)
-    assert "max_current_A" in text and "speeds up to" in text and "travel up to" in text
+    assert "current_A = [0.0, 1.0]" in text and "speeds up to" in text and "travel up to" in text
     unusable = replace(EXAMPLE, valid={"usable": False, "reason": "peaks"})
     assert "peaks" in compared(unusable, record).warnings[0]
 

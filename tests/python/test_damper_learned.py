@@ -210,7 +210,7 @@ def test_unknown_names_and_data_at_rest_are_refused():
         with pytest.raises(UsageError, match="constant"):
             learner(name).train([whole(record)], scales)
     with pytest.raises(UsageError, match="zero throughout"):
-        learner("neuro_fuzzy_stf").train([whole(record)], Scales.of([record]))
+        learner("neuro_fuzzy_stf").train([whole(record)], Scales.of([whole(record)]))
 
 
 # Temperature

@@ -327,7 +327,7 @@ def test_mixed_commands_are_refused():
     record = with_memory(1)[0]
     volts = replace(record, command_unit="V")
     with pytest.raises(UsageError, match="current and some a voltage"):
-        hysteresis_network.train([whole(record), whole(volts)], Scales.of([record]))
+        hysteresis_network.train([whole(record), whole(volts)], Scales.of([whole(record)]))
 
 
 def test_a_part_of_a_record_is_learned_from_its_rows_only():
@@ -335,6 +335,6 @@ def test_a_part_of_a_record_is_learned_from_its_rows_only():
     spoilt = record.force_N.copy()
     spoilt[2000:] = 1e6
     segment = [Segment(replace(record, force_N=spoilt), 0, 2000)]
-    scales = Scales.of([record])
+    scales = Scales.of([whole(record)])
     expected = hysteresis_network.train([Segment(record, 0, 2000)], scales, 1, SMALL)
     assert hysteresis_network.train(segment, scales, 1, SMALL).to_toml() == expected.to_toml()

@@ -50,7 +50,10 @@ struct KwokTanh {
     static double stiffest_N_s_m(const double *p) {
         return std::abs(p[kC]) + std::abs(p[kAlpha] * p[kBeta]);
     }
-    static double stiffest_N_m(const double *p) { return std::abs(p[kK]); }
+    static double stiffest_N_m(const double *p) {
+        const double side = p[kXs] > 0.0 ? std::abs(p[kAlpha] * p[kDelta]) / p[kXs] : 0.0;
+        return std::abs(p[kK]) + side;
+    }
 
     /// From rest at mid-stroke: the force rises with v, and at v = 0 it is the slope of a
     /// potential.

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 import os
 import sys
 from collections.abc import Sequence
@@ -57,7 +58,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog=EPILOG.format(actions=listed),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("files", type=Path, nargs="+", metavar="DATA.csv")
+    parser.add_argument("files", type=Path, nargs="*", metavar="DATA.csv")
     add_fit_options(parser.add_argument_group("what to fit"))
     add_data_options(parser.add_argument_group("data"))
     parser.set_defaults(run=run)
@@ -139,7 +140,7 @@ def numbers_of(option: str, words: Sequence[str], count: int) -> dict[str, Any]:
             values = [float(part) for part in text.split(":")]
         except ValueError:
             values = []
-        if not name or len(values) != count:
+        if not name or len(values) != count or not all(map(math.isfinite, values)):
             shape = "NAME=VALUE" if count == 1 else "NAME=LOW:HIGH"
             raise UsageError(f"{option} '{word}': write {shape}, numbers in SI units")
         out[name] = values[0] if count == 1 else (values[0], values[1])
@@ -163,8 +164,8 @@ def choice_of(args: argparse.Namespace) -> Any:
     if args.rig is not None:
         rig = tuple(word for word in args.rig.split(",") if word and word != "none")
         for name in rig:
-            if name not in RIG:
-                raise UsageError(f"--rig {name}: expected some of {', '.join(RIG)}, or none")
+            if name not in RIG[:-1]:  # the last, a reference, follows from the data
+                raise UsageError(f"--rig {name}: expected some of {', '.join(RIG[:-1])}, or none")
     return Choice(fixed, bounds, rig, args.current_order + 1, args.method)
 
 
@@ -182,6 +183,10 @@ def print_models() -> None:
 def check_numbers(args: argparse.Namespace) -> None:
     if not args.time_limit > 0.0:
         raise UsageError("--time-limit has to be above 0")
+    if args.seed < 0:
+        raise UsageError("--seed has to be 0 or more")
+    if not args.files:
+        raise UsageError("no recording: name a CSV file, or try 'quiesce identify example'")
     if args.jobs < 1:
         raise UsageError("--jobs has to be 1 or more")
 
@@ -201,7 +206,7 @@ def run(args: argparse.Namespace) -> int:
     train, test = split_records(data.records, data.split)
     out = args.out or build_folder() / NAME / args.files[0].stem
     stamp = stamp_of(train, test, (choice, args.seed, args.effort, args.time_limit))
-    store = Store(out, stamp)
+    store = Store(out, stamp, names)
     done = store.finished(names, train, test) if args.resume else []
     plan = Plan(
         names,
@@ -259,8 +264,9 @@ def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[li
         try:
             finished.wait(0.2)
         except KeyboardInterrupt:
-            if not was_stopped:
-                print("quiesce: ending with the best so far", file=sys.stderr, flush=True)
+            if was_stopped:  # what is finished is in the folder already
+                os._exit(EXIT_INTERRUPTED)
+            print("quiesce: ending with the best so far", file=sys.stderr, flush=True)
             was_stopped = True
             plan.stop.set()
     if failure:

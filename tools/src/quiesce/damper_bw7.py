@@ -84,7 +84,7 @@ def truth_record(seed: int) -> tuple[Record, float]:
 def problem_of(record: Record) -> Problem:
     """All 7 parameters within their search ranges."""
     one = library.model(damper_speed.MODEL)
-    scales = Scales.of([record])
+    scales = Scales.of([whole(record)])
     bounds = {parameter.name: parameter.search_range(scales) for parameter in one.parameters}
     return Problem(Setting(one, (0.0,), bounds=bounds), [whole(record)])
 

@@ -64,7 +64,7 @@ def learn_anfis(segments: Sequence[Segment], seed: int) -> Simulate:
     from quiesce.damper.learned import anfis
     from quiesce.damper.library import Scales
 
-    scales = Scales.of([one.record for one in segments])
+    scales = Scales.of(segments)
     return anfis.train(segments, scales, seed, anfis.Settings()).simulate
 
 

@@ -10,7 +10,7 @@ from quiesce.bench_report import Figure
 from quiesce.damper.data.options import records_of_set
 from quiesce.damper.data.split import Segment, split_records
 from quiesce.damper.fit.baselines import fit_baseline
-from quiesce.damper.fitted import PARAMETRIC, Fitted
+from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
 from quiesce.damper.identify import Plan, identify, simulate_values
 from quiesce.damper.ranking import best, ranked
 from quiesce.damper.score import Score, score
@@ -127,9 +127,13 @@ def percent(value: float) -> str:
 
 
 def categories(fitted: Sequence[Fitted]) -> dict[str, Fitted]:
-    """ "best_parametric" and "best_passive", as far as there are any."""
+    """The winners of the categories, as far as there are any."""
     found = best(fitted)
-    names = {"best_parametric": PARAMETRIC, "best_passive": "passive"}
+    names = {
+        "best_parametric": PARAMETRIC,
+        "best_passive": "passive",
+        "best_black_box": BLACK_BOX,
+    }
     return {name: found[key] for name, key in names.items() if key in found}
 
 

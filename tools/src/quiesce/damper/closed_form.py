@@ -31,7 +31,7 @@ def closed_form(train: Sequence[Segment], test: Sequence[Segment], plan: Plan) -
     fits = [fit(sines[0])] if len(sines) == 1 else fit_currents(sines, 0)[0]
     row, orders = row_of(fits)
     one = library.model(MODEL)
-    scales = Scales.of([segment.record for segment in train])
+    scales = Scales.of(train)
     damper = from_row(
         one,
         orders,

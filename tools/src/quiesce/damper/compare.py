@@ -146,12 +146,13 @@ def warnings_of(damper: DamperModel, segments: Sequence[Segment]) -> list[str]:
     disp = max(float(np.abs(one.record.disp_m).max()) for one in segments)
     if 0.0 < 1.05 * damper.stroke_m < disp:
         found.append(f"travel up to {disp:.3g} m; the model's stroke is {damper.stroke_m:g} m")
-    for key, beyond in (("min_current_A", np.less), ("max_current_A", np.greater)):
-        limit = damper.valid.get(key)
-        if not isinstance(limit, int | float):
+    for key in ("current_A", "command_V"):
+        limits = damper.valid.get(key)
+        if not isinstance(limits, list) or not limits:
             continue
-        room = 0.02 * abs(limit) + 0.02
-        edge = limit - room if beyond is np.less else limit + room
-        if any(beyond(one.record.command, edge).any() for one in segments):
-            found.append(f"the command goes beyond {key} = {limit:g} of the file")
+        room = 0.02 * abs(limits[-1]) + 0.02
+        low, high = limits[0] - room, limits[-1] + room
+        commands = np.concatenate([one.record.command for one in segments])
+        if commands.min() < low or commands.max() > high:
+            found.append(f"the command goes beyond {key} = {limits} of the file")
     return found

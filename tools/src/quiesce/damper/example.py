@@ -26,7 +26,7 @@ EXAMPLE = DamperModel(
     },
     rig={"rise_s": 0.012, "fall_s": 0.02},
     source={"text": "made up for the example"},
-    valid={"min_current_A": 0.0, "max_current_A": 1.0},
+    valid={"current_A": [0.0, 1.0]},
 )
 LEVELS_A = (0.0, 0.5, 1.0)
 

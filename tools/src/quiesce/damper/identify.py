@@ -4,6 +4,7 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from time import monotonic
 from typing import Any
 
@@ -21,7 +22,7 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Fold, Segment, inner_split, levels_of
 from quiesce.damper.fit.grown import grown_fit
 from quiesce.damper.fit.intervals import intervals
-from quiesce.damper.fit.problem import Problem
+from quiesce.damper.fit.problem import Problem, trimmed
 from quiesce.damper.fit.search import Effort, Fit, fit
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted, simulator
 from quiesce.damper.library import FIELD, Scales
@@ -77,12 +78,14 @@ def identify(
 ) -> list[Fitted]:
     """The models of `plan`, `done` (from an earlier run) included; told: called as each is ready.
     When plan.stop is set, models under way end with their best so far, others are left out."""
-    folds = inner_split(train)
+    # Cut off what follows the training rows: nothing of it may reach a fit or a choice.
+    own = trimmed(train)
+    folds = inner_split(own)
     parts = _Parts(
-        list(train),
+        own,
         list(test),
         folds[:: max(1, len(folds) // MOST_FOLDS)][:MOST_FOLDS],
-        Scales.of([segment.record for segment in train]),
+        Scales.of(own),
     )
     results = {one.name: one for one in done}
     by_fold: dict[str, list[DamperModel]] = {}
@@ -139,7 +142,7 @@ def run_chain(
             return
         if isinstance(one, str):
             say(f"{one}: learning")
-            keep(fit_learned(one, parts, plan))
+            keep_learned(one, parts, plan, (), keep, say)
         else:
             say(f"{one.name}: fitting")
             fitted, before = fit_candidate(one, parts, plan, before)
@@ -165,10 +168,13 @@ def fit_candidate(
         setting = setting_of(candidate, parts.train, plan.choice)
         problem = Problem(setting, rows, "test" if len(rows) > 1 else "sample")
         smaller = before[k] if before is not None else None
-        found = fit_problem(candidate, problem, plan, smaller, last, start_s)
+        # A fold must not start from one that has seen its validation rows.
+        known = None if validation else last
+        left_s = (plan.seconds - (monotonic() - start_s)) / (len(parts.folds) + 1 - k)
+        found = fit_problem(candidate, problem, plan, smaller, known, left_s)
         fits.append((problem, found))
+        last = (problem, found)
         if validation:
-            last = (problem, found)
             errors.append(score(simulate_values(problem, found.values), validation).mean_error)
     problem, found = fits[-1]
     return judged(candidate, problem, found, errors, parts, plan, monotonic() - start_s), fits
@@ -180,15 +186,14 @@ def fit_problem(
     plan: Plan,
     smaller: tuple[Problem, Fit] | None,
     last: tuple[Problem, Fit] | None,
-    start_s: float,
+    left_s: float,
 ) -> Fit:
-    left_s = max(1.0, plan.seconds - (monotonic() - start_s))
     effort = Effort(
         population=16 if plan.quick else 32,
         generations=8 if plan.quick else 20,
         polished=2 if plan.quick else 4,
         polish_evaluations=20 if plan.quick else 50,
-        seconds=left_s,
+        seconds=max(1.0, left_s),
         stop=plan.stop,
     )
     if plan.choice.method != "default":
@@ -273,17 +278,19 @@ def fit_table(problem: Problem, found: Fit, errors: Sequence[float]) -> dict[str
         "validation_error": float(np.mean(errors)),
         "evaluations": found.evaluations,
         "is_complete": found.is_complete,
-        "data": [segment.record.name for segment in problem.segments],
+        "data": [Path(segment.record.name).name for segment in problem.segments],
     }
 
 
 def valid_of(segments: Sequence[Segment]) -> dict[str, Any]:
     """Ranges in the data."""
-    commands = np.concatenate([one.record.command for one in segments])
-    scales = Scales.of([one.record for one in segments])
+    commands = np.concatenate([one.record.command[one.rows] for one in segments])
+    scales = Scales.of(segments)
+    key = "current_A" if segments[0].record.command_unit == "A" else "command_V"
+    levels = levels_of(segments)
+    ends = (levels[0], levels[-1]) if levels else (commands.min(), commands.max())
     return {
-        "command": [float(commands.min()), float(commands.max())],
-        "command_unit": segments[0].record.command_unit,
+        key: [float(ends[0]), float(ends[1])],
         "stroke_m": scales.disp_m,
         "speed_m_s": scales.speed_m_s,
         "force_N": scales.force_N,
@@ -312,6 +319,25 @@ def kernel_passivity(damper: DamperModel, parts: _Parts) -> passivity.Passivity:
 # Learned models
 
 
+class _Stopped(Exception):
+    pass
+
+
+def keep_learned(
+    name: str,
+    parts: _Parts,
+    plan: Plan,
+    bases: Sequence[DamperModel],
+    keep: Told,
+    say: Say,
+) -> None:
+    """A learned model is worth nothing half trained: out of time, it is left out."""
+    try:
+        keep(fit_learned(name, parts, plan, bases))
+    except _Stopped:
+        say(f"{name}: left out, its training did not end in time")
+
+
 def fit_learned(name: str, parts: _Parts, plan: Plan, bases: Sequence[DamperModel] = ()) -> Fitted:
     """bases: what a grey box stands on, fitted to each fold and to the whole training part."""
     from quiesce.damper.learned import learner
@@ -320,9 +346,14 @@ def fit_learned(name: str, parts: _Parts, plan: Plan, bases: Sequence[DamperMode
     start_s = monotonic()
     errors = []
     trained = None
+
+    def going_on(_text: str) -> None:
+        if plan.stop.is_set() or monotonic() - start_s > plan.seconds:
+            raise _Stopped
+
     for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
         settings = module.Settings(base=bases[k]) if bases else module.Settings()
-        trained = module.train(rows, parts.scales, plan.seed, settings)
+        trained = module.train(rows, parts.scales, plan.seed, settings, going_on)
         if validation:
             errors.append(score(trained.simulate, validation).mean_error)
     damper = trained.as_model(name, source=plan.source, valid=valid_of(parts.train))
@@ -377,4 +408,4 @@ def run_grey_box(
         _, fits = fit_candidate(candidate, parts, plan, None)
         by_fold[base.name] = [damper_of(candidate, *one, parts, plan) for one in fits[:-1]]
     say(f"{GREY_BOX}: learning what {base.name} leaves")
-    keep(fit_learned(GREY_BOX, parts, plan, [*by_fold[base.name], base.damper]))
+    keep_learned(GREY_BOX, parts, plan, [*by_fold[base.name], base.damper], keep, say)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.damper.data.record import Record
+from quiesce.damper.data.split import Segment
 from quiesce.errors import UsageError, one_line
 from quiesce.paths import build_folder
 
@@ -52,11 +53,12 @@ class Scales:
     speed_m_s: float
 
     @staticmethod
-    def of(records: Sequence[Record]) -> "Scales":
+    def of(segments: Sequence[Segment]) -> "Scales":
+        """Of the segments' rows only: others may be held out."""
         return Scales(
-            max(float(np.max(np.abs(one.force_N))) for one in records),
-            max(float(np.max(np.abs(one.disp_m))) for one in records),
-            max(float(np.max(np.abs(one.velocity_m_s))) for one in records),
+            max(float(np.max(np.abs(one.record.force_N[one.rows]))) for one in segments),
+            max(float(np.max(np.abs(one.record.disp_m[one.rows]))) for one in segments),
+            max(float(np.max(np.abs(one.record.velocity_m_s[one.rows]))) for one in segments),
         )
 
 

@@ -23,11 +23,12 @@ def ranked(models: Sequence[Fitted]) -> list[Fitted]:
 
 
 def best(models: Sequence[Fitted]) -> dict[str, Fitted]:
-    """The winners: "parametric", "passive" and "black box", as far as there are any."""
+    """The winners: "parametric", "passive" (proved, not only in trials) and "black box", as far as
+    there are any."""
     order = ranked(models)
     groups = {
         PARAMETRIC: [one for one in order if one.kind == PARAMETRIC],
-        "passive": [one for one in order if one.kind == PARAMETRIC and one.passivity.holds],
+        "passive": [one for one in order if one.kind == PARAMETRIC and one.passivity.is_proved],
         BLACK_BOX: [one for one in order if one.kind == BLACK_BOX],
     }
     return {name: group[0] for name, group in groups.items() if group}

@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from quiesce.atomic import output_files
+from quiesce.damper.candidates import NETWORK
 from quiesce.damper.data.split import Segment
 from quiesce.damper.fit.intervals import Interval
 from quiesce.damper.fitted import Fitted, simulator
+from quiesce.damper.identify import GREY_BOX
 from quiesce.damper.model_file import read_model, write_model
 from quiesce.damper.passivity import Passivity
 from quiesce.damper.score import score
@@ -28,7 +30,14 @@ def stamp_of(train: Sequence[Segment], test: Sequence[Segment], options: Any) ->
     for part in (train, test):
         for one in part:
             digest.update(f"{one.record.name} {one.first} {one.end} {one.record.rate_Hz}".encode())
-            for values in (one.record.disp_m, one.record.force_N, one.record.command):
+            digest.update(f"{one.record.average_samples}".encode())
+            for values in (
+                one.record.disp_m,
+                one.record.velocity_m_s,
+                one.record.accel_m_s2,
+                one.record.force_N,
+                one.record.command,
+            ):
                 digest.update(np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()
 
@@ -36,14 +45,23 @@ def stamp_of(train: Sequence[Segment], test: Sequence[Segment], options: Any) ->
 class Store:
     """Model files in DIR/models and, beside them, what else belongs to a fit."""
 
-    def __init__(self, folder: Path, stamp: str) -> None:
+    def __init__(self, folder: Path, stamp: str, names: Sequence[str]) -> None:
         self.folder = folder / FOLDER
         self.stamp = stamp
+        self.names = list(names)
+
+    def company(self, name: str) -> list[str]:
+        """The models that a model's fit depends on: networks start from smaller ones, a grey box
+        stands on the best."""
+        if name == GREY_BOX:
+            return self.names
+        return [one for one in self.names if one.startswith(NETWORK) and name.startswith(NETWORK)]
 
     def keep(self, one: Fitted) -> None:
         write_model(self.folder / f"{one.name}.toml", one.damper)
         state = {
             "stamp": self.stamp,
+            "company": self.company(one.name),
             "title": one.title,
             "kind": one.kind,
             "parameter_count": one.parameter_count,
@@ -70,12 +88,16 @@ class Store:
                 continue
             if one is not None:
                 found.append(one)
+        networks = {name for name in names if name.startswith(NETWORK)}
+        if not networks <= {one.name for one in found}:  # each needs the one before
+            found = [one for one in found if one.name not in networks]
         return found
 
     def _load(self, name: str, train: Sequence[Segment], test: Sequence[Segment]) -> Fitted | None:
         text = (self.folder / f"{name}.{STATE}").read_text(encoding="utf-8")
         state = json.loads(text)
-        if state["stamp"] != self.stamp or not state["is_complete"]:
+        is_same = state["stamp"] == self.stamp and state["company"] == self.company(name)
+        if not is_same or not state["is_complete"]:
             return None
         damper = read_model(self.folder / f"{name}.toml")
         simulate = simulator(damper)

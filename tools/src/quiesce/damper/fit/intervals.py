@@ -38,7 +38,7 @@ def intervals(problem: Problem, values: np.ndarray, level: float = 0.95) -> list
     residuals = problem.residuals(values)
     free = np.array(
         [
-            not is_at_bound(value, one.bounds)
+            not is_at_bound(value, one.bounds, one.natural)
             for value, one in zip(values, problem.variables, strict=True)
         ]
     )
@@ -72,10 +72,11 @@ def standard_deviations(jacobian: np.ndarray, variance: float) -> np.ndarray:
     return out
 
 
-def is_at_bound(value: float, bounds: tuple[float, float]) -> bool:
+def is_at_bound(value: float, bounds: tuple[float, float], natural: float) -> bool:
+    """natural: the variable's own size. Least squares stay a little inside their bounds."""
     low, high = bounds
-    width = min(high - low, max(abs(value), 1e-300) * 1e3)
-    return value - low <= _AT_BOUND * width or high - value <= _AT_BOUND * width
+    near = _AT_BOUND * max(natural, abs(value))
+    return value - low <= near or high - value <= near
 
 
 def autocorrelation(residuals: np.ndarray, lags: int) -> np.ndarray:

@@ -85,7 +85,7 @@ class Problem:
     def __init__(self, setting: Setting, segments: Sequence[Segment], weigh: str = "test") -> None:
         self.setting = setting
         self.segments = trimmed(segments)
-        self.scales = Scales.of([segment.record for segment in self.segments])
+        self.scales = Scales.of(self.segments)
         self.records = unique_records(self.segments)
         self._motions = {id(record): library.motion(record) for record in self.records}
         fastest_s = _FASTEST / max(record.rate_Hz for record in self.records)

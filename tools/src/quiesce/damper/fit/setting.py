@@ -33,6 +33,13 @@ class Setting:
                     f"{', '.join(one.name for one in self.model.parameters)} "
                     f"and, around it, {', '.join(RIG)}"
                 )
+        for one in self.model.parameters:
+            value = self.fixed.get(one.name)
+            if value is not None and not one.min <= value <= one.max:
+                raise UsageError(
+                    f"{one.name} = {value:g}: model {self.model.name} allows "
+                    f"{one.min:g} .. {one.max:g} {one.unit}"
+                )
         for name, (low, high) in self.bounds.items():
             if not low < high:
                 raise UsageError(f"bounds of {name}: the first has to be below the second")
