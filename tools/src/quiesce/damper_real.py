@@ -63,7 +63,7 @@ class SetResult:
         return ranked(self.fitted)[0]
 
     def figures(self) -> list[Figure]:
-        ratio, error = GOALS[self.name]
+        ratio, error = GOALS.get(self.name, (None, None))
         baseline = best_baseline(self.baselines)
         winners = {"best": self.winner, **categories(self.fitted)}
         out = [
