@@ -72,13 +72,6 @@ def error_pct(simulate: Simulate, record: Record) -> float:
     return 100.0 * score(simulate, [whole(record)]).error
 
 
-def at_level(simulate: Simulate, record: Record, level: float) -> Simulate:
-    """The model as if the coil had another current."""
-    from dataclasses import replace
-
-    return lambda one: simulate(replace(one, command=np.full(len(one), level)))
-
-
 def scenarios(records: Sequence[Record], seed: int, say: Callable[[str], None]) -> str:
     """Table of A to D for every model: error in per cent by current."""
     rows = []

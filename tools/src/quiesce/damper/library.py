@@ -152,10 +152,6 @@ def motion(record: Record) -> Any:
     )
 
 
-def row_length(one: Model, orders: Sequence[int]) -> int:
-    return sum(orders) + len(RIG)
-
-
 def values_at(one: Model, orders: Sequence[int], rows: np.ndarray, current_A: float) -> np.ndarray:
     """The model's parameters at this current, cut off at their admissible values: [parameters] for
     one row, [rows, parameters] for several."""

@@ -46,7 +46,7 @@ SEARCH_SUBSTEPS = 16
 # The same while polishing: stiffer ones are cut off beyond what is stable, and so refused.
 FIT_SUBSTEPS = 64
 # Time constants of a model below this part of a sampling interval cannot be told from zero.
-_FASTEST = 0.25
+_FASTEST = 0.1
 # Numbers that one evaluation may hold: candidates times samples.
 _CHUNK = 4_000_000
 
