@@ -7,7 +7,7 @@ import numpy as np
 
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
-from quiesce.damper.library import RIG, Model, Scales
+from quiesce.damper.library import RIG, Model
 
 # Substeps of a sample with which a truth is made: steps this much finer than a fit's.
 FINER = 8
@@ -97,12 +97,3 @@ def with_force(
     deviation_N = noise_part * float(np.sqrt(np.mean(force_N**2)))
     noise_N = deviation_N * np.random.default_rng(seed).standard_normal(len(force_N))
     return replace(record, force_N=force_N + noise_N)
-
-
-def scales_of(record: Record, force_N: float) -> Scales:
-    """Natural sizes of a test whose largest force is expected to be this."""
-    return Scales(
-        force_N,
-        float(np.max(np.abs(record.disp_m))),
-        float(np.max(np.abs(record.velocity_m_s))),
-    )
