@@ -61,7 +61,7 @@ class RecordedMotion {
         const MotionSamples samples{
             count_,         step_s_, disp_m_.data(), velocity_m_s_.data(), accel_m_s2_.data(),
             command_.data()};
-        const auto made = std::make_shared<const MotionGrid>(samples, substeps);
+        auto made = std::make_shared<const MotionGrid>(samples, substeps);
         if (substeps <= kMostKept) {
             grids_[substeps] = made;
         }
@@ -137,6 +137,8 @@ Out2 simulate_rows(const std::string &model, const std::vector<int> &orders, con
     return owned<Out2>(std::move(out), {candidates.count, motion.count()});
 }
 
+// What Python passes by name.
+// NOLINTNEXTLINE(readability-function-size)
 Out1 error_of_rows(const std::string &model, const std::vector<int> &orders, const Rows &rows,
                    const RecordedMotion &motion, int substeps, const Row &force_N,
                    const Row &weight, std::size_t average_samples, const std::string &set) {

@@ -21,7 +21,7 @@ double linear(double from, double to, double u) {
 MotionGrid::MotionGrid(const MotionSamples &samples, int substeps)
     : steps_((samples.count - 1) * static_cast<std::size_t>(substeps)), substeps_(substeps),
       step_s_(samples.step_s / substeps), values_(4 * (2 * steps_ + 1)) {
-    const auto halves = static_cast<std::size_t>(2 * substeps);
+    const auto halves = 2 * static_cast<std::size_t>(substeps);
     const double *x = samples.disp_m;
     const double *v = samples.velocity_m_s;
     const double *a = samples.accel_m_s2;
