@@ -27,7 +27,6 @@ MODELS = (
     "viscoplastic_2",
     "viscoplastic_3",
     "viscoplastic_3_free",
-    "viscoplastic_4_free",
     "hysteresis_network",
     "grey_box",
 )
