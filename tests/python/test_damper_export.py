@@ -226,7 +226,7 @@ def test_mat_file_holds_parameters_units_and_laws(tmp_path: Path) -> None:
     assert found["parameters"]["kw_N"]["value"] == pytest.approx([60.0, 820.0, -180.0])
     assert found["parameters"]["kw_N"]["unit"] == "N"
     assert found["rig"]["fall_s"] == 0.02
-    assert found["valid"]["max_current_A"] == 1.0
+    assert list(found["valid"]["current_A"]) == [0.0, 1.0]
     assert "c2 i^2" in found["law"]
 
 
