@@ -338,3 +338,19 @@ def test_a_part_of_a_record_is_learned_from_its_rows_only():
     scales = Scales.of([whole(record)])
     expected = hysteresis_network.train([Segment(record, 0, 2000)], scales, 1, SMALL)
     assert hysteresis_network.train(segment, scales, 1, SMALL).to_toml() == expected.to_toml()
+
+
+def test_a_grey_box_keeps_the_field_law_of_its_base() -> None:
+    """In a file the base has its [field], too: the same force as in training."""
+    from quiesce.damper.learned.hysteresis_network import base_section
+    from quiesce.damper.library import RIG, model
+    from quiesce.damper.model_file import from_row
+
+    one = model("viscoplastic_1")
+    orders = [1] * len(one.parameters)
+    values = [parameter.search_low or 1.0 for parameter in one.parameters]
+    rig = dict.fromkeys(RIG, 0.0) | {"field_exponent": 1.5, "field_ref_A": 2.0}
+    base = from_row(one, orders, np.array([*values, *rig.values()]), "base", 1.0, 1.0)
+    assert base_section(base)["field"] == {"exponent": 1.5, "saturation": 0.0, "reference_A": 2.0}
+    plain = from_row(one, orders, np.array([*values, *[0.0] * len(RIG)]), "base", 1.0, 1.0)
+    assert "field" not in base_section(plain)

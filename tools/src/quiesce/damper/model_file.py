@@ -46,6 +46,13 @@ class DamperModel:
         rig = [float(self.rig.get(name, 0.0)) for name in RIG]
         return one, [len(law) for law in laws], np.concatenate([*laws, rig])
 
+    @property
+    def field_table(self) -> dict[str, float]:
+        """[field] of a file; empty where there is no field law."""
+        if not self.rig.get("field_exponent"):
+            return {}
+        return {key: float(self.rig.get(name, 0.0)) for key, name in _FIELD_KEYS}
+
     def to_toml(self) -> str:
         table: dict[str, Any] = {
             "schema": SCHEMA,
@@ -61,8 +68,8 @@ class DamperModel:
         lags = {key: self.rig[key] for key in ("rise_s", "fall_s") if self.rig.get(key)}
         if lags:
             table["coil"] = {"rise_s": 0.0, "fall_s": 0.0} | lags
-        if self.rig.get("field_exponent"):
-            table["field"] = {key: float(self.rig.get(name, 0.0)) for key, name in _FIELD_KEYS}
+        if self.field_table:
+            table["field"] = self.field_table
         others = {key: self.rig[key] for key in RIG if self.rig.get(key)}
         others = {key: value for key, value in others.items() if key not in (*lags, *FIELD)}
         for key, value in (("rig", others), ("fit", dict(self.fit))):

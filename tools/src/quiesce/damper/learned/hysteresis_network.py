@@ -363,4 +363,5 @@ def base_section(base: DamperModel) -> dict[str, Any]:
         "stroke_m": base.stroke_m,
         "speed_m_s": base.speed_m_s,
         "parameters": dict(base.parameters),
+        **({"field": base.field_table} if base.field_table else {}),
     }
