@@ -111,7 +111,7 @@ std::vector<double> TomlTable::coefficients(const std::string &key, std::size_t 
     if (!has(key) || !table_->get(key)->is_array()) {
         return {number(key, range)};
     }
-    const std::vector<double> values = numbers(key, 0);
+    std::vector<double> values = numbers(key, 0);
     if (values.size() > most) {
         fail(key, "expected a number or at most " + std::to_string(most) + " coefficients, found " +
                       std::to_string(values.size()));
