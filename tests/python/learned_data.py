@@ -5,7 +5,9 @@ from collections.abc import Callable
 import numpy as np
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, whole
+from quiesce.damper.learned.model import LearnedDamper
 from quiesce.damper.library import Scales
+from quiesce.damper.score import score
 
 RATE_Hz = 500.0
 
@@ -93,3 +95,8 @@ def backlash_N(disp_m: np.ndarray, velocity_m_s: np.ndarray, current_A: np.ndarr
         previous = now
         out[k] = 200.0 * (1.0 + 2.0 * current_A[k]) * stretch / 1e-3
     return out + 800.0 * velocity_m_s
+
+
+def error_of(model: LearnedDamper, segments: list[Segment]) -> float:
+    """||F - F_model|| / ||F||, free-running."""
+    return score(model.simulate, segments).error

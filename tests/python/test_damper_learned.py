@@ -5,11 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from learned_data import kwok_N, moved, random_motion, segments_of, sine
+from learned_data import error_of, kwok_N, moved, random_motion, segments_of, sine
 from quiesce.damper.data.split import whole
 from quiesce.damper.learned import MODELS, anfis, learner, support_vector, ts_fuzzy
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.model import relative_error
 from quiesce.damper.learned.self_tuning import RULES, Rates, SelfTuning, Triangles
 from quiesce.damper.learned.temperature import ThermalFactors, warmed
 from quiesce.damper.library import DamperFile, Scales, motion
@@ -124,7 +123,7 @@ def test_anfis_recovers_a_model_of_its_own_kind():
     records = [sine(10.0, 1.5e-3, at, cycles=3.0, rate_Hz=2000.0) for at in (0, 0.2, 0.6, 1.0)]
     records = [replace(one, force_N=file.simulate(motion(one), 1)) for one in records]
     segments, scales = segments_of(*records)
-    assert relative_error(anfis.train(segments, scales), segments) < 0.035
+    assert error_of(anfis.train(segments, scales), segments) < 0.035
 
 
 # Every static model: numpy and C++ agree, trained well on what it can describe
@@ -164,7 +163,7 @@ def numpy_force(name: str, parameters: dict, picked: np.ndarray) -> np.ndarray:
 def test_static_models_fit_a_static_force_and_agree_with_the_library(name, most):
     segments, scales = three_currents()
     model = learner(name).train(segments, scales, seed=1)
-    assert relative_error(model, segments) < most
+    assert error_of(model, segments) < most
     assert model.parameter_count > 0
     # Larger than in the training: the inputs are cut off in the same way.
     wide = sine(2.5, 8e-3, 0.4)
@@ -342,4 +341,4 @@ def test_stf_frozen_is_the_same_in_the_library():
     ]
     np.testing.assert_allclose(model.simulate(record), expected, atol=1e-10 * scales.force_N)
     # Frozen, free-running: a forward model, coarse as it is.
-    assert relative_error(model, segments) < 0.35
+    assert error_of(model, segments) < 0.35

@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import tomli_w
-from learned_data import backlash_N, kwok_N, random_motion, segments_of, sine
+from learned_data import backlash_N, error_of, kwok_N, random_motion, segments_of, sine
 from quiesce.damper import library
 from quiesce.damper.data.split import Segment, whole
 from quiesce.damper.learned import feed_forward, hysteresis_network, inverse, recurrent
 from quiesce.damper.learned.elements import Elements
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.model import relative_error
 from quiesce.damper.learned.network import Network, fit
 from quiesce.damper.learned.sampled import default_lags, delayed
 from quiesce.damper.library import Scales
@@ -82,7 +81,7 @@ def test_network_learns_a_curve():
 def test_static_network_agrees_with_the_library():
     segments, scales = segments_of(sine(2.5, 5e-3, 0.0), sine(2.5, 5e-3, 1.0))
     model = feed_forward.train(segments, scales, 1, feed_forward.Settings(lags=()))
-    assert relative_error(model, segments) < 0.1
+    assert error_of(model, segments) < 0.1
     keys = model.to_toml()
     network = network_of(keys["layer"])
     box = box_of(keys)
@@ -138,7 +137,7 @@ def test_a_memory_needs_lags_and_feedback_helps_free_running():
     static = feed_forward.train(segments, scales, 1, feed_forward.Settings(lags=()))
     settings = recurrent.Settings(epochs=15, free_steps=300)
     own = recurrent.train(segments, scales, 1, settings)
-    assert relative_error(own, held_out) < 0.75 * relative_error(static, held_out)
+    assert error_of(own, held_out) < 0.75 * error_of(static, held_out)
     assert "free-running" in own.notes[0]
 
 
@@ -268,8 +267,8 @@ def test_hysteresis_network_learns_a_memory_and_forgets_no_current():
     model = hysteresis_network.train(segments, scales, 1, SMALL)
     held_out = [whole(one) for one in with_memory(7, current_A=0.5)]
     static = feed_forward.train(segments, scales, 1, feed_forward.Settings(lags=(), epochs=20))
-    assert relative_error(model, held_out) < 0.12
-    assert relative_error(model, held_out) < 0.5 * relative_error(static, held_out)
+    assert error_of(model, held_out) < 0.12
+    assert error_of(model, held_out) < 0.5 * error_of(static, held_out)
 
 
 def test_hysteresis_network_agrees_with_numpy():
@@ -299,7 +298,7 @@ def test_grey_box_stands_on_its_base():
     model = hysteresis_network.train(segments, scales, 1, replace(SMALL, base=base, epochs=10))
     held_out = [whole(one) for one in with_memory(7)]
     assert model.to_toml()["base"]["model"] == "kwok_tanh"
-    assert relative_error(model, held_out) < 0.2
+    assert error_of(model, held_out) < 0.2
 
 
 def test_a_base_with_a_wrong_parameter_is_named():

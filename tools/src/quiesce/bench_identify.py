@@ -9,6 +9,7 @@ from typing import Any
 
 from quiesce.bench_report import Figure, Report
 from quiesce.errors import UsageError
+from quiesce.paths import measurements, shown
 from quiesce.progress import Progress
 
 NAME = "identify"
@@ -73,7 +74,11 @@ def real_part(args: argparse.Namespace, folder: Path) -> tuple[list[Figure], lis
     models = names_of(args.models) if args.models else list(real.MODELS)
     data = real.data_folder()
     if data is None:
-        return absent_figures(chosen), [], [f"no measurements at {real.DATA}: sets not judged"]
+        return (
+            absent_figures(chosen),
+            [],
+            [no_data()],
+        )
     figures, tables = [], []
     progress = Progress(len(chosen) * (len(models) + 1))
     for entry in chosen:
@@ -82,6 +87,10 @@ def real_part(args: argparse.Namespace, folder: Path) -> tuple[list[Figure], lis
         tables.append(result.table())
         write_models(folder, result)
     return figures, tables, []
+
+
+def no_data() -> str:
+    return f"no measurements at {shown(measurements('mr_damper'))}: measured dampers not judged"
 
 
 def write_models(folder: Path, result: Any) -> None:
@@ -110,7 +119,7 @@ def absent_figures(entries: list[dict[str, Any]]) -> list[Figure]:
 
 def one_set_part(args: argparse.Namespace) -> tuple[list[Figure], list[str], list[str]]:
     from quiesce import damper_one_set as one
-    from quiesce.damper_real import DATA, data_folder
+    from quiesce.damper_real import data_folder
 
     data = data_folder()
     if data is None:
@@ -118,7 +127,11 @@ def one_set_part(args: argparse.Namespace) -> tuple[list[Figure], list[str], lis
             Figure("one_set_in_sample_pct", None, "%", one.IN_SAMPLE_GOAL_pct, "lower"),
             Figure("one_set_held_out_pct", None, "%", one.HELD_OUT_GOAL_pct, "lower"),
         ]
-        return missing, [], [f"no measurements at {DATA}: the five currents were not judged"]
+        return (
+            missing,
+            [],
+            [no_data()],
+        )
     records = one.records_of_test(data)
     say: Callable[[str], None] = Progress(4 if args.quick else 8).done
     figures, table = one.one_set(records, args.seed, say)

@@ -248,9 +248,12 @@ def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[li
         note = "" if one.is_complete else ", not to its end"
         progress.done(f"{one.name}: validation {100 * one.validation_error:.2f} %{note}")
 
+    def say(text: str) -> None:
+        print(f"      {text}", file=sys.stderr, flush=True)
+
     def work() -> None:
         try:
-            results.extend(identify(train, test, plan, done, told))
+            results.extend(identify(train, test, plan, done, told, say))
         except BaseException as error:  # handed on to the main thread
             failure.append(error)
         finally:

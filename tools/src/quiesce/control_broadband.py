@@ -20,9 +20,8 @@ from quiesce.control_scenarios import (
     two_tones,
 )
 from quiesce.errors import UsageError, one_line
-from quiesce.paths import root, shown
+from quiesce.paths import measurements, shown
 
-DATA = "shared/data/earthquake"
 EARTHQUAKES = {"El Centro": "el_centro_1940_ns.csv", "Kobe": "kobe_1995.csv"}
 PEAKS_um = (100.0, 300.0)
 TIME_SCALES = (1.0, 5.0)
@@ -131,7 +130,7 @@ def made_inputs(rig: Rig, seed: int) -> list[Scenario]:
 
 def default_folder() -> Path:
     """Beside the project; the recordings do not ship with it."""
-    return root().parent / DATA
+    return measurements("earthquake")
 
 
 def find_folder(given: Path | None) -> Path:

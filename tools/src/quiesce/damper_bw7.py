@@ -45,7 +45,7 @@ class Size:
     compared: int  # of them also by scipy
 
 
-FULL = Size(100, 10)
+FULL = Size(100, 100)
 QUICK = Size(20, 3)
 
 

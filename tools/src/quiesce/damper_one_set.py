@@ -17,7 +17,7 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, whole
 from quiesce.damper.fit.grown import grown_fit
 from quiesce.damper.fit.problem import Problem
-from quiesce.damper.fit.search import fit
+from quiesce.damper.fit.small import fit_small
 from quiesce.damper.identify import simulate_values
 from quiesce.damper.score import Simulate, score
 from quiesce.table import format_table
@@ -56,7 +56,7 @@ def fit_model(name: str, segments: Sequence[Segment], seed: int) -> Simulate:
         first = Problem(setting_of(smaller, segments, Choice()), segments)
         found = grown_fit(problem, seed, [(first, grown_fit(first, seed, []))])
     else:
-        found = fit(problem, seed)
+        found = fit_small(problem, seed)
     return simulate_values(problem, found.values)
 
 

@@ -14,11 +14,10 @@ from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
 from quiesce.damper.identify import Plan, identify, simulate_values
 from quiesce.damper.ranking import best, ranked
 from quiesce.damper.score import Score, score
-from quiesce.paths import root
+from quiesce.paths import measurements, root
 from quiesce.table import format_table
 
 RULES = "bench/dampers/scoring.toml"
-DATA = "../shared/data"
 
 # What `quiesce bench identify` fits to every set; --models all adds every other one.
 MODELS = (
@@ -149,8 +148,8 @@ def unexplained(one: Fitted, baselines: Sequence[Baseline]) -> float:
 
 def data_folder() -> Path | None:
     """Where the measurements are, or None."""
-    folder = (root() / DATA).resolve()
-    return folder if (folder / "mr_damper").is_dir() else None
+    folder = measurements("mr_damper")
+    return folder.parent if folder.is_dir() else None
 
 
 def rules() -> dict[str, Any]:

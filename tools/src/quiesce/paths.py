@@ -27,6 +27,12 @@ def build_folder() -> Path:
     return Path(named) if named else root() / "build"
 
 
+def measurements(kind: str) -> Path:
+    """Folder of the recordings of one kind ("vibration", "earthquake", "mr_damper"), which lie
+    beside the project; it may not be there."""
+    return root().parent / "shared/data" / kind
+
+
 def scenario_folder() -> Path:
     return root() / "sim_hil/scenarios"
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.errors import UsageError
-from quiesce.paths import root
+from quiesce.paths import measurements
 from quiesce.recording import Recording, read_recording
 from quiesce.reference_peak import compare, reference_freq_Hz
 from quiesce.replay import SPECTRUM_RATE_Hz, frequency_latency_s
@@ -15,7 +15,6 @@ from quiesce.resample import resample
 from quiesce.signal_offline import trailing_Hz
 from quiesce.signal_records import Rig
 
-DATA = "shared/data/vibration"
 SWEEP_FROM_s = 23.0
 SWEEP_TOLERANCE_Hz = 0.12
 OFFLINE_LEAST_s = 0.01
@@ -54,7 +53,7 @@ class Replay:
 
 def default_folder() -> Path:
     """Beside the project; the recordings do not ship with it."""
-    return root().parent / DATA
+    return measurements("vibration")
 
 
 def find_folder(given: Path | None) -> Path:

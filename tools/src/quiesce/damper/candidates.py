@@ -8,7 +8,7 @@ effective current of the field law; each starts from the fit of the one with an 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from quiesce.damper.data.split import Segment, levels_of
+from quiesce.damper.data.split import Segment, is_switched, levels_of
 from quiesce.damper.fit.setting import Setting, nodes_of
 from quiesce.damper.library import model, models
 
@@ -56,10 +56,6 @@ def parametric_candidates() -> dict[str, Candidate]:
     """By name: every kernel, networks in the order in which they grow."""
     published = [Candidate(name, name) for name in models() if not name.startswith(NETWORK)]
     return {one.name: one for one in [*published, *network_candidates()]}
-
-
-def is_switched(segments: Sequence[Segment]) -> bool:
-    return any(segment.record.level is None for segment in segments)
 
 
 def rig_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice) -> tuple[str, ...]:

@@ -2,10 +2,7 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from quiesce.damper import library
-from quiesce.damper.data.record import Record
 from quiesce.damper.fit.intervals import Interval
 from quiesce.damper.model_file import DamperModel, opened
 from quiesce.damper.passivity import Passivity
@@ -42,13 +39,7 @@ def simulator(damper: DamperModel) -> Simulate:
     """The force in N of a damper model along a record, with its rig: lag, mass, skew, offset."""
     if damper.is_kernel:
         one, orders, row = damper.kernel_row()
-
-        def of_kernel(record: Record) -> np.ndarray:
-            rate = float(library.fastest_rates(one, orders, row, record)[0]) if one.states else 0.0
-            steps = library.substeps_for(rate, record.rate_Hz)
-            return library.simulate(one, orders, row, library.motion(record), steps)[0]
-
-        return of_kernel
+        return lambda record: library.simulate_row(one, orders, row, record)
     from quiesce.damper.file_force import with_rig
 
     return with_rig(opened(damper), dict(damper.rig))

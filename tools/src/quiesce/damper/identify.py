@@ -23,7 +23,8 @@ from quiesce.damper.data.split import Fold, Segment, inner_split, levels_of
 from quiesce.damper.fit.grown import grown_fit
 from quiesce.damper.fit.intervals import intervals
 from quiesce.damper.fit.problem import Problem, trimmed
-from quiesce.damper.fit.search import Effort, Fit, fit
+from quiesce.damper.fit.search import Effort, Fit, Progress
+from quiesce.damper.fit.small import fit_small
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted, simulator
 from quiesce.damper.library import FIELD, Scales
 from quiesce.damper.model_file import DamperModel, from_row
@@ -34,6 +35,7 @@ from quiesce.damper.score import Simulate, score
 MARGIN = 1.25
 # Folds of the inner validation at most.
 MOST_FOLDS = 2
+SAY_EVERY_s = 10.0
 GREY_BOX = "grey_box"
 
 Told = Callable[[Fitted], None]
@@ -141,11 +143,9 @@ def run_chain(
         if plan.stop.is_set():
             return
         if isinstance(one, str):
-            say(f"{one}: learning")
             keep_learned(one, parts, plan, (), keep, say)
         else:
-            say(f"{one.name}: fitting")
-            fitted, before = fit_candidate(one, parts, plan, before)
+            fitted, before = fit_candidate(one, parts, plan, before, say)
             by_fold[one.name] = [damper_of(one, *fit, parts, plan) for fit in before[:-1]]
             keep(fitted)
 
@@ -158,10 +158,12 @@ def fit_candidate(
     parts: _Parts,
     plan: Plan,
     before: list[tuple[Problem, Fit]] | None,
+    say: Say,
 ) -> tuple[Fitted, list[tuple[Problem, Fit]]]:
     """Fits every fold and the whole training part; `before`: the same of the candidate that this
     one grows from."""
     start_s = monotonic()
+    progress = saying(candidate.name, say)
     errors, fits = [], []
     last: tuple[Problem, Fit] | None = None
     for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
@@ -171,7 +173,7 @@ def fit_candidate(
         # A fold must not start from one that has seen its validation rows.
         known = None if validation else last
         left_s = (plan.seconds - (monotonic() - start_s)) / (len(parts.folds) + 1 - k)
-        found = fit_problem(candidate, problem, plan, smaller, known, left_s)
+        found = fit_problem(candidate, problem, plan, smaller, known, left_s, progress)
         fits.append((problem, found))
         last = (problem, found)
         if validation:
@@ -187,6 +189,7 @@ def fit_problem(
     smaller: tuple[Problem, Fit] | None,
     last: tuple[Problem, Fit] | None,
     left_s: float,
+    progress: Progress,
 ) -> Fit:
     effort = Effort(
         population=16 if plan.quick else 32,
@@ -197,14 +200,27 @@ def fit_problem(
         stop=plan.stop,
     )
     if plan.choice.method != "default":
-        return paper_method(plan.choice.method)(problem, plan.seed, effort)
+        return paper_method(plan.choice.method)(problem, plan.seed, effort, progress)
     if candidate.model.startswith(NETWORK):
-        return grown_fit(problem, plan.seed, [smaller, last], effort)
-    starts = None if last is None else last[1].values[None, :]
-    return fit(problem, plan.seed, effort, starts=starts)
+        return grown_fit(problem, plan.seed, [smaller, last], effort, progress)
+    known = None if last is None else last[1].values[None, :]
+    return fit_small(problem, plan.seed, effort, progress, known)
 
 
-def paper_method(name: str) -> Callable[[Problem, int, Effort], Fit]:
+def saying(name: str, say: Say) -> Progress:
+    """Tells of a long fit every SAY_EVERY_s."""
+    last_s = monotonic()
+
+    def tell(what: str, error: float) -> None:
+        nonlocal last_s
+        if monotonic() - last_s >= SAY_EVERY_s:
+            last_s = monotonic()
+            say(f"{name}: {what}, error {100.0 * error:.2f} %")
+
+    return tell
+
+
+def paper_method(name: str) -> Callable[[Problem, int, Effort, Progress], Fit]:
     """The searches that the papers used, over all variables."""
     from quiesce.damper.fit.binary_ga import fit_binary_ga
     from quiesce.damper.fit.thesis_de import fit_thesis_de
@@ -213,15 +229,8 @@ def paper_method(name: str) -> Callable[[Problem, int, Effort], Fit]:
 
 
 def simulate_values(problem: Problem, values: np.ndarray) -> Simulate:
-    row = problem.rows(values)
-
-    def run(record: Record) -> np.ndarray:
-        one, orders = problem.model, problem.orders
-        rate = float(library.fastest_rates(one, orders, row, record)[0]) if one.states else 0.0
-        steps = library.substeps_for(rate, record.rate_Hz)
-        return library.simulate(one, orders, row, library.motion(record), steps)[0]
-
-    return run
+    row = problem.rows(values)[0]
+    return lambda record: library.simulate_row(problem.model, problem.orders, row, record)
 
 
 def judged(
@@ -353,7 +362,9 @@ def fit_learned(name: str, parts: _Parts, plan: Plan, bases: Sequence[DamperMode
 
     for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
         settings = module.Settings(base=bases[k]) if bases else module.Settings()
-        trained = module.train(rows, parts.scales, plan.seed, settings, going_on)
+        # What follows the rows of a fold validates it: not even its size may be known.
+        own = trimmed(rows)
+        trained = module.train(own, Scales.of(own), plan.seed, settings, going_on)
         if validation:
             errors.append(score(trained.simulate, validation).mean_error)
     damper = trained.as_model(name, source=plan.source, valid=valid_of(parts.train))
@@ -405,7 +416,7 @@ def run_grey_box(
     base = ranked(parametric)[0]
     if base.name not in by_fold:  # from an earlier run
         candidate = parametric_candidates()[base.name]
-        _, fits = fit_candidate(candidate, parts, plan, None)
+        _, fits = fit_candidate(candidate, parts, plan, None, say)
         by_fold[base.name] = [damper_of(candidate, *one, parts, plan) for one in fits[:-1]]
     say(f"{GREY_BOX}: learning what {base.name} leaves")
     keep_learned(GREY_BOX, parts, plan, [*by_fold[base.name], base.damper], keep, say)

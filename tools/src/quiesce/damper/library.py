@@ -206,6 +206,13 @@ def simulate(
     )
 
 
+def simulate_row(one: Model, orders: Sequence[int], row: np.ndarray, record: Record) -> np.ndarray:
+    """Force in N of one row along a record, with the steps that its rates ask for: [samples]."""
+    rate = float(fastest_rates(one, orders, row, record)[0]) if one.states else 0.0
+    steps = substeps_for(rate, record.rate_Hz)
+    return simulate(one, orders, row, motion(record), steps)[0]
+
+
 def squared_error(
     one: Model,
     orders: Sequence[int],

@@ -150,6 +150,16 @@ def extent(records: Sequence[Record]) -> str:
 Fold = tuple[list[Segment], list[Segment]]
 
 
+def records_in(segments: Sequence[Segment]) -> list[Record]:
+    """Their records, each once."""
+    return list({id(segment.record): segment.record for segment in segments}.values())
+
+
+def is_switched(segments: Sequence[Segment]) -> bool:
+    """The command changes within some test."""
+    return any(segment.record.level is None for segment in segments)
+
+
 def levels_of(segments: Sequence[Segment]) -> list[float]:
     """The distinct constant commands, rising; tests with a switched command have none."""
     found = sorted(level for segment in segments if (level := segment.record.level) is not None)

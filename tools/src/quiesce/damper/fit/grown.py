@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from quiesce.damper.fit.problem import SEARCH_SUBSTEPS, Problem
-from quiesce.damper.fit.search import Clock, Effort, Fit, Progress, polish_all, sobol, values_from
+from quiesce.damper.fit.search import Clock, Effort, Fit, Progress, polish_all, sobol
 
 # Random points that are looked at for each start that is polished.
 _LOOKS = 32
@@ -40,7 +40,7 @@ def starts(
     """The best of random points, [count, variables]; those that grew from one fit compete among
     themselves."""
     rng = np.random.default_rng(seed)
-    values = values_from(problem, sobol(len(problem.nonlinear), _LOOKS * count, rng))
+    values = problem.values_from(sobol(len(problem.nonlinear), _LOOKS * count, rng))
     usable = [one for one in known if one is not None]
     groups = np.array_split(values, len(usable) + 1)
     for k, (before, fit) in enumerate(usable):

@@ -13,7 +13,7 @@ import numpy as np
 
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
-from quiesce.damper.data.split import Segment
+from quiesce.damper.data.split import Segment, records_in
 from quiesce.damper.fit.bounded import bounded_least_squares
 from quiesce.damper.fit.setting import Setting, law_matrix
 from quiesce.damper.library import RIG, Scales
@@ -86,7 +86,7 @@ class Problem:
         self.setting = setting
         self.segments = trimmed(segments)
         self.scales = Scales.of(self.segments)
-        self.records = unique_records(self.segments)
+        self.records = records_in(self.segments)
         self._motions = {id(record): library.motion(record) for record in self.records}
         fastest_s = _FASTEST / max(record.rate_Hz for record in self.records)
         self.variables = variables_of(setting, self.scales, fastest_s)
@@ -104,6 +104,18 @@ class Problem:
     @property
     def model(self) -> library.Model:
         return self.setting.model
+
+    def values_from(self, parts: np.ndarray) -> np.ndarray:
+        """Variables from search coordinates [candidates, nonlinear]; linear ones are 0."""
+        out = np.zeros((len(parts), len(self.variables)))
+        for j, k in enumerate(self.nonlinear):
+            out[:, k] = self.variables[k].to_value(parts[:, j])
+        return out
+
+    def parts_of(self, values: np.ndarray) -> np.ndarray:
+        """Search coordinates of the nonlinear variables, [candidates, nonlinear]."""
+        parts = [self.variables[k].to_part(values[:, k]) for k in self.nonlinear]
+        return np.stack(parts, axis=1)
 
     # Rows of the library
 
@@ -195,18 +207,28 @@ class Problem:
         with np.errstate(all="ignore"):
             outputs = self.outputs(unit.reshape(-1, values.shape[1]), finest)
             outputs = outputs.reshape(count, linear + 1, -1)
-            base = outputs[:, 0]
-            basis = outputs[:, 1:] - base[:, None, :]
-            # Columns beyond this diverge, and their squares would overflow.
-            finite = (np.abs(basis) < 1e100).all(axis=(1, 2)) & (np.abs(base) < 1e100).all(axis=1)
-        basis[~finite], base[~finite] = 0.0, 0.0
-        if linear:
-            low, high = np.array([self.variables[k].bounds for k in self.linear]).T
-            amounts = bounded_least_squares(basis, self.target - base, low / sizes, high / sizes)
+            outputs[:, 1:] -= outputs[:, :1]
+            return values, np.linalg.norm(self.solve_linear(values, outputs), axis=1)
+
+    def solve_linear(self, values: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Writes the best linear variables into `values` and returns the residuals (model -
+        measured) / ||measured||, [candidates, samples], infinite where a column diverges. columns:
+        weighted outputs without the linear variables, then what each of them adds at its natural
+        size, [candidates, 1 + linear, samples]."""
+        # Beyond this a column diverges, and its square would overflow.
+        finite = (np.abs(columns) < 1e100).all(axis=(1, 2))
+        columns = np.where(finite[:, None, None], columns, 0.0)
+        output, basis = columns[:, 0], columns[:, 1:]
+        if self.linear:
+            chosen = [self.variables[k] for k in self.linear]
+            sizes = np.array([one.natural for one in chosen])
+            low, high = np.array([one.bounds for one in chosen]).T / sizes
+            amounts = bounded_least_squares(basis, self.target - output, low, high)
             values[:, self.linear] = amounts * sizes
-            base = base + np.einsum("cl,cln->cn", amounts, basis)
-        error = np.sqrt(np.sum((self.target - base) ** 2, axis=1)) / self.size
-        return values, np.where(finite, error, np.inf)
+            output = output + np.einsum("cl,cln->cn", amounts, basis)
+        residuals = (output - self.target) / self.size
+        residuals[~finite] = np.inf
+        return residuals
 
     def residuals(self, values: np.ndarray) -> np.ndarray:
         """(model - measured) / ||measured||, weighted, [scored samples]."""
@@ -255,10 +277,6 @@ def trimmed(segments: Sequence[Segment]) -> list[Segment]:
             is_whole = end == len(one.record) or one.record.average_samples > 1
             cut[key] = one.record if is_whole else one.record.rows(0, end)
     return [Segment(cut[id(one.record)], one.first, one.end) for one in segments]
-
-
-def unique_records(segments: Sequence[Segment]) -> list[Record]:
-    return list({id(segment.record): segment.record for segment in segments}.values())
 
 
 def averaged(record: Record, forces: np.ndarray) -> np.ndarray:

@@ -8,7 +8,6 @@ from examples; `check` compares with a full simulation.
 
 import numpy as np
 
-from quiesce.damper.fit.bounded import bounded_least_squares
 from quiesce.damper.fit.problem import Problem
 
 # Columns of candidates with other nonlinear variables that agree to this are the same for all.
@@ -24,44 +23,22 @@ class Projected:
         self.problem = problem
         linear = [problem.variables[k] for k in problem.linear]
         self._sizes = np.array([one.natural for one in linear])
-        bounds = np.array([one.bounds for one in linear]).reshape(-1, 2).T
-        self._low, self._high = bounds / self._sizes
         self._known: dict[int, np.ndarray] = {}
         self._is_learned = False
-
-    def values(self, parts: np.ndarray) -> np.ndarray:
-        """Variables from search coordinates [candidates, nonlinear]; linear ones are 0."""
-        out = np.zeros((len(parts), len(self.problem.variables)))
-        for j, k in enumerate(self.problem.nonlinear):
-            out[:, k] = self.problem.variables[k].to_value(parts[:, j])
-        return out
 
     def solve(self, parts: np.ndarray, finest: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Values of all variables [candidates, variables] and residuals (model - measured) /
         ||measured|| [candidates, samples]; not finite where a candidate diverges."""
-        problem = self.problem
-        values = self.values(parts)
+        values = self.problem.values_from(parts)
         with np.errstate(all="ignore"):
             columns = self._columns(values, finest)
-            base, basis = columns[:, 0], columns[:, 1:]
-            is_finite = np.isfinite(columns).all(axis=(1, 2))
-            base = np.where(is_finite[:, None], base, 0.0)
-            basis = np.where(is_finite[:, None, None], basis, 0.0)
-        if problem.linear:
-            amounts = bounded_least_squares(basis, problem.target - base, self._low, self._high)
-            values[:, problem.linear] = amounts * self._sizes
-            base = base + np.einsum("cl,cln->cn", amounts, basis)
-        residuals = (base - problem.target) / problem.size
-        residuals[~is_finite] = np.inf
-        return values, residuals
+            return values, self.problem.solve_linear(values, columns)
 
     def check(self, values: np.ndarray) -> bool:
         """Whether a full simulation has the error that the columns say; else all columns are
         simulated from now on."""
-        parts = [
-            float(self.problem.variables[k].to_part(values[k])) for k in self.problem.nonlinear
-        ]
-        said = float(np.linalg.norm(self.solve(np.array([parts]))[1][0]))
+        parts = self.problem.parts_of(values[None, :])
+        said = float(np.linalg.norm(self.solve(parts)[1][0]))
         is_same = abs(self.problem.error(values) - said) <= _AGREES * said + _SAME
         if not is_same:
             self._known = {}

@@ -83,15 +83,7 @@ class Clock:
 
 
 def middle(problem: Problem) -> np.ndarray:
-    return values_from(problem, np.full((1, len(problem.nonlinear)), 0.5))
-
-
-def values_from(problem: Problem, parts: np.ndarray) -> np.ndarray:
-    """Variables from search coordinates [candidates, nonlinear]; linear ones are 0."""
-    out = np.zeros((len(parts), len(problem.variables)))
-    for j, k in enumerate(problem.nonlinear):
-        out[:, k] = problem.variables[k].to_value(parts[:, j])
-    return out
+    return problem.values_from(np.full((1, len(problem.nonlinear)), 0.5))
 
 
 def fit(
@@ -126,14 +118,12 @@ def search(
     rng = np.random.default_rng(seed)
     initial = sobol(dimensions, effort.population, rng)
     if starts is not None:
-        parts = np.column_stack(
-            [problem.variables[k].to_part(starts[:, k]) for k in problem.nonlinear]
-        )
+        parts = problem.parts_of(starts)
         initial[: len(parts)] = np.clip(parts, 0.0, 1.0)
     found: list[tuple[np.ndarray, np.ndarray]] = []
 
     def cost(parts: np.ndarray) -> np.ndarray:
-        values, errors = problem.project(values_from(problem, parts.T), SEARCH_SUBSTEPS)
+        values, errors = problem.project(problem.values_from(parts.T), SEARCH_SUBSTEPS)
         clock.offer(values, errors, "searching")
         found.append((values, errors))
         del found[:-2]
@@ -156,7 +146,7 @@ def search(
     )
     order = np.argsort(ended.population_energies)
     chosen = spread(ended.population[order], effort.polished)
-    values, _errors = problem.project(values_from(problem, chosen), SEARCH_SUBSTEPS)
+    values, _errors = problem.project(problem.values_from(chosen), SEARCH_SUBSTEPS)
     return values
 
 
@@ -252,7 +242,7 @@ def from_starts(
     errors: list[float] = []
     try:
         chosen = sobol(len(problem.nonlinear), count, np.random.default_rng(seed))
-        values, found = problem.project(values_from(problem, chosen), SEARCH_SUBSTEPS)
+        values, found = problem.project(problem.values_from(chosen), SEARCH_SUBSTEPS)
         clock.offer(values, found, "starting")
         errors = polish_all(problem, values, effort, clock)
     except KeyboardInterrupt:

@@ -29,9 +29,14 @@ _LARGEST_MOVE = 0.3  # of a search coordinate in one step
 
 
 def fit_small(
-    problem: Problem, seed: int, effort: Effort = EFFORT, progress: Progress | None = None
+    problem: Problem,
+    seed: int,
+    effort: Effort = EFFORT,
+    progress: Progress | None = None,
+    known: np.ndarray | None = None,
 ) -> Fit:
-    """See above. Ctrl-C or the end of `effort.seconds` ends it with the best so far."""
+    """See above. known: values to begin with among others, [any, variables]. Ctrl-C or the end of
+    `effort.seconds` ends it with the best so far."""
     if not problem.nonlinear:
         return fit(problem, seed, effort, progress)
     clock = Clock(problem, effort, progress)
@@ -39,6 +44,8 @@ def fit_small(
     ends: list[float] = []
     try:
         starts = sobol(len(problem.nonlinear), STARTS, np.random.default_rng(seed))
+        if known is not None:
+            starts = np.vstack([starts, np.clip(problem.parts_of(known), 0.0, 1.0)])
         values, residuals = projected.solve(starts, SEARCH_SUBSTEPS)
         errors = np.linalg.norm(residuals, axis=1)
         for k in np.argsort(errors)[:TRIED]:

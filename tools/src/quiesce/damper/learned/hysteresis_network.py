@@ -16,9 +16,9 @@ import numpy as np
 
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
-from quiesce.damper.data.split import Segment, levels_of
+from quiesce.damper.data.split import Segment, is_switched, levels_of, records_in
 from quiesce.damper.learned.elements import Elements, states_of
-from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, records_of, silent
+from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
 from quiesce.damper.learned.network import Adam, Network, falling_rate
 from quiesce.damper.library import DamperFile, Scales
 from quiesce.damper.model_file import DamperModel
@@ -95,14 +95,10 @@ class Examples:
 # Elements and field
 
 
-def is_switched(segments: Sequence[Segment]) -> bool:
-    return any(one.record.level is None for one in segments)
-
-
 def elements_for(segments: Sequence[Segment], base: DamperModel | None) -> Elements:
     """Elements for this motion: reaches from its size, times from the sampling rate to its
     slowest swing, coil lags where the command changes within a test."""
-    records = records_of(segments)
+    records = records_in(segments)
     rate_Hz = min(record.rate_Hz for record in records)
     disp_m = float(np.std(np.concatenate([record.disp_m for record in records])))
     velocity_m_s = np.concatenate([record.velocity_m_s for record in records])
@@ -202,7 +198,7 @@ def prepare(
     scales: Scales,
     settings: Settings,
 ) -> Prepared:
-    states = states_of(elements, records_of(segments), limits_of(scales)["speed_m_s"])
+    states = states_of(elements, records_in(segments), limits_of(scales)["speed_m_s"])
     base = base_file(settings.base) if settings.base else None
     features, powers, targets, blocks = [], [], [], []
     at = 0

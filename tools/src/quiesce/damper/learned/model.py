@@ -11,7 +11,6 @@ import numpy as np
 
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
-from quiesce.damper.data.split import Segment
 from quiesce.damper.library import DamperFile, Scales
 from quiesce.damper.model_file import DamperModel
 from quiesce.errors import UsageError
@@ -69,17 +68,3 @@ def positive(value: float, what: str) -> float:
     if not (np.isfinite(value) and value > 0.0):
         raise UsageError(f"the {what} is zero throughout; nothing can be learned from it")
     return value
-
-
-def records_of(segments: Sequence[Segment]) -> list[Record]:
-    return list({id(segment.record): segment.record for segment in segments}.values())
-
-
-def relative_error(model: LearnedDamper, segments: Sequence[Segment]) -> float:
-    """||F - F_model|| / ||F|| over the segments, free-running."""
-    forces = {
-        id(record): record.averaged(model.simulate(record)) for record in records_of(segments)
-    }
-    errors = [forces[id(one.record)][one.rows] - one.record.force_N[one.rows] for one in segments]
-    measured = [one.record.force_N[one.rows] for one in segments]
-    return float(np.linalg.norm(np.concatenate(errors)) / np.linalg.norm(np.concatenate(measured)))

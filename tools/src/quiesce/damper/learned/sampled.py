@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.damper.data.record import Record
-from quiesce.damper.data.split import Segment
+from quiesce.damper.data.split import Segment, records_in
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.model import records_of
 
 # How far back the inputs go by default.
 SPAN_S = 0.03
@@ -28,7 +27,7 @@ class Series:
 
 def sample_time_s(segments: Sequence[Segment]) -> float:
     """That of the slowest record."""
-    return 1.0 / min(record.rate_Hz for record in records_of(segments))
+    return 1.0 / min(record.rate_Hz for record in records_in(segments))
 
 
 def default_lags(time_s: float) -> tuple[int, ...]:
