@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from quiesce.damper.data.split import Segment, is_switched, levels_of
 from quiesce.damper.fit.setting import Setting, nodes_of
-from quiesce.damper.library import model, models
+from quiesce.damper.library import RIG, model, models
 
 NETWORK = "viscoplastic_"
 MOST_PASSIVE = 3
@@ -80,10 +80,7 @@ def setting_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice
     one = model(candidate.model)
     known = {parameter.name for parameter in one.parameters}
     rig = rig_of(candidate, segments, choice)
-    fixed = {
-        name: value for name, value in choice.fixed.items() if name in known or name not in rig
-    }
-    fixed = {name: value for name, value in fixed.items() if name in known or is_rig(name)}
+    fixed = {name: value for name, value in choice.fixed.items() if name in known or name in RIG}
     bounds = {name: value for name, value in choice.bounds.items() if name in known or name in rig}
     most = min(choice.most_coefficients, 2 if candidate.model.startswith(NETWORK) else 3)
     nodes = nodes_of(segments, most)
@@ -101,9 +98,3 @@ def setting_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice
         low, high = bounds.get("k_N_m", (0.0, 1e15))
         bounds["k_N_m"] = (max(low, 0.0), high)
     return Setting(one, nodes, fixed=fixed, bounds=bounds, rig=rig)
-
-
-def is_rig(name: str) -> bool:
-    from quiesce.damper.library import RIG
-
-    return name in RIG
