@@ -1,0 +1,69 @@
+/// What a controller with a CAN interface runs: the application, its messages, its service
+/// requests. The same on a board and on Linux; only the HAL behind it differs.
+#ifndef NODE_H
+#define NODE_H
+
+#include "app.h"
+#include "can_node.h"
+
+/// Where the operator's enable comes from.
+typedef enum {
+    NODE_ENABLE_BOARD = 0, ///< node_inputs_t.enable: a line, or always
+    NODE_ENABLE_CAN = 1,   ///< OperatorCommand
+    NODE_ENABLE_BOTH = 2,  ///< both of them
+} node_enable_t;
+
+/// What the board itself sees in a tick. Emergency stops and acknowledgements of board and bus add.
+typedef struct {
+    bool enable;
+    bool estop;
+    bool fault_reset;
+    uint32_t ticks_elapsed; ///< 1, more where ticks were lost
+    uint32_t overruns;      ///< these and the following: see can_node_tick_t
+    uint32_t lateness_us;
+    uint32_t work_us;
+    uint32_t tx_dropped;
+    uint32_t bus_off_count;
+} node_inputs_t;
+
+/// Stores parameters for the next start. Returns false iff it could not; called from the tick.
+typedef bool (*node_store_t)(void *context, const quiesce_params_t *params);
+
+typedef struct {
+    app_t app;
+    can_node_t can;
+    quiesce_params_t params; ///< in effect
+    node_enable_t enable;
+    node_store_t store; ///< NULL: there is none, SAVE is refused
+    void *store_context;
+    hal_accel_t *accel;
+    hal_current_t *current;
+} node_t;
+
+/// Starts from rest. Returns false iff a parameter is refused (the controller then stays in its
+/// latched fault and commands the safe current).
+bool node_init(node_t *node, const quiesce_params_t *params, node_enable_t enable,
+               hal_accel_t *accel, hal_current_t *current);
+
+/// Restarts the controller with other parameters: safe current first, then from rest. Returns
+/// false, and changes nothing, iff one is refused; *error (may be NULL) then says which.
+bool node_use_params(node_t *node, const quiesce_params_t *params, quiesce_param_error_t *error);
+
+/// Takes a received frame, between ticks.
+void node_receive(node_t *node, const can_frame_t *frame);
+
+/// Newest sample of the sensor node since the last tick, for an accelerometer backend that reads it
+/// from the bus. Returns false iff there is none.
+bool node_accel_sample(const node_t *node, int32_t *counts);
+
+/// Likewise the driver's measured current.
+bool node_current_measured(const node_t *node, int32_t *current_mA);
+
+/// One control tick; returns the number of frames to send now.
+uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
+                   can_frame_t frames[CAN_NODE_MAX_FRAMES]);
+
+/// Safe current to the driver and, as a frame, to the bus: the last thing before leaving.
+void node_leave(node_t *node, can_frame_t *frame);
+
+#endif

@@ -1,0 +1,37 @@
+/// Accelerometers on Linux. Each opens, fills in a handle and returns an object to close.
+#ifndef ACCEL_BACKENDS_H
+#define ACCEL_BACKENDS_H
+
+#include "hal_linux.h"
+#include "linux_error.h"
+
+#include <stdint.h>
+
+/// An IIO device through sysfs and its character device (Documentation/ABI/testing/sysfs-bus-iio).
+typedef struct {
+    const char *device;     ///< "iio:device0", or the device's name ("adxl355")
+    bool use_buffer;        ///< true: /dev/iio:deviceN with all three axes; false: in_accel_?_raw
+    const char *trigger;    ///< name of the trigger for the buffer; NULL: leave as it is
+    const char *sysfs_root; ///< "/sys/bus/iio/devices"; tests put a folder here
+    const char *dev_root;   ///< "/dev"
+} accel_iio_options_t;
+
+typedef struct accel_iio accel_iio_t;
+accel_iio_t *accel_iio_open(const accel_iio_options_t *options, hal_accel_t *accel,
+                            linux_error_t *error);
+void accel_iio_close(accel_iio_t *self);
+
+/// ADXL355 on spidev (20 bits, +-2, 4 or 8 g). Untested on hardware.
+typedef struct {
+    const char *device; ///< "/dev/spidev0.0"
+    uint32_t clock_Hz;  ///< at most 10 MHz
+    uint32_t range_g;   ///< 2, 4 or 8
+    uint32_t rate_Hz;   ///< 4000, 2000, 1000 or 500
+} accel_adxl355_options_t;
+
+typedef struct accel_adxl355 accel_adxl355_t;
+accel_adxl355_t *accel_adxl355_open(const accel_adxl355_options_t *options, hal_accel_t *accel,
+                                    linux_error_t *error);
+void accel_adxl355_close(accel_adxl355_t *self);
+
+#endif

@@ -1,0 +1,68 @@
+/// A CAN bus: a SocketCAN interface ("can0"), or an adapter that speaks SLCAN on a serial line
+/// ("slcan:/dev/ttyACM0", a pty too). can_socket.c and can_serial.c are the backends.
+#ifndef CAN_BUS_H
+#define CAN_BUS_H
+
+#include "can_frame.h"
+#include "linux_error.h"
+
+#include <stdint.h>
+
+typedef struct can_bus can_bus_t;
+
+typedef struct {
+    const char *interface;
+    bool use_fd;          ///< send CAN FD frames with bit-rate switching; SocketCAN only
+    uint32_t serial_baud; ///< SLCAN: of the serial line, 0: leave it as it is
+    uint32_t bitrate;     ///< SLCAN: bit/s of the bus, 0: do not set it; SocketCAN: ip link sets it
+    const uint32_t *ids;  ///< standard ids to receive; NULL: all
+    uint32_t id_count;    ///< at most CAN_BUS_MAX_IDS
+    uint32_t restart_ms;  ///< pause before a restart after bus-off; 0: 100
+} can_bus_options_t;
+
+#define CAN_BUS_MAX_IDS 32u
+
+typedef enum {
+    CAN_BUS_UP = 0,
+    CAN_BUS_DOWN = 1,    ///< the interface is down or gone; it is looked for again
+    CAN_BUS_OFF = 2,     ///< bus-off; a restart is asked for after restart_ms
+    CAN_BUS_PASSIVE = 3, ///< error passive: still works
+} can_bus_state_t;
+
+/// Since the opening, saturating.
+typedef struct {
+    uint32_t received;
+    uint32_t sent;
+    uint32_t tx_dropped;   ///< frames that the interface did not take (queue full, down)
+    uint32_t rx_dropped;   ///< frames that the kernel dropped because we were late (SO_RXQ_OVFL)
+    uint32_t error_frames; ///< from the controller chip
+    uint32_t malformed;    ///< SLCAN lines that are no frame
+    uint32_t bus_off;
+    uint32_t restarts; ///< asked for
+    uint32_t down;     ///< times that the interface went down or vanished
+} can_bus_counters_t;
+
+/// Opens the bus. Returns NULL where there is no such interface or no permission; an interface that
+/// is down is opened (state CAN_BUS_DOWN) and used as soon as it is up.
+can_bus_t *can_bus_open(const can_bus_options_t *options, linux_error_t *error);
+
+void can_bus_close(can_bus_t *bus);
+
+/// Next received frame; never blocks. Error frames are taken care of inside.
+/// time_ns (may be NULL): CLOCK_MONOTONIC of the kernel's time stamp, or of the read (SLCAN).
+bool can_bus_receive(can_bus_t *bus, can_frame_t *frame, int64_t *time_ns);
+
+/// Never blocks. Returns false iff the frame was dropped (counted).
+bool can_bus_send(can_bus_t *bus, const can_frame_t *frame);
+
+/// Recovery: reopens what vanished, asks for the restart after a bus-off. Call once a tick;
+/// now_ns: CLOCK_MONOTONIC. Bounded; does system calls only when something is wrong.
+void can_bus_maintain(can_bus_t *bus, int64_t now_ns);
+
+can_bus_state_t can_bus_state(const can_bus_t *bus);
+const can_bus_counters_t *can_bus_counters(const can_bus_t *bus);
+
+/// For poll().
+int can_bus_fd(const can_bus_t *bus);
+
+#endif
