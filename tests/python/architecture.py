@@ -1,7 +1,8 @@
 """Checks the dependency rules and the bounds of the C and C++ sources, by reading them.
 
 base <- blocks <- controller <- app -> hal interface <- backends. A block sees base, its own header
-and the public types; only firmware/src sees several blocks; sim_hil sees the public headers only.
+and the public types; only firmware/src sees several blocks; sim_hil sees the public headers only;
+linux what a target runs (app, messages) and the backends for Linux.
 """
 
 import re
@@ -123,7 +124,7 @@ def allowed_headers(root: Path, source: Source) -> set[str]:
     if layer == "src":
         return headers_in(root, "firmware/src") | base | blocks | PUBLIC
     if layer == "app":
-        return own | PUBLIC | interface
+        return headers_in(root, "firmware/app") | comm | PUBLIC | interface
     if layer == "param":
         return headers_in(root, "firmware/param") | PUBLIC
     if layer == "include":
@@ -149,6 +150,22 @@ def simulation_violations(root: Path) -> Iterator[str]:
             is_path_inside = header.startswith(("hal/", "firmware/")) or ".." in header
             is_inner = name in inner and name not in own and name not in SIM_SEES
             if is_path_inside or is_inner:
+                yield f"{source.path} includes {header}"
+
+
+def linux_violations(root: Path) -> Iterator[str]:
+    """The Linux program sees what a target runs, the lock-step server and its own backends."""
+    seen = PUBLIC | SIM_SEES
+    for folder in ("app", "comm", "comm/generated"):
+        seen |= headers_in(root, f"firmware/{folder}")
+    for folder in ("linux", "include/hal"):
+        seen |= headers_in(root, f"hal/{folder}")
+    inner = {s.path.rsplit("/", 1)[1] for s in read_sources(root, "firmware", "hal")}
+    for source in read_sources(root, "linux"):
+        for header in source.quoted:
+            name = header.rsplit("/", 1)[-1]
+            is_path_inside = header.startswith(("firmware/", "hal/linux/")) or ".." in header
+            if is_path_inside or (name in inner and name not in seen):
                 yield f"{source.path} includes {header}"
 
 
@@ -216,6 +233,7 @@ def recursion_violations(root: Path) -> Iterator[str]:
 CHECKS = (
     include_violations,
     simulation_violations,
+    linux_violations,
     system_header_violations,
     word_violations,
     recursion_violations,

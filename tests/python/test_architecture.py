@@ -50,6 +50,11 @@ PLANTED = [
     ("sim_hil/bench/run.cpp", '#include "tracker.h"', "run.cpp includes tracker.h"),
     ("sim_hil/bench/run.cpp", '#include "app.h"', "run.cpp includes app.h"),
     ("sim_hil/bench/run.cpp", '#include "../../hal/sim/hal_sim.h"', "hal/sim/hal_sim.h"),
+    ("firmware/comm/can_node.h", '#include "node.h"', "can_node.h includes node.h"),
+    ("firmware/app/node.h", '#include "gpio.h"', "node.h includes gpio.h"),
+    ("hal/linux/gpio.h", '#include "uart_mps2.h"', "gpio.h includes uart_mps2.h"),
+    ("linux/quiesced/main.cpp", '#include "tracker.h"', "main.cpp includes tracker.h"),
+    ("linux/quiesced/main.cpp", '#include "uart_mps2.h"', "main.cpp includes uart_mps2.h"),
     ("firmware/guard/guard.c", "#include <math.h>", "guard.c includes <math.h>"),
     ("firmware/src/controller.c", "#include <stdio.h>", "controller.c includes <stdio.h>"),
     ("firmware/sense/rms.c", "static float gain;", "'float': no floating point"),
@@ -66,7 +71,7 @@ PLANTED = [
 @pytest.fixture(scope="module")
 def clean_copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("sources")
-    for name in ("firmware", "hal", "sim_hil"):
+    for name in ("firmware", "hal", "linux", "sim_hil"):
         shutil.copytree(ROOT / name, folder / name)
     return folder
 
