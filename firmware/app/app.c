@@ -13,14 +13,13 @@ bool app_init(app_t *app, const quiesce_params_t *params, hal_accel_t *accel,
 
 void app_tick(app_t *app, const app_operator_t *op, uint32_t ticks_elapsed) {
     app->tick += ticks_elapsed;
-    quiesce_in_t in = {
-        .tick = app->tick,
-        .enable = op->enable,
-        .estop = op->estop,
-        .fault_reset = op->fault_reset,
-    };
-    in.accel_is_fresh = hal_accel_read(app->accel, app->axis, &in.accel_counts);
-    in.current_is_measured = hal_current_read(app->current, &in.current_meas_mA);
-    quiesce_step(&app->controller, &in, &app->out);
+    quiesce_in_t *const in = &app->in;
+    in->tick = app->tick;
+    in->enable = op->enable;
+    in->estop = op->estop;
+    in->fault_reset = op->fault_reset;
+    in->accel_is_fresh = hal_accel_read(app->accel, app->axis, &in->accel_counts);
+    in->current_is_measured = hal_current_read(app->current, &in->current_meas_mA);
+    quiesce_step(&app->controller, in, &app->out);
     hal_current_write(app->current, app->out.current_cmd_mA, app->out.driver_enable);
 }

@@ -15,6 +15,7 @@ typedef struct {
 
 typedef struct {
     quiesce_t controller;
+    quiesce_in_t in;   ///< of the last tick; accel_counts and current_meas_mA: the last ones read
     quiesce_out_t out; ///< of the last tick: command and telemetry
     hal_accel_t *accel;
     hal_current_t *current;

@@ -33,6 +33,8 @@ typedef struct {
     app_t app;
     can_node_t can;
     quiesce_params_t params; ///< in effect
+    can_node_inputs_t bus;   ///< what the bus says in this tick
+    uint32_t restarts;       ///< with other parameters, since node_init
     node_enable_t enable;
     node_store_t store; ///< NULL: there is none, SAVE is refused
     void *store_context;
@@ -40,13 +42,16 @@ typedef struct {
     hal_current_t *current;
 } node_t;
 
-/// Starts from rest. Returns false iff a parameter is refused (the controller then stays in its
-/// latched fault and commands the safe current).
+/// Starts from rest, without a store (set store and store_context afterwards). Returns false iff a
+/// parameter is refused (the controller then stays in its latched fault and commands the safe
+/// current).
 bool node_init(node_t *node, const quiesce_params_t *params, node_enable_t enable,
                hal_accel_t *accel, hal_current_t *current);
 
-/// Restarts the controller with other parameters: safe current first, then from rest. Returns
-/// false, and changes nothing, iff one is refused; *error (may be NULL) then says which.
+/// Restarts the controller with other parameters: safe current first, then from rest; counts in
+/// node->restarts. As at any start, a latched fault and what was learnt are forgotten, the shipped
+/// rules and pulses are in use, and the caller's tick has to run at params->tick_rate_Hz. Returns
+/// false, and changes nothing, iff a parameter is refused; *error (may be NULL) then says which.
 bool node_use_params(node_t *node, const quiesce_params_t *params, quiesce_param_error_t *error);
 
 /// Takes a received frame, between ticks.
@@ -59,7 +64,10 @@ bool node_accel_sample(const node_t *node, int32_t *counts);
 /// Likewise the driver's measured current.
 bool node_current_measured(const node_t *node, int32_t *current_mA);
 
-/// One control tick; returns the number of frames to send now.
+/// One control tick: what the bus and the board say, the control step, then a task that a service
+/// request asked for. APPLY goes through node_use_params (look at node->restarts after the tick);
+/// it is refused while a fault is latched, which a restart would forget. Returns the number of
+/// frames to send now.
 uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
                    can_frame_t frames[CAN_NODE_MAX_FRAMES]);
 

@@ -16,7 +16,7 @@ STRING = re.compile(r'"(?:\\.|[^"\\\n])*"')
 FUNCTION = re.compile(r"^(?!typedef|#)[^\n;={}()]*?\b(\w+)\([^;{}]*\)\s*\{\n(.*?)^\}", re.M | re.S)
 CALL = re.compile(r"\b(\w+)\s*\(")
 
-PUBLIC = {"quiesce.h", "quiesce_params.h"}
+PUBLIC = {"quiesce.h", "quiesce_params.h", "quiesce_version.h"}
 FREESTANDING = {"limits.h", "stdbool.h", "stddef.h", "stdint.h"}
 BLOCK_FOLDERS = ("sense", "fuzzy", "guard", "law")
 # Headers of its own folder that a block may see beside its own: constant data of the block, or the

@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Write the C pack and unpack functions of firmware/comm/quiesce.dbc with cantools.
+"""Write the C pack and unpack functions of firmware/comm/quiesce.dbc with cantools, and our tables.
 
 Deterministic: the same DBC gives the same bytes (cantools' date and version stamp is replaced by
 the DBC's hash). `--check` writes nothing and exits 1 where a committed file differs.
 
 Telemetry messages carry one 32-bit word each, id and word number in step, so that C sends them by
 index; the header gets their first id and their number instead of functions.
+
+quiesce_can_tables.h and .c hold what a DBC says and cantools' code does not: where each message of
+the bus keeps its protection, when it is sent, when it is too old, and how the firmware's words are
+narrowed to signals. A DBC that the firmware could not be sure of is refused.
 """
 
 import argparse
@@ -15,8 +19,8 @@ import sys
 from pathlib import Path
 
 try:
-    from cantools.database import load_string
-    from cantools.database.can import Database
+    from cantools.database import UnsupportedDatabaseFormatError, load_string
+    from cantools.database.can import Database, Message, Signal
     from cantools.database.can.c_source import camel_to_snake_case, generate
 except ImportError:
     sys.exit("dbc.py: needs cantools: run it with .venv/bin/python (./tools/test makes it)")
@@ -26,6 +30,70 @@ SOURCE = ROOT / "firmware/comm/quiesce.dbc"
 OUTPUT = ROOT / "firmware/comm/generated"
 NAME = "quiesce_can"
 TELEMETRY = "Telemetry"
+SIMULATED = {"Bench", "Target"}  # nodes of the lock-step messages
+SENDER = "Controller"  # whose words are narrowed
+
+TABLES_H = """\
+#ifndef QUIESCE_CAN_TABLES_H
+#define QUIESCE_CAN_TABLES_H
+
+#include "e2e.h"
+
+/// What quiesce.dbc says of a message of the bus.
+typedef struct {{
+    e2e_layout_t e2e;
+    bool is_protected;  ///< else alive_bit and crc_byte mean nothing
+    uint8_t max_lost;   ///< frames that its timeout lets be missing in a row, 0 .. 14
+    uint16_t cycle_ms;  ///< 0: on request
+    uint16_t start_ms;  ///< into its cycle, so that cyclic messages do not meet
+    uint16_t delay_ms;  ///< least time between two of them, 0: none
+    uint16_t timeout_ms; ///< 0: none
+}} quiesce_can_message_t;
+
+/// Rows of quiesce_can_messages, by id.
+enum {{
+{rows}
+    QUIESCE_CAN_MESSAGES
+}};
+
+extern const quiesce_can_message_t quiesce_can_messages[QUIESCE_CAN_MESSAGES];
+
+/// value limited to low .. high. 64 bits hold every word of the firmware, signed or not.
+static inline int64_t quiesce_can_limit(int64_t value, int64_t low, int64_t high) {{
+    return value < low ? low : value > high ? high : value;
+}}
+
+/* A word of the firmware as the signal holds it: the nearest value, never a wrapped one. */
+
+{narrowing}
+#endif
+"""
+
+TABLES_C = """\
+#include "quiesce_can_tables.h"
+
+const quiesce_can_message_t quiesce_can_messages[QUIESCE_CAN_MESSAGES] = {{
+{rows}
+}};
+"""
+
+ROW = """\
+    {{
+        .e2e = {{.id = 0x{id:03x}u, .length = {length}, .alive_bit = {alive_bit}, \
+.crc_byte = {crc_byte}, .alive_is_free = {alive_is_free}}},
+        .is_protected = {is_protected},
+        .max_lost = {max_lost},
+        .cycle_ms = {cycle_ms},
+        .start_ms = {start_ms},
+        .delay_ms = {delay_ms},
+        .timeout_ms = {timeout_ms},
+    }},"""
+
+NARROWING = """\
+static inline {type} {name}_sat(int64_t value) {{
+    return ({type})quiesce_can_limit(value, INT64_C({low}), INT64_C({high}));
+}}
+"""
 
 
 def restore_units(text: str, database: Database) -> str:
@@ -65,9 +133,127 @@ def telemetry_constants(database: Database) -> str:
     )
 
 
+def refuse(message: Message, why: str) -> None:
+    raise ValueError(f"quiesce.dbc: {message.name}: {why}")
+
+
+def find_signal(message: Message, name: str) -> Signal | None:
+    return next((signal for signal in message.signals if signal.name == name), None)
+
+
+def check_signal(message: Message, signal: Signal) -> None:
+    if signal.scale != 1 or signal.offset != 0 or signal.is_float:
+        refuse(message, f"{signal.name}: scale 1 and offset 0 only, integers are sub-units")
+    if signal.byte_order != "little_endian":
+        refuse(message, f"{signal.name}: little-endian (@1) only")
+
+
+def check_protection(message: Message) -> None:
+    alive, crc = find_signal(message, "alive"), find_signal(message, "crc")
+    if (alive is None) != (crc is None):
+        refuse(message, "a protected message has both alive and crc")
+    if alive is None or crc is None:
+        return
+    if (crc.start, crc.length) != (8 * (message.length - 1), 8):
+        refuse(message, "crc must be the last byte")
+    if alive.length != 4 or alive.start % 8 > 4:
+        refuse(message, "alive must be 4 bits within one byte")
+    if alive.is_multiplexer or alive.multiplexer_ids or crc.multiplexer_ids:
+        refuse(message, "alive and crc must not be multiplexed")
+
+
+def check(database: Database) -> None:
+    """ValueError, one line, where the firmware could not be sure of what it sends or takes."""
+    names: dict[int, str] = {}
+    for message in database.messages:
+        if message.is_extended_frame or message.is_fd or message.length > 8:
+            refuse(message, "classic frames of 11-bit ids only")
+        if message.frame_id in names:
+            refuse(message, f"id 0x{message.frame_id:03x} is {names[message.frame_id]}'s")
+        names[message.frame_id] = message.name
+        for signal in message.signals:
+            check_signal(message, signal)
+        check_protection(message)
+
+
+def bus_messages(database: Database) -> list[Message]:
+    """Messages of a real bus, in the order of their ids."""
+    messages = [m for m in database.messages if not SIMULATED & {*m.senders, *m.receivers}]
+    return sorted(messages, key=lambda message: message.frame_id)
+
+
+def attribute(message: Message, name: str) -> int:
+    found = message.dbc.attributes.get(name)
+    return int(found.value) if found is not None else 0
+
+
+def table_row(message: Message) -> str:
+    alive = find_signal(message, "alive")
+    cycle_ms, timeout_ms = (attribute(message, f) for f in ("GenMsgCycleTime", "QuiesceTimeoutMs"))
+    return ROW.format(
+        id=message.frame_id,
+        length=message.length,
+        alive_bit=alive.start if alive else 0,
+        crc_byte=message.length - 1 if alive else 0,
+        alive_is_free=str(attribute(message, "QuiesceAliveIsFree") == 1).lower(),
+        is_protected=str(alive is not None).lower(),
+        max_lost=min(14, timeout_ms // cycle_ms) if cycle_ms else 0,
+        cycle_ms=cycle_ms,
+        start_ms=attribute(message, "GenMsgStartDelayTime"),
+        delay_ms=attribute(message, "GenMsgDelayTime"),
+        timeout_ms=timeout_ms,
+    )
+
+
+def is_narrow(signal: Signal) -> bool:
+    return (
+        1 < signal.length < 32 and not signal.is_multiplexer and signal.name not in ("alive", "crc")
+    )
+
+
+def narrowing(message: Message, signal: Signal) -> str:
+    bits = signal.length - 1 if signal.is_signed else signal.length
+    storage = next(width for width in (8, 16, 32) if width >= signal.length)
+    return NARROWING.format(
+        type=f"{'' if signal.is_signed else 'u'}int{storage}_t",
+        name=f"{NAME}_{camel_to_snake_case(message.name)}_{signal.name}",
+        low=-(1 << bits) if signal.is_signed else 0,
+        high=(1 << bits) - 1,
+    )
+
+
+def generate_tables(database: Database, digest: str) -> dict[str, str]:
+    messages = bus_messages(database)
+    stamp = f"generated by tools/gen/dbc.py from quiesce.dbc (sha256 {digest[:16]}). Do not edit."
+    head = f"// clang-format off\n/// Tables of quiesce.dbc, {stamp}\n"
+    header = TABLES_H.format(
+        rows="\n".join(
+            f"    {NAME.upper()}_AT_{camel_to_snake_case(m.name).upper()} = {i},"
+            for i, m in enumerate(messages)
+        ),
+        narrowing="\n".join(
+            narrowing(m, s)
+            for m in messages
+            if SENDER in m.senders
+            for s in m.signals
+            if is_narrow(s)
+        ),
+    )
+    body = TABLES_C.format(rows="\n".join(map(table_row, messages)))
+    return {f"{NAME}_tables.h": head + header, f"{NAME}_tables.c": head + body}
+
+
+def load(source: bytes) -> Database:
+    try:
+        return load_string(source.decode(), "dbc")
+    except (UnsupportedDatabaseFormatError, UnicodeDecodeError) as error:
+        raise ValueError(f"quiesce.dbc: {str(error).splitlines()[0]}") from error
+
+
 def generate_sources(source: bytes) -> dict[str, str]:
     digest = hashlib.sha256(source).hexdigest()
-    database = load_string(source.decode(), "dbc")
+    database = load(source)
+    check(database)
     by_function = Database(
         messages=[m for m in database.messages if not m.name.startswith(TELEMETRY)],
         nodes=database.nodes,
@@ -83,14 +269,17 @@ def generate_sources(source: bytes) -> dict[str, str]:
     texts = {f"{NAME}.h": header, f"{NAME}.c": body}
     for name, text in texts.items():
         texts[name] = replace_stamp(drop_floating_point(restore_units(text, by_function)), digest)
-    return texts
+    return texts | generate_tables(database, digest)
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="compare only, exit 1 on a difference")
     args = parser.parse_args()
-    outputs = generate_sources(SOURCE.read_bytes())
+    try:
+        outputs = generate_sources(SOURCE.read_bytes())
+    except ValueError as error:
+        sys.exit(f"dbc.py: {error}")
     stale = [
         name
         for name, text in outputs.items()

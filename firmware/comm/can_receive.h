@@ -1,0 +1,65 @@
+/// What other nodes tell the controller tick by tick: emergency stop, acceleration, measured
+/// current, the operator. Each is as old as its last accepted frame, and gone after its timeout.
+#ifndef CAN_RECEIVE_H
+#define CAN_RECEIVE_H
+
+#include "quiesce_can_tables.h"
+
+/// What the bus says in this tick.
+typedef struct {
+    bool enable;      ///< OperatorCommand, not older than its timeout
+    bool fault_reset; ///< its rising edge: true for one tick
+    bool estop;       ///< EmergencyStop, not older than its timeout
+    bool accel_is_fresh;
+    int32_t accel_counts; ///< 0 unless accel_is_fresh
+    bool current_is_measured;
+    int32_t current_meas_mA; ///< 0 unless current_is_measured
+} can_node_inputs_t;
+
+/// Counters of what was refused, saturating at 2^32 - 1.
+typedef struct {
+    uint32_t rejected_crc;
+    uint32_t rejected_alive;
+    uint32_t rejected_shape;
+    uint32_t unknown; ///< ids that are not for the controller: other nodes' traffic, no error
+    uint32_t accepted;
+} can_node_counters_t;
+
+/// Of one message. Two ages: of what it said, and of its sender. A sender that hangs is still
+/// heard; its alive counter is not forgotten, so that it never counts as a new one.
+typedef struct {
+    e2e_receiver_t e2e;
+    uint32_t timeout_ticks;
+    uint32_t age_ticks;    ///< since the last accepted frame
+    uint32_t silent_ticks; ///< since the last frame with a right CRC
+    bool is_present;
+} can_receiver_t;
+
+typedef struct {
+    can_receiver_t stop;
+    can_receiver_t accel;
+    can_receiver_t current;
+    can_receiver_t operator_command;
+    e2e_receiver_t service;
+    int32_t accel_counts;
+    bool accel_is_fresh; ///< since the last tick
+    int32_t current_meas_mA;
+    bool enable;
+    bool is_released;   ///< the last OperatorCommand had fault_reset = 0
+    bool is_reset_edge; ///< since the last tick
+    can_node_counters_t counters;
+} can_receive_t;
+
+/// Nothing received, no counts.
+void can_receive_init(can_receive_t *self, uint32_t tick_rate_Hz);
+
+/// Timeouts at another tick rate; what is received goes on.
+void can_receive_use_rate(can_receive_t *self, uint32_t tick_rate_Hz);
+
+/// Takes one frame. Returns true iff it is a ServiceRequest to act on.
+bool can_receive_frame(can_receive_t *self, const can_frame_t *frame);
+
+/// A tick begins, `ticks` after the last one (more than 1 where some were lost).
+void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *inputs);
+
+#endif

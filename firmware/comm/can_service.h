@@ -1,0 +1,73 @@
+/// ServiceRequest and ServiceReply: parameters, raw samples, freeze frame. One request at a time;
+/// another one before its reply has gone is answered BUSY, and a third is not answered at all.
+#ifndef CAN_SERVICE_H
+#define CAN_SERVICE_H
+
+#include "can_frame.h"
+#include "quiesce.h"
+
+#define CAN_SERVICE_MAX_RAW_S 3600
+
+/// What the node cannot do by itself; the application does it and answers with can_node_answer.
+typedef enum {
+    CAN_NODE_NOTHING = 0,
+    CAN_NODE_APPLY = 1, ///< put can_node_staged to use: check, restart from rest
+    CAN_NODE_SAVE = 2,  ///< store the parameters in effect
+} can_node_task_t;
+
+/// ServiceReply's result.
+typedef enum {
+    CAN_NODE_DONE = 0,
+    CAN_NODE_NO_SUCH_PARAMETER = 1,
+    CAN_NODE_OUT_OF_RANGE = 2,
+    CAN_NODE_CONTRADICTION = 3,
+    CAN_NODE_NO_SUCH_OPERATION = 4,
+    CAN_NODE_STORE_FAILED = 5,
+    CAN_NODE_BUSY = 6,
+    CAN_NODE_NOTHING_TO_SEND = 7,
+    CAN_NODE_FAULT_IS_LATCHED = 8,
+} can_node_result_t;
+
+typedef struct {
+    uint8_t operation;
+    uint8_t param_index;
+    uint8_t alive;
+    can_node_result_t result;
+    int32_t param_value;
+} can_service_reply_t;
+
+typedef struct {
+    quiesce_params_t in_effect;
+    quiesce_params_t staged;
+    bool has_staged;
+    can_node_task_t task;
+    can_service_reply_t reply; ///< of the request that is worked on
+    can_service_reply_t busy;  ///< of one that came too early
+    bool is_taken;             ///< reply is in use
+    bool has_busy;
+    uint32_t quiet_ms; ///< until the next reply may be sent
+    uint32_t raw_ms;   ///< left of the stream of raw samples
+} can_service_t;
+
+void can_service_init(can_service_t *self, const quiesce_params_t *params);
+
+/// Other parameters are in effect; nothing is staged. A request that is worked on goes on.
+void can_service_use_params(can_service_t *self, const quiesce_params_t *params);
+
+/// Takes a request whose CRC was right. has_freeze: there is a freeze frame to send.
+/// Returns true iff it is to be sent.
+bool can_service_request(can_service_t *self, const can_frame_t *frame, bool has_freeze);
+
+/// Answers the task in hand; nothing happens where there is none.
+void can_service_answer(can_service_t *self, can_node_result_t result, uint32_t param_index);
+
+/// Time passes.
+void can_service_elapse(can_service_t *self, uint32_t passed_ms);
+
+/// The next reply, packed but not protected, and its alive counter. Returns false iff none is due.
+bool can_service_reply(can_service_t *self, can_frame_t *frame, uint8_t *alive);
+
+/// Whether parameter index (below QUIESCE_PARAM_COUNT) may have that value by itself.
+bool can_service_allows(uint32_t index, int32_t value);
+
+#endif

@@ -1,0 +1,12 @@
+/// Which firmware this is. tools/src/quiesce/__init__.py has the same version.
+#ifndef QUIESCE_VERSION_H
+#define QUIESCE_VERSION_H
+
+#define QUIESCE_VERSION_MAJOR 0
+#define QUIESCE_VERSION_MINOR 1
+#define QUIESCE_VERSION_PATCH 0
+
+/// Of the messages in quiesce.dbc: changes where a node of the old ones would misread the new ones.
+#define QUIESCE_CAN_INTERFACE_VERSION 1
+
+#endif
