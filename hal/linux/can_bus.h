@@ -14,7 +14,8 @@ typedef struct {
     const char *interface;
     bool use_fd;          ///< send CAN FD frames with bit-rate switching; SocketCAN only
     uint32_t serial_baud; ///< SLCAN: of the serial line, 0: leave it as it is
-    uint32_t bitrate;     ///< SLCAN: bit/s of the bus, 0: do not set it; SocketCAN: ip link sets it
+    uint32_t bitrate;     ///< SLCAN: bit/s of the bus: the adapter is closed, set and opened with
+                          ///< C, Sn and O; 0: it is sent no command. SocketCAN: ip link sets it
     const uint32_t *ids;  ///< standard ids to receive; NULL: all
     uint32_t id_count;    ///< at most CAN_BUS_MAX_IDS
     uint32_t restart_ms;  ///< pause before a restart after bus-off; 0: 100
@@ -35,15 +36,22 @@ typedef struct {
     uint32_t sent;
     uint32_t tx_dropped;   ///< frames that the interface did not take (queue full, down)
     uint32_t rx_dropped;   ///< frames that the kernel dropped because we were late (SO_RXQ_OVFL)
-    uint32_t error_frames; ///< from the controller chip
-    uint32_t malformed;    ///< SLCAN lines that are no frame
+    uint32_t error_frames; ///< from the controller chip; SLCAN: commands that the adapter refused
+    uint32_t malformed;    ///< SLCAN lines that are no frame; CAN FD frames of more than 8 bytes
     uint32_t bus_off;
     uint32_t restarts; ///< asked for
     uint32_t down;     ///< times that the interface went down or vanished
 } can_bus_counters_t;
 
-/// Opens the bus. Returns NULL where there is no such interface or no permission; an interface that
-/// is down is opened (state CAN_BUS_DOWN) and used as soon as it is up.
+/// What happened to the bus last: for the log, once a change.
+typedef struct {
+    uint32_t number; ///< counts changes; 0: nothing has happened
+    char text[96];   ///< one line, without the interface's name
+} can_bus_event_t;
+
+/// Opens the bus. What an SLCAN line received before is dropped: it may be old. Returns NULL where
+/// there is no such interface or no permission; an interface that is down is opened (state
+/// CAN_BUS_DOWN) and used as soon as it is up.
 can_bus_t *can_bus_open(const can_bus_options_t *options, linux_error_t *error);
 
 void can_bus_close(can_bus_t *bus);
@@ -62,7 +70,9 @@ void can_bus_maintain(can_bus_t *bus, int64_t now_ns);
 can_bus_state_t can_bus_state(const can_bus_t *bus);
 const can_bus_counters_t *can_bus_counters(const can_bus_t *bus);
 
-/// For poll().
+const can_bus_event_t *can_bus_last_event(const can_bus_t *bus);
+
+/// For poll(). -1, which poll() passes over, while the bus is gone; another one when it is back.
 int can_bus_fd(const can_bus_t *bus);
 
 #endif

@@ -41,6 +41,10 @@ bool tick_linux_thread(const tick_thread_options_t *options, linux_error_t *erro
 /// counted, and told by hal_tick_elapsed. Returns early with 0 elapsed on a signal.
 void tick_linux_wait(hal_tick_t *tick);
 
+/// Instead of tick_linux_wait where something else starts the ticks (a data-ready edge at due_ns,
+/// CLOCK_MONOTONIC). Ticks between it and the one before count as lost, to the nearest period.
+void tick_linux_begin(hal_tick_t *tick, int64_t due_ns);
+
 /// The tick's work is done: times it.
 void tick_linux_work_done(hal_tick_t *tick);
 

@@ -1,0 +1,108 @@
+#include "can_bus.h"
+
+#include "can_backend.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SERIAL_PREFIX "slcan:"
+
+static bool check(const can_bus_options_t *options, linux_error_t *error) {
+    if (options->interface == NULL || options->interface[0] == '\0') {
+        return linux_fail(error, "CAN interface '': give one as can0 or slcan:/dev/ttyACM0");
+    }
+    if (options->ids != NULL && options->id_count > CAN_BUS_MAX_IDS) {
+        return linux_fail(error, "CAN interface '%s': %u ids to receive, at most %u",
+                          options->interface, options->id_count, CAN_BUS_MAX_IDS);
+    }
+    for (uint32_t i = 0; options->ids != NULL && i < options->id_count; i++) {
+        if (options->ids[i] > CAN_MAX_STANDARD_ID) {
+            return linux_fail(error, "CAN interface '%s': id 0x%X is no standard id",
+                              options->interface, options->ids[i]);
+        }
+    }
+    return true;
+}
+
+can_bus_t *can_bus_open(const can_bus_options_t *options, linux_error_t *error) {
+    if (!check(options, error)) {
+        return NULL;
+    }
+    if (strncmp(options->interface, SERIAL_PREFIX, strlen(SERIAL_PREFIX)) == 0) {
+        can_bus_options_t serial = *options;
+        serial.interface += strlen(SERIAL_PREFIX);
+        return can_serial_open(&serial, error);
+    }
+    return can_socket_open(options, error);
+}
+
+void can_bus_close(can_bus_t *bus) {
+    if (bus != NULL) {
+        bus->backend->close(bus);
+    }
+}
+
+bool can_bus_receive(can_bus_t *bus, can_frame_t *frame, int64_t *time_ns) {
+    int64_t ignored_ns;
+    if (bus->fd < 0 ||
+        !bus->backend->receive(bus, frame, time_ns != NULL ? time_ns : &ignored_ns)) {
+        return false;
+    }
+    can_bus_count(&bus->counters.received, 1);
+    return true;
+}
+
+bool can_bus_send(can_bus_t *bus, const can_frame_t *frame) {
+    const bool is_sent = bus->fd >= 0 && bus->backend->send(bus, frame);
+    can_bus_count(is_sent ? &bus->counters.sent : &bus->counters.tx_dropped, 1);
+    return is_sent;
+}
+
+void can_bus_maintain(can_bus_t *bus, int64_t now_ns) {
+    const bool is_wrong = bus->state == CAN_BUS_DOWN || bus->state == CAN_BUS_OFF;
+    if (is_wrong && now_ns >= bus->retry_ns) {
+        bus->backend->maintain(bus, now_ns);
+    }
+}
+
+can_bus_state_t can_bus_state(const can_bus_t *bus) {
+    return bus->state;
+}
+
+const can_bus_counters_t *can_bus_counters(const can_bus_t *bus) {
+    return &bus->counters;
+}
+
+const can_bus_event_t *can_bus_last_event(const can_bus_t *bus) {
+    return &bus->event;
+}
+
+int can_bus_fd(const can_bus_t *bus) {
+    return bus->fd;
+}
+
+void can_bus_count(uint32_t *counter, uint32_t by) {
+    *counter = by > UINT32_MAX - *counter ? UINT32_MAX : *counter + by;
+}
+
+void can_bus_note(can_bus_t *bus, const char *format, ...) {
+    char text[sizeof bus->event.text];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (strcmp(text, bus->event.text) != 0) {
+        memcpy(bus->event.text, text, sizeof text);
+        can_bus_count(&bus->event.number, 1);
+    }
+}
+
+void can_bus_went_down(can_bus_t *bus, const char *why) {
+    if (bus->state != CAN_BUS_DOWN) {
+        can_bus_count(&bus->counters.down, 1);
+        bus->state = CAN_BUS_DOWN;
+        bus->retry_ns = 0;
+    }
+    can_bus_note(bus, "%s", why);
+}

@@ -1,0 +1,31 @@
+/// Where a GPIO line is. What both versions of libgpiod do alike.
+#ifndef GPIO_PLACE_H
+#define GPIO_PLACE_H
+
+#include "gpio.h"
+
+/// The name that others see as the line's holder.
+#define GPIO_CONSUMER "quiesced"
+
+#define GPIO_PATH_BYTES 64
+
+typedef struct {
+    char chip[GPIO_PATH_BYTES]; ///< "/dev/gpiochip0"
+    unsigned int offset;
+} gpio_place_t;
+
+/// Offset of the named line on a chip, or -1: no such line, or (errno is set) no such chip.
+typedef int (*gpio_find_t)(const char *chip, const char *name);
+
+/// The line's place. A name is looked for on every chip and must be there once.
+/// Returns false iff the specification is malformed or there is no such line, or more than one.
+bool gpio_locate(const char *line, gpio_find_t find, gpio_place_t *place, linux_error_t *error);
+
+/// Makes reads of the file descriptor return at once. Returns false iff the system refuses.
+bool gpio_do_not_block(int fd);
+
+/// Says why a request of the line failed with an errno. consumer: the line's holder, or NULL.
+/// Returns false.
+bool gpio_refuse(linux_error_t *error, const char *line, int number, const char *consumer);
+
+#endif
