@@ -97,7 +97,9 @@ static void apply_staged(node_t *node) {
 
 static void save(node_t *node) {
     const bool is_stored = node->store != NULL && node->store(node->store_context, &node->params);
-    can_node_answer(&node->can, is_stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED, 0);
+    if (!is_stored || !node->store_is_slow) {
+        can_node_answer(&node->can, is_stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED, 0);
+    }
 }
 
 static void do_task(node_t *node) {

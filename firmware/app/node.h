@@ -38,6 +38,8 @@ typedef struct {
     node_enable_t enable;
     node_store_t store; ///< NULL: there is none, SAVE is refused
     void *store_context;
+    bool store_is_slow; ///< a store that returns true has only begun; it is called every tick until
+                        ///< its owner says with can_node_answer how it went
     hal_accel_t *accel;
     hal_current_t *current;
 } node_t;
