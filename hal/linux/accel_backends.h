@@ -16,12 +16,16 @@ typedef struct {
     const char *dev_root;   ///< "/dev"
 } accel_iio_options_t;
 
+/// A sensor of one axis answers on all. With the buffer every read takes the newest scan and never
+/// blocks; a single read makes the sensor convert, which takes its bus's time.
 typedef struct accel_iio accel_iio_t;
 accel_iio_t *accel_iio_open(const accel_iio_options_t *options, hal_accel_t *accel,
                             linux_error_t *error);
 void accel_iio_close(accel_iio_t *self);
 
-/// ADXL355 on spidev (20 bits, +-2, 4 or 8 g). Untested on hardware.
+/// ADXL355 on spidev (20 bits, +-2, 4 or 8 g), reset and started by the opening. counts: 20 bits,
+/// signed; 3.9, 7.8 or 15.6 ug each. A read is one SPI transfer of 14 bytes and true only where the
+/// sensor says that its data are new. Untested on hardware.
 typedef struct {
     const char *device; ///< "/dev/spidev0.0"
     uint32_t clock_Hz;  ///< at most 10 MHz
@@ -33,5 +37,9 @@ typedef struct accel_adxl355 accel_adxl355_t;
 accel_adxl355_t *accel_adxl355_open(const accel_adxl355_options_t *options, hal_accel_t *accel,
                                     linux_error_t *error);
 void accel_adxl355_close(accel_adxl355_t *self);
+
+/// Reads that failed since the opening, saturating; the program reports them.
+uint32_t accel_iio_failures(const accel_iio_t *self);
+uint32_t accel_adxl355_failures(const accel_adxl355_t *self);
 
 #endif

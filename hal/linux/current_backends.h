@@ -17,7 +17,7 @@ typedef struct {
     uint32_t channel;
     uint32_t period_ns;
     int32_t full_scale_mA;  ///< at 100 % duty
-    bool is_inverted;       ///< 0 % duty is the full scale
+    bool is_inverted;       ///< 0 % duty is the full scale: the output is then never switched off
     const char *sysfs_root; ///< "/sys/class/pwm"
 } current_pwm_options_t;
 
@@ -38,6 +38,7 @@ typedef struct {
 } current_dac_options_t;
 
 typedef struct current_dac current_dac_t;
+/// Has no output stage to switch off: enable = false is zero_code.
 current_dac_t *current_dac_open(const current_dac_options_t *options, hal_current_t *current,
                                 linux_error_t *error);
 void current_dac_close(current_dac_t *self);

@@ -1,0 +1,166 @@
+#include "adxl355.h"
+
+#include <string.h>
+#include <time.h>
+
+// Register map.
+#define DEVID_AD 0x00u // 0xAD, then 0x1D (MEMS) and 0xED (ADXL355)
+#define STATUS 0x04u   // then FIFO_ENTRIES, TEMP2, TEMP1, XDATA3 .. ZDATA1
+#define FILTER 0x28u
+#define RANGE 0x2Cu
+#define POWER_CTL 0x2Du
+#define RESET 0x2Fu
+#define SHADOW 0x50u
+
+#define STATUS_DATA_RDY 0x01u
+#define RANGE_RESET 0x81u // I2C high speed, +-2 g: what a reset leaves
+#define RANGE_MASK 0x03u
+#define POWER_MEASURE 0x00u
+#define POWER_STANDBY 0x01u
+#define RESET_CODE 0x52u
+
+#define IDS 3u
+#define SHADOWS 5u
+#define DATA_AT 4u // XDATA3 after STATUS
+#define RESETS_AT_MOST 3
+#define RESET_NS 10000000L
+
+/// A command byte is the address and, in bit 0, whether it reads.
+static bool read_registers(const adxl355_t *self, uint8_t first, uint8_t *out, size_t count) {
+    uint8_t command[ADXL355_MAX_TRANSFER] = {(uint8_t)(first << 1 | 1u)};
+    uint8_t answer[ADXL355_MAX_TRANSFER] = {0};
+    if (count >= ADXL355_MAX_TRANSFER ||
+        !self->bus.exchange(self->bus.context, command, answer, count + 1u)) {
+        return false;
+    }
+    memcpy(out, &answer[1], count);
+    return true;
+}
+
+static bool write_register(const adxl355_t *self, uint8_t address, uint8_t value) {
+    const uint8_t command[2] = {(uint8_t)(address << 1), value};
+    uint8_t answer[2];
+    return self->bus.exchange(self->bus.context, command, answer, sizeof command);
+}
+
+static bool fail_transfer(linux_error_t *error) {
+    return linux_fail(error, "ADXL355: the SPI transfer failed");
+}
+
+static bool check_part(const adxl355_t *self, linux_error_t *error) {
+    static const uint8_t expected[IDS] = {0xAD, 0x1D, 0xED};
+    uint8_t ids[IDS];
+    if (!read_registers(self, DEVID_AD, ids, IDS)) {
+        return fail_transfer(error);
+    }
+    return memcmp(ids, expected, IDS) == 0 ||
+           linux_fail(error,
+                      "ADXL355: not there: its ids read %02x %02x %02x instead of ad 1d ed; check "
+                      "wiring, chip select and clock",
+                      ids[0], ids[1], ids[2]);
+}
+
+static void pause_for_reset(void) {
+    const struct timespec pause = {.tv_nsec = RESET_NS};
+    (void)nanosleep(&pause, NULL); // a signal cuts it short: what follows is read back anyway
+}
+
+// A reset may load trimming values wrongly, says the data sheet: compare the shadow registers with
+// those before it, and reset again.
+static bool reset(const adxl355_t *self, linux_error_t *error) {
+    uint8_t before[SHADOWS];
+    uint8_t after[SHADOWS];
+    if (!read_registers(self, SHADOW, before, SHADOWS)) {
+        return fail_transfer(error);
+    }
+    for (int i = 0; i < RESETS_AT_MOST; i++) {
+        if (!write_register(self, RESET, RESET_CODE)) {
+            return fail_transfer(error);
+        }
+        pause_for_reset();
+        if (!read_registers(self, SHADOW, after, SHADOWS)) {
+            return fail_transfer(error);
+        }
+        if (memcmp(before, after, SHADOWS) == 0) {
+            return true;
+        }
+    }
+    return linux_fail(error,
+                      "ADXL355: does not reset (shadow registers differ); power it off and on");
+}
+
+static bool set_register(const adxl355_t *self, uint8_t address, uint8_t value,
+                         linux_error_t *error) {
+    uint8_t stored;
+    if (!write_register(self, address, value) || !read_registers(self, address, &stored, 1)) {
+        return fail_transfer(error);
+    }
+    return stored == value ||
+           linux_fail(error, "ADXL355: register 0x%02x reads 0x%02x after 0x%02x was written",
+                      address, stored, value);
+}
+
+/// FILTER: no high-pass, output data rate 4000 Hz / 2^code.
+static bool filter_code(uint32_t rate_Hz, uint8_t *code) {
+    for (uint8_t i = 0; i < 4u; i++) {
+        if (4000u >> i == rate_Hz) {
+            *code = i;
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool range_code(uint32_t range_g, uint8_t *code) {
+    *code = range_g == 2u ? 1u : range_g == 4u ? 2u : 3u;
+    return range_g == 2u || range_g == 4u || range_g == 8u;
+}
+
+bool adxl355_start(adxl355_t *self, adxl355_bus_t bus, uint32_t range_g, uint32_t rate_Hz,
+                   linux_error_t *error) {
+    uint8_t range = 0;
+    uint8_t filter = 0;
+    *self = (adxl355_t){.bus = bus};
+    if (!range_code(range_g, &range)) {
+        return linux_fail(error, "ADXL355: range %u g: one of 2, 4, 8", range_g);
+    }
+    if (!filter_code(rate_Hz, &filter)) {
+        return linux_fail(error, "ADXL355: rate %u Hz: one of 4000, 2000, 1000, 500", rate_Hz);
+    }
+    const uint8_t range_register = (uint8_t)((RANGE_RESET & ~RANGE_MASK) | range);
+    return check_part(self, error) && reset(self, error) &&
+           set_register(self, RANGE, range_register, error) &&
+           set_register(self, FILTER, filter, error) &&
+           set_register(self, POWER_CTL, POWER_MEASURE, error);
+}
+
+/// 20 bits, left-justified in three bytes, most significant first.
+static int32_t sample_of(const uint8_t *bytes) {
+    const int32_t value =
+        (int32_t)((uint32_t)bytes[0] << 12 | (uint32_t)bytes[1] << 4 | (uint32_t)bytes[2] >> 4);
+    return value >= 1 << 19 ? value - (1 << 20) : value;
+}
+
+bool adxl355_read(adxl355_t *self, hal_axis_t axis, int32_t *counts) {
+    uint8_t registers[ADXL355_MAX_TRANSFER - 1u];
+    if (!read_registers(self, STATUS, registers, sizeof registers)) {
+        self->failures += self->failures < UINT32_MAX ? 1u : 0u;
+        return false;
+    }
+    if ((registers[0] & STATUS_DATA_RDY) != 0u) {
+        for (int i = 0; i < ADXL355_AXES; i++) {
+            self->counts[i] = sample_of(&registers[DATA_AT + 3u * (size_t)i]);
+            self->is_fresh[i] = true;
+        }
+    }
+    if (!self->is_fresh[axis]) {
+        return false;
+    }
+    self->is_fresh[axis] = false;
+    *counts = self->counts[axis];
+    return true;
+}
+
+bool adxl355_stop(adxl355_t *self) {
+    return write_register(self, POWER_CTL, POWER_STANDBY);
+}

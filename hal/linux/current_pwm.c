@@ -1,0 +1,225 @@
+// Current driver at a PWM output (Documentation/driver-api/pwm.rst, sysfs interface).
+//
+// Order of writes: the duty cycle is right before the output goes on; the output is off before the
+// duty cycle moves. An inverted driver has its full current at 0 % and so where the output is off:
+// it is kept on, at 100 %.
+#include "current_backends.h"
+#include "current_scale.h"
+#include "sysfs.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define UNKNOWN (-1)
+
+struct current_pwm {
+    sysfs_path_t folder;
+    int32_t full_scale_mA;
+    int64_t zero_ns; ///< duty cycle at 0 mA and at full scale
+    int64_t full_ns;
+    bool is_inverted;
+    int duty_fd;
+    int enable_fd;
+    int64_t duty_ns; ///< as written last, or UNKNOWN
+    int64_t enable;
+    uint32_t failures;
+};
+
+/// Writes where the value is another one than before, or unknown.
+static bool put(current_pwm_t *self, int fd, int64_t *last, int64_t value) {
+    if (*last == value) {
+        return true;
+    }
+    if (!sysfs_write_kept(fd, value)) {
+        *last = UNKNOWN;
+        self->failures += self->failures < UINT32_MAX ? 1u : 0u;
+        return false;
+    }
+    *last = value;
+    return true;
+}
+
+static void write_current(void *backend, int32_t current_mA, bool enable) {
+    current_pwm_t *const self = backend;
+    const int64_t duty_ns =
+        enable ? current_scale(current_mA, self->full_scale_mA, self->zero_ns, self->full_ns)
+               : self->zero_ns;
+    if (!enable && !self->is_inverted) {
+        (void)put(self, self->enable_fd, &self->enable, 0);
+    }
+    if (put(self, self->duty_fd, &self->duty_ns, duty_ns) && (enable || self->is_inverted)) {
+        (void)put(self, self->enable_fd, &self->enable, 1);
+    }
+}
+
+/// Makes the channel's folder appear.
+static bool export_channel(const current_pwm_options_t *options, sysfs_path_t *folder,
+                           linux_error_t *error) {
+    sysfs_path_t chip;
+    sysfs_path_t exporter;
+    int64_t channels;
+    char text[SYSFS_TEXT_BYTES];
+    if (!sysfs_path(&chip, error, "%s/%s/npwm", options->sysfs_root, options->chip)) {
+        return false;
+    }
+    if (!sysfs_read(chip.text, text) || !sysfs_parse(text, 1, INT32_MAX, &channels)) {
+        return linux_fail(error, "PWM chip '%s': there is none in %s", options->chip,
+                          options->sysfs_root);
+    }
+    if (options->channel >= channels) {
+        return linux_fail(error, "PWM chip '%s': channel %u: it has 0 .. %d", options->chip,
+                          options->channel, (int)channels - 1);
+    }
+    if (!sysfs_path(folder, error, "%s/%s/pwm%u", options->sysfs_root, options->chip,
+                    options->channel) ||
+        !sysfs_path(&exporter, error, "%s/%s/export", options->sysfs_root, options->chip)) {
+        return false;
+    }
+    if (sysfs_exists(folder->text)) {
+        return true;
+    }
+    if (!sysfs_write_number(exporter.text, options->channel)) {
+        return linux_fail(error, "PWM chip '%s': cannot export channel %u: %s%s", options->chip,
+                          options->channel, strerror(errno),
+                          errno == EBUSY ? " (a driver of the kernel has it)" : "");
+    }
+    return sysfs_exists(folder->text) ||
+           linux_fail(error, "PWM chip '%s': channel %u did not appear", options->chip,
+                      options->channel);
+}
+
+static bool get(const current_pwm_t *self, const char *file, int64_t *value, linux_error_t *error) {
+    sysfs_path_t path;
+    char text[SYSFS_TEXT_BYTES];
+    return sysfs_path(&path, error, "%s/%s", self->folder.text, file) &&
+           ((sysfs_read(path.text, text) && sysfs_parse(text, 0, INT64_MAX, value)) ||
+            linux_fail(error, "%s: not the number that a PWM has there", path.text));
+}
+
+static bool set(const current_pwm_t *self, const char *file, int64_t value, linux_error_t *error) {
+    sysfs_path_t path;
+    return sysfs_path(&path, error, "%s/%s", self->folder.text, file) &&
+           sysfs_set(path.text, value, error);
+}
+
+/// is_inverted is for the driver behind the pin; the pin itself is not to invert once more.
+static bool set_polarity(const current_pwm_t *self, linux_error_t *error) {
+    sysfs_path_t path;
+    char text[SYSFS_TEXT_BYTES];
+    if (!sysfs_path(&path, error, "%s/polarity", self->folder.text)) {
+        return false;
+    }
+    if (!sysfs_read(path.text, text) || strcmp(text, "normal") == 0) {
+        return true; // a chip that cannot invert has no such file
+    }
+    // The kernel changes it only while the output is off.
+    return set(self, "enable", 0, error) &&
+           (sysfs_write(path.text, "normal") ||
+            linux_fail(error, "%s: cannot write normal: %s", path.text, strerror(errno)));
+}
+
+/// Period and zero current, without a moment of more. The kernel refuses a duty cycle beyond the
+/// period, and every write but the period's while that is 0.
+static bool set_period(const current_pwm_t *self, int64_t period_ns, linux_error_t *error) {
+    int64_t enable;
+    int64_t duty_ns;
+    if (!get(self, "enable", &enable, error) || !get(self, "duty_cycle", &duty_ns, error)) {
+        return false;
+    }
+    if (!self->is_inverted && enable != 0 && !set(self, "enable", 0, error)) {
+        return false;
+    }
+    const bool is_duty_first = self->is_inverted ? duty_ns > period_ns : duty_ns > 0;
+    return (!is_duty_first || set(self, "duty_cycle", self->zero_ns, error)) &&
+           set(self, "period", period_ns, error) && set_polarity(self, error) &&
+           set(self, "duty_cycle", self->zero_ns, error);
+}
+
+static int open_kept(const current_pwm_t *self, const char *file, linux_error_t *error) {
+    sysfs_path_t path;
+    if (!sysfs_path(&path, error, "%s/%s", self->folder.text, file)) {
+        return -1;
+    }
+    const int fd = open(path.text, O_WRONLY | O_CLOEXEC);
+    if (fd < 0) {
+        (void)linux_fail(error, "%s: %s", path.text, strerror(errno));
+    }
+    return fd;
+}
+
+static bool set_up(current_pwm_t *self, const current_pwm_options_t *options,
+                   linux_error_t *error) {
+    if (!export_channel(options, &self->folder, error) ||
+        !set_period(self, options->period_ns, error)) {
+        return false;
+    }
+    self->duty_fd = open_kept(self, "duty_cycle", error);
+    self->enable_fd = self->duty_fd >= 0 ? open_kept(self, "enable", error) : -1;
+    if (self->enable_fd < 0) {
+        return false;
+    }
+    write_current(self, 0, false);
+    return self->failures == 0u ||
+           linux_fail(error, "%s: cannot switch to zero current", self->folder.text);
+}
+
+static bool check(const current_pwm_options_t *options, linux_error_t *error) {
+    if (options->chip == NULL || options->chip[0] == '\0' || strchr(options->chip, '/') != NULL) {
+        return linux_fail(error, "PWM chip '%s': give it as pwmchip0",
+                          options->chip != NULL ? options->chip : "");
+    }
+    if (options->period_ns == 0u || options->full_scale_mA < 1) {
+        return linux_fail(error, "PWM chip '%s': period and full scale must be at least 1",
+                          options->chip);
+    }
+    return true;
+}
+
+current_pwm_t *current_pwm_open(const current_pwm_options_t *options, hal_current_t *current,
+                                linux_error_t *error) {
+    if (!check(options, error)) {
+        return NULL;
+    }
+    current_pwm_t *const self = calloc(1, sizeof *self);
+    if (self == NULL) {
+        (void)linux_fail(error, "out of memory");
+        return NULL;
+    }
+    *self = (current_pwm_t){
+        .full_scale_mA = options->full_scale_mA,
+        .zero_ns = options->is_inverted ? options->period_ns : 0,
+        .full_ns = options->is_inverted ? 0 : options->period_ns,
+        .is_inverted = options->is_inverted,
+        .duty_fd = -1,
+        .enable_fd = -1,
+        .duty_ns = UNKNOWN,
+        .enable = UNKNOWN,
+    };
+    if (!set_up(self, options, error)) {
+        current_pwm_close(self);
+        return NULL;
+    }
+    *current = (hal_current_t){.write = write_current, .backend = self};
+    return self;
+}
+
+void current_pwm_close(current_pwm_t *self) {
+    if (self == NULL) {
+        return;
+    }
+    if (self->duty_fd >= 0) {
+        (void)put(self, self->duty_fd, &self->duty_ns, self->zero_ns);
+        (void)close(self->duty_fd);
+    }
+    if (self->enable_fd >= 0) {
+        (void)close(self->enable_fd);
+    }
+    free(self);
+}
+
+uint32_t current_pwm_failures(const current_pwm_t *self) {
+    return self->failures;
+}
