@@ -1,4 +1,5 @@
-/// compare: the same closed loop on the host and on a target, every word of every reply compared.
+/// compare: the same closed loop on the host and on a target, every word of every reply that the
+/// target sends compared.
 #include <iostream>
 #include <sstream>
 
@@ -65,6 +66,7 @@ int cmd_compare(const std::vector<std::string> &words) {
     const auto counts = link.finish();
     const Json out = {{"ticks", ticks},
                       {"mismatches", link.mismatches()},
+                      {"compared_words", link.compared_words()},
                       {"first_mismatch", first_mismatch_json(link.first_mismatch(), seeds)},
                       {"distinct_commands", digest.distinct_commands()},
                       {"seeds", seeds},

@@ -10,6 +10,7 @@
 
 #include "arguments.h"
 #include "commands.h"
+#include "input_error.h"
 #include "qemu_uart_link.h"
 
 namespace quiesce {
@@ -45,9 +46,15 @@ double run_echo(QemuUart &uart, std::int64_t count) {
     const auto start = Clock::now();
     std::array<std::uint8_t, kBytes.size()> back;
     for (std::int64_t i = 0; i < count; ++i) {
-        uart.send(kBytes.data(), kBytes.size());
+        const auto deadline = uart.answer_deadline();
+        uart.send(kBytes.data(), kBytes.size(), deadline);
         for (std::size_t received = 0; received < back.size();) {
-            received += uart.receive(back.data() + received, back.size() - received);
+            const std::size_t step =
+                uart.receive(back.data() + received, back.size() - received, deadline);
+            if (step == 0) {
+                throw InputError(uart.name() + ": does not echo; is it uart_echo?");
+            }
+            received += step;
         }
     }
     return Seconds(Clock::now() - start).count();

@@ -15,11 +15,18 @@ struct FirstMismatch {
     const char *field; ///< name of the word
 };
 
-/// Answers like the reference; the plant never sees the checked target.
+/// Whose command the plant gets.
+enum class Answer {
+    Reference, ///< the plant never sees the checked target
+    Checked,   ///< words that the checked target has not sent in a tick are the reference's
+};
+
+/// Compares, in each tick, the words that the checked target has sent in it.
 class ComparingLink final : public ControllerLink {
   public:
-    ComparingLink(ControllerLink &reference, ControllerLink &checked)
-        : reference_(reference), checked_(checked) {}
+    ComparingLink(ControllerLink &reference, ControllerLink &checked,
+                  Answer answer = Answer::Reference)
+        : reference_(reference), checked_(checked), answer_(answer) {}
 
     std::string target() const override { return checked_.target(); }
 
@@ -30,16 +37,20 @@ class ComparingLink final : public ControllerLink {
 
     /// Words that differed, over all runs.
     std::uint64_t mismatches() const { return mismatches_; }
+    std::uint64_t compared_words() const { return compared_words_; }
     const std::optional<FirstMismatch> &first_mismatch() const { return first_mismatch_; }
 
   private:
-    void compare(const lockstep_reply_t &expected, const lockstep_reply_t &actual);
+    void compare(const lockstep_reply_t &expected, const lockstep_reply_t &actual,
+                 const ReplyWords &received);
 
     ControllerLink &reference_;
     ControllerLink &checked_;
+    Answer answer_;
     std::uint64_t runs_ = 0;
     std::int64_t tick_ = 0;
     std::uint64_t mismatches_ = 0;
+    std::uint64_t compared_words_ = 0;
     std::optional<FirstMismatch> first_mismatch_;
 };
 

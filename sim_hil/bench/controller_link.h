@@ -2,6 +2,7 @@
 #ifndef QUIESCE_CONTROLLER_LINK_H
 #define QUIESCE_CONTROLLER_LINK_H
 
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,6 +20,9 @@ struct InstructionCounts {
     std::uint64_t worst_tick; ///< the first of the worst, from 1
 };
 
+/// One bit for each 32-bit word of lockstep_reply_t, in memory order.
+using ReplyWords = std::bitset<sizeof(lockstep_reply_t) / sizeof(std::uint32_t)>;
+
 /// One stimulus in, one control tick, one reply out. Not thread-safe.
 /// Every function throws InputError when the target cannot be reached or stops answering.
 class ControllerLink {
@@ -35,6 +39,13 @@ class ControllerLink {
 
     /// One control tick. Writes all of reply. Only after start.
     virtual void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) = 0;
+
+    /// False iff a reply may hold words that are older than its tick.
+    virtual bool is_complete() const { return true; }
+
+    /// Words of the reply that the last exchange brought from the target; the others are what it
+    /// sent last, or 0. All of them unless the link says otherwise.
+    virtual ReplyWords received() const { return ReplyWords().set(); }
 
     /// Ends the target. Returns its instruction counts iff it was started with a way to count them.
     /// Call it at most once, as the last call.

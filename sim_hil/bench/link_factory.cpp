@@ -1,5 +1,10 @@
 #include "link_factory.h"
 
+#include <chrono>
+#include <cmath>
+
+#include "can_link.h"
+#include "channel_factory.h"
 #include "in_process_link.h"
 #include "input_error.h"
 #include "phase_table_file.h"
@@ -16,13 +21,28 @@ struct Target {
     std::unique_ptr<ControllerLink> (*make)(const LinkOptions &options);
 };
 
+void refuse(bool is_given, const char *option, const char *why) {
+    if (is_given) {
+        throw InputError(std::string(option) + ": " + why);
+    }
+}
+
+void refuse_tables(const LinkOptions &options) {
+    refuse(!options.rules_path.empty(), "--rules", "only the host target takes a rule table");
+    refuse(!options.phase_table_path.empty(), "--phase-table",
+           "only the host target takes a table of pulses");
+}
+
+void refuse_can(const LinkOptions &options) {
+    constexpr const char *kWhy = "only --target linux is driven over CAN";
+    refuse(!options.can_channel.empty(), "--can", kWhy);
+    refuse(options.telemetry_every_ticks.has_value(), "--telemetry-every", kWhy);
+    refuse(options.greeting_time_s.has_value(), "--wait-s", kWhy);
+}
+
 QemuOptions emulated(const LinkOptions &options) {
-    if (!options.rules_path.empty()) {
-        throw InputError("--rules: only the host target takes a rule table");
-    }
-    if (!options.phase_table_path.empty()) {
-        throw InputError("--phase-table: only the host target takes a table of pulses");
-    }
+    refuse_tables(options);
+    refuse_can(options);
     if (options.image_path.empty()) {
         throw InputError(
             "an emulated target needs --image ELF; cmake --preset mps2 && cmake --build "
@@ -35,9 +55,29 @@ QemuOptions emulated(const LinkOptions &options) {
     return out;
 }
 
+std::unique_ptr<ControllerLink> make_linux(const LinkOptions &options) {
+    refuse_tables(options);
+    refuse(!options.image_path.empty(), "--image", "--target linux runs no image");
+    refuse(!options.plugin_path.empty(), "--plugin", "--target linux runs no image");
+    if (options.can_channel.empty()) {
+        throw InputError("--target linux needs --can CHANNEL, what leads to quiesced --lockstep: "
+                         "slcan:/dev/pts/5, slcan:unix:PATH, slcan:tcp:HOST:PORT or "
+                         "socketcan:can0");
+    }
+    CanLinkOptions out;
+    if (options.telemetry_every_ticks) {
+        out.telemetry.every_ticks = static_cast<std::uint16_t>(*options.telemetry_every_ticks);
+    }
+    if (options.greeting_time_s) {
+        out.greeting_time = std::chrono::milliseconds(std::lround(1e3 * *options.greeting_time_s));
+    }
+    return std::make_unique<CanLink>(open_channel(options.can_channel), out);
+}
+
 const Target kTargets[] = {
     {"host",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
+         refuse_can(options);
          InProcessLink::Tables tables;
          if (!options.rules_path.empty()) {
              tables.rules = load_rules(options.rules_path);
@@ -55,6 +95,7 @@ const Target kTargets[] = {
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
          return std::make_unique<QemuUartLink>(emulated(options), kFullTelemetry);
      }},
+    {"linux", make_linux},
 };
 
 std::string known_targets() {

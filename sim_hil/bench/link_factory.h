@@ -2,7 +2,9 @@
 #ifndef QUIESCE_LINK_FACTORY_H
 #define QUIESCE_LINK_FACTORY_H
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "controller_link.h"
@@ -15,6 +17,11 @@ struct LinkOptions {
     std::string plugin_path;      ///< --plugin: emulator plugin that counts instructions
     std::string rules_path;       ///< --rules: rule table for the controller, host only
     std::string phase_table_path; ///< --phase-table: table of pulses, host only
+    std::string can_channel;      ///< --can: CAN channel, linux only (channel_factory.h)
+    /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux only
+    std::optional<std::int64_t> telemetry_every_ticks;
+    /// --wait-s: longest wait for the first answer, 0.1 .. 3600; linux only
+    std::optional<double> greeting_time_s;
 };
 
 /// Throws InputError where the target is unknown (the message lists those known) or cannot start.

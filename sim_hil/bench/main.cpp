@@ -14,9 +14,9 @@ struct Entry {
 
 const Entry kCommands[] = {
     {"compare",
-     "--scenario FILE --law NAME --seeds N,N,... --target T --image ELF [--plugin SO] [--plant "
-     "FILE] "
-     "[--set NAME=VALUE]... [--noise-mg X] [--dt-us N]",
+     "--scenario FILE --law NAME --seeds N,N,... --target T [--image ELF] [--plugin SO] "
+     "[--can CHANNEL] [--telemetry-every N] [--wait-s X] [--plant FILE] [--set NAME=VALUE]... "
+     "[--noise-mg X] [--dt-us N]",
      quiesce::cmd_compare},
     {"count", "--image ELF [--word N]... [--profile off|all|PASS] [--plugin SO]",
      quiesce::cmd_count},
@@ -29,7 +29,8 @@ const Entry kCommands[] = {
      quiesce::cmd_replay},
     {"run",
      "--scenario FILE --law NAME [--plant FILE] [--set NAME=VALUE]... [--target T] [--image ELF] "
-     "[--plugin SO] [--rules FILE] [--phase-table FILE] [--seed N] [--noise-mg X] [--dt-us N] "
+     "[--plugin SO] [--can CHANNEL] [--telemetry-every N] [--wait-s X] [--rules FILE] "
+     "[--phase-table FILE] [--seed N] [--noise-mg X] [--dt-us N] "
      "[--trace FILE] "
      "[--columns NAME,NAME...] [--every N] [--repeat N]",
      quiesce::cmd_run},

@@ -52,8 +52,8 @@ const std::vector<std::string> &run_option_names() {
 }
 
 const std::vector<std::string> &target_option_names() {
-    static const std::vector<std::string> names = {"target", "image", "plugin", "rules",
-                                                   "phase-table"};
+    static const std::vector<std::string> names = {
+        "target", "image", "plugin", "rules", "phase-table", "can", "telemetry-every", "wait-s"};
     return names;
 }
 
@@ -95,10 +95,15 @@ RunSetup run_setup(const Arguments &arguments) {
 }
 
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {
-    const LinkOptions link_options = {
-        arguments.text("image").value_or(""), arguments.text("plugin").value_or(""),
-        arguments.text("rules").value_or(""), arguments.text("phase-table").value_or("")};
-    return make_link(arguments.text("target").value_or("host"), link_options);
+    LinkOptions options;
+    options.image_path = arguments.text("image").value_or("");
+    options.plugin_path = arguments.text("plugin").value_or("");
+    options.rules_path = arguments.text("rules").value_or("");
+    options.phase_table_path = arguments.text("phase-table").value_or("");
+    options.can_channel = arguments.text("can").value_or("");
+    options.telemetry_every_ticks = arguments.integer("telemetry-every", 1, UINT16_MAX);
+    options.greeting_time_s = arguments.number("wait-s", 0.1, 3600.0);
+    return make_link(arguments.text("target").value_or("host"), options);
 }
 
 } // namespace quiesce

@@ -28,7 +28,7 @@ RunSetup run_setup(const Arguments &arguments);
 /// Defaults with --law and every --set applied and accepted. base: before those.
 quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base);
 
-/// The link that --target, --image, --plugin and --rules describe; the host without --target.
+/// The link that the target options describe; the host without --target.
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments);
 
 } // namespace quiesce

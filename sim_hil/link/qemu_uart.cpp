@@ -2,8 +2,8 @@
 
 #include <cerrno>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <system_error>
+#include <utility>
 
 #include "input_error.h"
 
@@ -29,76 +29,67 @@ std::vector<int> inherited(int line, const InstructionCounter &counter) {
 
 } // namespace
 
-QemuUart::Line::Line(std::chrono::milliseconds receive_time) {
+QemuUart::Line::Line() {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
         throw std::system_error(errno, std::generic_category(), "socketpair");
     }
     bench = FileDescriptor(ends[0]);
     qemu = FileDescriptor(ends[1]);
-    timeval time{};
-    time.tv_sec = receive_time.count() / 1000;
-    time.tv_usec = receive_time.count() % 1000 * 1000;
-    setsockopt(ends[0], SOL_SOCKET, SO_RCVTIMEO, &time, sizeof time);
-    setsockopt(ends[0], SOL_SOCKET, SO_SNDTIMEO, &time, sizeof time);
 }
 
 QemuUart::QemuUart(const QemuOptions &options)
-    : options_(options), counter_(options), line_(options.answer_time),
+    : options_(options), counter_(options),
       process_(options.image_path, qemu_arguments(line_.qemu.number(), counter_),
-               inherited(line_.qemu.number(), counter_)) {
+               inherited(line_.qemu.number(), counter_)),
+      stream_(std::move(line_.bench), "image " + options.image_path) {
     line_.qemu.close(); // QEMU's end closes with QEMU: receive then sees the end of the stream
 }
 
-void QemuUart::send(const std::uint8_t *bytes, std::size_t count) {
-    std::size_t sent = 0;
-    while (sent < count) {
-        const ssize_t step = ::send(line_.bench.number(), bytes + sent, count - sent, MSG_NOSIGNAL);
-        if (step < 0 && errno == EINTR) {
-            continue;
-        }
-        if (step <= 0) {
-            fail_by_end();
-        }
-        sent += static_cast<std::size_t>(step);
+void QemuUart::send(const std::uint8_t *bytes, std::size_t count, LinkClock::time_point deadline) {
+    try {
+        stream_.send(bytes, count, deadline);
+    } catch (const InputError &) {
+        fail_if_ended();
+        throw;
     }
 }
 
-std::size_t QemuUart::receive(std::uint8_t *bytes, std::size_t capacity) {
-    for (;;) {
-        const ssize_t count = ::recv(line_.bench.number(), bytes, capacity, 0);
-        if (count > 0) {
-            return static_cast<std::size_t>(count);
-        }
-        if (count == 0 || errno != EINTR) {
-            fail_by_end();
-        }
+std::size_t QemuUart::receive(std::uint8_t *bytes, std::size_t capacity,
+                              LinkClock::time_point deadline) {
+    try {
+        return stream_.receive(bytes, capacity, deadline);
+    } catch (const InputError &) {
+        fail_if_ended();
+        throw;
     }
 }
 
 void QemuUart::await_greeting() {
+    const auto deadline = answer_deadline();
     std::uint8_t byte = 0;
     while (byte != '\r') {
-        receive(&byte, 1);
+        if (receive(&byte, 1, deadline) == 0) {
+            throw InputError(name() + ": no answer within " +
+                             std::to_string(options_.answer_time.count()) + " ms" +
+                             kUartSilenceHint);
+        }
     }
 }
 
 std::optional<InstructionCounts> QemuUart::finish() {
     if (!process_.wait_for_end(options_.answer_time) || !process_.has_succeeded()) {
-        throw InputError("image " + options_.image_path + ": did not end when told to");
+        throw InputError(name() + ": did not end when told to");
     }
     return counter_.read();
 }
 
-void QemuUart::fail_by_end() {
+void QemuUart::fail_if_ended() {
     constexpr std::chrono::milliseconds kReapTime(
         500); // the stream ends shortly before the process
     if (process_.wait_for_end(kReapTime)) {
-        throw InputError("image " + options_.image_path + ": " + process_.describe_end());
+        throw InputError(name() + ": " + process_.describe_end());
     }
-    throw InputError("image " + options_.image_path + ": no answer within " +
-                     std::to_string(options_.answer_time.count()) +
-                     " ms; is it the UART image (quiesce_mps2_uart)?");
 }
 
 } // namespace quiesce

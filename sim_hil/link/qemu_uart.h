@@ -5,25 +5,36 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "byte_stream.h"
+#include "descriptor_stream.h"
 #include "instruction_counter.h"
 #include "qemu_process.h"
 
 namespace quiesce {
 
-class QemuUart {
+/// Ends the line about an image that does not answer.
+inline constexpr const char *kUartSilenceHint = "; is it the UART image (quiesce_mps2_uart)?";
+
+class QemuUart final : public ByteStream {
   public:
     /// Starts the image. Throws InputError as QemuProcess and InstructionCounter do.
     explicit QemuUart(const QemuOptions &options);
 
-    /// Sends all bytes. Throws InputError when the image has ended.
-    void send(const std::uint8_t *bytes, std::size_t count);
+    std::string name() const override { return "image " + options_.image_path; }
 
-    /// Waits for bytes; returns how many came, 1 .. capacity. Throws InputError when the image has
-    /// ended or nothing arrives within options.answer_time.
-    std::size_t receive(std::uint8_t *bytes, std::size_t capacity);
+    /// When the image has ended, the line says how.
+    void send(const std::uint8_t *bytes, std::size_t count,
+              LinkClock::time_point deadline) override;
+    std::size_t receive(std::uint8_t *bytes, std::size_t capacity,
+                        LinkClock::time_point deadline) override;
+
+    /// Deadline of an answer that the image is asked for now.
+    LinkClock::time_point answer_deadline() const {
+        return LinkClock::now() + options_.answer_time;
+    }
 
     /// Waits for the image's greeting, a line that ends with CR: what is sent before it listens may
-    /// be lost. Throws InputError as receive does.
+    /// be lost. Throws InputError, too, when it does not come within options.answer_time.
     void await_greeting();
 
     /// Waits for the image to end by itself. Throws InputError when it does not.
@@ -34,11 +45,11 @@ class QemuUart {
     pid_t process_id() const { return process_.id(); }
 
   private:
-    [[noreturn]] void fail_by_end();
+    void fail_if_ended();
 
     /// The two ends of the line; QEMU inherits its own.
     struct Line {
-        explicit Line(std::chrono::milliseconds receive_time);
+        Line();
         FileDescriptor bench;
         FileDescriptor qemu;
     };
@@ -47,6 +58,7 @@ class QemuUart {
     InstructionCounter counter_;
     Line line_;
     QemuProcess process_;
+    DescriptorStream stream_;
 };
 
 } // namespace quiesce

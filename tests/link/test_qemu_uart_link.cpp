@@ -18,10 +18,11 @@ TEST(qemu_uart, echo_returns_every_byte_value) {
     }
     sent.push_back('\r'); // ends the line that the echo waits for
     echo.await_greeting();
-    echo.send(sent.data(), sent.size());
+    echo.send(sent.data(), sent.size(), echo.answer_deadline());
     std::vector<std::uint8_t> back(sent.size());
-    for (std::size_t count = 0; count < back.size();) {
-        count += echo.receive(back.data() + count, back.size() - count);
+    std::size_t step = 1;
+    for (std::size_t count = 0; count < back.size() && step > 0; count += step) {
+        step = echo.receive(back.data() + count, back.size() - count, echo.answer_deadline());
     }
     EXPECT_EQ(sent, back);
 }
@@ -85,7 +86,8 @@ TEST(qemu_uart_link, rubbish_on_the_line_does_not_disturb_it) {
     target.start(default_params());
     for (std::uint32_t tick = 0; tick < 50; ++tick) {
         const std::string rubbish = "\rS6\rt603\rt6034ZZ\r\xFF\xFE\r";
-        target.uart().send(reinterpret_cast<const std::uint8_t *>(rubbish.data()), rubbish.size());
+        target.uart().send(reinterpret_cast<const std::uint8_t *>(rubbish.data()), rubbish.size(),
+                           target.uart().answer_deadline());
         lockstep_reply_t expected, actual;
         host.exchange(varied_stimulus(tick), expected);
         target.exchange(varied_stimulus(tick), actual);
@@ -137,7 +139,7 @@ TEST(qemu_uart_link, image_that_never_answers_is_given_up) {
 TEST(qemu_uart_link, image_that_speaks_something_else_is_refused) {
     QemuUartLink target(uncounted(kEchoImage), kFullTelemetry);
     expect_contains(error_of([&] { target.start(default_params()); }),
-                    "answers with message 1537 instead of 1545");
+                    "answers with message 0x601 of 6 bytes instead of 0x609");
 }
 
 } // namespace

@@ -1,0 +1,32 @@
+#include "can_link.h"
+
+#include <utility>
+
+namespace quiesce {
+
+namespace {
+
+const char *const kSilenceHint = "; is quiesced --lockstep running at the other end?";
+
+} // namespace
+
+CanLink::CanLink(std::unique_ptr<FrameChannel> channel, const CanLinkOptions &options)
+    : channel_(std::move(channel)),
+      client_(*channel_, {options.telemetry, options.answer_time, kSilenceHint}),
+      greeting_time_(options.greeting_time),
+      is_complete_(options.telemetry.every_ticks == kFullTelemetry.every_ticks &&
+                   options.telemetry.frames == kFullTelemetry.frames) {}
+
+bool CanLink::start(const quiesce_params_t &params) {
+    if (!is_greeted_) {
+        client_.greet(greeting_time_);
+        is_greeted_ = true;
+    }
+    return client_.start(params);
+}
+
+void CanLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {
+    client_.exchange(stimulus, reply);
+}
+
+} // namespace quiesce

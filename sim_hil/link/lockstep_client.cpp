@@ -1,0 +1,313 @@
+#include "lockstep_client.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
+#include <unistd.h>
+#include <utility>
+
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+constexpr std::int32_t kMax24Bit = 0x7FFFFF;
+constexpr std::uint8_t kSequenceMask = 15;
+
+/// Pause between two questions for the status.
+constexpr std::chrono::milliseconds kAskInterval(200);
+
+/// Parameters from this index on exist nowhere: a write to one is refused, and does nothing else.
+constexpr std::uint16_t kFenceIndex = 0xFF00;
+
+constexpr std::size_t kWord = sizeof(std::uint32_t);
+
+/// Number of a telemetry field's word in lockstep_reply_t.
+constexpr std::size_t reply_word(std::size_t telemetry_offset) {
+    return (offsetof(lockstep_reply_t, telemetry) + telemetry_offset) / kWord;
+}
+
+/// Words that every LockstepCommand brings.
+ReplyWords command_words() {
+    ReplyWords words;
+    words.set(offsetof(lockstep_reply_t, current_cmd_mA) / kWord);
+    words.set(offsetof(lockstep_reply_t, is_driver_enabled) / kWord);
+    words.set(reply_word(offsetof(quiesce_telemetry_t, state)));
+    words.set(reply_word(offsetof(quiesce_telemetry_t, fault)));
+    words.set(reply_word(offsetof(quiesce_telemetry_t, current_cmd_mA)));
+    return words;
+}
+
+can_frame_t make_frame(std::uint32_t id, std::uint32_t length) {
+    can_frame_t frame{};
+    frame.id = id;
+    frame.length = static_cast<std::uint8_t>(length);
+    return frame;
+}
+
+std::string message_name(std::uint32_t id) {
+    char text[16];
+    std::snprintf(text, sizeof text, "0x%03X", static_cast<unsigned>(id));
+    return text;
+}
+
+void require_24_bit(std::int32_t value, const char *name) {
+    if (value < -kMax24Bit - 1 || value > kMax24Bit) {
+        throw InputError(std::string(name) + " " + std::to_string(value) +
+                         ": does not fit the 24 bits that it has in its CAN message");
+    }
+}
+
+bool has_flag(const lockstep_stimulus_t &stimulus, std::uint32_t flag) {
+    return (stimulus.flags & flag) != 0;
+}
+
+bool is_lockstep(const can_frame_t &frame) {
+    return (frame.id & LockstepClient::kIdMask) == LockstepClient::kFirstId && !frame.is_extended &&
+           !frame.is_remote;
+}
+
+bool is_telemetry(const can_frame_t &frame) {
+    return frame.id >= QUIESCE_CAN_TELEMETRY_FIRST_ID &&
+           frame.id < QUIESCE_CAN_TELEMETRY_FIRST_ID + QUIESCE_CAN_TELEMETRY_WORDS &&
+           frame.length == kWord;
+}
+
+can_frame_t param_write(std::uint16_t index, std::int32_t value) {
+    quiesce_can_lockstep_param_write_t write{};
+    write.param_index = index;
+    write.param_value = value;
+    can_frame_t frame = make_frame(QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_FRAME_ID,
+                                   QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_LENGTH);
+    quiesce_can_lockstep_param_write_pack(frame.data, &write, sizeof frame.data);
+    return frame;
+}
+
+quiesce_can_lockstep_param_ack_t unpack_ack(const can_frame_t &frame) {
+    quiesce_can_lockstep_param_ack_t ack{};
+    quiesce_can_lockstep_param_ack_unpack(&ack, frame.data, frame.length);
+    return ack;
+}
+
+static_assert((QUIESCE_CAN_TELEMETRY_FIRST_ID & LockstepClient::kIdMask) ==
+                      LockstepClient::kFirstId &&
+                  ((QUIESCE_CAN_TELEMETRY_FIRST_ID + QUIESCE_CAN_TELEMETRY_WORDS - 1) &
+                   LockstepClient::kIdMask) == LockstepClient::kFirstId,
+              "every lock-step message passes the mask");
+
+} // namespace
+
+LockstepClient::LockstepClient(FrameChannel &channel, LockstepClientOptions options)
+    : channel_(channel), options_(std::move(options)) {}
+
+void LockstepClient::greet(std::chrono::milliseconds time) {
+    await_status(time);
+    pass_fence();
+}
+
+void LockstepClient::await_status(std::chrono::milliseconds time) {
+    const auto deadline = LinkClock::now() + time;
+    can_frame_t frame;
+    while (LinkClock::now() < deadline) {
+        send_control(QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_STATUS_CHOICE);
+        const auto next_question = std::min(LinkClock::now() + kAskInterval, deadline);
+        while (receive_before(frame, next_question)) {
+            if (frame.id == QUIESCE_CAN_LOCKSTEP_STATUS_FRAME_ID) {
+                return;
+            }
+        }
+    }
+    fail("no target answers within " + std::to_string(time.count()) + " ms" +
+         options_.silence_hint);
+}
+
+/// The refusal of the fence comes after every answer to what was sent before it, by whomever.
+void LockstepClient::pass_fence() {
+    const auto index = static_cast<std::uint16_t>(
+        kFenceIndex + (static_cast<unsigned>(getpid()) & 0xFFu)); // an earlier bench's is another
+    const can_frame_t fence = param_write(index, 0);
+    send(&fence, 1);
+    const auto deadline = LinkClock::now() + options_.answer_time;
+    can_frame_t frame;
+    while (receive_before(frame, deadline)) {
+        if (frame.id == QUIESCE_CAN_LOCKSTEP_PARAM_ACK_FRAME_ID &&
+            unpack_ack(frame).param_index == index) {
+            return;
+        }
+    }
+    fail("the target answers, but not what it is asked" + options_.silence_hint);
+}
+
+bool LockstepClient::start(const quiesce_params_t &params) {
+    for (std::uint32_t index = 0; index < QUIESCE_PARAM_COUNT; ++index) {
+        std::int32_t value = 0;
+        quiesce_param_get(&params, index, &value);
+        write_parameter(index, value);
+    }
+    send_control(QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_CHOICE);
+    const auto status = receive_status();
+    if (status.param_count != QUIESCE_PARAM_COUNT ||
+        status.telemetry_words != QUIESCE_CAN_TELEMETRY_WORDS) {
+        fail("the target was built from other sources than this bench; rebuild it");
+    }
+    sequence_ = 0;
+    reply_ = lockstep_reply_t{};
+    refused_index_ = status.refused_index;
+    return status.param_is_refused == 0;
+}
+
+void LockstepClient::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {
+    static const ReplyWords kCommandWords = command_words();
+    std::array<can_frame_t, kMaxBurstFrames> frames;
+    const std::size_t count = put_stimulus(stimulus, frames.data());
+    send(frames.data(), count);
+    received_ = kCommandWords;
+    std::size_t telemetry_frames = 0;
+    for (;;) {
+        const can_frame_t frame = receive();
+        if (frame.id == QUIESCE_CAN_LOCKSTEP_COMMAND_FRAME_ID) {
+            take_command(frame);
+            reply = reply_;
+            return;
+        }
+        if (!is_telemetry(frame)) {
+            fail("answers a stimulus with an unexpected message, " + message_name(frame.id));
+        }
+        if (telemetry_frames++ == QUIESCE_CAN_TELEMETRY_WORDS) {
+            fail("answers a stimulus with more telemetry than there is");
+        }
+        take_telemetry(frame);
+    }
+}
+
+void LockstepClient::stop() {
+    send_control(QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_STOP_CHOICE);
+    receive_status();
+}
+
+void LockstepClient::send(const can_frame_t *frames, std::size_t count) {
+    channel_.send(frames, count, LinkClock::now() + options_.answer_time);
+}
+
+/// Next lock-step message. Returns false iff none came by the deadline.
+bool LockstepClient::receive_before(can_frame_t &frame, LinkClock::time_point deadline) {
+    while (channel_.receive(frame, deadline)) {
+        if (is_lockstep(frame)) {
+            return true;
+        }
+        if (LinkClock::now() > deadline) { // a busy bus is no answer
+            return false;
+        }
+    }
+    return false;
+}
+
+can_frame_t LockstepClient::receive() {
+    can_frame_t frame;
+    if (!receive_before(frame, LinkClock::now() + options_.answer_time)) {
+        fail("no answer within " + std::to_string(options_.answer_time.count()) + " ms" +
+             options_.silence_hint);
+    }
+    return frame;
+}
+
+can_frame_t LockstepClient::receive_message(std::uint32_t id, std::uint8_t length) {
+    const can_frame_t frame = receive();
+    if (frame.id != id || frame.length != length) {
+        fail("answers with message " + message_name(frame.id) + " of " +
+             std::to_string(frame.length) + " bytes instead of " + message_name(id));
+    }
+    return frame;
+}
+
+void LockstepClient::write_parameter(std::uint32_t index, std::int32_t value) {
+    const can_frame_t write = param_write(static_cast<std::uint16_t>(index), value);
+    send(&write, 1);
+    const auto ack = unpack_ack(receive_message(QUIESCE_CAN_LOCKSTEP_PARAM_ACK_FRAME_ID,
+                                                QUIESCE_CAN_LOCKSTEP_PARAM_ACK_LENGTH));
+    if (ack.is_stored == 0 || ack.param_index != index || ack.param_value != value) {
+        fail("the target does not store parameter " + std::to_string(index) + "; rebuild it");
+    }
+}
+
+void LockstepClient::send_control(std::uint8_t operation) {
+    quiesce_can_lockstep_control_t message{};
+    message.operation = operation;
+    message.telemetry_frames = options_.telemetry.frames;
+    message.telemetry_every_ticks = options_.telemetry.every_ticks;
+    can_frame_t frame =
+        make_frame(QUIESCE_CAN_LOCKSTEP_CONTROL_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CONTROL_LENGTH);
+    quiesce_can_lockstep_control_pack(frame.data, &message, sizeof frame.data);
+    send(&frame, 1);
+}
+
+quiesce_can_lockstep_status_t LockstepClient::receive_status() {
+    const can_frame_t answer =
+        receive_message(QUIESCE_CAN_LOCKSTEP_STATUS_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STATUS_LENGTH);
+    quiesce_can_lockstep_status_t status{};
+    quiesce_can_lockstep_status_unpack(&status, answer.data, answer.length);
+    return status;
+}
+
+/// Returns the number of frames: the measured current goes before the stimulus it belongs to.
+std::size_t LockstepClient::put_stimulus(const lockstep_stimulus_t &stimulus,
+                                         can_frame_t *frames) const {
+    std::size_t count = 0;
+    require_24_bit(stimulus.accel_counts, "accel_counts");
+    if (has_flag(stimulus, LOCKSTEP_HAS_CURRENT)) {
+        require_24_bit(stimulus.current_meas_mA, "current_meas_mA");
+        quiesce_can_lockstep_current_t current{};
+        current.current_meas_mA = stimulus.current_meas_mA;
+        current.sequence = sequence_;
+        can_frame_t &frame = frames[count++];
+        frame =
+            make_frame(QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CURRENT_LENGTH);
+        quiesce_can_lockstep_current_pack(frame.data, &current, sizeof frame.data);
+    }
+    quiesce_can_lockstep_stimulus_t message{};
+    message.accel_counts = stimulus.accel_counts;
+    message.accel_is_fresh = has_flag(stimulus, LOCKSTEP_FRESH);
+    message.enable = has_flag(stimulus, LOCKSTEP_ENABLE);
+    message.estop = has_flag(stimulus, LOCKSTEP_ESTOP);
+    message.fault_reset = has_flag(stimulus, LOCKSTEP_FAULT_RESET);
+    message.sequence = sequence_;
+    can_frame_t &frame = frames[count++];
+    frame =
+        make_frame(QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_LENGTH);
+    quiesce_can_lockstep_stimulus_pack(frame.data, &message, sizeof frame.data);
+    return count;
+}
+
+void LockstepClient::take_command(const can_frame_t &frame) {
+    quiesce_can_lockstep_command_t command{};
+    if (frame.length != QUIESCE_CAN_LOCKSTEP_COMMAND_LENGTH ||
+        quiesce_can_lockstep_command_unpack(&command, frame.data, frame.length) != 0 ||
+        command.sequence != sequence_) {
+        fail("answers out of sequence; has it lost a frame, or does a second bench talk to it?");
+    }
+    sequence_ = static_cast<std::uint8_t>((sequence_ + 1) & kSequenceMask);
+    reply_.current_cmd_mA = command.current_cmd_mA;
+    reply_.is_driver_enabled = command.driver_is_enabled;
+    reply_.telemetry.state = command.state;
+    reply_.telemetry.fault = command.fault;
+    reply_.telemetry.current_cmd_mA = command.current_cmd_mA;
+}
+
+void LockstepClient::take_telemetry(const can_frame_t &frame) {
+    std::uint32_t word = 0;
+    for (unsigned i = 0; i < kWord; ++i) {
+        word |= std::uint32_t{frame.data[i]} << (8 * i);
+    }
+    const std::size_t index = frame.id - QUIESCE_CAN_TELEMETRY_FIRST_ID;
+    std::memcpy(reinterpret_cast<std::uint8_t *>(&reply_.telemetry) + kWord * index, &word,
+                sizeof word);
+    received_.set(reply_word(kWord * index));
+}
+
+void LockstepClient::fail(const std::string &what) const {
+    throw InputError(channel_.name() + ": " + what);
+}
+
+} // namespace quiesce
