@@ -8,6 +8,7 @@ from typing import NoReturn
 from quiesce import (
     __version__,
     cmd_bench,
+    cmd_can,
     cmd_chain,
     cmd_hil,
     cmd_identify,
@@ -39,6 +40,7 @@ COMMANDS = (
     cmd_sweep,
     cmd_identify,
     cmd_tune,
+    cmd_can,
     cmd_bench,
 )
 
@@ -51,6 +53,7 @@ EPILOG = """examples:
   quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
   quiesce identify FILE.csv --model all         damper models from a test rig's recording
   quiesce tune my_plant.toml                    pulses of current for my own plant
+  quiesce can monitor --bus socketcan:can0      state, fault and currents, live
   quiesce bench signal --check                  the sensing chain's figures and goals
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,

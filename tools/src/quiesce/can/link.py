@@ -1,0 +1,159 @@
+"""A bus that may go away: frames in the order of their arrival, loss and return between them.
+
+A thread of its own reads, so that nobody's writing or drawing makes a driver's buffer overflow.
+"""
+
+import queue
+import threading
+import time
+from dataclasses import dataclass
+from typing import Any
+
+from quiesce.can.buses import Bus, reason_of
+from quiesce.errors import UsageError
+
+REOPEN_S = 0.5
+READ_S = 0.1
+
+
+@dataclass(frozen=True)
+class Lost:
+    """The bus is gone since then."""
+
+    time_s: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Back:
+    """The bus is there again after a gap."""
+
+    time_s: float
+    gap_s: float
+
+
+class Link:
+    """Opened by entering it, UsageError where that fails; later losses are events and it opens
+    again by itself."""
+
+    def __init__(self, bus: Bus) -> None:
+        self.bus = bus
+        self._driver: Any = None
+        self._events: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._stop = threading.Event()
+        self._sending = threading.Lock()
+        self._thread = threading.Thread(target=self._read, daemon=True)
+        self._malformed = 0
+
+    def __enter__(self) -> "Link":
+        try:
+            self._driver = self.bus.open()
+        except Exception as error:  # every driver has its own classes
+            raise UsageError(
+                f"cannot open {self.bus.name}: {reason_of(error)}; 'quiesce can list' shows what "
+                "there is"
+            )
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop.set()
+        self._thread.join()
+        self._close()
+
+    @property
+    def is_up(self) -> bool:
+        return self._driver is not None
+
+    @property
+    def malformed(self) -> int:
+        """Lines or packets that were no frames."""
+        return self._malformed + getattr(self._driver, "malformed", 0)
+
+    def receive(self, timeout_s: float) -> Any:
+        """The next can.Message, Lost or Back; None where nothing comes in time."""
+        try:
+            return self._events.get(timeout=max(timeout_s, 0.0))
+        except queue.Empty:
+            return None
+
+    def receive_now(self) -> Any:
+        """As receive, without waiting."""
+        try:
+            return self._events.get_nowait()
+        except queue.Empty:
+            return None
+
+    def send(self, frame_id: int, data: bytes) -> Any:
+        """Returns the message that was sent, None where the bus did not take it."""
+        from quiesce.can.python_can import can
+
+        message = can.Message(
+            arbitration_id=frame_id,
+            is_extended_id=False,
+            data=data,
+            timestamp=time.time(),
+            is_rx=False,
+        )
+        return message if self.send_message(message) else None
+
+    def send_message(self, message: Any) -> bool:
+        with self._sending:
+            driver = self._driver
+            if driver is None:
+                return False
+            try:
+                driver.send(message)
+            except Exception:  # the reader meets the same fault and tells it
+                return False
+        return True
+
+    def _read(self) -> None:
+        while not self._stop.is_set():
+            try:
+                message = self._driver.recv(READ_S)
+            except Exception as error:
+                if is_noise(error):
+                    self._malformed += 1
+                else:
+                    self._lose(error)
+                continue
+            if message is not None:
+                self._events.put(message)
+
+    def _lose(self, error: Exception) -> None:
+        lost_s = time.time()
+        self._events.put(Lost(lost_s, reason_of(error)))
+        self._close()
+        while not self._stop.wait(REOPEN_S):
+            try:
+                driver = self.bus.open()
+            except Exception:
+                continue
+            self._driver = driver
+            now_s = time.time()
+            self._events.put(Back(now_s, now_s - lost_s))
+            return
+
+    def _close(self) -> None:
+        with self._sending:
+            driver, self._driver = self._driver, None
+        if driver is None:
+            return
+        self._malformed += getattr(driver, "malformed", 0)
+        try:
+            driver.shutdown()
+        except Exception:  # it is gone, and cannot even say goodbye
+            close_line(driver)
+
+
+def is_noise(error: Exception) -> bool:
+    """A packet that is no frame, on a bus that goes on."""
+    return isinstance(error, ValueError) or "unpack" in str(error)
+
+
+def close_line(driver: Any) -> None:
+    """python-can's SLCAN writes before it closes; where that fails, the line stays open."""
+    line = getattr(driver, "serialPortOrig", None)
+    if line is not None:
+        line.close()

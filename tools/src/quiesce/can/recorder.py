@@ -1,0 +1,249 @@
+"""A recording: files that rotate, each with the controller's identity and parameters first."""
+
+import copy
+import json
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from quiesce.can.database import Database
+from quiesce.can.link import Back, Link, Lost
+from quiesce.can.parameters import hash_of, name_of
+from quiesce.can.services import ReadAll, Requests
+from quiesce.can.traffic import Traffic
+from quiesce.can.writers import LogFile, MdfFile, open_log
+from quiesce.errors import BenchFailure, UsageError
+
+# For the controller's identity, sent once a second, and all its parameters.
+PREAMBLE_S = 3.0
+READ_AGAIN_S = 5.0
+IDLE_S = 0.005
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to record into which files."""
+
+    out: Path
+    rotate_bytes: int | None
+    rotate_s: float | None
+    asks: bool  # request the parameters; False: never send anything
+
+    @property
+    def rotates(self) -> bool:
+        return self.rotate_bytes is not None or self.rotate_s is not None
+
+    def file(self, number: int) -> Path:
+        """Of the file with that number, from 1."""
+        if not self.rotates:
+            return self.out
+        return self.out.with_name(f"{self.out.stem}_{number:04d}{self.out.suffix}")
+
+
+class Preamble:
+    """Identity and parameters of the controller, kept up to date: what every file begins with."""
+
+    def __init__(self, link: Link, database: Database) -> None:
+        self._link = link
+        self._requests = Requests(database)
+        self._reader = ReadAll(self._requests)
+        self._started_s = time.monotonic()
+        self._parameters: list[Any] = []
+        self.values: list[int] = []
+        self.identity: Any = None  # the frame
+        self.identification: dict[str, int] = {}
+
+    @property
+    def is_complete(self) -> bool:
+        return bool(self.values) and self.identity is not None
+
+    @property
+    def frames(self) -> list[Any]:
+        return [self.identity] * (self.identity is not None) + self._parameters
+
+    def poll(self) -> Any:
+        """Sends the next request where one is due; returns its frame."""
+        data = self._reader.poll(time.monotonic())
+        return None if data is None else self._link.send(self._requests.request_id, data)
+
+    def take(self, frame: Any) -> None:
+        self._reader.take(frame)
+        if self._reader.is_complete and self._reader.frames is not self._parameters:
+            self._parameters, self.values = self._reader.frames, self._reader.values
+        identification = self._requests.identification_in(frame)
+        if identification is not None:
+            self.identity, self.identification = frame, identification
+            if self._reader.is_over and identification["param_hash"] != hash_of(self.values):
+                self.read_again(READ_AGAIN_S)
+
+    def read_again(self, least_s: float = 0.0) -> None:
+        """The parameters may be others now."""
+        if time.monotonic() - self._started_s >= least_s:
+            self._reader = ReadAll(self._requests)
+            self._started_s = time.monotonic()
+
+
+class Recorder:
+    """Takes everything from the link until told to stop; run() is all there is to do."""
+
+    def __init__(
+        self, link: Link, database: Database, plan: Plan, say: Callable[[str], None]
+    ) -> None:
+        self.plan = plan
+        self.traffic = Traffic(database)
+        self.preamble = Preamble(link, database)
+        self.files: list[LogFile] = []
+        self._link = link
+        self._database = database
+        self._say = say
+        self._held: list[Any] | None = []  # until the preamble is there; None: no more
+        self._started_s = time.monotonic()
+        self._file_started_s = 0.0
+
+    @property
+    def file(self) -> LogFile:
+        return self.files[-1]
+
+    def open(self) -> None:
+        """OSError where the file cannot be made or exists."""
+        path = self.plan.file(len(self.files) + 1)
+        self.files.append(open_log(path, self._attachments))
+        self._file_started_s = time.monotonic()
+
+    def run(self, stop: Any, until_s: float | None, every_s: float, tell: Any) -> None:
+        """Until `stop` is set or for until_s; tell() every so often. BenchFailure where the disk
+        does not take more. The files are complete in any case."""
+        told_s = time.monotonic()
+        try:
+            while not stop.is_set() and not self._is_over(until_s):
+                self.step()
+                if time.monotonic() - told_s >= every_s:
+                    told_s = time.monotonic()
+                    tell()
+            self._drain()
+        finally:
+            self.close()
+        self._check_disk()
+
+    def _is_over(self, until_s: float | None) -> bool:
+        return until_s is not None and time.monotonic() - self._started_s >= until_s
+
+    def step(self) -> None:
+        sent = self.preamble.poll() if self.plan.asks else None
+        if sent is not None:
+            self.keep(sent)
+        event = self._link.receive(IDLE_S)
+        if event is None:
+            self.file.commit()
+        while event is not None:
+            self.take(event)
+            event = self._link.receive_now()
+        self._check_disk()
+        self._rotate_if_due()
+
+    def _drain(self) -> None:
+        """What has arrived already."""
+        while (event := self._link.receive_now()) is not None:
+            self.take(event)
+
+    def take(self, event: Any) -> None:
+        if isinstance(event, Lost):
+            self._note(f"bus lost: {event.reason}", event.time_s)
+        elif isinstance(event, Back):
+            self._note(f"bus back after {event.gap_s:.3f} s; frames are missing", event.time_s)
+            self.traffic.forget()
+            self.preamble.read_again()
+        else:
+            self.traffic.take(event)
+            self.preamble.take(event)
+            self.keep(event)
+
+    def keep(self, frame: Any) -> None:
+        if self._held is None:
+            self.file.write(frame)
+            return
+        self._held.append(frame)
+        is_late = time.monotonic() - self._started_s > PREAMBLE_S
+        if self.preamble.is_complete or not self.plan.asks or is_late:
+            self._begin()
+
+    def _begin(self) -> None:
+        """The first file gets its preamble, then what was held."""
+        held, self._held = self._held or [], None
+        first = self.preamble.frames
+        known = {id(frame) for frame in first}
+        self._write_preamble(held[0].timestamp if held else time.time())
+        for frame in held:
+            if id(frame) not in known:
+                self.file.write(frame)
+        if self.plan.asks and not first:
+            self._say("no controller answers: this log has no parameters")
+
+    def _write_preamble(self, time_s: float) -> None:
+        for frame in self.preamble.frames:
+            stamped = copy.copy(frame)
+            stamped.timestamp = time_s
+            self.file.write(stamped)
+
+    def _rotate_if_due(self) -> None:
+        plan, age_s = self.plan, time.monotonic() - self._file_started_s
+        is_large = plan.rotate_bytes is not None and self.file.size >= plan.rotate_bytes
+        is_old = plan.rotate_s is not None and age_s >= plan.rotate_s
+        if self._held is not None or not (is_large or is_old):
+            return
+        last_s = self.file.last_s
+        self.file.close()
+        try:
+            self.open()
+        except OSError as error:
+            raise BenchFailure(f"{error.filename}: {error.strerror}; the files before are complete")
+        self._write_preamble(last_s)
+
+    def _note(self, text: str, time_s: float) -> None:
+        self._say(text)
+        self.file.note(text, time_s)
+
+    def _check_disk(self) -> None:
+        file = self.file
+        if file.error is not None:
+            last = time.strftime("%H:%M:%S", time.localtime(file.last_s))
+            raise BenchFailure(
+                f"{file.path}: {file.error.strerror}; recording ended at {last}, what was written "
+                "is readable"
+            )
+
+    def close(self) -> None:
+        """All files are complete afterwards."""
+        if self._held is not None:
+            self._begin()
+        self.file.close()
+        for file in self.files:
+            if isinstance(file, MdfFile):
+                file.finish()
+                if file.failure:
+                    self._say(file.failure)
+
+    def _attachments(self) -> list[tuple[str, bytes, str]]:
+        """The database and the parameters, for formats that take files."""
+        identification = self.preamble.identification
+        dump = {
+            "identification": identification,
+            "parameters": {name_of(i): value for i, value in enumerate(self.preamble.values)},
+        }
+        return [
+            (self._database.file.name, self._database.source.encode(), "application/octet-stream"),
+            ("parameters.json", json.dumps(dump, indent=1).encode(), "application/json"),
+        ]
+
+
+def open_first(recorder: Recorder) -> None:
+    """UsageError where the first file cannot be made."""
+    path = recorder.plan.file(1)
+    try:
+        recorder.open()
+    except FileExistsError:
+        raise UsageError(f"{path} exists; choose another --out")
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}; choose another --out")

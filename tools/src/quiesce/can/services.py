@@ -1,0 +1,216 @@
+"""Requests to a controller (ServiceRequest, ServiceReply): one at a time, answered or given up."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from quiesce.can.database import Database
+from quiesce.can.e2e import ALIVE_PERIOD, alive_of, frame_crc, protect
+from quiesce.can.link import Link
+from quiesce.errors import BenchFailure
+
+REQUEST = "ServiceRequest"
+REPLY = "ServiceReply"
+IDENTIFICATION = "Identification"
+DONE = "DONE"
+NO_SUCH_PARAMETER = "NO_SUCH_PARAMETER"
+BUSY = "BUSY"
+# A reply takes a tick and the way there and back; adapters on USB and UARTs add milliseconds.
+REPLY_S = 0.15
+TRIES = 4
+MAX_PARAMETERS = 256  # the index has 8 bits
+
+
+@dataclass(frozen=True)
+class Reply:
+    result: str  # label of the DBC
+    param_index: int
+    param_value: int
+
+
+class Requests:
+    """Packs requests and knows their replies. The alive counter tells replies apart."""
+
+    def __init__(self, database: Database) -> None:
+        self.database = database
+        self.request_id = database.by_name[REQUEST].frame_id
+        self.reply_id = database.by_name[REPLY].frame_id
+        self.identification_id = database.by_name[IDENTIFICATION].frame_id
+        self._alive = time.monotonic_ns() // 1000 % ALIVE_PERIOD
+        self._operation = 0
+
+    def make(self, operation: str, index: int = 0, value: int = 0) -> bytes:
+        """Data of the next request."""
+        self._alive = (self._alive + 1) % ALIVE_PERIOD
+        self._operation = self.database.number(REQUEST, "operation", operation)
+        data = self.database.encode(
+            REQUEST, operation=self._operation, param_index=index, param_value=value
+        )
+        layout = self.database.by_name[REQUEST].protection
+        assert layout is not None
+        return protect(layout, self._alive, data)
+
+    def reply_in(self, frame: Any) -> Reply | None:
+        """The reply to the last request; None where the frame is something else."""
+        message = self.database.by_id[self.reply_id]
+        data = bytes(frame.data)
+        if frame.arbitration_id != self.reply_id or len(data) != message.length:
+            return None
+        layout = message.protection
+        assert layout is not None
+        if data[-1] != frame_crc(self.reply_id, data) or alive_of(layout, data) != self._alive:
+            return None
+        raw = self.database.raw(self.reply_id, data)
+        if raw["operation"] != self._operation:
+            return None
+        result = self.database.label(REPLY, "result", raw["result"])
+        return Reply(result, raw["param_index"], raw["param_value"])
+
+    def identification_in(self, frame: Any) -> dict[str, int] | None:
+        message = self.database.by_id[self.identification_id]
+        if frame.arbitration_id != self.identification_id or len(frame.data) != message.length:
+            return None
+        return self.database.raw(self.identification_id, bytes(frame.data))
+
+
+class ReadAll:
+    """Reads every parameter, a step at a time: poll() says what to send, take() gets every frame.
+
+    Ends at the first index that the controller does not have, or when it answers no more.
+    """
+
+    def __init__(self, requests: Requests) -> None:
+        self.requests = requests
+        delay_ms = requests.database.by_name[REQUEST].delay_ms
+        self._least_s = delay_ms / 1000.0
+        self.values: list[int] = []
+        self.frames: list[Any] = []  # the replies
+        self.is_complete = False
+        self.is_given_up = False
+        self._due_s = 0.0
+        self._tries = 0
+        self._is_waiting = False
+
+    @property
+    def is_over(self) -> bool:
+        return self.is_complete or self.is_given_up
+
+    def poll(self, now_s: float) -> bytes | None:
+        """A request that is due now. now_s: of a monotonic clock."""
+        if self.is_over or now_s < self._due_s:
+            return None
+        if self._tries == TRIES:
+            self.is_given_up = True
+            return None
+        self._tries += 1
+        self._is_waiting = True
+        self._sent_s = now_s
+        self._due_s = now_s + REPLY_S
+        return self.requests.make("READ", len(self.values))
+
+    def take(self, frame: Any) -> bool:
+        """Returns whether the frame is the awaited reply."""
+        reply = self.requests.reply_in(frame) if self._is_waiting else None
+        if reply is None or (reply.result == DONE and reply.param_index != len(self.values)):
+            return False
+        self._is_waiting = False
+        self._due_s = self._sent_s + self._least_s
+        if reply.result == DONE:
+            self._tries = 0
+            self.values.append(reply.param_value)
+            self.frames.append(frame)
+        self.is_complete = reply.result == NO_SUCH_PARAMETER or len(self.values) == MAX_PARAMETERS
+        return True
+
+
+class Services:
+    """Asks and waits. Everything else that arrives meanwhile goes to `on_event`."""
+
+    def __init__(
+        self, link: Link, database: Database, on_event: Callable[[Any], None] | None = None
+    ) -> None:
+        self.link = link
+        self.requests = Requests(database)
+        self.identification: dict[str, int] | None = None
+        self._least_s = database.by_name[REQUEST].delay_ms / 1000.0
+        self.next_s = 0.0
+        self._on_event = on_event or (lambda _: None)
+
+    def ask(
+        self,
+        operation: str,
+        index: int = 0,
+        value: int = 0,
+        reply_s: float = REPLY_S,
+        tries: int = TRIES,
+    ) -> Reply | None:
+        """None where no reply comes. A busy controller is asked again."""
+        for _ in range(tries):
+            reply = self.ask_once(operation, index, value, reply_s)
+            if reply is not None and reply.result != BUSY:
+                return reply
+        return reply
+
+    def ask_once(
+        self, operation: str, index: int = 0, value: int = 0, reply_s: float = REPLY_S
+    ) -> Reply | None:
+        self.wait(max(0.0, self.next_s - time.monotonic()))
+        now_s = time.monotonic()
+        self.next_s = now_s + self._least_s
+        self.link.send(self.requests.request_id, self.requests.make(operation, index, value))
+        end_s = now_s + reply_s
+        while (left_s := end_s - time.monotonic()) > 0.0:
+            event = self.link.receive(left_s)
+            if event is None:
+                break
+            self.take(event)
+            reply = self.requests.reply_in(event) if hasattr(event, "arbitration_id") else None
+            if reply is not None:
+                return reply
+        return None
+
+    def read_all(self) -> list[int]:
+        """Values in index order. BenchFailure where nobody answers."""
+        reader = ReadAll(self.requests)
+        while not reader.is_over:
+            request = reader.poll(time.monotonic())
+            if request is not None:
+                self.link.send(self.requests.request_id, request)
+            event = self.link.receive(0.002)
+            if event is not None:
+                self.take(event)
+                if hasattr(event, "arbitration_id"):
+                    reader.take(event)
+        if not reader.is_complete:
+            raise BenchFailure(no_answer(self.link))
+        return reader.values
+
+    def wait_hash(self, expected: int, wait_s: float) -> bool:
+        """Whether an Identification that comes from now on tells this param_hash."""
+        end_s = time.monotonic() + wait_s
+        while (left_s := end_s - time.monotonic()) > 0.0:
+            self.identification = None
+            self.wait(min(left_s, 0.05))
+            seen: dict[str, int] | None = self.identification
+            if seen is not None and seen["param_hash"] == expected:
+                return True
+        return False
+
+    def wait(self, wait_s: float) -> None:
+        """Takes what arrives for so long."""
+        end_s = time.monotonic() + wait_s
+        while (left_s := end_s - time.monotonic()) > 0.0:
+            event = self.link.receive(left_s)
+            if event is not None:
+                self.take(event)
+
+    def take(self, event: Any) -> None:
+        if hasattr(event, "arbitration_id"):
+            self.identification = self.requests.identification_in(event) or self.identification
+        self._on_event(event)
+
+
+def no_answer(link: Link) -> str:
+    state = "the bus is down" if not link.is_up else "is one on this bus, at this bit rate?"
+    return f"{link.bus.name}: no controller answers; {state}"

@@ -1,0 +1,177 @@
+"""CAN logs as files that are whole at any moment, whatever ends the recording.
+
+ASC, BLF, candump and CSV are written by python-can into a WholeFile. MDF4 cannot be written as it
+comes: a candump log beside it takes the frames and is turned into the MDF4 file at the end; where
+that fails, the candump log stays.
+"""
+
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from quiesce.can.python_can import can
+from quiesce.can.whole_file import WholeFile
+from quiesce.errors import one_line
+
+# Uncompressed bytes of a BLF container: what a power cut loses.
+BLF_CONTAINER_BYTES = 16 * 1024
+COMMIT_BYTES = 64 * 1024
+
+Attachment = tuple[str, bytes, str]  # file name, content, MIME type
+
+
+class LogFile:
+    """One file of a recording. Notes go where the format has a place for them."""
+
+    def __init__(self, path: Path) -> None:
+        """OSError where it cannot be made or exists."""
+        self.path = path
+        self.frames = 0
+        self.first_s: float | None = None
+        self.last_s = 0.0
+        self.is_closed = False
+        self.file = WholeFile(path)
+        self._writer = self._open()
+
+    def _open(self) -> Any:
+        raise NotImplementedError
+
+    @property
+    def size(self) -> int:
+        return self.file.size
+
+    @property
+    def error(self) -> OSError | None:
+        """Why nothing more can be written."""
+        return self.file.error
+
+    def write(self, frame: Any) -> None:
+        self._writer.on_message_received(frame)
+        self.frames += 1
+        if self.first_s is None:
+            self.first_s = frame.timestamp
+        self.last_s = frame.timestamp
+        if self.file.pending > COMMIT_BYTES:
+            self.commit()
+
+    def commit(self) -> None:
+        self.file.commit()
+
+    def note(self, text: str, time_s: float) -> None:
+        """Something that is no frame happened."""
+
+    def close(self) -> None:
+        """The file is complete afterwards."""
+        if not self.is_closed:
+            self.is_closed = True
+            self._writer.stop()
+
+
+class CandumpFile(LogFile):
+    def _open(self) -> Any:
+        return can.CanutilsLogWriter(self.file, channel="can0")
+
+    def write(self, frame: Any) -> None:
+        super().write(with_channel(frame, "can0"))
+
+
+class CsvFile(LogFile):
+    def _open(self) -> Any:
+        return can.CSVWriter(self.file)
+
+
+class AscFile(LogFile):
+    def _open(self) -> Any:
+        return can.ASCWriter(self.file)
+
+    def write(self, frame: Any) -> None:
+        super().write(with_channel(frame, 0))
+
+    def note(self, text: str, time_s: float) -> None:
+        self.file.write(f"// {time_s:.6f} {one_line(text)}\n")
+
+
+class BlfFile(LogFile):
+    def _open(self) -> Any:
+        writer = can.BLFWriter(self.file)
+        writer.max_container_size = BLF_CONTAINER_BYTES
+        return writer
+
+    def write(self, frame: Any) -> None:
+        super().write(with_channel(frame, 0))
+
+    @property
+    def size(self) -> int:
+        return self._writer.file_size()
+
+    def note(self, text: str, time_s: float) -> None:
+        ascii_text = one_line(text).encode("ascii", "replace").decode()
+        self._writer.log_event(ascii_text, time_s)
+
+
+class MdfFile(CandumpFile):
+    """attachments: what goes along; called when the file is closed."""
+
+    def __init__(self, path: Path, attachments: Callable[[], Sequence[Attachment]]) -> None:
+        if path.exists():
+            raise FileExistsError(17, "File exists", str(path))
+        self.target = path
+        self.failure = ""
+        self._attachments = attachments
+        self._notes: list[str] = []
+        self._thread: threading.Thread | None = None
+        super().__init__(path.with_name(path.name + ".log"))
+
+    def note(self, text: str, time_s: float) -> None:
+        self._notes.append(f"{time_s:.6f} {one_line(text)}")
+
+    def close(self) -> None:
+        """Returns at once; finish() waits for the MDF4 file."""
+        if self.is_closed:
+            return
+        super().close()
+        attachments = self._attachments()
+        self._thread = threading.Thread(target=self._convert, args=(attachments,))
+        self._thread.start()
+
+    def finish(self) -> None:
+        """`failure` then says why there is only the candump log, if so."""
+        if self._thread is not None:
+            self._thread.join()
+
+    def _convert(self, attachments: Sequence[Attachment]) -> None:
+        from quiesce.can.mdf import write_mdf
+        from quiesce.can.readers import read_log
+
+        part = self.target.with_name(self.target.name + ".part.mf4")
+        try:
+            write_mdf(part, read_log(self.path), attachments, "\n".join(self._notes))
+            part.replace(self.target)
+            self.path.unlink()
+        except Exception as error:  # of asammdf, or the disk
+            part.unlink(missing_ok=True)
+            self.failure = f"{self.target}: {one_line(error)[:200]}; the frames are in {self.path}"
+
+
+def with_channel(frame: Any, channel: Any) -> Any:
+    """The drivers' own channel names (a path, a multicast group) are none in a log."""
+    frame.channel = channel
+    return frame
+
+
+FORMATS = (".log", ".asc", ".blf", ".csv", ".mf4")
+
+
+def open_log(path: Path, attachments: Callable[[], Sequence[Attachment]]) -> LogFile:
+    """By the suffix, one of FORMATS. OSError where it cannot be made or exists."""
+    suffix = path.suffix.lower()
+    if suffix == ".mf4":
+        return MdfFile(path, attachments)
+    kinds: dict[str, type[LogFile]] = {
+        ".log": CandumpFile,
+        ".asc": AscFile,
+        ".blf": BlfFile,
+        ".csv": CsvFile,
+    }
+    return kinds[suffix](path)

@@ -1,0 +1,55 @@
+"""`quiesce can ACTION`: the CAN interface from a computer. One module an action."""
+
+import argparse
+
+from quiesce.can import (
+    cli_check,
+    cli_decode,
+    cli_get,
+    cli_list,
+    cli_load,
+    cli_monitor,
+    cli_record,
+    cli_replay,
+    cli_set,
+    cli_stop,
+)
+
+# Each has add_parser(subparsers), like the commands; its own parser sets `run`.
+ACTIONS = (
+    cli_list,
+    cli_decode,
+    cli_monitor,
+    cli_check,
+    cli_record,
+    cli_replay,
+    cli_get,
+    cli_set,
+    cli_stop,
+    cli_load,
+)
+
+EPILOG = """examples:
+  quiesce can list
+  quiesce can monitor --bus socketcan:can0
+  quiesce can record --out run.mf4 --bus slcan:/dev/ttyACM0
+  quiesce can decode run.mf4 --only Status
+  quiesce can set law=phase --save --bus slcan:socket://127.0.0.1:5556
+  quiesce can stop --bus socketcan:can0
+
+The messages are those of firmware/comm/quiesce.dbc; docs/can_tools.md has an example of each.
+'quiesce can ACTION --help' has the options of one.
+"""
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    parser = commands.add_parser(
+        "can",
+        help="CAN bus: monitor, record, decode, parameters, emergency stop",
+        description="The CAN interface over any bus that python-can has a driver for.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    actions = parser.add_subparsers(metavar="ACTION", required=True)
+    for action in ACTIONS:
+        action.add_parser(actions)
