@@ -1,0 +1,365 @@
+// What the controller takes from the bus, and when it is too old.
+#include "can_make.h"
+#include "can_receive.h"
+#include "unity.h"
+
+#include <string.h>
+
+#define STOP QUIESCE_CAN_EMERGENCY_STOP_CODE_STOP_CHOICE
+#define RATE_HZ 1000u
+
+static can_receive_t bus;
+static can_node_inputs_t inputs;
+
+void setUp(void) {
+    can_receive_init(&bus, RATE_HZ);
+}
+
+void tearDown(void) {}
+
+static void take(can_frame_t frame) {
+    (void)can_receive_frame(&bus, &frame);
+}
+
+static void pass(uint32_t ticks) {
+    for (uint32_t i = 0; i < ticks; i++) {
+        can_receive_inputs(&bus, 1, &inputs);
+    }
+}
+
+static void check_inputs(const can_node_inputs_t *expected) {
+    TEST_ASSERT_EQUAL(expected->enable, inputs.enable);
+    TEST_ASSERT_EQUAL(expected->fault_reset, inputs.fault_reset);
+    TEST_ASSERT_EQUAL(expected->estop, inputs.estop);
+    TEST_ASSERT_EQUAL(expected->accel_is_fresh, inputs.accel_is_fresh);
+    TEST_ASSERT_EQUAL_INT32(expected->accel_counts, inputs.accel_counts);
+    TEST_ASSERT_EQUAL(expected->current_is_measured, inputs.current_is_measured);
+    TEST_ASSERT_EQUAL_INT32(expected->current_meas_mA, inputs.current_meas_mA);
+}
+
+static void test_nothing_is_there_at_first(void) {
+    const can_node_inputs_t nothing = {0};
+    pass(1);
+    check_inputs(&nothing);
+}
+
+static void test_values_arrive_in_the_next_tick(void) {
+    take(make_stop(STOP, 3));
+    take(make_accel(-8388608, false, false, 7));
+    take(make_current(-32768, 9));
+    take(make_operator(true, false, 1));
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.estop && inputs.enable && !inputs.fault_reset);
+    TEST_ASSERT_TRUE(inputs.accel_is_fresh && inputs.current_is_measured);
+    TEST_ASSERT_EQUAL_INT32(-8388608, inputs.accel_counts);
+    TEST_ASSERT_EQUAL_INT32(-32768, inputs.current_meas_mA);
+    TEST_ASSERT_EQUAL_UINT32(4, bus.counters.accepted);
+}
+
+static void test_each_is_gone_after_its_timeout(void) {
+    static const uint32_t rates_Hz[] = {500, 1000, 2000, 4000};
+    for (uint32_t r = 0; r < 4; r++) {
+        can_receive_init(&bus, rates_Hz[r]);
+        take(make_stop(STOP, 0));
+        take(make_current(5, 0));
+        take(make_operator(true, false, 0));
+        for (uint32_t i = 1; i <= rates_Hz[r]; i++) {
+            pass(1);
+            TEST_ASSERT_EQUAL(i <= 200u * rates_Hz[r] / 1000u, inputs.estop);
+            TEST_ASSERT_EQUAL(i <= 300u * rates_Hz[r] / 1000u, inputs.enable);
+            TEST_ASSERT_EQUAL(i <= 50u * rates_Hz[r] / 1000u, inputs.current_is_measured);
+        }
+    }
+}
+
+static void test_lost_ticks_count(void) {
+    take(make_operator(true, false, 0));
+    can_receive_inputs(&bus, 300, &inputs);
+    TEST_ASSERT_TRUE(inputs.enable);
+    can_receive_inputs(&bus, 1, &inputs);
+    TEST_ASSERT_FALSE(inputs.enable);
+    take(make_operator(true, false, 1));
+    can_receive_inputs(&bus, UINT32_MAX, &inputs);
+    TEST_ASSERT_FALSE(inputs.enable);
+    can_receive_inputs(&bus, UINT32_MAX, &inputs);
+    TEST_ASSERT_FALSE(inputs.enable);
+}
+
+static void test_timeouts_follow_another_rate(void) {
+    take(make_operator(true, false, 0));
+    can_receive_use_rate(&bus, 500);
+    pass(150);
+    TEST_ASSERT_TRUE(inputs.enable);
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.enable);
+}
+
+static void test_a_sample_is_fresh_once_and_the_newest_counts(void) {
+    take(make_accel(1, false, false, 0));
+    take(make_accel(2, false, false, 1));
+    pass(1);
+    TEST_ASSERT_EQUAL_INT32(2, inputs.accel_counts);
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.accel_is_fresh);
+}
+
+static void test_bad_sample_is_none_and_a_saturated_one_is_one(void) {
+    take(make_accel(5, false, true, 0));
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.accel_is_fresh);
+    take(make_accel(8388607, true, false, 1));
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.accel_is_fresh);
+    TEST_ASSERT_EQUAL_INT32(8388607, inputs.accel_counts);
+    TEST_ASSERT_EQUAL_UINT32(2, bus.counters.accepted);
+}
+
+static void test_repeated_and_jumped_counters_are_refused(void) {
+    take(make_accel(1, false, false, 0));
+    pass(1);
+    take(make_accel(2, false, false, 0)); // repeated
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.accel_is_fresh);
+    take(make_accel(3, false, false, 12)); // 11 are missing, 10 may be
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.accel_is_fresh);
+    take(make_accel(4, false, false, 13));
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.accel_is_fresh);
+    take(make_accel(5, false, false, 8)); // 10 are missing
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.accel_is_fresh);
+    TEST_ASSERT_EQUAL_UINT32(2, bus.counters.rejected_alive);
+}
+
+// A sender that hangs sends the same frame for ever: it must not come back as a new one each
+// time that its message has timed out.
+static void test_hanging_sender_is_not_taken_for_a_new_one(void) {
+    for (uint32_t i = 0; i < 3000; i++) {
+        if (i % 100u == 0) {
+            take(make_operator(true, false, 6));
+        }
+        pass(1);
+        TEST_ASSERT_EQUAL(i < 300, inputs.enable);
+    }
+}
+
+static void test_any_counter_is_accepted_after_silence(void) {
+    take(make_operator(true, false, 6));
+    pass(301);
+    TEST_ASSERT_FALSE(inputs.enable);
+    take(make_operator(true, false, 6));
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.enable);
+    TEST_ASSERT_EQUAL_UINT32(0, bus.counters.rejected_alive);
+}
+
+static void test_stop_is_accepted_whatever_its_counter(void) {
+    for (uint32_t i = 0; i < 100; i++) {
+        take(make_stop(STOP, (uint8_t)(i % 3u == 0 ? 5 : 11)));
+        pass(50);
+        TEST_ASSERT_TRUE(inputs.estop);
+    }
+    pass(150);
+    TEST_ASSERT_TRUE(inputs.estop);
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.estop);
+}
+
+static void test_stop_with_another_code_is_none(void) {
+    for (uint32_t code = 0; code <= UINT16_MAX; code++) {
+        if (code != STOP) {
+            take(make_stop((uint16_t)code, (uint8_t)(code % 16u)));
+        }
+    }
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.estop);
+    TEST_ASSERT_EQUAL_UINT32(65535, bus.counters.rejected_shape);
+    TEST_ASSERT_EQUAL_UINT32(0, bus.counters.accepted);
+}
+
+static bool resets(bool fault_reset, uint8_t alive) {
+    take(make_operator(false, fault_reset, alive));
+    pass(1);
+    return inputs.fault_reset;
+}
+
+static void test_fault_reset_acts_on_its_edge_for_one_tick(void) {
+    TEST_ASSERT_FALSE(resets(true, 0)); // was it pressed before? Not known
+    TEST_ASSERT_FALSE(resets(false, 1));
+    TEST_ASSERT_TRUE(resets(true, 2));
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.fault_reset);
+    TEST_ASSERT_FALSE(resets(true, 3));
+    TEST_ASSERT_FALSE(resets(false, 4));
+    pass(301); // silence
+    TEST_ASSERT_FALSE(resets(true, 5));
+}
+
+static void test_edge_between_two_ticks_is_seen(void) {
+    take(make_operator(false, false, 0));
+    take(make_operator(false, true, 1));
+    take(make_operator(false, false, 2));
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.fault_reset);
+}
+
+static const uint32_t taken[] = {
+    QUIESCE_CAN_AT_EMERGENCY_STOP,   QUIESCE_CAN_AT_ACCEL_SAMPLE,
+    QUIESCE_CAN_AT_CURRENT_MEASURED, QUIESCE_CAN_AT_OPERATOR_COMMAND,
+    QUIESCE_CAN_AT_SERVICE_REQUEST,
+};
+
+static can_frame_t make_any(uint32_t message, uint8_t alive) {
+    switch (message) {
+    case QUIESCE_CAN_AT_EMERGENCY_STOP:
+        return make_stop(STOP, alive);
+    case QUIESCE_CAN_AT_ACCEL_SAMPLE:
+        return make_accel(77, false, false, alive);
+    case QUIESCE_CAN_AT_CURRENT_MEASURED:
+        return make_current(77, alive);
+    case QUIESCE_CAN_AT_OPERATOR_COMMAND:
+        return make_operator(true, true, alive);
+    default:
+        return make_request(QUIESCE_CAN_SERVICE_REQUEST_OPERATION_READ_CHOICE, 0, 0, alive);
+    }
+}
+
+// Everything but the counters is as it was.
+static void check_refused(can_frame_t frame) {
+    const can_receive_t before = bus;
+    TEST_ASSERT_FALSE(can_receive_frame(&bus, &frame));
+    can_receive_t after = bus;
+    after.counters = before.counters;
+    TEST_ASSERT_EQUAL_MEMORY(&before, &after, sizeof after);
+}
+
+static void test_wrong_shapes_change_nothing(void) {
+    uint32_t refused = 0;
+    for (uint32_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+        const can_frame_t good = make_any(taken[i], 3);
+        for (uint32_t length = 0; length <= 255; length++) {
+            for (uint32_t flags = 0; flags < 4; flags++) {
+                can_frame_t frame = good;
+                frame.length = (uint8_t)length;
+                frame.is_extended = (flags & 1u) != 0;
+                frame.is_remote = (flags & 2u) != 0;
+                if (length != good.length || flags != 0) {
+                    check_refused(frame);
+                    refused++;
+                }
+            }
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(refused, bus.counters.rejected_shape);
+}
+
+static void test_every_wrong_crc_changes_nothing(void) {
+    for (uint32_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+        can_frame_t frame = make_any(taken[i], 3);
+        for (uint32_t error = 1; error <= 255; error++) {
+            frame.data[frame.length - 1] ^= (uint8_t)error;
+            check_refused(frame);
+            frame.data[frame.length - 1] ^= (uint8_t)error;
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(5 * 255, bus.counters.rejected_crc);
+}
+
+static void test_other_ids_are_none_of_our_business(void) {
+    for (uint32_t id = 0; id <= CAN_MAX_STANDARD_ID; id++) {
+        const can_frame_t frame = {.id = id, .length = 8};
+        bool is_taken = false;
+        for (uint32_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+            is_taken = is_taken || quiesce_can_messages[taken[i]].e2e.id == id;
+        }
+        if (!is_taken) {
+            check_refused(frame);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(CAN_MAX_STANDARD_ID + 1u - 5u, bus.counters.unknown);
+}
+
+static uint32_t next_random(uint32_t *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return *seed >> 8;
+}
+
+static can_frame_t make_hostile(uint32_t *seed) {
+    can_frame_t frame = make_any(taken[next_random(seed) % 5u], (uint8_t)next_random(seed));
+    frame.data[next_random(seed) % frame.length] ^= (uint8_t)(1u + next_random(seed) % 255u);
+    return frame;
+}
+
+// 100,000 frames a tick, each a good one with one byte changed (a burst of up to 8 bits, which a
+// CRC of 8 bits always finds), between good ones of a sensor and an operator.
+static void test_flood_of_damaged_frames_disturbs_nothing(void) {
+    static can_receive_t quiet;
+    uint32_t seed = 3;
+    can_receive_init(&quiet, RATE_HZ);
+    for (uint32_t tick = 0; tick < 10; tick++) {
+        can_node_inputs_t expected;
+        const can_frame_t good[] = {make_accel((int32_t)tick, false, false, (uint8_t)tick),
+                                    make_operator(true, false, (uint8_t)tick)};
+        for (uint32_t i = 0; i < 100000; i++) {
+            if (i == 50000) {
+                take(good[0]);
+                take(good[1]);
+                (void)can_receive_frame(&quiet, &good[0]);
+                (void)can_receive_frame(&quiet, &good[1]);
+            }
+            take(make_hostile(&seed));
+        }
+        can_receive_inputs(&quiet, 1, &expected);
+        pass(1);
+        check_inputs(&expected);
+        TEST_ASSERT_TRUE(inputs.accel_is_fresh && inputs.enable && !inputs.estop);
+    }
+    TEST_ASSERT_EQUAL_UINT32(1000000, bus.counters.rejected_crc);
+}
+
+static void test_counters_saturate(void) {
+    memset(&bus.counters, 0xFF, sizeof bus.counters);
+    can_frame_t short_one = make_stop(STOP, 0);
+    can_frame_t damaged = make_stop(STOP, 0);
+    short_one.length = 2;
+    damaged.data[0] ^= 1u;
+    take(short_one);
+    take(damaged);
+    take(make_stop(STOP, 0));
+    take(make_accel(0, false, false, 1));
+    take(make_accel(0, false, false, 1));
+    take((can_frame_t){.id = 1});
+    TEST_ASSERT_EACH_EQUAL_HEX32(UINT32_MAX, &bus.counters, 5);
+}
+
+static void test_requests_are_handed_on_whatever_their_counter(void) {
+    const can_frame_t frame = make_request(1, 0, 0, 5);
+    TEST_ASSERT_TRUE(can_receive_frame(&bus, &frame));
+    TEST_ASSERT_TRUE(can_receive_frame(&bus, &frame));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_nothing_is_there_at_first);
+    RUN_TEST(test_values_arrive_in_the_next_tick);
+    RUN_TEST(test_each_is_gone_after_its_timeout);
+    RUN_TEST(test_lost_ticks_count);
+    RUN_TEST(test_timeouts_follow_another_rate);
+    RUN_TEST(test_a_sample_is_fresh_once_and_the_newest_counts);
+    RUN_TEST(test_bad_sample_is_none_and_a_saturated_one_is_one);
+    RUN_TEST(test_repeated_and_jumped_counters_are_refused);
+    RUN_TEST(test_hanging_sender_is_not_taken_for_a_new_one);
+    RUN_TEST(test_any_counter_is_accepted_after_silence);
+    RUN_TEST(test_stop_is_accepted_whatever_its_counter);
+    RUN_TEST(test_stop_with_another_code_is_none);
+    RUN_TEST(test_fault_reset_acts_on_its_edge_for_one_tick);
+    RUN_TEST(test_edge_between_two_ticks_is_seen);
+    RUN_TEST(test_wrong_shapes_change_nothing);
+    RUN_TEST(test_every_wrong_crc_changes_nothing);
+    RUN_TEST(test_other_ids_are_none_of_our_business);
+    RUN_TEST(test_flood_of_damaged_frames_disturbs_nothing);
+    RUN_TEST(test_counters_saturate);
+    RUN_TEST(test_requests_are_handed_on_whatever_their_counter);
+    return UNITY_END();
+}

@@ -1,0 +1,349 @@
+// A controller with its messages: what the bus and the board say reaches it, and what it does
+// reaches driver and bus. Peripherals are simulated; the sensor node's sample is handed over.
+#include "can_make.h"
+#include "hal_sim.h"
+#include "node.h"
+#include "unity.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define OP(name) QUIESCE_CAN_SERVICE_REQUEST_OPERATION_##name##_CHOICE
+#define STOP QUIESCE_CAN_EMERGENCY_STOP_CODE_STOP_CHOICE
+#define INDEX_OF(field) (offsetof(quiesce_params_t, field) / sizeof(int32_t))
+
+static node_t node;
+static hal_accel_t accel;
+static hal_current_t driver;
+static quiesce_params_t params;
+static node_inputs_t board;
+static can_frame_t frames[CAN_NODE_MAX_FRAMES];
+static uint32_t frame_count;
+static uint32_t seed;
+static uint8_t operator_alive;
+
+static void start(node_enable_t enable) {
+    memset(&node, 0xA5, sizeof node);
+    TEST_ASSERT_TRUE(node_init(&node, &params, enable, &accel, &driver));
+}
+
+void setUp(void) {
+    quiesce_params_default(&params);
+    params.law = QUIESCE_LAW_CONSTANT;
+    params.constant_current_mA = 1500;
+    params.safe_current_mA = 250;
+    accel = (hal_accel_t){0};
+    driver = (hal_current_t){0};
+    board = (node_inputs_t){.enable = true, .ticks_elapsed = 1};
+    seed = 1;
+    operator_alive = 0;
+    start(NODE_ENABLE_BOARD);
+}
+
+void tearDown(void) {}
+
+static void receive(can_frame_t frame) {
+    node_receive(&node, &frame);
+}
+
+static void press(bool enable, bool fault_reset) {
+    receive(make_operator(enable, fault_reset, operator_alive));
+    operator_alive = (uint8_t)((operator_alive + 1u) % 16u);
+}
+
+// Ticks with a live sensor on the board.
+static void run(uint32_t ticks) {
+    for (uint32_t i = 0; i < ticks; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        hal_sim_accel_set(&accel, (int32_t)(seed >> 16) - 32768, true);
+        frame_count = node_tick(&node, &board, frames);
+    }
+}
+
+static uint32_t state(void) {
+    return node.app.out.telemetry.state;
+}
+
+static struct quiesce_can_current_demand_t demand(void) {
+    struct quiesce_can_current_demand_t wire;
+    TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_CURRENT_DEMAND_FRAME_ID, frames[0].id);
+    TEST_ASSERT_TRUE(is_well_made(&frames[0]));
+    (void)quiesce_can_current_demand_unpack(&wire, frames[0].data, frames[0].length);
+    return wire;
+}
+
+static struct quiesce_can_service_reply_t ask(uint32_t operation, uint32_t index, int32_t value) {
+    struct quiesce_can_service_reply_t reply = {0};
+    receive(make_request((uint8_t)operation, (uint8_t)index, value, 3));
+    for (uint32_t i = 0; i < 11; i++) {
+        run(1);
+        if (frames[frame_count - 1u].id == QUIESCE_CAN_SERVICE_REPLY_FRAME_ID) {
+            (void)quiesce_can_service_reply_unpack(&reply, frames[frame_count - 1u].data, 8);
+            return reply;
+        }
+    }
+    TEST_FAIL_MESSAGE("no reply");
+    return reply;
+}
+
+static void test_bus_carries_what_the_driver_is_told(void) {
+    for (uint32_t i = 0; i < 3000; i++) {
+        run(1);
+        TEST_ASSERT_EQUAL_UINT16(driver.command_mA, demand().current_cmd_mA);
+        TEST_ASSERT_EQUAL_UINT8(driver.is_enabled, demand().driver_is_enabled);
+        TEST_ASSERT_EQUAL_UINT8(state(), demand().state);
+    }
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    TEST_ASSERT_EQUAL_INT32(1500, driver.command_mA);
+}
+
+static void check_enable(node_enable_t from, bool by_board, bool by_bus, bool expected) {
+    start(from);
+    board.enable = by_board;
+    for (uint32_t i = 0; i < 20; i++) {
+        press(by_bus, false);
+        run(100);
+    }
+    TEST_ASSERT_EQUAL_UINT32(expected ? QUIESCE_STATE_RUN : QUIESCE_STATE_IDLE, state());
+}
+
+static void test_enable_comes_from_where_it_is_set_up(void) {
+    for (uint32_t i = 0; i < 4; i++) {
+        const bool by_board = (i & 1u) != 0;
+        const bool by_bus = (i & 2u) != 0;
+        check_enable(NODE_ENABLE_BOARD, by_board, by_bus, by_board);
+        check_enable(NODE_ENABLE_CAN, by_board, by_bus, by_bus);
+        check_enable(NODE_ENABLE_BOTH, by_board, by_bus, by_board && by_bus);
+        check_enable((node_enable_t)3, by_board, by_bus, false);
+    }
+}
+
+static void test_operator_who_falls_silent_is_not_enabled(void) {
+    check_enable(NODE_ENABLE_CAN, false, true, true); // 100 ticks after the last frame
+    run(200);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_IDLE, state());
+    TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
+}
+
+static void test_stop_on_the_bus_acts_in_the_next_tick(void) {
+    run(2000);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    receive(make_stop(STOP, 0));
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
+    TEST_ASSERT_EQUAL_INT32(250, driver.command_mA);
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
+    TEST_ASSERT_EQUAL_UINT8(0, demand().driver_is_enabled);
+}
+
+static void test_stop_of_the_board_acts_in_its_tick(void) {
+    run(2000);
+    board.estop = true;
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
+    TEST_ASSERT_FALSE(driver.is_enabled);
+}
+
+static void test_stop_is_acknowledged_over_the_bus_once_it_is_released(void) {
+    run(2000);
+    receive(make_stop(STOP, 0));
+    run(1);
+    press(false, false);
+    run(1);
+    press(false, true); // still pressed
+    run(200);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
+    press(false, true); // held, no edge
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
+    press(false, false);
+    run(1);
+    press(false, true);
+    run(1);
+    TEST_ASSERT_NOT_EQUAL(QUIESCE_STATE_FAULT, state());
+}
+
+static void test_bus_sample_is_there_for_its_tick(void) {
+    int32_t counts = 7;
+    int32_t current_mA = 7;
+    run(1);
+    TEST_ASSERT_FALSE(node_accel_sample(&node, &counts));
+    TEST_ASSERT_FALSE(node_current_measured(&node, &current_mA));
+    TEST_ASSERT_TRUE(counts == 7 && current_mA == 7);
+    receive(make_accel(-4321, false, false, 0));
+    receive(make_current(-99, 0));
+    TEST_ASSERT_FALSE(node_accel_sample(&node, &counts)); // its tick has not begun
+    run(1);
+    TEST_ASSERT_TRUE(node_accel_sample(&node, &counts));
+    TEST_ASSERT_TRUE(node_current_measured(&node, &current_mA));
+    TEST_ASSERT_EQUAL_INT32(-4321, counts);
+    TEST_ASSERT_EQUAL_INT32(-99, current_mA);
+    run(1);
+    TEST_ASSERT_FALSE(node_accel_sample(&node, &counts));
+    TEST_ASSERT_TRUE(node_current_measured(&node, &current_mA));
+}
+
+static void test_raw_stream_has_the_samples_that_the_controller_got(void) {
+    struct quiesce_can_raw_sample_t raw;
+    (void)ask(OP(RAW_STREAM), 0, 10);
+    for (uint32_t i = 0; i < 100; i++) {
+        const int32_t last = accel.counts;
+        if (i % 3u == 0) {
+            hal_sim_accel_set(&accel, 0, false);
+            frame_count = node_tick(&node, &board, frames);
+        } else {
+            run(1);
+        }
+        const can_frame_t *frame = &frames[frame_count - 1u];
+        TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_RAW_SAMPLE_FRAME_ID, frame->id);
+        (void)quiesce_can_raw_sample_unpack(&raw, frame->data, frame->length);
+        TEST_ASSERT_EQUAL(i % 3u != 0, raw.accel_is_fresh);
+        TEST_ASSERT_EQUAL_INT32(i % 3u == 0 ? last : accel.counts, raw.accel_counts);
+        TEST_ASSERT_EQUAL_UINT16(node.app.tick, raw.tick_low);
+        accel.counts = raw.accel_counts;
+    }
+}
+
+static void test_apply_restarts_from_rest_with_the_safe_current(void) {
+    run(2000);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(STAGE), INDEX_OF(constant_current_mA), 1000).result);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(STAGE), INDEX_OF(safe_current_mA), 300).result);
+    TEST_ASSERT_EQUAL_INT32(1500, driver.command_mA);
+    receive(make_request(OP(APPLY), 0, 0, 0));
+    run(1);
+    TEST_ASSERT_EQUAL_INT32(300, driver.command_mA);
+    TEST_ASSERT_TRUE(driver.is_enabled);
+    TEST_ASSERT_EQUAL_UINT16(300, demand().current_cmd_mA);
+    TEST_ASSERT_EQUAL_UINT8(1, demand().driver_is_enabled);
+    TEST_ASSERT_EQUAL_UINT8(QUIESCE_STATE_INIT, demand().state);
+    TEST_ASSERT_EQUAL_UINT32(1, node.restarts);
+    run(2000);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    TEST_ASSERT_EQUAL_INT32(1000, driver.command_mA);
+    TEST_ASSERT_EQUAL_HEX32(can_node_param_hash(&node.params), node.can.param_hash);
+}
+
+static void test_contradicting_parameters_change_nothing(void) {
+    run(2000);
+    (void)ask(OP(STAGE), INDEX_OF(constant_current_mA), 2000);
+    (void)ask(OP(STAGE), INDEX_OF(max_current_mA), 1000);
+    const struct quiesce_can_service_reply_t reply = ask(OP(APPLY), 0, 0);
+    TEST_ASSERT_EQUAL(CAN_NODE_CONTRADICTION, reply.result);
+    TEST_ASSERT_EQUAL_UINT8(INDEX_OF(constant_current_mA), reply.param_index);
+    TEST_ASSERT_EQUAL_MEMORY(&params, &node.params, sizeof params);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    TEST_ASSERT_EQUAL_UINT32(0, node.restarts);
+}
+
+static void test_a_latched_fault_is_not_forgotten_by_apply(void) {
+    run(2000);
+    board.estop = true;
+    run(1);
+    board.estop = false;
+    (void)ask(OP(STAGE), INDEX_OF(slew_mA_s), 5000);
+    TEST_ASSERT_EQUAL(CAN_NODE_FAULT_IS_LATCHED, ask(OP(APPLY), 0, 0).result);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    board.fault_reset = true;
+    run(1);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(APPLY), 0, 0).result);
+}
+
+static void test_refused_parameters_are_mended_over_the_bus(void) {
+    params.slew_mA_s = -1;
+    TEST_ASSERT_FALSE(node_init(&node, &params, NODE_ENABLE_BOARD, &accel, &driver));
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    run(20);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_PARAMETER, node.app.out.telemetry.fault);
+    (void)ask(OP(STAGE), INDEX_OF(law), QUIESCE_LAW_OFF);
+    const struct quiesce_can_service_reply_t refused = ask(OP(APPLY), 0, 0);
+    TEST_ASSERT_EQUAL(CAN_NODE_OUT_OF_RANGE, refused.result);
+    TEST_ASSERT_EQUAL_UINT8(INDEX_OF(slew_mA_s), refused.param_index);
+    (void)ask(OP(STAGE), INDEX_OF(slew_mA_s), 5000);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(APPLY), 0, 0).result);
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_NONE, node.app.out.telemetry.fault);
+    TEST_ASSERT_TRUE(driver.is_enabled);
+}
+
+static void test_use_params_says_what_is_wrong(void) {
+    quiesce_params_t other = params;
+    quiesce_param_error_t error;
+    run(2000);
+    other.safe_current_mA = -1;
+    TEST_ASSERT_FALSE(node_use_params(&node, &other, &error));
+    TEST_ASSERT_EQUAL_UINT32(INDEX_OF(safe_current_mA), error.index);
+    TEST_ASSERT_FALSE(node_use_params(&node, &other, NULL));
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    TEST_ASSERT_EQUAL_INT32(1500, driver.command_mA);
+}
+
+typedef struct {
+    quiesce_params_t stored;
+    uint32_t calls;
+    bool is_full;
+} store_t;
+
+static bool store(void *context, const quiesce_params_t *stored) {
+    store_t *const self = context;
+    self->calls++;
+    if (!self->is_full) {
+        self->stored = *stored;
+    }
+    return !self->is_full;
+}
+
+static void test_save_stores_what_is_in_effect(void) {
+    store_t kept = {.is_full = true};
+    TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, ask(OP(SAVE), 0, 0).result);
+    node.store = store;
+    node.store_context = &kept;
+    TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, ask(OP(SAVE), 0, 0).result);
+    kept.is_full = false;
+    (void)ask(OP(STAGE), INDEX_OF(slew_mA_s), 5000);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(SAVE), 0, 0).result);
+    TEST_ASSERT_EQUAL_MEMORY(&params, &kept.stored, sizeof params);
+    TEST_ASSERT_EQUAL_UINT32(2, kept.calls);
+}
+
+static void test_leaving_switches_the_output_off(void) {
+    can_frame_t frame;
+    run(2000);
+    node_leave(&node, &frame);
+    TEST_ASSERT_EQUAL_INT32(250, driver.command_mA);
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    frames[0] = frame;
+    TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
+    TEST_ASSERT_EQUAL_UINT8(0, demand().driver_is_enabled);
+}
+
+static void test_lost_ticks_reach_the_controller(void) {
+    run(2000);
+    board.ticks_elapsed = 3;
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_TICK_LOST, node.app.out.telemetry.fault);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_bus_carries_what_the_driver_is_told);
+    RUN_TEST(test_enable_comes_from_where_it_is_set_up);
+    RUN_TEST(test_operator_who_falls_silent_is_not_enabled);
+    RUN_TEST(test_stop_on_the_bus_acts_in_the_next_tick);
+    RUN_TEST(test_stop_of_the_board_acts_in_its_tick);
+    RUN_TEST(test_stop_is_acknowledged_over_the_bus_once_it_is_released);
+    RUN_TEST(test_bus_sample_is_there_for_its_tick);
+    RUN_TEST(test_raw_stream_has_the_samples_that_the_controller_got);
+    RUN_TEST(test_apply_restarts_from_rest_with_the_safe_current);
+    RUN_TEST(test_contradicting_parameters_change_nothing);
+    RUN_TEST(test_a_latched_fault_is_not_forgotten_by_apply);
+    RUN_TEST(test_refused_parameters_are_mended_over_the_bus);
+    RUN_TEST(test_use_params_says_what_is_wrong);
+    RUN_TEST(test_save_stores_what_is_in_effect);
+    RUN_TEST(test_leaving_switches_the_output_off);
+    RUN_TEST(test_lost_ticks_reach_the_controller);
+    return UNITY_END();
+}
