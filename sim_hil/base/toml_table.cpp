@@ -47,15 +47,23 @@ std::string TomlTable::full_key(const std::string &key) const {
     return path_.empty() ? key : path_ + "." + key;
 }
 
-void TomlTable::fail(const std::string &key, const std::string &message) const {
+std::string TomlTable::message(const std::string &key, const std::string &what) const {
     const toml::node *node = table_->get(key);
     const auto line = (node != nullptr ? node : table_)->source().begin.line;
     const std::string where = line > 0 ? ":" + std::to_string(line) : "";
-    throw InputError(file_ + where + ": " + full_key(key) + ": " + message);
+    return file_ + where + ": " + full_key(key) + ": " + what;
+}
+
+void TomlTable::fail(const std::string &key, const std::string &message) const {
+    throw InputError(this->message(key, message));
 }
 
 bool TomlTable::has(const std::string &key) const {
     return table_->contains(key);
+}
+
+bool TomlTable::is_integer(const std::string &key) const {
+    return table_->contains(key) && table_->get(key)->is_integer();
 }
 
 const toml::node *TomlTable::find(const std::string &key) {
@@ -208,18 +216,33 @@ std::vector<TomlTable> TomlTable::tables(const std::string &key) {
     return out;
 }
 
-void TomlTable::reject_unknown_keys() const {
+std::vector<std::string> TomlTable::keys() const {
+    std::vector<std::string> out;
     for (const auto &[key, node] : *table_) {
-        const std::string name(key.str());
-        if (asked_.count(name) == 0) {
-            fail(name, "unknown key; expected one of: " +
-                           joined(std::vector<std::string>(asked_.begin(), asked_.end())));
+        out.emplace_back(key.str());
+    }
+    return out;
+}
+
+std::vector<std::string> TomlTable::unknown_keys() const {
+    const std::string expected = joined(std::vector<std::string>(asked_.begin(), asked_.end()));
+    std::vector<std::string> out;
+    for (const std::string &key : keys()) {
+        if (asked_.count(key) == 0) {
+            out.push_back(message(key, "unknown key; expected one of: " + expected));
         }
+    }
+    return out;
+}
+
+void TomlTable::reject_unknown_keys() const {
+    const std::vector<std::string> unknown = unknown_keys();
+    if (!unknown.empty()) {
+        throw InputError(unknown.front());
     }
 }
 
-TomlFile::TomlFile(const std::string &file, const std::string &schema, std::int64_t version)
-    : file_(file) {
+TomlFile::TomlFile(const std::string &file) : file_(file) {
     try {
         table_ = toml::parse_file(file);
     } catch (const toml::parse_error &error) {
@@ -227,6 +250,10 @@ TomlFile::TomlFile(const std::string &file, const std::string &schema, std::int6
         const std::string where = line > 0 ? ":" + std::to_string(line) : "";
         throw InputError(file + where + ": " + std::string(error.description()));
     }
+}
+
+TomlFile::TomlFile(const std::string &file, const std::string &schema, std::int64_t version)
+    : TomlFile(file) {
     TomlTable checked = root();
     checked.choice("schema", {schema});
     checked.integer("version", version, version);

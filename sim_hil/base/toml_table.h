@@ -28,6 +28,7 @@ class TomlTable {
     TomlTable(const toml::table &table, const std::string &file, std::string path);
 
     bool has(const std::string &key) const;
+    bool is_integer(const std::string &key) const;
 
     double number(const std::string &key, const Range &range);
     double number(const std::string &key, const Range &range, double fallback);
@@ -56,10 +57,17 @@ class TomlTable {
     /// Throws for the first key that none of the above was asked for. Call it last.
     void reject_unknown_keys() const;
 
+    /// The messages of all of them.
+    std::vector<std::string> unknown_keys() const;
+
+    /// Every key of the table, in order.
+    std::vector<std::string> keys() const;
+
     /// Throws InputError: "FILE:LINE: key: message".
     [[noreturn]] void fail(const std::string &key, const std::string &message) const;
 
   private:
+    std::string message(const std::string &key, const std::string &what) const;
     const toml::node *find(const std::string &key);
     const toml::node &require(const std::string &key, const std::string &expected);
     std::string full_key(const std::string &key) const;
@@ -73,9 +81,13 @@ class TomlTable {
     std::set<std::string> asked_;
 };
 
-/// A parsed file, whose schema = "..." and version = N have been checked.
+/// A parsed file.
 class TomlFile {
   public:
+    /// Throws InputError when the file cannot be read or is not TOML.
+    explicit TomlFile(const std::string &file);
+
+    /// A file with schema = "..." and version = N, which are checked.
     /// Throws InputError when the file cannot be read, is not TOML, or is of another schema.
     TomlFile(const std::string &file, const std::string &schema, std::int64_t version);
 
