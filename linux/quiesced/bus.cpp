@@ -1,0 +1,55 @@
+#include "bus.h"
+
+#include <array>
+
+#include "clock.h"
+#include "input_error.h"
+
+namespace quiesced {
+
+namespace {
+
+constexpr int kSendAttempts = 1000; // a millisecond apart
+
+constexpr std::array<std::uint32_t, 4> kLockstepIds = {
+    QUIESCE_CAN_LOCKSTEP_CONTROL_FRAME_ID, QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_FRAME_ID,
+    QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID};
+// What can_node_receive takes.
+constexpr std::array<std::uint32_t, 5> kControllerIds = {
+    QUIESCE_CAN_EMERGENCY_STOP_FRAME_ID, QUIESCE_CAN_ACCEL_SAMPLE_FRAME_ID,
+    QUIESCE_CAN_CURRENT_MEASURED_FRAME_ID, QUIESCE_CAN_OPERATOR_COMMAND_FRAME_ID,
+    QUIESCE_CAN_SERVICE_REQUEST_FRAME_ID};
+
+} // namespace
+
+Bus open_bus(const CanConfig &config, BusUse use) {
+    const bool is_lockstep = use == BusUse::lockstep;
+    can_bus_options_t options{};
+    options.interface = config.interface.c_str();
+    options.use_fd = config.use_fd;
+    options.serial_baud = config.serial_baud;
+    options.bitrate = config.bitrate;
+    options.ids = is_lockstep ? kLockstepIds.data() : kControllerIds.data();
+    options.id_count =
+        static_cast<std::uint32_t>(is_lockstep ? kLockstepIds.size() : kControllerIds.size());
+    options.restart_ms = config.restart_ms;
+    linux_error_t error{};
+    Bus bus(can_bus_open(&options, &error));
+    if (bus == nullptr) {
+        throw quiesce::InputError(std::string("can.interface: ") + error.text);
+    }
+    return bus;
+}
+
+bool send_patiently(can_bus_t *bus, const can_frame_t &frame) {
+    for (int i = 0; i < kSendAttempts; ++i) {
+        if (can_bus_send(bus, &frame)) {
+            return true;
+        }
+        can_bus_maintain(bus, monotonic_ns());
+        sleep_ms(1);
+    }
+    return false;
+}
+
+} // namespace quiesced

@@ -1,0 +1,140 @@
+#include "check.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include "config.h"
+#include "instance_lock.h"
+#include "line_finder.h"
+#include "state_store.h"
+
+namespace quiesced {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void note(const std::string &line) {
+    (void)std::printf("note: %s\n", line.c_str());
+}
+
+void note_access(const std::string &key, const std::string &path, int mode) {
+    if (access(path.c_str(), mode) != 0) {
+        note(key + ": " + path + ": " + std::strerror(errno));
+    }
+}
+
+/// An IIO device by its folder's or its own name.
+bool has_iio_device(const std::string &device) {
+    const fs::path root = "/sys/bus/iio/devices";
+    std::error_code ignored;
+    if (fs::exists(root / device, ignored)) {
+        return true;
+    }
+    for (const auto &entry : fs::directory_iterator(root, ignored)) {
+        std::string name;
+        if (std::getline(std::ifstream(entry.path() / "name"), name) && name == device) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void note_iio(const std::string &key, const std::string &device) {
+    if (!has_iio_device(device)) {
+        note(key + ": no IIO device \"" + device + "\"");
+    }
+}
+
+void note_can(const CanConfig &can) {
+    if (can.is_serial()) {
+        note_access("can.interface", can.interface.substr(std::strlen("slcan:")), R_OK | W_OK);
+    } else {
+        note_access("can.interface", "/sys/class/net/" + can.interface, F_OK);
+    }
+}
+
+void note_line(const std::optional<LineConfig> &line, const char *key) {
+    const std::string trouble = line ? line_trouble(line->line) : "";
+    if (!trouble.empty()) {
+        note(std::string(key) + ": \"" + line->line + "\": " + trouble);
+    }
+}
+
+void note_peripherals(const Config &config) {
+    if (config.accel.source == AccelSource::iio) {
+        note_iio("accel.device", config.accel.device);
+    } else if (config.accel.source == AccelSource::adxl355) {
+        note_access("accel.device", config.accel.device, R_OK | W_OK);
+    }
+    if (config.current.output == CurrentOutput::pwm) {
+        note_access("current.chip", "/sys/class/pwm/" + config.current.device, F_OK);
+    } else if (config.current.output == CurrentOutput::dac) {
+        note_iio("current.device", config.current.device);
+    }
+    note_line(config.gpio.enable_output, "gpio.enable_output");
+    note_line(config.gpio.fault_output, "gpio.fault_output");
+    note_line(config.gpio.estop_input, "gpio.estop_input");
+    note_line(config.gpio.enable_input, "gpio.enable_input");
+    note_line(config.gpio.data_ready_input, "gpio.data_ready_input");
+    if (config.watchdog) {
+        note_access("watchdog.device", config.watchdog->device, W_OK);
+    }
+}
+
+void note_state(const Config &config) {
+    const std::string &folder = config.state.folder;
+    note_access("state.folder",
+                fs::exists(folder) ? folder : fs::path(folder).parent_path().string(), W_OK | X_OK);
+    if (const long pid = InstanceLock::holder(folder); pid != 0) {
+        note("quiesced runs now, process " + std::to_string(pid));
+    }
+    std::string what;
+    (void)StateStore(folder).effective(config.params, what);
+    if (!what.empty()) {
+        note(what);
+    }
+    if (config.log.to.front() == '/') {
+        const bool is_there = fs::exists(config.log.to);
+        note_access("log.to",
+                    is_there ? config.log.to : fs::path(config.log.to).parent_path().string(),
+                    W_OK);
+    }
+}
+
+/// By trying: this process ends afterwards.
+void note_rights(const LoopConfig &loop) {
+    const tick_thread_options_t options = {loop.priority, loop.cpu, loop.lock_memory};
+    linux_error_t error{};
+    if (!tick_linux_thread(&options, &error)) {
+        note(std::string("loop: ") + error.text);
+    }
+}
+
+} // namespace
+
+int check(const std::string &config_file) {
+    const ConfigReading reading = read_config(config_file, Needs::peripherals);
+    for (const std::string &line : reading.problems) {
+        (void)std::printf("%s\n", line.c_str());
+    }
+    if (!reading.problems.empty()) {
+        return 2;
+    }
+    (void)std::printf("%s: every key is right\n", config_file.c_str());
+    const Config &config = reading.config;
+    if (config.can) {
+        note_can(*config.can);
+    }
+    note_peripherals(config);
+    note_state(config);
+    note_rights(config.loop);
+    return 0;
+}
+
+} // namespace quiesced

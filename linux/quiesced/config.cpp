@@ -1,0 +1,209 @@
+#include "config.h"
+
+#include <algorithm>
+
+#include "parameter_section.h"
+#include "section.h"
+
+namespace quiesced {
+
+namespace {
+
+constexpr std::int64_t kMaxCurrent_mA = 20000;
+constexpr std::int64_t kMaxCode = 0xFFFFFF;
+constexpr std::size_t kInterfaceNameBytes = 15; // IFNAMSIZ - 1
+
+/// Reads [key] where it is there; says that it is missing where it is required.
+template <typename Read>
+void with_section(Section &root, const char *key, bool is_required, Read &&read) {
+    root.read(key, is_required, [&] {
+        Section section(root.table().table(key), root.problems());
+        read(section);
+        section.end();
+    });
+}
+
+void read_loop(Section &section, LoopConfig &loop) {
+    section.integer("priority", 0, 99, loop.priority);
+    section.integer("cpu", -1, 1023, loop.cpu);
+    section.boolean("lock_memory", loop.lock_memory);
+}
+
+bool is_interface_name(const std::string &name) {
+    const auto is_bad = [](unsigned char c) { return c <= ' ' || c == '/' || c == ':'; };
+    return name.size() <= kInterfaceNameBytes && std::none_of(name.begin(), name.end(), is_bad);
+}
+
+void check_interface(Section &section, const CanConfig &can) {
+    if (can.is_serial() ? can.interface.find("slcan:/") != 0 : !is_interface_name(can.interface)) {
+        section.wrong("interface",
+                      "expected an interface (\"can0\") or \"slcan:\" and the absolute "
+                      "path of a serial line, found \"" +
+                          can.interface + "\"");
+    }
+}
+
+void read_can(Section &section, CanConfig &can) {
+    section.text("interface", can.interface, true);
+    section.boolean("fd", can.use_fd);
+    section.integer("restart_ms", 1, 10000, can.restart_ms);
+    section.integer("serial_baud", 0, 4000000, can.serial_baud);
+    section.integer("bitrate", 0, 1000000, can.bitrate);
+    if (can.interface.empty()) {
+        return;
+    }
+    check_interface(section, can);
+    if (can.is_serial() && can.use_fd) {
+        section.wrong("fd", "an SLCAN adapter has no CAN FD; expected false");
+    }
+    for (const char *key : {"serial_baud", "bitrate"}) {
+        if (!can.is_serial() && section.has(key)) {
+            section.wrong(key, "only for an SLCAN adapter; 'ip link' sets up an interface");
+        }
+    }
+}
+
+void read_accel(Section &section, AccelConfig &accel) {
+    section.choice("source", {"can", "iio", "adxl355"}, accel.source, true);
+    if (accel.source == AccelSource::iio) {
+        section.text("device", accel.device, true);
+        section.boolean("use_buffer", accel.use_buffer);
+        section.text("trigger", accel.trigger);
+    } else if (accel.source == AccelSource::adxl355) {
+        section.text("device", accel.device, true);
+        section.integer("clock_Hz", 100000, 10000000, accel.clock_Hz);
+        section.one_of("range_g", {2, 4, 8}, accel.range_g);
+        section.one_of("rate_Hz", {500, 1000, 2000, 4000}, accel.rate_Hz);
+    }
+}
+
+void read_current(Section &section, CurrentConfig &current) {
+    section.choice("output", {"can", "pwm", "dac"}, current.output, true);
+    if (current.output == CurrentOutput::can) {
+        return;
+    }
+    const bool is_pwm = current.output == CurrentOutput::pwm;
+    section.text(is_pwm ? "chip" : "device", current.device, true);
+    section.integer("channel", 0, 63, current.channel);
+    section.integer("full_scale_mA", 1, kMaxCurrent_mA, current.full_scale_mA, true);
+    if (is_pwm) {
+        section.integer("period_ns", 1000, 1000000000, current.period_ns, true);
+        section.boolean("is_inverted", current.is_inverted);
+        return;
+    }
+    section.integer("zero_code", -kMaxCode, kMaxCode, current.zero_code, true);
+    section.integer("full_scale_code", -kMaxCode, kMaxCode, current.full_scale_code, true);
+    if (section.has("full_scale_code") && current.zero_code == current.full_scale_code) {
+        section.wrong("full_scale_code", "expected another code than zero_code");
+    }
+}
+
+void read_line(Section &gpio, const char *key, std::optional<LineConfig> &line) {
+    with_section(gpio, key, false, [&](Section &section) {
+        line.emplace();
+        section.text("line", line->line, true);
+        section.boolean("active_low", line->is_active_low);
+        section.choice("bias", {"as-is", "pull-up", "pull-down", "off"}, line->bias);
+    });
+}
+
+void read_gpio(Section &section, GpioConfig &gpio) {
+    read_line(section, "enable_output", gpio.enable_output);
+    read_line(section, "fault_output", gpio.fault_output);
+    read_line(section, "estop_input", gpio.estop_input);
+    read_line(section, "enable_input", gpio.enable_input);
+    read_line(section, "data_ready_input", gpio.data_ready_input);
+}
+
+bool is_absolute(const std::string &path) {
+    return path.front() == '/';
+}
+
+void read_state(Section &section, StateConfig &state) {
+    section.text("folder", state.folder);
+    section.integer("status_s", 1, 3600, state.status_s);
+    if (!is_absolute(state.folder)) {
+        section.wrong("folder", "expected an absolute path, found \"" + state.folder + "\"");
+    }
+}
+
+void read_log(Section &section, LogConfig &log) {
+    section.text("to", log.to);
+    section.choice("level", {"error", "warning", "info", "debug"}, log.level);
+    if (log.to != "journal" && log.to != "stderr" && !is_absolute(log.to)) {
+        section.wrong("to", "expected \"journal\", \"stderr\" or the absolute path of a file, "
+                            "found \"" +
+                                log.to + "\"");
+    }
+}
+
+/// What needs [can] without having it.
+void check_bus(Section &root, const Config &config) {
+    const char *needed_by = config.accel.source == AccelSource::can       ? "accel.source"
+                            : config.current.output == CurrentOutput::can ? "current.output"
+                            : config.enable_from != NODE_ENABLE_BOARD     ? "operator.enable"
+                                                                          : nullptr;
+    if (needed_by != nullptr && !root.has("can")) {
+        root.wrong("can", std::string("missing; ") + needed_by + " needs a table [can]");
+    }
+}
+
+void read_root(Section &root, Needs needs, Config &config) {
+    const bool has_peripherals = needs == Needs::peripherals;
+    with_section(root, "loop", false, [&](Section &s) { read_loop(s, config.loop); });
+    with_section(root, "can", !has_peripherals,
+                 [&](Section &s) { read_can(s, config.can.emplace()); });
+    with_section(root, "accel", has_peripherals, [&](Section &s) { read_accel(s, config.accel); });
+    with_section(root, "current", has_peripherals,
+                 [&](Section &s) { read_current(s, config.current); });
+    with_section(root, "gpio", false, [&](Section &s) { read_gpio(s, config.gpio); });
+    with_section(root, "operator", false, [&](Section &s) {
+        s.choice("enable", {"board", "can", "both"}, config.enable_from);
+    });
+    with_section(root, "watchdog", false, [&](Section &s) {
+        s.text("device", config.watchdog.emplace().device, true);
+        s.integer("timeout_s", 1, 3600, config.watchdog->timeout_s);
+    });
+    with_section(root, "state", false, [&](Section &s) { read_state(s, config.state); });
+    with_section(root, "log", false, [&](Section &s) { read_log(s, config.log); });
+    with_section(root, "parameters", false,
+                 [&](Section &s) { config.params = read_parameters(s); });
+    root.end();
+    if (has_peripherals) {
+        check_bus(root, config);
+    }
+}
+
+} // namespace
+
+gpio_spec_t LineConfig::spec() const {
+    gpio_spec_t spec{};
+    spec.line = line.c_str();
+    spec.is_active_low = is_active_low;
+    spec.bias = static_cast<decltype(spec.bias)>(bias);
+    return spec;
+}
+
+ConfigReading read_config(const std::string &file, Needs needs) {
+    ConfigReading out;
+    out.config.file = file;
+    quiesce_params_default(&out.config.params);
+    attempt(out.problems, [&] {
+        const quiesce::TomlFile toml(file);
+        Section root(toml.root(), out.problems);
+        read_root(root, needs, out.config);
+    });
+    return out;
+}
+
+Config require_config(const std::string &file, Needs needs) {
+    ConfigReading reading = read_config(file, needs);
+    if (!reading.problems.empty()) {
+        const std::size_t more = reading.problems.size() - 1;
+        throw InputError(reading.problems.front() +
+                         (more > 0 ? " (and " + std::to_string(more) + " more: --check)" : ""));
+    }
+    return std::move(reading.config);
+}
+
+} // namespace quiesced

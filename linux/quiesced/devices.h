@@ -1,0 +1,47 @@
+/// The peripherals of a configuration, each an object that closes itself.
+#ifndef QUIESCED_DEVICES_H
+#define QUIESCED_DEVICES_H
+
+#include <memory>
+
+#include "backends.h"
+#include "config.h"
+
+namespace quiesced {
+
+/// An accelerometer that is read through a handle. The bus is none: its samples are in the node.
+class AccelDevice {
+  public:
+    virtual ~AccelDevice() = default;
+    hal_accel_t handle{};
+};
+
+/// A current driver at this machine. The bus is none: the demand frame goes out every tick.
+class CurrentDevice {
+  public:
+    virtual ~CurrentDevice() = default;
+    /// Writes that failed since the opening.
+    virtual std::uint32_t failures() const = 0;
+    hal_current_t handle{};
+};
+
+struct LineCloser {
+    void operator()(gpio_line_t *line) const { gpio_close(line); }
+};
+struct WatchdogCloser {
+    void operator()(watchdog_t *watchdog) const { watchdog_close(watchdog); }
+};
+using Line = std::unique_ptr<gpio_line_t, LineCloser>;
+using Watchdog = std::unique_ptr<watchdog_t, WatchdogCloser>;
+
+/// All throw InputError: "KEY: what, and what to do". Null where the source or output is the bus.
+std::unique_ptr<AccelDevice> open_accel(const AccelConfig &config);
+std::unique_ptr<CurrentDevice> open_current(const CurrentConfig &config);
+/// key: of the line in the configuration, for the message. Outputs start inactive.
+Line open_output(const LineConfig &config, const char *key);
+Line open_input(const LineConfig &config, const char *key);
+Watchdog open_watchdog(const WatchdogConfig &config);
+
+} // namespace quiesced
+
+#endif

@@ -1,0 +1,85 @@
+/// Everything that the control loop and the thread beside it (service.h) say to each other.
+#ifndef QUIESCED_EXCHANGE_H
+#define QUIESCED_EXCHANGE_H
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "devices.h"
+#include "log_ring.h"
+#include "mailbox.h"
+#include "replaceable.h"
+
+namespace quiesced {
+
+/// A fault that was entered.
+struct FaultEvent {
+    std::uint32_t fault;
+    std::uint32_t tick;
+    std::int64_t time_ns; ///< CLOCK_REALTIME
+};
+
+/// What the status file shows, taken at the end of a tick.
+struct Snapshot {
+    static constexpr std::size_t kFaults = 8;
+
+    quiesce_telemetry_t telemetry;
+    bool is_driver_enabled;
+    bool is_enabled; ///< the operator's enable, from wherever it comes
+    bool is_estop;   ///< likewise
+    std::uint32_t param_hash;
+    hal_tick_t timing;
+    std::uint64_t ticks;
+    can_bus_state_t bus_state;
+    can_bus_counters_t bus;
+    can_node_counters_t node;
+    std::array<FaultEvent, kFaults> faults; ///< the newest first
+    std::uint32_t fault_events;             ///< since the start
+    std::uint32_t log_dropped;
+};
+
+/// Lines and drivers that may vanish.
+struct Peripherals {
+    Replaceable<std::unique_ptr<AccelDevice>> accel;
+    Replaceable<std::unique_ptr<CurrentDevice>> current;
+    Replaceable<Line> enable_output;
+    Replaceable<Line> fault_output;
+    Replaceable<Line> estop_input;
+    Replaceable<Line> enable_input;
+    Replaceable<Line> data_ready_input;
+};
+
+/// How a request to store parameters went.
+enum class StoreResult : int { none, stored, failed };
+
+struct Exchange {
+    Exchange();
+    Exchange(const Exchange &) = delete;
+    Exchange &operator=(const Exchange &) = delete;
+    ~Exchange();
+
+    /// From the loop, where the other thread has something to do at once.
+    void wake() const;
+
+    LogRing log;
+    Peripherals peripherals;
+    std::atomic<std::uint64_t> ticks{0}; ///< done since the start
+    std::atomic<bool> loop_has_ended{false};
+
+    // To the other thread.
+    Mailbox<Snapshot> snapshot;
+    Mailbox<quiesce_adaptation_t> adaptation;
+    Mailbox<quiesce_params_t> to_store;
+
+    // To the loop.
+    std::atomic<bool> snapshot_is_wanted{false};
+    std::atomic<StoreResult> store_result{StoreResult::none};
+    Mailbox<quiesce_params_t> new_params;
+
+    int wake_fd; ///< an eventfd
+};
+
+} // namespace quiesced
+
+#endif

@@ -1,0 +1,98 @@
+#include "make_safe.h"
+
+#include <cstdio>
+
+#include "bus.h"
+#include "clock.h"
+#include "devices.h"
+#include "input_error.h"
+#include "instance_lock.h"
+#include "signals.h"
+#include "state_store.h"
+
+namespace quiesced {
+
+namespace {
+
+constexpr int kFarewells = 5; // the first may repeat the alive counter that the driver saw last
+constexpr int kPause_ms = 5;
+
+void complain(const std::string &line) {
+    (void)std::fprintf(stderr, "quiesced: %s\n", line.c_str());
+}
+
+/// Returns false, after a line, iff the step failed.
+template <typename Step>
+bool do_step(Step &&step) {
+    try {
+        std::forward<Step>(step)();
+        return true;
+    } catch (const std::exception &error) {
+        complain(error.what());
+        return false;
+    }
+}
+
+void release_line(const std::optional<LineConfig> &line, const char *key) {
+    if (line) {
+        const Line output = open_output(*line, key); // inactive from its request on
+        if (!gpio_set(output.get(), false)) {
+            throw quiesce::InputError(std::string(key) + ": the kernel refuses to set it");
+        }
+    }
+}
+
+void release_driver(const CurrentConfig &config, std::int32_t safe_current_mA) {
+    const std::unique_ptr<CurrentDevice> device = open_current(config);
+    if (device != nullptr) {
+        hal_current_write(&device->handle, safe_current_mA, false);
+        if (device->failures() > 0) {
+            throw quiesce::InputError("current: the output cannot be written");
+        }
+    }
+}
+
+void say_farewell(const CanConfig &config, const quiesce_params_t &params,
+                  std::int32_t safe_current_mA) {
+    const Bus bus = open_bus(config, BusUse::controller);
+    const auto node = std::make_unique<can_node_t>();
+    can_node_init(node.get(), &params);
+    for (int i = 0; i < kFarewells; ++i) {
+        can_frame_t frame{};
+        can_node_farewell(node.get(), safe_current_mA, &frame);
+        if (!send_patiently(bus.get(), frame)) {
+            throw quiesce::InputError("can.interface: " + config.interface +
+                                      " does not take the farewell frame; is the bus up?");
+        }
+        sleep_ms(kPause_ms);
+    }
+}
+
+} // namespace
+
+int make_safe(const std::string &config_file) {
+    install_signals(); // a SIGTERM does not stop it half-way
+    const ConfigReading reading = read_config(config_file, Needs::peripherals);
+    const Config &config = reading.config;
+    for (const std::string &line : reading.problems) {
+        complain(line);
+    }
+    if (const long pid = InstanceLock::holder(config.state.folder); pid != 0) {
+        complain("process " + std::to_string(pid) + " controls the outputs; stop it first");
+        return 1;
+    }
+    std::string note;
+    const quiesce_params_t params = StateStore(config.state.folder).effective(config.params, note);
+    const std::int32_t safe_current_mA = quiesce_params_safe_current_mA(&params);
+
+    bool is_safe = reading.problems.empty();
+    is_safe &= do_step([&] { release_line(config.gpio.enable_output, "gpio.enable_output"); });
+    is_safe &= do_step([&] { release_driver(config.current, safe_current_mA); });
+    is_safe &= do_step([&] { release_line(config.gpio.fault_output, "gpio.fault_output"); });
+    if (config.can) {
+        is_safe &= do_step([&] { say_farewell(*config.can, params, safe_current_mA); });
+    }
+    return is_safe ? 0 : 1;
+}
+
+} // namespace quiesced

@@ -1,0 +1,56 @@
+#include "names.h"
+
+#include <array>
+
+extern "C" {
+#include "quiesce_version.h"
+}
+
+#define QUIESCED_TEXT(number) #number
+#define QUIESCED_VERSION(major, minor, patch)                                                      \
+    QUIESCED_TEXT(major) "." QUIESCED_TEXT(minor) "." QUIESCED_TEXT(patch)
+
+namespace quiesced {
+
+namespace {
+
+constexpr std::array<const char *, 5> kStates = {"INIT", "IDLE", "RUN", "SAFE", "FAULT"};
+constexpr std::array<const char *, 12> kFaults = {"NONE",
+                                                  "PARAMETER",
+                                                  "SENSOR_LOST",
+                                                  "SENSOR_SATURATED",
+                                                  "SENSOR_STUCK",
+                                                  "SENSOR_RANGE",
+                                                  "DRIVER_NOT_FOLLOWING",
+                                                  "COIL_OPEN",
+                                                  "CURRENT_LOST",
+                                                  "TICK_LOST",
+                                                  "ESTOP",
+                                                  "SENSOR_QUIET"};
+static_assert(kFaults.size() == QUIESCE_FAULT_COUNT, "every fault has a name");
+
+template <std::size_t Count>
+const char *name_in(const std::array<const char *, Count> &names, std::size_t index) {
+    return index < Count ? names[index] : "?";
+}
+
+} // namespace
+
+const char *state_name(std::uint32_t state) {
+    return name_in(kStates, state);
+}
+
+const char *fault_name(std::uint32_t fault) {
+    return name_in(kFaults, fault);
+}
+
+const char *bus_state_name(can_bus_state_t state) {
+    constexpr std::array<const char *, 4> names = {"up", "down", "bus-off", "error passive"};
+    return name_in(names, state);
+}
+
+const char *version() {
+    return QUIESCED_VERSION(QUIESCE_VERSION_MAJOR, QUIESCE_VERSION_MINOR, QUIESCE_VERSION_PATCH);
+}
+
+} // namespace quiesced

@@ -1,0 +1,15 @@
+/// [parameters] of the configuration: NAME = VALUE, or the label of a choice.
+#ifndef QUIESCED_PARAMETER_SECTION_H
+#define QUIESCED_PARAMETER_SECTION_H
+
+#include "firmware.h"
+#include "section.h"
+
+namespace quiesced {
+
+/// Defaults, then what the section says; each value and all of them together are checked.
+quiesce_params_t read_parameters(Section &section);
+
+} // namespace quiesced
+
+#endif

@@ -1,0 +1,108 @@
+#include "run.h"
+
+#include <cstdlib>
+#include <memory>
+
+#include <malloc.h>
+
+#include "input_error.h"
+#include "instance_lock.h"
+#include "loop.h"
+#include "names.h"
+#include "service.h"
+#include "signals.h"
+
+namespace quiesced {
+
+namespace {
+
+constexpr std::size_t kHeapBytes = 4U << 20U;
+
+/// The heap grows now, not later, and never shrinks: with locked memory no later use faults.
+void prepare_heap() {
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+    std::free(std::malloc(kHeapBytes));
+}
+
+void open_lines(const GpioConfig &gpio, Peripherals &devices) {
+    const auto output = [](const std::optional<LineConfig> &config, Replaceable<Line> &line,
+                           const char *key) {
+        if (config) {
+            line.start_with(open_output(*config, key));
+        }
+    };
+    const auto input = [](const std::optional<LineConfig> &config, Replaceable<Line> &line,
+                          const char *key) {
+        if (config) {
+            line.start_with(open_input(*config, key));
+        }
+    };
+    output(gpio.enable_output, devices.enable_output, "gpio.enable_output");
+    output(gpio.fault_output, devices.fault_output, "gpio.fault_output");
+    input(gpio.estop_input, devices.estop_input, "gpio.estop_input");
+    input(gpio.enable_input, devices.enable_input, "gpio.enable_input");
+    input(gpio.data_ready_input, devices.data_ready_input, "gpio.data_ready_input");
+}
+
+void open_peripherals(const Config &config, Peripherals &devices) {
+    devices.current.start_with(open_current(config.current));
+    open_lines(config.gpio, devices);
+    devices.accel.start_with(open_accel(config.accel));
+}
+
+void become_realtime(const LoopConfig &loop) {
+    const tick_thread_options_t options = {loop.priority, loop.cpu, loop.lock_memory};
+    linux_error_t error{};
+    if (!tick_linux_thread(&options, &error)) {
+        throw quiesce::InputError(std::string("loop: ") + error.text);
+    }
+}
+
+void log_start(const Config &config, const quiesce_params_t &params, LogRing &log) {
+    log.log(LogLevel::info, "quiesced %s, %s, %s, parameter hash %08x, %s", version(),
+            config.file.c_str(), gpio_library(),
+            static_cast<unsigned>(can_node_param_hash(&params)),
+            config.can ? config.can->interface.c_str() : "no CAN");
+}
+
+void log_note(const std::string &note, LogRing &log) {
+    if (!note.empty()) {
+        log.log(LogLevel::warning, "%s", note.c_str());
+    }
+}
+
+} // namespace
+
+int run_controller(const std::string &config_file, std::uint64_t ticks) {
+    const Config config = require_config(config_file, Needs::peripherals);
+    install_signals();
+    const InstanceLock lock(config.state.folder);
+    prepare_heap();
+    LogSink sink(config.log);
+    const auto exchange = std::make_unique<Exchange>();
+    const StateStore store(config.state.folder);
+    std::string params_note;
+    const quiesce_params_t params = store.effective(config.params, params_note);
+    std::string adaptation_note;
+    const auto adaptation = store.load_adaptation(adaptation_note);
+
+    open_peripherals(config, exchange->peripherals);
+    const Bus bus = config.can ? open_bus(*config.can, BusUse::controller) : nullptr;
+    const Service service(config, *exchange, sink);
+    become_realtime(config.loop);
+    // Last, because it cannot always be stopped again.
+    const Watchdog watchdog = config.watchdog ? open_watchdog(*config.watchdog) : nullptr;
+    const auto loop = std::make_unique<Loop>(config, params, *exchange, bus.get(), watchdog.get());
+    log_start(config, params, exchange->log);
+    log_note(params_note, exchange->log);
+    log_note(adaptation_note, exchange->log);
+    if (adaptation) {
+        loop->use_adaptation(*adaptation);
+    }
+    loop->run(ticks);
+    return 0;
+}
+
+} // namespace quiesced

@@ -1,0 +1,214 @@
+#include "service.h"
+
+#include <cstdio>
+
+#include <poll.h>
+#include <unistd.h>
+
+#include "clock.h"
+#include "histogram.h"
+#include "input_error.h"
+#include "names.h"
+#include "signals.h"
+#include "status_file.h"
+
+namespace quiesced {
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr int kLongestWait_ms = 100;
+
+std::string status_line(const Snapshot &snapshot) {
+    const quiesce_telemetry_t &t = snapshot.telemetry;
+    std::array<char, 160> text{};
+    (void)std::snprintf(text.data(), text.size(), "%s, fault %s, %d mA, %.2f Hz, %u ticks lost",
+                        state_name(t.state), fault_name(t.fault),
+                        static_cast<int>(t.current_cmd_mA),
+                        t.freq_is_valid != 0 ? t.freq_uHz / 1e6 : 0.0,
+                        static_cast<unsigned>(snapshot.timing.overruns));
+    return text.data();
+}
+
+} // namespace
+
+void Trouble::note(const std::string &error, LogSink &sink) {
+    if (!error.empty() && failures_++ == 0) {
+        sink.write(LogLevel::error, std::string(name_) + ": not written: " + error);
+    } else if (error.empty() && failures_ > 0) {
+        sink.write(LogLevel::warning, std::string(name_) + ": written again after " +
+                                          std::to_string(failures_) + " failures");
+        failures_ = 0;
+    }
+}
+
+Service::Service(const Config &config, Exchange &exchange, LogSink &sink)
+    : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
+      configured_(config.params), thread_([this] { run(); }) {}
+
+Service::~Service() {
+    exchange_.loop_has_ended.store(true);
+    exchange_.wake();
+    thread_.join();
+}
+
+void Service::run() {
+    take_signals(exchange_.wake_fd);
+    while (!exchange_.loop_has_ended.load()) {
+        wait();
+        work(monotonic_ns());
+    }
+    take_signals(-1);
+    say_last_words();
+}
+
+void Service::wait() {
+    pollfd ready = {exchange_.wake_fd, POLLIN, 0};
+    if (poll(&ready, 1, kLongestWait_ms) == 1) {
+        std::uint64_t count = 0;
+        const ssize_t ignored = read(exchange_.wake_fd, &count, sizeof count);
+        (void)ignored;
+    }
+}
+
+void Service::work(std::int64_t now_ns) {
+    drain_log();
+    store_params();
+    if (take_reload_request()) {
+        reload();
+    }
+    finish_reload();
+    if (take_status_request() || now_ns >= next_status_ns_) {
+        next_status_ns_ = now_ns + config_.state.status_s * kSecond_ns;
+        exchange_.snapshot_is_wanted.store(true);
+    }
+    write_files();
+    if (now_ns >= next_devices_ns_) {
+        next_devices_ns_ = now_ns + kSecond_ns;
+        look_after_devices();
+    }
+    tell_manager(now_ns);
+}
+
+void Service::drain_log() {
+    LogLine line{};
+    while (exchange_.log.take(line)) {
+        sink_.write(line);
+    }
+    const std::uint32_t dropped = exchange_.log.dropped();
+    if (dropped != told_dropped_) {
+        sink_.write(LogLevel::warning, std::to_string(dropped - told_dropped_) +
+                                           " log lines dropped: too many at once");
+        told_dropped_ = dropped;
+    }
+}
+
+void Service::reload() {
+    manager_.send("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
+    is_reloading_ = true;
+    try {
+        const Config fresh = require_config(config_.file, Needs::peripherals);
+        std::string note;
+        const quiesce_params_t params = store_.effective(fresh.params, note);
+        if (!note.empty()) {
+            sink_.write(LogLevel::info, note);
+        }
+        if (!exchange_.new_params.put(params)) {
+            sink_.write(LogLevel::error, "parameters stay: the last reload is not through yet");
+            return;
+        }
+        configured_ = fresh.params;
+    } catch (const quiesce::InputError &error) {
+        sink_.write(LogLevel::error, std::string("parameters stay: ") + error.what());
+    }
+}
+
+void Service::finish_reload() {
+    if (is_reloading_ && !exchange_.new_params.is_full()) {
+        is_reloading_ = false;
+        manager_.send("READY=1");
+    }
+}
+
+void Service::store_params() {
+    quiesce_params_t params;
+    if (!exchange_.to_store.take(params)) {
+        return;
+    }
+    const std::string error = store_.save_params(configured_, params);
+    sink_.write(error.empty() ? LogLevel::info : LogLevel::error,
+                error.empty() ? "parameters saved" : "parameters not saved: " + error);
+    exchange_.store_result.store(error.empty() ? StoreResult::stored : StoreResult::failed);
+}
+
+void Service::write_files() {
+    quiesce_adaptation_t adaptation;
+    if (exchange_.adaptation.take(adaptation)) {
+        adaptation_trouble_.note(store_.save_adaptation(adaptation), sink_);
+    }
+    if (exchange_.snapshot.take(last_)) {
+        status_trouble_.note(replace_file(store_.status_file(), status_json(last_)), sink_);
+        manager_.send("STATUS=" + status_line(last_));
+    }
+}
+
+void Service::look_after_devices() {
+    const GpioConfig &gpio = config_.gpio;
+    Peripherals &devices = exchange_.peripherals;
+    const auto say = [this](const std::string &line) {
+        if (!line.empty()) {
+            sink_.write(LogLevel::warning, line);
+        }
+    };
+    say(devices.accel.maintain("accelerometer", [&] { return open_accel(config_.accel); }));
+    say(devices.current.maintain("current output", [&] { return open_current(config_.current); }));
+    const auto output = [&](Replaceable<Line> &line, const std::optional<LineConfig> &config,
+                            const char *name) {
+        say(line.maintain(name, [&] { return open_output(*config, name); }));
+    };
+    const auto input = [&](Replaceable<Line> &line, const std::optional<LineConfig> &config,
+                           const char *name) {
+        say(line.maintain(name, [&] { return open_input(*config, name); }));
+    };
+    output(devices.enable_output, gpio.enable_output, "enable_output");
+    output(devices.fault_output, gpio.fault_output, "fault_output");
+    input(devices.estop_input, gpio.estop_input, "estop_input");
+    input(devices.enable_input, gpio.enable_input, "enable_input");
+    input(devices.data_ready_input, gpio.data_ready_input, "data_ready_input");
+}
+
+void Service::tell_manager(std::int64_t now_ns) {
+    const std::uint64_t ticks = exchange_.ticks.load();
+    if (!is_ready_ && ticks > 0) {
+        is_ready_ = true;
+        manager_.send("READY=1\nMAINPID=" + std::to_string(getpid()));
+    }
+    if (!is_stopping_ && stop_is_requested()) {
+        is_stopping_ = true;
+        manager_.send("STOPPING=1");
+    }
+    // A loop that stands still is not covered up.
+    if (manager_.watchdog_period_ns() > 0 && now_ns >= next_watchdog_ns_ &&
+        ticks != watched_ticks_) {
+        next_watchdog_ns_ = now_ns + manager_.watchdog_period_ns();
+        watched_ticks_ = ticks;
+        manager_.send("WATCHDOG=1");
+    }
+}
+
+void Service::say_last_words() {
+    manager_.send("STOPPING=1");
+    drain_log();
+    store_params();
+    write_files();
+    if (last_.ticks > 0) {
+        sink_.write(LogLevel::info, "lateness: " + histogram_line(last_.timing.lateness));
+        sink_.write(LogLevel::info, "work: " + histogram_line(last_.timing.work));
+    }
+    if (sink_.lost() > 0) {
+        sink_.write(LogLevel::warning,
+                    std::to_string(sink_.lost()) + " log lines could not be written");
+    }
+}
+
+} // namespace quiesced

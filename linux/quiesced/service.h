@@ -1,0 +1,75 @@
+/// The thread beside the control loop: it has normal priority and does all that may wait, the log,
+/// the state folder, the service manager, signals, new parameters, devices that are gone.
+#ifndef QUIESCED_SERVICE_H
+#define QUIESCED_SERVICE_H
+
+#include <string>
+#include <thread>
+
+#include "exchange.h"
+#include "log_sink.h"
+#include "notify.h"
+#include "state_store.h"
+
+namespace quiesced {
+
+/// Something that fails again and again: told when that starts and when it ends.
+class Trouble {
+  public:
+    explicit Trouble(const char *name) : name_(name) {}
+    /// error: of this attempt, empty where it went well.
+    void note(const std::string &error, LogSink &sink);
+
+  private:
+    const char *name_;
+    std::uint32_t failures_ = 0;
+};
+
+class Service {
+  public:
+    /// Starts the thread. Make it before the calling thread becomes a real-time thread. Everything
+    /// that it is given must outlive it.
+    Service(const Config &config, Exchange &exchange, LogSink &sink);
+    Service(const Service &) = delete;
+    Service &operator=(const Service &) = delete;
+
+    /// Says that the loop has ended, and waits until everything is written.
+    ~Service();
+
+  private:
+    void run();
+    void wait();
+    void work(std::int64_t now_ns);
+    void drain_log();
+    void reload();
+    void finish_reload();
+    void look_after_devices();
+    void write_files();
+    void store_params();
+    void tell_manager(std::int64_t now_ns);
+    void say_last_words();
+
+    const Config &config_;
+    Exchange &exchange_;
+    LogSink &sink_;
+    StateStore store_;
+    Notifier manager_;
+    quiesce_params_t configured_; ///< what [parameters] says, last time that it was read
+
+    Snapshot last_{};
+    Trouble status_trouble_{"status file"};
+    Trouble adaptation_trouble_{"what was learnt"};
+    std::uint32_t told_dropped_ = 0;
+    std::int64_t next_status_ns_ = 0;
+    std::int64_t next_devices_ns_ = 0;
+    std::int64_t next_watchdog_ns_ = 0;
+    std::uint64_t watched_ticks_ = 0;
+    bool is_ready_ = false;
+    bool is_stopping_ = false;
+    bool is_reloading_ = false;
+    std::thread thread_;
+};
+
+} // namespace quiesced
+
+#endif

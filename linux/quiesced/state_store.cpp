@@ -1,0 +1,80 @@
+#include "state_store.h"
+
+namespace quiesced {
+
+namespace {
+
+constexpr const char *kParamKind = "param";
+constexpr const char *kAdaptationKind = "adapt";
+constexpr std::uint32_t kVersion = 1;
+
+/// On the disk: of another number of parameters is of another length, and damaged.
+struct SavedParams {
+    std::uint32_t configured_hash; ///< of the configuration's parameters at the time
+    quiesce_params_t params;
+};
+
+} // namespace
+
+quiesce_params_t StateStore::effective(const quiesce_params_t &configured,
+                                       std::string &note) const {
+    SavedParams saved{};
+    linux_error_t error{};
+    note.clear();
+    switch (
+        nvm_file_read(params_file().c_str(), kParamKind, kVersion, &saved, sizeof saved, &error)) {
+    case NVM_MISSING:
+        return configured;
+    case NVM_OK:
+        break;
+    default:
+        note = std::string("saved parameters are not used: ") + error.text;
+        return configured;
+    }
+    if (saved.configured_hash != can_node_param_hash(&configured)) {
+        note = "saved parameters are not used: [parameters] has changed since";
+        return configured;
+    }
+    quiesce_param_error_t refused{};
+    if (!quiesce_params_check(&saved.params, &refused)) {
+        note =
+            std::string("saved parameters are not used: ") + refused.name + ": " + refused.reason;
+        return configured;
+    }
+    note = "saved parameters are used";
+    return saved.params;
+}
+
+std::string StateStore::save_params(const quiesce_params_t &configured,
+                                    const quiesce_params_t &params) {
+    const SavedParams saved = {can_node_param_hash(&configured), params};
+    linux_error_t error{};
+    return nvm_file_write(params_file().c_str(), kParamKind, kVersion, &saved, sizeof saved, &error)
+               ? ""
+               : error.text;
+}
+
+std::optional<quiesce_adaptation_t> StateStore::load_adaptation(std::string &note) const {
+    quiesce_adaptation_t adaptation{};
+    linux_error_t error{};
+    note.clear();
+    const nvm_verdict_t verdict = nvm_file_read(adaptation_file().c_str(), kAdaptationKind,
+                                                kVersion, &adaptation, sizeof adaptation, &error);
+    if (verdict == NVM_OK) {
+        return adaptation;
+    }
+    if (verdict != NVM_MISSING) {
+        note = std::string("what was learnt is not used: ") + error.text;
+    }
+    return std::nullopt;
+}
+
+std::string StateStore::save_adaptation(const quiesce_adaptation_t &adaptation) {
+    linux_error_t error{};
+    return nvm_file_write(adaptation_file().c_str(), kAdaptationKind, kVersion, &adaptation,
+                          sizeof adaptation, &error)
+               ? ""
+               : error.text;
+}
+
+} // namespace quiesced

@@ -1,0 +1,111 @@
+#include "status_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <sstream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "clock.h"
+#include "histogram.h"
+#include "names.h"
+
+namespace quiesced {
+
+namespace {
+
+const char *truth(bool value) {
+    return value ? "true" : "false";
+}
+
+void put_control(std::ostream &out, const Snapshot &snapshot) {
+    const quiesce_telemetry_t &t = snapshot.telemetry;
+    out << "  \"tick\": " << t.tick << ",\n"
+        << "  \"state\": \"" << state_name(t.state) << "\",\n"
+        << "  \"fault\": \"" << fault_name(t.fault) << "\",\n"
+        << "  \"fault_count\": " << t.fault_count << ",\n"
+        << "  \"is_enabled\": " << truth(snapshot.is_enabled) << ",\n"
+        << "  \"is_estop\": " << truth(snapshot.is_estop) << ",\n"
+        << "  \"is_driver_enabled\": " << truth(snapshot.is_driver_enabled) << ",\n"
+        << "  \"current_cmd_mA\": " << t.current_cmd_mA << ",\n"
+        << "  \"rms_um_s2\": " << t.rms_um_s2 << ",\n"
+        << "  \"freq_is_valid\": " << truth(t.freq_is_valid != 0) << ",\n"
+        << "  \"freq_uHz\": " << t.freq_uHz << ",\n"
+        << "  \"displacement_amp_nm\": " << t.displacement_amp_nm << ",\n"
+        << "  \"bad_sample_count\": " << t.bad_sample_count << ",\n"
+        << "  \"param_hash\": " << snapshot.param_hash << ",\n";
+}
+
+void put_faults(std::ostream &out, const Snapshot &snapshot) {
+    out << "  \"last_faults\": [";
+    for (std::size_t i = 0; i < Snapshot::kFaults && i < snapshot.fault_events; ++i) {
+        const FaultEvent &event = snapshot.faults[i];
+        out << (i == 0 ? "" : ", ") << "{\"fault\": \"" << fault_name(event.fault)
+            << "\", \"tick\": " << event.tick << ", \"time\": \"" << iso_time(event.time_ns)
+            << "\"}";
+    }
+    out << "],\n";
+}
+
+void put_loop(std::ostream &out, const Snapshot &snapshot) {
+    out << "  \"loop\": {\n"
+        << "    \"ticks\": " << snapshot.ticks << ",\n"
+        << "    \"overruns\": " << snapshot.timing.overruns << ",\n"
+        << "    \"lateness\": " << histogram_json(snapshot.timing.lateness) << ",\n"
+        << "    \"work\": " << histogram_json(snapshot.timing.work) << "\n  },\n";
+}
+
+void put_bus(std::ostream &out, const Snapshot &snapshot) {
+    const can_bus_counters_t &bus = snapshot.bus;
+    const can_node_counters_t &node = snapshot.node;
+    out << "  \"can\": {\n"
+        << "    \"state\": \"" << bus_state_name(snapshot.bus_state) << "\",\n"
+        << "    \"received\": " << bus.received << ", \"sent\": " << bus.sent << ",\n"
+        << "    \"tx_dropped\": " << bus.tx_dropped << ", \"rx_dropped\": " << bus.rx_dropped
+        << ",\n"
+        << "    \"error_frames\": " << bus.error_frames << ", \"malformed\": " << bus.malformed
+        << ",\n"
+        << "    \"bus_off\": " << bus.bus_off << ", \"restarts\": " << bus.restarts
+        << ", \"down\": " << bus.down << ",\n"
+        << "    \"accepted\": " << node.accepted << ", \"unknown\": " << node.unknown << ",\n"
+        << "    \"rejected_crc\": " << node.rejected_crc
+        << ", \"rejected_alive\": " << node.rejected_alive
+        << ", \"rejected_shape\": " << node.rejected_shape << "\n  },\n";
+}
+
+} // namespace
+
+std::string status_json(const Snapshot &snapshot) {
+    std::ostringstream out;
+    out << "{\n  \"version\": \"" << version() << "\",\n"
+        << "  \"pid\": " << getpid() << ",\n"
+        << "  \"time\": \"" << iso_time(realtime_ns()) << "\",\n";
+    put_control(out, snapshot);
+    put_faults(out, snapshot);
+    put_loop(out, snapshot);
+    put_bus(out, snapshot);
+    out << "  \"log_dropped\": " << snapshot.log_dropped << "\n}\n";
+    return out.str();
+}
+
+std::string replace_file(const std::string &file, const std::string &text) {
+    const std::string aside = file + ".new";
+    const int fd = open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (fd < 0) {
+        return aside + ": " + std::strerror(errno);
+    }
+    const ssize_t written = write(fd, text.data(), text.size());
+    const int why = written < 0 ? errno : ENOSPC;
+    const bool is_whole = written == static_cast<ssize_t>(text.size());
+    const bool is_closed = close(fd) == 0;
+    if (is_whole && is_closed && std::rename(aside.c_str(), file.c_str()) == 0) {
+        return "";
+    }
+    const int reason = is_whole ? errno : why;
+    (void)unlink(aside.c_str());
+    return file + ": " + std::strerror(reason);
+}
+
+} // namespace quiesced
