@@ -1,6 +1,7 @@
 // SLCAN over a serial line: the adapter, a board's UART, or a pty.
 #include "can_backend.h"
 #include "slcan.h"
+#include "tick_linux.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,7 +10,6 @@
 #include <string.h>
 #include <sys/file.h>
 #include <termios.h>
-#include <time.h>
 #include <unistd.h>
 
 #define PATH_BYTES 108
@@ -35,12 +35,6 @@ typedef struct {
     uint8_t unsent[SLCAN_MAX_BYTES]; ///< rest of a line that was sent in part
     size_t unsent_bytes;
 } can_serial_t;
-
-static int64_t now_monotonic_ns(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
 
 static bool is_temporary(int number) {
     return number == EAGAIN || number == EINTR;
@@ -155,7 +149,7 @@ static bool read_more(can_serial_t *self) {
     if (bytes > 0) {
         self->read_at = 0;
         self->read_end = (size_t)bytes;
-        self->read_ns = now_monotonic_ns();
+        self->read_ns = tick_linux_now_ns();
         return true;
     }
     if (bytes == 0 || !is_temporary(errno)) {

@@ -2,6 +2,7 @@
 #include "can_backend.h"
 #include "can_error.h"
 #include "can_restart.h"
+#include "tick_linux.h"
 
 #include <errno.h>
 #include <linux/can.h>
@@ -38,16 +39,12 @@ static int64_t to_ns(const struct timespec *time) {
     return (int64_t)time->tv_sec * 1000000000 + time->tv_nsec;
 }
 
-static int64_t clock_ns(clockid_t clock) {
-    struct timespec now;
-    (void)clock_gettime(clock, &now);
-    return to_ns(&now);
-}
-
 /// The kernel stamps with the wall clock; what it stamped is a moment old.
 static int64_t to_monotonic_ns(int64_t wall_ns) {
-    const int64_t age_ns = clock_ns(CLOCK_REALTIME) - wall_ns;
-    const int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+    struct timespec wall;
+    (void)clock_gettime(CLOCK_REALTIME, &wall);
+    const int64_t age_ns = to_ns(&wall) - wall_ns;
+    const int64_t now_ns = tick_linux_now_ns();
     return age_ns >= 0 && age_ns < OLDEST_NS ? now_ns - age_ns : now_ns;
 }
 
@@ -134,7 +131,7 @@ static void take_error_frame(can_socket_t *self, const struct canfd_frame *frame
     }
     if (bus->state == CAN_BUS_OFF) {
         can_bus_count(&bus->counters.bus_off, 1);
-        bus->retry_ns = clock_ns(CLOCK_MONOTONIC) + self->restart_ns;
+        bus->retry_ns = tick_linux_now_ns() + self->restart_ns;
         can_bus_note(bus, "bus-off");
     } else {
         can_bus_note(bus, bus->state == CAN_BUS_PASSIVE ? "error passive" : "error active");
@@ -157,7 +154,7 @@ static int64_t take_control(can_socket_t *self, struct msghdr *message) {
             self->kernel_drops = drops;
         }
     }
-    return time_ns != 0 ? time_ns : clock_ns(CLOCK_MONOTONIC);
+    return time_ns != 0 ? time_ns : tick_linux_now_ns();
 }
 
 /// Returns the number of bytes, 0 where there is nothing.
