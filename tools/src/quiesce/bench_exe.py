@@ -40,10 +40,15 @@ def require_emulator() -> None:
         )
 
 
-def target_options(target: str) -> list[str]:
-    """Options of the bench for a target. UsageError where it cannot run here."""
+def target_options(target: str, linux: Sequence[str] = ()) -> list[str]:
+    """Options of the bench for a target. UsageError where it cannot run here.
+
+    linux: further ones for that target, its channel.
+    """
     if target == "host":
         return ["--target", "host"]
+    if target == "linux":
+        return ["--target", "linux", *linux]
     require_emulator()
     return ["--target", target, "--image", str(image(target))]
 

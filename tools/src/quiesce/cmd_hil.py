@@ -1,6 +1,7 @@
-"""`quiesce hil`: the published scenarios in closed loop, on the host and on the image in QEMU."""
+"""`quiesce hil`: the published scenarios in closed loop, on the host and on another target."""
 
 import argparse
+import dataclasses
 import json
 import shlex
 import sys
@@ -10,7 +11,7 @@ from typing import Any
 from quiesce import laws, scenarios
 from quiesce.atomic import output_files
 from quiesce.bench_exe import Bench, target_options
-from quiesce.errors import EXIT_FAILED
+from quiesce.errors import EXIT_FAILED, UsageError
 from quiesce.hil_metrics import Result, differing_cases, make_rows, metrics_json
 from quiesce.hil_page import make_page
 from quiesce.hil_runs import (
@@ -22,7 +23,8 @@ from quiesce.hil_runs import (
     measure_speed,
     measure_uart,
 )
-from quiesce.hil_table import comparison_table, summary
+from quiesce.hil_table import compared_text, comparison_table, summary, target_name
+from quiesce.linux_target import linux_channel
 from quiesce.paths import build_folder, shown
 from quiesce.reference import load_reference
 from quiesce.rule_surface import rule_surface
@@ -32,10 +34,12 @@ STEP = "step_10_20Hz"
 ON_TARGET = ("sine_5Hz", STEP)
 QUICK = ("sine_5Hz", STEP)
 SPEED_LAW = "fuzzy"
+TARGETS = {"all": ["host", "mps2"], "linux": ["host", "linux"]}
 TRACE_LAW = "fuzzy"
 TRACE_SEEDS = 5
 QUICK_TRACE_SEEDS = 2
 UART_EXCHANGES = 3000
+TELEMETRY_EVERY = 100
 
 EPILOG = f"""examples:
   quiesce hil                                  everything: table, report, metrics
@@ -43,13 +47,22 @@ EPILOG = f"""examples:
   quiesce hil --scenario step_10_20Hz --law fuzzy --law fuzzy_selftune_printed
   quiesce hil --scenario my_scenario.toml --target host
   quiesce hil --target host --json | python3 -m json.tool
+  quiesce hil --target linux --quick           the Linux controller quiesced, started here
+  quiesce hil --target linux --can slcan:tcp:localhost:5556      ... in a virtual machine
+  quiesce hil --target linux --can slcan:/dev/ttyACM0,bitrate=500000   ... behind an adapter
+  quiesce hil --target linux --can socketcan:can0 --telemetry-every 1
 
 scenarios: {", ".join((*STEADY, STEP))} (and any .toml file)
 laws:      {", ".join(laws.names())}
 
 Without --scenario, 5 Hz and the step run on the image, too. Open loop always runs: reductions are
 against it. Written to build/report/hil: index.html, metrics.json, details.json. Exit code 1 where
-the image does not answer bit for bit like the host.
+the target does not answer bit for bit like the host.
+
+--target linux runs the same scenarios as the image and the host beside it, and drives quiesced
+--lockstep, tick by tick, over CAN. Command, state and fault of every tick are compared, all words
+of telemetry every 100 ticks or as --telemetry-every says. Channels: slcan:DEVICE[,baud=N]
+[,bitrate=N] (serial line, pty, adapter), slcan:unix:PATH, slcan:tcp:HOST:PORT, socketcan:INTERFACE.
 """
 
 
@@ -63,6 +76,13 @@ def noise_mg(text: str) -> float:
 def seed(text: str) -> int:
     value = int(text)
     if not 0 <= value < 2**62:
+        raise ValueError
+    return value
+
+
+def ticks(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= 65535:
         raise ValueError
     return value
 
@@ -83,8 +103,16 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--law", metavar="NAME", help="law, repeatable (all)", **repeatable)
     parser.add_argument(
-        "--target", choices=["host", "mps2", "all"], default="all",
-        help="this machine, the image in QEMU, or both (%(default)s)",
+        "--target", choices=["host", "mps2", "linux", "all"], default="all",
+        help="this machine, the image in QEMU, the Linux controller over CAN, or all of the first "
+        "two (%(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--can", metavar="CHANNEL", help="what leads to quiesced --lockstep (one started here)"
+    )
+    parser.add_argument(
+        "--telemetry-every", type=ticks, metavar="N",
+        help=f"ticks between two bursts of all telemetry over CAN ({TELEMETRY_EVERY})",
     )  # fmt: skip
     parser.add_argument(
         "--set", metavar="NAME=VALUE", help="parameter for every law, repeatable", **repeatable
@@ -106,7 +134,7 @@ def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
     if all(law.name != laws.OPEN_LOOP for law in chosen):
         chosen.insert(0, laws.find(laws.OPEN_LOOP))
     default = QUICK if args.quick else (*STEADY, STEP)
-    if args.target == "mps2":
+    if args.target in ("mps2", "linux"):
         default = ON_TARGET
     names = list(dict.fromkeys(args.scenario)) or list(default)
     loaded = [scenarios.load(bench, name) for name in names]
@@ -116,11 +144,18 @@ def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
         scenarios=loaded,
         target_scenarios=[s.name for s in loaded] if args.scenario else ON_TARGET,
         laws=chosen,
-        targets=["host", "mps2"] if args.target == "all" else [args.target],
+        targets=TARGETS.get(args.target, [args.target]),
         is_quick=args.quick,
         settings=args.set,
         options=options,
+        telemetry_every=telemetry_every(args),
     )
+
+
+def telemetry_every(args: argparse.Namespace) -> int:
+    if args.target != "linux":
+        return 1
+    return args.telemetry_every or TELEMETRY_EVERY
 
 
 def say(text: str) -> None:
@@ -131,22 +166,25 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
     """What must run alone, after the closed-loop runs; then everything put together."""
     reference = load_reference()
     rows, beside = make_rows(runs, reference)
-    on_image = "mps2" in plan.targets
     equal = uart = None
-    if on_image:
+    if plan.checked_target:
         first_seed = 1 if args.seed is None else args.seed
         count = QUICK_TRACE_SEEDS if plan.is_quick else TRACE_SEEDS
-        say(f"comparing every word of every reply, image against host, {count} seeds")
+        name = target_name(plan.checked_target)
+        words = compared_text(plan.telemetry_every)
+        say(f"comparing {words}, {name} against host, {count} seeds")
         equal = compare_traces(
             bench,
             scenarios.load(bench, scenarios.TRACE_EQUALITY),
             laws.find(TRACE_LAW),
             range(first_seed, first_seed + count),
+            plan.options_of(plan.checked_target),
         )
+        equal["telemetry_every"] = plan.telemetry_every
     say("measuring speed, nothing else running")
     step, law = scenarios.load(bench, STEP), laws.find(SPEED_LAW)
-    speed = measure_speed(bench, step, law, plan.targets, plan.is_quick)
-    if on_image and not plan.is_quick:
+    speed = measure_speed(bench, step, law, plan)
+    if "mps2" in plan.targets and not plan.is_quick:
         say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
         uart = measure_uart(bench, UART_EXCHANGES)
     return Result(rows, beside, reference.published, equal, differing_cases(runs), speed, uart)
@@ -183,6 +221,10 @@ def rerun_command(args: argparse.Namespace) -> str:
         words += [word for value in getattr(args, option) for word in (f"--{option}", value)]
     if args.target != "all":
         words += ["--target", args.target]
+    if args.can is not None:
+        words += ["--can", args.can]
+    if args.telemetry_every is not None:
+        words += ["--telemetry-every", str(args.telemetry_every)]
     if args.seed is not None:
         words += ["--seed", str(args.seed)]
     if args.noise_mg is not None:
@@ -190,11 +232,30 @@ def rerun_command(args: argparse.Namespace) -> str:
     return shlex.join(words + (["--quick"] if args.quick else []))
 
 
+def check_target(args: argparse.Namespace) -> None:
+    """Refuses what does not go together, and what cannot run here, before anything runs."""
+    if args.target != "linux":
+        for option in ("can", "telemetry_every"):
+            if getattr(args, option) is not None:
+                raise UsageError(f"--{option.replace('_', '-')} goes with --target linux only")
+    for target in {"host": [], "linux": [], "mps2": ["mps2", "mps2-uart"]}.get(
+        args.target, ["mps2"]
+    ):
+        target_options(target)
+
+
 def run(args: argparse.Namespace) -> int:
     bench = Bench()
-    for target in {"host": [], "mps2": ["mps2", "mps2-uart"]}.get(args.target, ["mps2"]):
-        target_options(target)
-    runner = Runner(bench, make_plan(args, bench))
+    check_target(args)
+    plan = make_plan(args, bench)
+    if args.target != "linux":
+        return run_plan(args, bench, plan)
+    with linux_channel(args.can) as channel:
+        return run_plan(args, bench, dataclasses.replace(plan, can=channel))
+
+
+def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
+    runner = Runner(bench, plan)
     out = args.out or build_folder() / "report/hil"
     # Opened before the work, so that a folder that cannot be written is known at once.
     with output_files(out) as staging:

@@ -17,11 +17,13 @@ from quiesce.hil_plots import (
 )
 from quiesce.hil_runs import ConstantSearch, Run
 from quiesce.hil_table import (
+    compared_text,
     difference,
     groups,
     instruction_lines,
     published_difference,
     published_text,
+    target_name,
 )
 from quiesce.rule_surface import RuleSurface
 
@@ -89,15 +91,20 @@ def cards(result: Result) -> str:
         parts.append(
             card(
                 f"{equal['mismatches']} mismatches",
-                f"image against host, every word of {equal['ticks']:,} ticks, "
+                f"{target_name(equal['targets'][1])} against host, "
+                f"{compared_text(equal['telemetry_every'])} of {equal['ticks']:,} ticks, "
                 f"{len(equal['seeds'])} seeds, {equal['distinct_commands']:,} distinct commands",
                 is_bad=equal["mismatches"] > 0,
             )
         )
-    names = {"host": "real time: closed loop here", "mps2": "real time: the image in QEMU"}
+    names = {
+        "host": "real time: closed loop here",
+        "mps2": "real time: the image in QEMU",
+        "linux": "real time: quiesced over CAN",
+    }
     for target, factor in result.realtime_factor.items():
         if factor is not None:
-            parts.append(card(f"{factor:.0f} ×", names[target]))
+            parts.append(card(f"{factor:.{1 if factor < 10.0 else 0}f} ×", names[target]))
     worst = [row.instr_worst for row in result.rows if row.instr_worst is not None]
     if worst:
         parts.append(card(f"{max(worst):,}", "instructions in the worst tick of all runs"))
@@ -234,9 +241,9 @@ same excitation; negative is worse than doing nothing. Sensor noise {first.noise
 <p><b>Published</b>: measured by the paper on the real structure. <b>Simulated</b>: an independent
 simulation of this plant, sine cases without sensor noise. <b>Bound</b>: the best that any current
 waveform does on this plant (best found, ±0.5). Each <b>diff</b> is ours less the figure before it;
-for a published range, less its nearer end. <b>On</b>: “both” where host and image agree to every
-digit. The reversed sign of self-tuning stands beside the same published figure: the paper's printed
-table has the sign that makes 5 Hz worse on this plant.</p>
+for a published range, less its nearer end. <b>On</b>: “both” where host and the other target agree
+to every digit. The reversed sign of self-tuning stands beside the same published figure: the
+paper's printed table has the sign that makes 5 Hz worse on this plant.</p>
 {figures(result, runs, searches, surface)}
 {f"<h2>Instructions of the image</h2><pre>{html.escape(counts)}</pre>" if counts else ""}
 <h2>Run it again</h2>

@@ -1,7 +1,9 @@
 """The closed-loop runs behind `quiesce hil`: which ones, and their results from the bench."""
 
 import tempfile
+import threading
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -77,10 +79,21 @@ class Plan:
     is_quick: bool
     settings: Sequence[str] = ()
     options: Sequence[str] = field(default_factory=list)  # seed, noise: passed to every run
+    can: str | None = None  # channel of the target linux
+    telemetry_every: int = 1  # ticks between two bursts of all words, target linux
 
     @property
     def constant_step_mA(self) -> int:
         return QUICK_CONSTANT_STEP_mA if self.is_quick else CONSTANT_STEP_mA
+
+    @property
+    def checked_target(self) -> str | None:
+        """The target whose every reply is compared with the host's."""
+        return next((target for target in self.targets if target != "host"), None)
+
+    def options_of(self, target: str) -> list[str]:
+        linux = ["--telemetry-every", str(self.telemetry_every)]
+        return target_options(target, [*linux, "--can", self.can] if self.can else [])
 
     def laws_on(self, target: str) -> list[Law]:
         """The quick plan runs on the image what tells most: the fuzzy law, and what it needs."""
@@ -111,7 +124,8 @@ class Runner:
         self.plan = plan
         # Refuses bad settings before anything runs.
         self._params = effective_params(bench, plan.settings)
-        self._target_options = {t: target_options(t) for t in plan.targets}
+        self._target_options = {t: plan.options_of(t) for t in plan.targets}
+        self._line = threading.Lock()  # one bench at a time talks over a CAN channel
 
     def run_all(self) -> tuple[list[Run], list[ConstantSearch]]:
         cases, search_in = self.plan.cases(), self.plan.searches()
@@ -153,7 +167,8 @@ class Runner:
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
             file = Path(folder) / "trace"
             options += [*self._target_options[case.target], "--trace", str(file)]
-            figures = self._bench.json("run", *options)
+            with self._line if case.target == "linux" else nullcontext():
+                figures = self._bench.json("run", *options)
             trace = read_trace(file, TRACE_COLUMNS)
         progress.done(f"{case.scenario.name} {case.law.name} {case.target}: {headline(figures)}")
         return Run(case, figures, trace)
@@ -170,25 +185,26 @@ def headline(figures: dict[str, Any]) -> str:
 
 
 def measure_speed(
-    bench: Bench, scenario: Scenario, law: Law, targets: Sequence[str], is_quick: bool
+    bench: Bench, scenario: Scenario, law: Law, plan: Plan
 ) -> dict[str, float | None]:
     """Real-time factor of the closed loop, nothing else running here: the best of some repeats."""
-    repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 10}
+    is_quick = plan.is_quick
+    repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 10, "linux": 1}
     factors: dict[str, float | None] = {"host": None, "mps2": None}
-    for target in targets:
+    for target in plan.targets:
         options = ["--scenario", str(scenario.file), "--law", law.bench_law]
-        options += ["--repeat", str(repeats[target]), *target_options(target)]
+        options += ["--repeat", str(repeats[target]), *plan.options_of(target)]
         factors[target] = bench.json("run", *options)["realtime_factor"]
     return factors
 
 
 def compare_traces(
-    bench: Bench, scenario: Scenario, law: Law, seeds: Sequence[int]
+    bench: Bench, scenario: Scenario, law: Law, seeds: Sequence[int], target: Sequence[str]
 ) -> dict[str, Any]:
-    """Every word of every reply, image against host."""
+    """Every word of every reply that the target sends, against the host. target: its options."""
     options = ["--scenario", str(scenario.file), "--law", law.bench_law]
     options += [*setting_options(law.settings), "--seeds", ",".join(map(str, seeds))]
-    return bench.json("compare", *options, *target_options("mps2"))
+    return bench.json("compare", *options, *target)
 
 
 def measure_uart(bench: Bench, exchanges: int) -> dict[str, Any]:

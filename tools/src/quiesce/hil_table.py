@@ -13,7 +13,7 @@ HEAD_1 = (
     f"{'mean':>5}{'settle':>7}"
 )
 HEAD_2 = (
-    f"{'law':22}{'on':4}{'publ.':>6}{'ours':>6}{'diff':>6}{'sim.':>6}{'diff':>6}{'bound':>6}"
+    f"{'law':21}{'on':5}{'publ.':>6}{'ours':>6}{'diff':>6}{'sim.':>6}{'diff':>6}{'bound':>6}"
     f"{'diff':>6}{'ours':>6}{'sim.':>6}{'diff':>6}{'bound':>6}{'diff':>6}{'A':>5}{'s':>7}"
 )
 NOTES = (
@@ -22,9 +22,13 @@ NOTES = (
     "sine cases without sensor noise. bound: the best that any current waveform does (best found, "
     "+-0.5).\n"
     "diff: ours less the figure before it; for a range, less its nearer end. on: 'both' where host "
-    "and image\n"
-    "agree to every digit."
+    "and the\n"
+    "other target agree to every digit."
 )
+
+
+def target_name(target: str) -> str:
+    return {"linux": "quiesced"}.get(target, "image")
 
 
 def number(value: float | None, digits: int = 1, width: int = 6) -> str:
@@ -56,7 +60,7 @@ def table_line(row: Row, beside: Beside) -> str:
     sim_amp = beside.simulated.get("amp_reduction_pct")
     sim_accel = beside.simulated.get("accel_rms_reduction_pct")
     cells = [
-        f"{laws.find(row.law).label:22}{row.target:4}",
+        f"{laws.find(row.law).label:21}{row.target:5}",
         f"{published_text(beside.published):>6}",
         number(amp),
         number(published_difference(amp, beside.published)),
@@ -123,12 +127,19 @@ def comparison_table(result: Result) -> str:
     return "\n".join([*lines, "-" * len(HEAD_2), NOTES])
 
 
+def compared_text(telemetry_every: int) -> str:
+    if telemetry_every == 1:
+        return "every word of every reply"
+    return f"every command, state and fault, and all words every {telemetry_every} ticks"
+
+
 def trace_line(result: Result) -> str:
     equal = result.trace_equal
     if equal is None:
         return "trace equality: not run (host only)"
     if equal["mismatches"] == 0:
-        verdict = "every word of every reply is the same"
+        every = equal["telemetry_every"]
+        verdict = compared_text(every) + (" is the same" if every == 1 else ": the same\n ")
     else:
         first = equal["first_mismatch"]
         verdict = (
@@ -144,14 +155,17 @@ def trace_line(result: Result) -> str:
 
 
 def differing_line(result: Result) -> str:
+    name = target_name(result.trace_equal["targets"][1] if result.trace_equal else "mps2")
     if result.differing:
-        return f"FAILED, telemetry differs between host and image: {', '.join(result.differing)}"
-    return "telemetry checksums of all runs above: the same on host and image"
+        return f"FAILED, telemetry differs between host and {name}: {', '.join(result.differing)}"
+    if result.trace_equal and result.trace_equal["telemetry_every"] > 1:
+        return f"all words that {name} sent in the runs above: the same as the host's"
+    return f"telemetry checksums of all runs above: the same on host and {name}"
 
 
 def speed_lines(result: Result) -> list[str]:
     factors = [
-        f"{name} {factor:.0f}x"
+        f"{name} {factor:.{1 if factor < 10.0 else 0}f}x"
         for name, factor in result.realtime_factor.items()
         if factor is not None
     ]
