@@ -10,7 +10,8 @@ ARM64_ROOT="$ROOT/build/deps/arm64"
 VM_KERNEL="$VM_FOLDER/kernel"
 
 # For the cross build, and what its programs are linked with at run time.
-ARM64_PACKAGES=(libc6 libgcc-s1 libstdc++6 libgpiod-dev libgpiod2 libtomlplusplus-dev libgtest-dev)
+ARM64_PACKAGES=(libc6 libgcc-s1 libstdc++6 libgpiod-dev libgpiod2 libtomlplusplus-dev
+    libtomlplusplus3 libgtest-dev)
 # The guest's tools and their libraries.
 ARM64_PACKAGES+=(busybox-static can-utils gpiod rt-tests libnuma1
     iproute2 libbpf1 libelf1 libmnl0 libbsd0 libcap2 libmd0 zlib1g)
