@@ -18,6 +18,7 @@ struct accel_adxl355 {
     uint32_t clock_Hz;
 };
 
+// NOLINTNEXTLINE(readability-non-const-parameter): the kernel writes to `in`
 static bool exchange(void *context, const uint8_t *out, uint8_t *in, size_t bytes) {
     const accel_adxl355_t *const self = context;
     const struct spi_ioc_transfer transfer = {

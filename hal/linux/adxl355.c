@@ -27,7 +27,7 @@
 
 /// A command byte is the address and, in bit 0, whether it reads.
 static bool read_registers(const adxl355_t *self, uint8_t first, uint8_t *out, size_t count) {
-    uint8_t command[ADXL355_MAX_TRANSFER] = {(uint8_t)(first << 1 | 1u)};
+    uint8_t command[ADXL355_MAX_TRANSFER] = {(uint8_t)((unsigned int)first << 1 | 1u)};
     uint8_t answer[ADXL355_MAX_TRANSFER] = {0};
     if (count >= ADXL355_MAX_TRANSFER ||
         !self->bus.exchange(self->bus.context, command, answer, count + 1u)) {

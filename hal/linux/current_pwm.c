@@ -124,8 +124,8 @@ static bool set_polarity(const current_pwm_t *self, linux_error_t *error) {
 /// Period and zero current, without a moment of more. The kernel refuses a duty cycle beyond the
 /// period, and every write but the period's while that is 0.
 static bool set_period(const current_pwm_t *self, int64_t period_ns, linux_error_t *error) {
-    int64_t enable;
-    int64_t duty_ns;
+    int64_t enable = 0;
+    int64_t duty_ns = 0;
     if (!get(self, "enable", &enable, error) || !get(self, "duty_cycle", &duty_ns, error)) {
         return false;
     }

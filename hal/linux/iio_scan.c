@@ -1,9 +1,6 @@
 #include "iio_scan.h"
 
-#include <stdlib.h>
-
 #define MAX_BITS 32u
-#define MAX_CHANNELS 8u
 #define MAX_STORAGE_BITS 64u
 
 /// A number of at most 64 at *text, which moves behind it.
@@ -30,7 +27,12 @@ static bool take(const char **text, char expected) {
 
 static bool take_shift(const char **text, uint32_t *shift) {
     *shift = 0;
-    return **text == '\0' || (take(text, '>') && take(text, '>') && take_number(text, shift));
+    if (**text == '\0') {
+        return true;
+    }
+    const bool is_first = take(text, '>');
+    const bool is_second = take(text, '>');
+    return is_first && is_second && take_number(text, shift);
 }
 
 static bool is_storage(uint32_t bits) {
@@ -65,29 +67,29 @@ bool iio_parse_type(const char *text, iio_channel_t *channel) {
     return true;
 }
 
-static int by_index(const void *a, const void *b) {
-    const uint32_t first = (*(const iio_channel_t *const *)a)->index;
-    const uint32_t second = (*(const iio_channel_t *const *)b)->index;
-    return first < second ? -1 : first > second;
-}
-
 static uint32_t align(uint32_t offset, uint32_t bytes) {
     return (offset + bytes - 1u) / bytes * bytes;
 }
 
+/// The channel with the least index from `from` on; NULL: there is none.
+static iio_channel_t *next_channel(iio_channel_t *channels, uint32_t count, uint32_t from) {
+    iio_channel_t *next = NULL;
+    for (uint32_t i = 0; i < count; i++) {
+        if (channels[i].index >= from && (next == NULL || channels[i].index < next->index)) {
+            next = &channels[i];
+        }
+    }
+    return next;
+}
+
 uint32_t iio_lay_out(iio_channel_t *channels, uint32_t count) {
-    iio_channel_t *order[MAX_CHANNELS];
     uint32_t offset = 0;
     uint32_t largest = 1;
-    const uint32_t used = count < MAX_CHANNELS ? count : MAX_CHANNELS;
-    for (uint32_t i = 0; i < used; i++) {
-        order[i] = &channels[i];
-    }
-    qsort(order, used, sizeof order[0], by_index);
-    for (uint32_t i = 0; i < used; i++) {
-        order[i]->offset = align(offset, order[i]->storage);
-        offset = order[i]->offset + order[i]->storage;
-        largest = order[i]->storage > largest ? order[i]->storage : largest;
+    for (iio_channel_t *at = next_channel(channels, count, 0); at != NULL;
+         at = next_channel(channels, count, at->index + 1u)) {
+        at->offset = align(offset, at->storage);
+        offset = at->offset + at->storage;
+        largest = at->storage > largest ? at->storage : largest;
     }
     return align(offset, largest);
 }

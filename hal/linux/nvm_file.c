@@ -1,7 +1,5 @@
 #include "nvm_file.h"
 
-#include "crc32.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -33,11 +31,18 @@ static size_t file_bytes(size_t bytes) {
     return HEADER_BYTES + (bytes + 3u) / 4u * 4u;
 }
 
+/// CRC-32 (IEEE 802.3, reflected, as zlib's). Bit by bit: nobody waits for it.
 static uint32_t crc_of(const record_t *record, size_t bytes) {
-    uint32_t words[RECORD_WORDS + (HEADER_BYTES - CRC_FROM) / 4u];
-    const size_t covered = file_bytes(bytes) - CRC_FROM;
-    memcpy(words, (const uint8_t *)record + CRC_FROM, covered);
-    return crc32_words(words, (uint32_t)(covered / 4u));
+    const uint8_t *const from = (const uint8_t *)record;
+    const size_t end = file_bytes(bytes);
+    uint32_t crc = UINT32_MAX;
+    for (size_t i = CRC_FROM; i < end; i++) {
+        crc ^= from[i];
+        for (int bit = 0; bit < 8; bit++) {
+            crc = crc >> 1 ^ ((crc & 1u) != 0u ? 0xEDB88320u : 0u);
+        }
+    }
+    return ~crc;
 }
 
 /// A record without checksum and data.

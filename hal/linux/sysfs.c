@@ -14,6 +14,7 @@
 
 bool sysfs_path(sysfs_path_t *path, linux_error_t *error, const char *format, ...) {
     va_list arguments;
+    path->text[0] = '\0';
     va_start(arguments, format);
     const int bytes = vsnprintf(path->text, sizeof path->text, format, arguments);
     va_end(arguments);

@@ -59,6 +59,18 @@ static void test_record_of_any_length_comes_back(void) {
     }
 }
 
+/// Files of other versions of the program stay readable. The checksum is zlib's.
+static void test_format_is_as_it_was(void) {
+    static const uint8_t file[] = {
+        0x4E, 0x56, 0x4D, 0x31, 0x4D, 0xF2, 0x70, 0x09, 0x70, 0x61, 0x72, 0x61, 0x6D, 0x00,
+        0x00, 0x00, 0x03, 0x00, 0x00, 0x00, 0x04, 0x00, 0x00, 0x00, 0x78, 0x56, 0x34, 0x12,
+    };
+    uint32_t back = 0;
+    scratch_write_bytes("record", file, sizeof file);
+    TEST_ASSERT_EQUAL_MESSAGE(NVM_OK, read_record("record", &back, sizeof back), error.text);
+    TEST_ASSERT_EQUAL_HEX32(0x12345678, back);
+}
+
 static void test_missing_file_is_no_damage(void) {
     uint32_t value = 7;
     TEST_ASSERT_EQUAL(NVM_MISSING, read_record("none", &value, sizeof value));
@@ -223,6 +235,7 @@ static void test_full_disk_keeps_what_was_there(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_record_of_any_length_comes_back);
+    RUN_TEST(test_format_is_as_it_was);
     RUN_TEST(test_missing_file_is_no_damage);
     RUN_TEST(test_other_kind_version_or_length_is_damage);
     RUN_TEST(test_every_cut_and_every_flipped_bit_is_damage);
