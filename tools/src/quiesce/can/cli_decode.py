@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.can.options import add_database_option, add_only_option, database_of, ids_of
-from quiesce.errors import EXIT_FAILED
+from quiesce.errors import EXIT_FAILED, UsageError
 
 EPILOG = """examples:
   quiesce can decode drive.asc
@@ -43,11 +43,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from quiesce.can.readers import read_log
-    from quiesce.can.traffic import UNKNOWN, Traffic, summary_line
+    from quiesce.can.readers import check_log, read_log
+    from quiesce.can.traffic import UNKNOWN, Traffic
 
     database = database_of(args)
     only = ids_of(args.only, database)
+    for file in args.files:
+        check_log(file)
     write = WRITERS[args.to]()
     is_right = True
     for file in args.files:
@@ -57,13 +59,22 @@ def run(args: argparse.Namespace) -> int:
                 verdict = traffic.take(frame)
                 if verdict != UNKNOWN and (only is None or frame.arbitration_id in only):
                     write(database, frame, verdict)
-        finally:
-            summary = traffic.summary()
-            if summary["frames"]:
-                sys.stdout.flush()
-                print(f"{file}: {summary_line(summary)}", file=sys.stderr)
+        except UsageError:
+            if traffic.frames:
+                tell(file, traffic)
+            raise
+        summary = tell(file, traffic)
         is_right = is_right and not (summary["wrong_crc"] or summary["wrong_length"])
     return 0 if is_right else EXIT_FAILED
+
+
+def tell(file: Path, traffic: Any) -> dict[str, Any]:
+    from quiesce.can.traffic import summary_line
+
+    summary = traffic.summary()
+    sys.stdout.flush()
+    print(f"{file}: {summary_line(summary)}", file=sys.stderr)
+    return summary
 
 
 def signals_of(database: Any, frame: Any) -> dict[str, Any]:

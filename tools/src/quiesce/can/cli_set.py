@@ -73,25 +73,30 @@ def apply(services: Any, settings: Mapping[int, int]) -> None:
 
 def must(reply: Any, services: Any, operation: str) -> None:
     """BenchFailure, with what would be allowed, unless the reply is DONE."""
-    from quiesce.can.parameters import name_of, parameters
     from quiesce.can.services import DONE, no_answer
-    from quiesce.params import expected
 
     if reply is None:
         raise BenchFailure(
             f"{no_answer(services.link)} ({operation}; what was staged is discarded)"
         )
-    if reply.result == DONE:
-        return
-    known = parameters()
-    index = reply.param_index
-    if reply.result in ("OUT_OF_RANGE", "CONTRADICTION") and index < len(known):
-        why = "is out of its range" if reply.result == "OUT_OF_RANGE" else "contradicts another"
-        raise BenchFailure(
-            f"refused: {name_of(index)} {why}; it is {expected(known[index])} "
-            "(docs/parameters.md); nothing was changed"
-        )
-    raise BenchFailure(f"refused: {operation} of {name_of(index)}: {reply.result}")
+    if reply.result != DONE:
+        raise BenchFailure(f"refused: {why_refused(reply, operation)}; nothing was changed")
+
+
+def why_refused(reply: Any, operation: str) -> str:
+    from quiesce.can.parameters import name_of, parameters
+    from quiesce.params import expected
+
+    name, known = name_of(reply.param_index), parameters()
+    if reply.result == "FAULT_IS_LATCHED":
+        return "the controller is in a latched fault; acknowledge that first"
+    if reply.result == "NO_SUCH_PARAMETER":
+        return f"this controller's firmware has no parameter {name}"
+    if reply.result in ("OUT_OF_RANGE", "CONTRADICTION") and reply.param_index < len(known):
+        is_alone = reply.result == "OUT_OF_RANGE"
+        why = "is out of its range" if is_alone else "contradicts another parameter"
+        return f"{name} {why}; it is {expected(known[reply.param_index])} (docs/parameters.md)"
+    return f"{operation} of {name}: {reply.result}"
 
 
 def verify(services: Any, before: list[int], settings: Mapping[int, int]) -> None:

@@ -5,11 +5,13 @@ a temporary file until the end; we write a whole recording in one go. DBC and pa
 as attachments.
 """
 
+import contextlib
 import heapq
 import itertools
 import logging
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
+from functools import cache
 from hashlib import md5
 from pathlib import Path
 from typing import Any
@@ -155,6 +157,17 @@ def frames_of(signal: Any, start_s: float) -> list[Any]:
     ]
 
 
+@cache
 def quiet() -> None:
-    """asammdf logs what it stumbles over; the one line that we print says it."""
+    """asammdf logs what it stumbles over, and where its constructor fails its destructor prints a
+    stack trace; the one line that we print says it."""
+    from asammdf.blocks.mdf_v4 import MDF4
+
     logging.getLogger("asammdf").setLevel(logging.CRITICAL + 1)
+    end = MDF4.__del__
+
+    def end_quietly(self: Any) -> None:
+        with contextlib.suppress(Exception):  # of whatever is half there
+            end(self)
+
+    MDF4.__del__ = end_quietly

@@ -38,16 +38,21 @@ class Place:
         return f"frame {self.frames + 1}"
 
 
+def check_log(file: Path) -> None:
+    """UsageError where its kind is unknown or it is empty, OSError where it is not there."""
+    if file.suffix.lower() not in READERS:
+        raise UsageError(f"{file}: unknown kind of log; there are {FORMATS}")
+    if file.stat().st_size == 0:
+        raise UsageError(f"{file}: empty")
+
+
 def read_log(file: Path) -> Iterator[Any]:
     """The frames of a log, as can.Message, one after the other.
 
     UsageError, after the frames before it, where something is malformed or the file is cut off.
     """
+    check_log(file)
     suffix = file.suffix.lower()
-    if suffix not in READERS:
-        raise UsageError(f"{file}: unknown kind of log; there are {FORMATS}")
-    if file.stat().st_size == 0:
-        raise UsageError(f"{file}: empty")
     place = Place()
     messages = READERS[suffix](file, place)
     while True:
@@ -116,7 +121,8 @@ class TrcReader(can.TRCReader):
 
 def read_blf(file: Path, _: Place) -> Iterator[Any]:
     size = file.stat().st_size
-    with can.BLFReader(file) as reader:
+    with file.open("rb") as opened:
+        reader = can.BLFReader(opened)
         yield from reader
         if reader.file_size > size:
             raise ValueError(f"{size} of {reader.file_size} bytes are there")

@@ -5,6 +5,7 @@ comes: a candump log beside it takes the frames and is turned into the MDF4 file
 that fails, the candump log stays.
 """
 
+import contextlib
 import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -146,11 +147,13 @@ class MdfFile(CandumpFile):
 
         part = self.target.with_name(self.target.name + ".part.mf4")
         try:
-            write_mdf(part, read_log(self.path), attachments, "\n".join(self._notes))
+            frames = read_log(self.path) if self.frames else ()
+            write_mdf(part, frames, attachments, "\n".join(self._notes))
             part.replace(self.target)
             self.path.unlink()
         except Exception as error:  # of asammdf, or the disk
-            part.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                part.unlink()
             self.failure = f"{self.target}: {one_line(error)[:200]}; the frames are in {self.path}"
 
 

@@ -1,0 +1,144 @@
+// A controller for the tests of the CAN tools: the firmware's node on simulated peripherals, at
+// 1 kHz, with SLCAN on a file descriptor. Runs until its input ends or SIGTERM.
+//
+// can_peer FD [--drop N] [--corrupt N] [--no-store] [--silent]
+//   --drop N     the bus loses every Nth frame
+//   --corrupt N  every Nth frame has a bit flipped
+//   --silent     answers no requests
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal_sim.h"
+#include "node.h"
+#include "slcan.h"
+
+#define TICK_NS 1000000L
+#define NS_PER_S 1000000000L
+#define PI 3.14159265358979
+
+typedef struct {
+    int fd;
+    unsigned drop;
+    unsigned corrupt;
+    bool has_store;
+    bool is_silent;
+    unsigned sent;
+    uint32_t dropped;
+    slcan_decoder_t decoder;
+    node_t node;
+} peer_t;
+
+static volatile sig_atomic_t stop;
+
+static void end(int number) {
+    (void)number;
+    stop = 1;
+}
+
+static bool keep(void *context, const quiesce_params_t *params) {
+    (void)params;
+    return ((const peer_t *)context)->has_store;
+}
+
+static void receive(peer_t *peer) {
+    uint8_t bytes[1024];
+    const ssize_t count = read(peer->fd, bytes, sizeof bytes);
+    for (ssize_t i = 0; i < count; i++) {
+        can_frame_t frame;
+        if (slcan_decode(&peer->decoder, bytes[i], &frame) && !peer->is_silent) {
+            node_receive(&peer->node, &frame);
+        }
+    }
+}
+
+static void send_frame(peer_t *peer, const can_frame_t *frame) {
+    can_frame_t wire = *frame;
+    peer->sent++;
+    if (peer->drop != 0u && peer->sent % peer->drop == 0u) {
+        return;
+    }
+    if (peer->corrupt != 0u && peer->sent % peer->corrupt == 0u) {
+        wire.data[0] ^= 0x10u;
+    }
+    uint8_t line[SLCAN_MAX_BYTES];
+    const size_t length = slcan_encode(&wire, line);
+    if (write(peer->fd, line, length) != (ssize_t)length) {
+        peer->dropped++;
+    }
+}
+
+static void tick(peer_t *peer, hal_accel_t *accel, unsigned number) {
+    const double counts = 20000.0 * sin(2.0 * PI * 8.0 * number / 1000.0);
+    hal_sim_accel_set(accel, (int32_t)counts + (int32_t)(number * 7919u % 13u), true);
+    const node_inputs_t inputs = {
+        .enable = true, .ticks_elapsed = 1, .work_us = 20, .tx_dropped = peer->dropped};
+    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    const uint32_t count = node_tick(&peer->node, &inputs, frames);
+    for (uint32_t i = 0; i < count; i++) {
+        send_frame(peer, &frames[i]);
+    }
+}
+
+static void run(peer_t *peer, hal_accel_t *accel) {
+    struct timespec due;
+    (void)clock_gettime(CLOCK_MONOTONIC, &due);
+    for (unsigned number = 0; !stop; number++) {
+        receive(peer);
+        tick(peer, accel, number);
+        due.tv_nsec += TICK_NS;
+        if (due.tv_nsec >= NS_PER_S) {
+            due.tv_nsec -= NS_PER_S;
+            due.tv_sec++;
+        }
+        (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, NULL);
+    }
+}
+
+static unsigned option(int argc, char **argv, const char *name) {
+    for (int i = 2; i + 1 < argc; i++) {
+        if (strcmp(argv[i], name) == 0) {
+            return (unsigned)strtoul(argv[i + 1], NULL, 10);
+        }
+    }
+    return 0;
+}
+
+static bool flag(int argc, char **argv, const char *name) {
+    for (int i = 2; i < argc; i++) {
+        if (strcmp(argv[i], name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int main(int argc, char **argv) {
+    static peer_t peer;
+    static hal_accel_t accel;
+    static hal_current_t current;
+    if (argc < 2) {
+        return 2;
+    }
+    peer.fd = (int)strtol(argv[1], NULL, 10);
+    peer.drop = option(argc, argv, "--drop");
+    peer.corrupt = option(argc, argv, "--corrupt");
+    peer.has_store = !flag(argc, argv, "--no-store");
+    peer.is_silent = flag(argc, argv, "--silent");
+    (void)signal(SIGTERM, end);
+    slcan_decoder_init(&peer.decoder);
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    if (!node_init(&peer.node, &params, NODE_ENABLE_BOARD, &accel, &current)) {
+        return 1;
+    }
+    peer.node.store = keep;
+    peer.node.store_context = &peer;
+    run(&peer, &accel);
+    return 0;
+}

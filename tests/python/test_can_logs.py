@@ -1,0 +1,334 @@
+"""CAN logs: every format there and back, what is malformed or cut off, what the disk refuses."""
+
+import csv
+import io
+import json
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import can
+import pytest
+from conftest import ROOT
+from quiesce.can.database import load
+from quiesce.can.e2e import protect
+from quiesce.can.readers import read_log
+from quiesce.can.writers import FORMATS, MdfFile, open_log
+from quiesce.errors import UsageError
+
+DATABASE = load()
+START_S = 1_700_000_000.25
+TRC = """;$FILEVERSION=2.1
+;$STARTTIME=45000.5
+;$COLUMNS=N,O,T,B,I,d,R,L,D
+      1       100.000 DT  1     0100 Rx -  8    01 02 03 04 05 06 07 08
+      2       110.500 DT  1     0010 Rx -  4    01 02 03 04
+"""
+
+
+def status(alive: int, rms_um_s2: int = 1_000_000) -> bytes:
+    data = DATABASE.encode("Status", state=2, rms_um_s2=rms_um_s2)
+    layout = DATABASE.by_name["Status"].protection
+    assert layout is not None
+    return protect(layout, alive % 16, data)
+
+
+def frame(index: int, data: bytes | None = None, frame_id: int = 0x100) -> can.Message:
+    return can.Message(
+        timestamp=START_S + 0.01 * index,
+        arbitration_id=frame_id,
+        is_extended_id=frame_id > 0x7FF,
+        data=status(index) if data is None else data,
+        channel=0,
+    )
+
+
+def attachments() -> list[tuple[str, bytes, str]]:
+    dump = b'{"parameters": {}}'
+    return [
+        ("quiesce.dbc", DATABASE.source.encode(), "application/octet-stream"),
+        ("parameters.json", dump, "application/json"),
+    ]
+
+
+def write(path: Path, frames: list[can.Message]) -> Path:
+    log = open_log(path, attachments)
+    for one in frames:
+        log.write(one)
+    log.close()
+    if isinstance(log, MdfFile):
+        log.finish()
+        assert log.failure == ""
+    return path
+
+
+def several(count: int = 500) -> list[can.Message]:
+    """Standard and extended ids, every length."""
+    rng = random.Random(5)
+    ids = (0x010, 0x100, 0x7FF, 0x18FF1234)
+    return [frame(i, rng.randbytes(rng.randint(0, 8)), rng.choice(ids)) for i in range(count)]
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_frames_survive_the_way_through_a_file(tmp_path: Path, suffix: str) -> None:
+    frames = several()
+    back = list(read_log(write(tmp_path / f"a{suffix}", frames)))
+    assert len(back) == len(frames)
+    for one, other in zip(frames, back, strict=True):
+        assert (one.arbitration_id, one.is_extended_id) == (
+            other.arbitration_id,
+            other.is_extended_id,
+        )
+        assert bytes(one.data) == bytes(other.data)
+        assert other.timestamp == pytest.approx(
+            one.timestamp, abs=1e-3 if suffix == ".asc" else 2e-6
+        )
+    assert sorted(tmp_path.iterdir()) == [tmp_path / f"a{suffix}"]
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_python_can_reads_what_we_write(tmp_path: Path, suffix: str) -> None:
+    path = write(tmp_path / f"a{suffix}", several())
+    with can.LogReader(path) as reader:
+        assert [bytes(one.data) for one in reader] == [bytes(one.data) for one in several()]
+
+
+def test_mdf_is_decoded_by_asammdf_with_its_own_attachment(tmp_path: Path) -> None:
+    from asammdf import MDF
+
+    values = [1000 * i for i in range(300)]
+    path = write(tmp_path / "a.mf4", [frame(i, status(i, v)) for i, v in enumerate(values)])
+    with MDF(path) as mdf:
+        content, name, _ = mdf.extract_attachment(0)
+        names = [str(name)] + [str(mdf.extract_attachment(i)[1]) for i in range(1, 2)]
+        assert content == DATABASE.source.encode()
+        assert [Path(one).name for one in names] == ["quiesce.dbc", "parameters.json"]
+        (tmp_path / "of_the_log.dbc").write_bytes(content)
+        decoded = mdf.extract_bus_logging({"CAN": [(tmp_path / "of_the_log.dbc", 0)]})
+        signal = decoded.get("rms_um_s2")
+        assert signal.samples.tolist() == values and signal.unit == "um/s2"
+        assert signal.timestamps[-1] - signal.timestamps[0] == pytest.approx(2.99, abs=1e-5)
+
+
+def test_mdf_larger_than_a_chunk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from quiesce.can import mdf
+
+    monkeypatch.setattr(mdf, "CHUNK", 100)
+    frames = several(450)
+    back = list(read_log(write(tmp_path / "a.mf4", frames)))
+    assert [bytes(one.data) for one in back] == [bytes(one.data) for one in frames]
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_an_empty_recording_is_a_file(tmp_path: Path, suffix: str) -> None:
+    path = write(tmp_path / f"a{suffix}", [])
+    if path.stat().st_size:  # a candump log has no header
+        assert list(read_log(path)) == []
+
+
+def test_notes_are_where_the_format_has_a_place(tmp_path: Path) -> None:
+    for suffix in FORMATS:
+        log = open_log(tmp_path / f"a{suffix}", attachments)
+        for i in range(20):
+            log.write(frame(i))
+            if i == 9:
+                log.note("bus lost:\nÄ gap", START_S + 0.095)
+        log.close()
+        if isinstance(log, MdfFile):
+            log.finish()
+        assert len(list(read_log(tmp_path / f"a{suffix}"))) == 20
+    assert "// 1700000000.345000 bus lost: Ä gap\n" in (tmp_path / "a.asc").read_text()
+
+    from asammdf import MDF
+
+    with MDF(tmp_path / "a.mf4") as mdf:
+        assert "bus lost: Ä gap" in mdf.header.comment
+
+
+def test_trc_of_other_tools_is_read(tmp_path: Path) -> None:
+    (tmp_path / "a.trc").write_text(TRC)
+    assert [one.arbitration_id for one in read_log(tmp_path / "a.trc")] == [0x100, 0x010]
+
+
+# Malformed logs
+
+CANDUMP = "(1.5) can0 100#0102030405060708 R\n"
+CSV = "timestamp,arbitration_id,extended,remote,error,dlc,data\n"
+ASC = "date Tue Nov 14 22:13:20.250 2023\nbase hex  timestamps absolute\ninternal events logged\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.log", "", "empty"),
+        ("a.log", "hello\n", "line 1: expected '(SECONDS) CHANNEL ID#DATA'"),
+        ("a.log", CANDUMP + "(1.6) can0 100#01020\n", "line 2"),
+        ("a.log", CANDUMP + "(1.6) can0 100#0102030405", "ok"),
+        ("a.log", CANDUMP + "(1.6) can", "line 2"),
+        ("a.log", CANDUMP + "(x) can0 100#01\n", "line 2"),
+        ("a.log", CANDUMP + "(1.6) can0 FFF#01\n", "line 2"),
+        ("a.log", CANDUMP + "(nan) can0 100#01\n", "line 2"),
+        ("a.log", CANDUMP + "(1.6) can0 100#010203040506070809\n", "line 2"),
+        ("a.csv", "time,id\n1,2\n", "expected the columns"),
+        ("a.csv", CSV + "1.5,0x100,0,0,0,8,AQID\n", "line 2"),
+        ("a.csv", CSV + "1.5,0x100,0,0,0,3,AQ", "line 2"),
+        ("a.csv", CSV + "1.5,0x100\n", "line 2"),
+        ("a.asc", "nonsense\n", "not an ASC log"),
+        ("a.asc", ASC + " 0.1 1  100 Rx d 8 01 02 03\n", "line 4"),
+        ("a.asc", ASC + " 0.1 1  XYZ Rx d 1 01\n", "line 4"),
+        ("a.asc", "date Tue never\n" + ASC, "not an ASC log"),
+        ("a.trc", "nonsense\n", "not a TRC log"),
+        ("a.trc", TRC.replace("01 02 03 04\n", "01 02"), "not a TRC log"),
+        ("a.trc", TRC.replace("4    01 02 03 04\n", ""), "not a TRC log"),
+        ("a.blf", "LOGG", "not a BLF log"),
+        ("a.mf4", "MDF     4.10", "not an MDF4 log"),
+        ("a.mf4", "nonsense" * 100, "not an MDF4 log"),
+        ("a.db", "x", "unknown kind of log"),
+        ("a", "x", "unknown kind of log"),
+    ],
+)
+def test_malformed_logs(tmp_path: Path, name: str, content: str, words: str) -> None:
+    (tmp_path / name).write_text(content)
+    if words == "ok":  # cut off where a shorter frame remains: nobody can tell
+        assert len(list(read_log(tmp_path / name))) == 2
+        return
+    with pytest.raises(UsageError, match=".") as caught:
+        list(read_log(tmp_path / name))
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_cut_off_and_damaged_logs_end_in_one_line(tmp_path: Path, suffix: str) -> None:
+    """Any prefix, and any damage: frames, or one clear line; never another exception."""
+    whole = write(tmp_path / f"whole{suffix}", several(120)).read_bytes()
+    rng = random.Random(11)
+    refused = 0
+    for _ in range(60):
+        data = bytearray(whole[: rng.randrange(1, len(whole))])
+        for _ in range(rng.choice((0, 0, 1, 8))):
+            data[rng.randrange(len(data))] = rng.randrange(256)
+        path = tmp_path / f"part{suffix}"
+        path.write_bytes(data)
+        try:
+            list(read_log(path))
+        except UsageError as error:
+            refused += 1
+            assert str(error).startswith(str(path)) and "\n" not in str(error)
+    assert refused > 5
+
+
+@pytest.mark.parametrize("suffix", [".blf", ".mf4"])
+def test_binary_logs_that_are_cut_off_are_refused(tmp_path: Path, suffix: str) -> None:
+    path = write(tmp_path / f"a{suffix}", several(2000))
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(UsageError):
+        list(read_log(path))
+
+
+# decode
+
+
+def log_with_faults(path: Path) -> Path:
+    frames = [frame(i) for i in range(20)]
+    frames[4].data[2] ^= 1  # wrong CRC, and counted as lost by the next one
+    del frames[10:12]  # lost
+    frames[15] = frame(16, frames[14].data)  # repeated, and one lost
+    frames.append(frame(30, b"\1\2", 0x123))
+    frames.append(frame(31, b"\1\2", 0x108))
+    return write(path, frames)
+
+
+def test_decode_reports_what_is_wrong(quiesce, tmp_path: Path) -> None:
+    result = quiesce("can", "decode", log_with_faults(tmp_path / "a.log"))
+    assert result.returncode == 1
+    assert "1 of unknown ids (0x123), 1 wrong CRC, 1 wrong length, 4 lost" in result.stderr
+    assert "1 repeated" in result.stderr
+    lines = result.stdout.splitlines()
+    assert len(lines) == 19 and "[crc]" in lines[4] and "[repeated]" in result.stdout
+    assert "state=RUN" in lines[0] and "rms_um_s2=1000000" in lines[0]
+
+
+def test_decode_to_csv_and_json_lines(quiesce, tmp_path: Path) -> None:
+    path = write(tmp_path / "a.blf", [frame(i) for i in range(3)] + [frame(3, bytes(8), 0x108)])
+    rows = list(csv.DictReader(io.StringIO(quiesce("can", "decode", path, "--to", "csv").stdout)))
+    assert {row["message"] for row in rows} == {"Status", "Motion"}
+    assert [r["value"] for r in rows if r["signal"] == "rms_um_s2"] == ["1000000"] * 3
+    assert {r["unit"] for r in rows if r["signal"] == "rms_um_s2"} == {"um/s2"}
+    text = quiesce("can", "decode", path, "--to", "jsonl", "--only", "0x108").stdout
+    (row,) = [json.loads(line) for line in text.splitlines()]
+    assert row["message"] == "Motion" and row["signals"]["freq_uHz"] == 0
+
+
+def test_decode_prints_what_comes_before_the_fault(quiesce, tmp_path: Path) -> None:
+    path = write(tmp_path / "a.log", [frame(i) for i in range(5)])
+    with path.open("a") as file:
+        file.write("(1700000001.0) can0 100#01")
+    with path.open("a") as file:
+        file.write("X\n")
+    result = quiesce("can", "decode", path)
+    assert result.returncode == 2 and len(result.stdout.splitlines()) == 5
+    assert "line 6" in result.stderr and "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["none.log"], "No such file"),
+        (["a.txt"], "unknown kind of log"),
+        (["a.log", "--only", "Nothing"], "no such message"),
+        (["a.log", "--to", "xml"], "--to"),
+        ([], "FILE"),
+    ],
+)
+def test_decode_refuses(refused, tmp_path: Path, arguments: list[str], words: str) -> None:
+    (tmp_path / "a.txt").write_text("x")
+    write(tmp_path / "a.log", [])
+    assert words in refused("can", "decode", *arguments)
+
+
+# A disk that takes no more
+
+LIMITED = """
+import resource, signal, sys
+sys.path[:0] = [{root!r} + "/tools/src", {root!r} + "/tests/python"]
+from pathlib import Path
+from quiesce.can.writers import open_log
+import test_can_logs as logs
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))
+log = open_log(Path({path!r}), logs.attachments)
+for i in range(20000):
+    log.write(logs.frame(i))
+    if log.error:
+        break
+log.close()
+print(log.error.strerror)
+"""
+
+
+@pytest.mark.parametrize(
+    ("suffix", "limit"),
+    [(".log", 150_000), (".asc", 150_000), (".blf", 100_000), (".csv", 150_000)],
+)
+def test_what_a_full_disk_took_is_readable(tmp_path: Path, suffix: str, limit: int) -> None:
+    path = tmp_path / f"a{suffix}"
+    code = LIMITED.format(root=str(ROOT), limit=limit, path=str(path))
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert result.stdout == "File too large\n", result.stderr
+    back = list(read_log(path))
+    assert len(back) > 1000
+    assert [bytes(one.data) for one in back] == [status(i) for i in range(len(back))]
+
+
+def test_an_mdf_that_does_not_fit_leaves_its_frames(tmp_path: Path) -> None:
+    log = open_log(tmp_path / "a.mf4", attachments)
+    assert isinstance(log, MdfFile)
+    log.write(frame(0))
+    (tmp_path / "a.mf4.part.mf4").mkdir()  # what the MDF4 file would be written to
+    log.close()
+    log.finish()
+    assert "a.mf4" in log.failure and "a.mf4.log" in log.failure
+    assert len(list(read_log(tmp_path / "a.mf4.log"))) == 1
+    assert not (tmp_path / "a.mf4").exists()
