@@ -1,0 +1,137 @@
+// The controller with its CAN interface, free-running: SLCAN frames on UART0, the tick from the
+// timer, acceleration and measured current from other nodes' frames, the demand as a frame. Nobody
+// waits for the host: what it does not read in time is dropped and counted.
+#include "node.h"
+#include "slcan.h"
+#include "tick_mps2.h"
+#include "uart_mps2.h"
+
+#include <stddef.h>
+
+#define UART_BAUD 1000000u
+#define COUNTS_PER_US (CMSDK_CLOCK_HZ / 1000000u)
+/// Some 25 ms of frames: an older demand is of no use to a driver.
+#define QUEUE_BYTES 512u
+
+struct hal_accel {
+    const node_t *node;
+};
+
+struct hal_current {
+    const node_t *node;
+};
+
+typedef struct {
+    uint8_t bytes[QUEUE_BYTES];
+    uint32_t first;
+    uint32_t count;
+    uint32_t dropped_frames;
+} queue_t;
+
+typedef struct {
+    node_t node;
+    hal_accel_t accel;
+    hal_current_t current;
+    hal_tick_t tick;
+    hal_uart_t uart;
+    slcan_decoder_t decoder;
+    queue_t queue;
+    node_inputs_t inputs;
+    uint32_t restarts;
+} board_t;
+
+bool hal_accel_read(hal_accel_t *accel, hal_axis_t axis, int32_t *counts) {
+    (void)axis;
+    return node_accel_sample(accel->node, counts);
+}
+
+void hal_current_write(hal_current_t *driver, int32_t current_mA, bool enable) {
+    (void)driver;
+    (void)current_mA;
+    (void)enable; // the demand frame carries both
+}
+
+bool hal_current_read(hal_current_t *driver, int32_t *current_mA) {
+    return node_current_measured(driver->node, current_mA);
+}
+
+static void enqueue(queue_t *queue, const can_frame_t *frame) {
+    uint8_t text[SLCAN_MAX_BYTES];
+    const size_t length = slcan_encode(frame, text);
+    if (length > QUEUE_BYTES - queue->count) {
+        queue->dropped_frames++;
+        return;
+    }
+    for (size_t i = 0; i < length; i++) {
+        queue->bytes[(queue->first + queue->count) % QUEUE_BYTES] = text[i];
+        queue->count++;
+    }
+}
+
+static void send_waiting(board_t *board) {
+    queue_t *const queue = &board->queue;
+    while (queue->count > 0u && (board->uart.registers->state & CMSDK_UART_STATE_TX_FULL) == 0u) {
+        hal_uart_write(&board->uart, queue->bytes[queue->first]);
+        queue->first = (queue->first + 1u) % QUEUE_BYTES;
+        queue->count--;
+    }
+}
+
+// At most a line, so that a host that floods the line cannot hold up the tick.
+static void receive_waiting(board_t *board) {
+    can_frame_t frame;
+    uint8_t byte;
+    for (uint32_t i = 0; i < SLCAN_MAX_BYTES && hal_uart_read(&board->uart, &byte); i++) {
+        if (slcan_decode(&board->decoder, byte, &frame)) {
+            node_receive(&board->node, &frame);
+        }
+    }
+}
+
+static uint32_t us_since(const board_t *board, uint32_t count) {
+    return (count - board->tick.timer->value) / COUNTS_PER_US; // it counts down
+}
+
+static void use_rate(board_t *board) {
+    (void)hal_tick_start(&board->tick, (uint32_t)board->node.params.tick_rate_Hz);
+    board->restarts = board->node.restarts;
+}
+
+static void run_tick(board_t *board, uint32_t ticks) {
+    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    const uint32_t begin = board->tick.timer->value;
+    board->inputs.ticks_elapsed = ticks;
+    board->inputs.overruns += ticks - 1u;
+    board->inputs.lateness_us = us_since(board, board->tick.last_count);
+    board->inputs.tx_dropped = board->queue.dropped_frames;
+    const uint32_t count = node_tick(&board->node, &board->inputs, frames);
+    for (uint32_t i = 0; i < count; i++) {
+        enqueue(&board->queue, &frames[i]);
+    }
+    board->inputs.work_us = us_since(board, begin);
+    if (board->node.restarts != board->restarts) {
+        use_rate(board);
+    }
+}
+
+int main(void) {
+    static board_t board;
+    quiesce_params_t params;
+
+    board.tick.timer = CMSDK_TIMER0;
+    board.accel.node = &board.node;
+    board.current.node = &board.node;
+    uart_mps2_open(&board.uart, CMSDK_UART0, UART_BAUD);
+    slcan_decoder_init(&board.decoder);
+    quiesce_params_default(&params);
+    (void)node_init(&board.node, &params, NODE_ENABLE_CAN, &board.accel, &board.current);
+    use_rate(&board);
+    for (;;) {
+        const uint32_t ticks = hal_tick_elapsed(&board.tick);
+        if (ticks > 0u) {
+            run_tick(&board, ticks);
+        }
+        receive_waiting(&board);
+        send_waiting(&board);
+    }
+}
