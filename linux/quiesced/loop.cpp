@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kMaxReceived = 64; // frames a tick; the rest waits for the next one
 constexpr std::uint32_t kAdaptationEvery_s = 60;
-constexpr int kFarewells = 3;       // one might be lost
+constexpr int kFarewells = 3; // one might be lost
+constexpr int kFarewellPause_ms = 2;
 constexpr int kLastAttempts = 1000; // a millisecond apart
 
 /// A restart would forget it.
@@ -337,11 +338,13 @@ void Loop::leave() {
     can_frame_t frame{};
     for (int i = 0; i < kFarewells; ++i) {
         node_leave(&node_, &frame);
-        if (bus_ != nullptr) {
-            (void)can_bus_send(bus_, &frame);
-        }
         enable_output_.set(devices_.enable_output, false, true, log_);
-        (void)source_.wait(devices_.data_ready_input, log_);
+        // No tick has to be kept any more: a full queue is waited for.
+        if (bus_ != nullptr && !send_patiently(bus_, frame)) {
+            log_.log(LogLevel::error, "CAN: the farewell frame was not taken");
+            break;
+        }
+        sleep_ms(kFarewellPause_ms);
     }
     fault_output_.set(devices_.fault_output, false, true, log_);
     log_.log(LogLevel::info, "safe current, output off; %llu ticks, %u lost",

@@ -221,6 +221,12 @@ std::vector<std::string> TomlTable::keys() const {
     for (const auto &[key, node] : *table_) {
         out.emplace_back(key.str());
     }
+    const auto line = [this](const std::string &key) {
+        return table_->get(key)->source().begin.line;
+    };
+    std::stable_sort(out.begin(), out.end(), [&line](const std::string &a, const std::string &b) {
+        return line(a) < line(b);
+    });
     return out;
 }
 

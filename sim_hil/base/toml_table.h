@@ -60,7 +60,7 @@ class TomlTable {
     /// The messages of all of them.
     std::vector<std::string> unknown_keys() const;
 
-    /// Every key of the table, in order.
+    /// Every key of the table, in the order of their lines.
     std::vector<std::string> keys() const;
 
     /// Throws InputError: "FILE:LINE: key: message".

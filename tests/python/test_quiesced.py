@@ -1,0 +1,393 @@
+"""The controller program, end to end: on a pty that speaks SLCAN, as an adapter does."""
+
+import ctypes
+import os
+import resource
+import signal
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from conftest import require
+from quiesced_peer import BUILD, PATIENCE_S, Peer, Quiesced, open_pty
+
+IDLE, RUN, SAFE, FAULT = 1, 2, 3, 4
+ESTOP = 10
+DONE, STORE_FAILED = 0, 5
+
+
+@pytest.fixture
+def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
+    program = require(BUILD / "host/linux/quiesced/quiesced")
+    master, slave, line = open_pty()
+    peer = Peer(master, line)
+    under_test = Quiesced(program, tmp_path, peer, tmp_path / "q.toml", tmp_path / "state")
+    under_test.write_config()
+    yield under_test
+    under_test.end()
+    os.close(slave)
+    os.close(master)
+
+
+def start_running(quiesced: Quiesced, *arguments: str) -> None:
+    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.start(*arguments)
+    quiesced.peer.wait_state(RUN)
+
+
+def index_of(name: str) -> int:
+    header = Path(__file__).resolve().parents[2] / "docs/parameters.md"
+    row = next(r for r in header.read_text().splitlines() if f"`{name}`" in r)
+    return int(row.split("|")[1])
+
+
+def test_reaches_run_and_leaves_with_a_farewell(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    quiesced.peer.wait("Status", lambda s: s["state"] == RUN and s["is_enabled"] == 1)
+    quiesced.peer.wait("Identification")
+    after = quiesced.peer.count()
+    assert quiesced.stop() == 0
+    last = quiesced.peer.wait("CurrentDemand", lambda s: s["driver_is_enabled"] == 0, after)
+    assert last.signals["current_cmd_mA"] == 0  # safe_current_mA
+    log = quiesced.log_text()
+    assert "safe current, output off" in log
+    assert "lateness: " in log
+    assert "work: " in log
+
+
+def test_status_file_on_request(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    quiesced.signal(signal.SIGUSR1)
+    quiesced.peer.wait("Identification", after=quiesced.peer.count())
+    assert quiesced.stop() == 0
+    status = quiesced.status()
+    assert status["fault"] in ("NONE", "TICK_LOST")
+    assert status["can"]["state"] == "up"
+    assert status["can"]["rejected_crc"] == 0
+    assert status["loop"]["ticks"] == status["loop"]["lateness"]["count"]
+
+
+def test_operator_withdraws(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    after = quiesced.peer.count()
+    quiesced.peer.operator = {"enable": 0, "fault_reset": 0}
+    quiesced.peer.wait_state(IDLE, after)
+    after = quiesced.peer.count()
+    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.peer.wait_state(RUN, after)
+    after = quiesced.peer.count()
+    quiesced.peer.operator = None  # no frames any more: not enabled
+    quiesced.peer.wait_state(IDLE, after)
+    assert quiesced.stop() == 0
+
+
+def test_emergency_stop_latches_until_it_is_acknowledged(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    peer = quiesced.peer
+    after = peer.count()
+    peer.estop = True
+    off = peer.wait_state(FAULT, after)
+    assert off.signals["driver_is_enabled"] == 0
+    assert off.signals["current_cmd_mA"] == 0
+    assert peer.wait("Status", lambda s: s["state"] == FAULT, after).signals["fault"] == ESTOP
+    peer.estop = False
+    peer.wait("Status", lambda s: s["is_estop"] == 0, peer.count())
+    after = peer.count()
+    peer.operator = {"enable": 1, "fault_reset": 1}
+    peer.wait_state(RUN, after)
+    assert quiesced.stop() == 0
+    assert "fault ESTOP" in quiesced.log_text()
+    assert "ESTOP" in [event["fault"] for event in quiesced.status()["last_faults"]]
+
+
+def in_a_row(count: int, state: int) -> Callable[[dict[str, int]], bool]:
+    """Accepts the last of so many demand frames in a row with a state."""
+    seen = 0
+
+    def accept(signals: dict[str, int]) -> bool:
+        nonlocal seen
+        seen = seen + 1 if signals["state"] == state else 0
+        return seen == count
+
+    return accept
+
+
+def test_lost_sensor_goes_to_the_safe_current_and_recovers(quiesced: Quiesced) -> None:
+    quiesced.write_config("law = 'constant'\nsafe_current_mA = 40\n")
+    start_running(quiesced)
+    peer = quiesced.peer
+    after = peer.count()
+    peer.feeds_sensor = False
+    # A lost tick ends in SAFE, too; without samples there is no way out of it.
+    safe = peer.wait("CurrentDemand", in_a_row(1200, SAFE), after)
+    assert safe.signals["current_cmd_mA"] == 40
+    after = peer.count()
+    peer.feeds_sensor = True
+    peer.wait_state(RUN, after)
+    assert quiesced.stop() == 0
+    faults = {event["fault"] for event in quiesced.status()["last_faults"]}
+    assert faults & {"SENSOR_LOST", "TICK_LOST"}
+
+
+def test_hostile_bytes_change_nothing(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    peer = quiesced.peer
+    peer.send_raw(b"\xff\x00t0104\r" + b"x" * 300 + b"\rt0324\rT\r" + b"t0204DEADBEEF\r")
+    peer.wait("CanHealth", lambda s: s["rejected_crc"] == 1, 0)
+    assert quiesced.stop() == 0
+    assert quiesced.status()["can"]["malformed"] > 0
+
+
+def set_parameter(peer: Peer, name: str, value: int) -> None:
+    assert peer.request("STAGE", index_of(name), value).signals["result"] == DONE
+    assert peer.request("APPLY").signals["result"] == DONE
+
+
+def read_parameter(peer: Peer, name: str) -> int:
+    reply = peer.request("READ", index_of(name))
+    assert reply.signals["result"] == DONE
+    return reply.signals["param_value"]
+
+
+def test_saved_parameters_outlive_a_restart(quiesced: Quiesced) -> None:
+    peer = quiesced.peer
+    quiesced.start()
+    set_parameter(peer, "constant_current_mA", 1234)
+    assert peer.request("SAVE").signals["result"] == DONE
+    assert quiesced.stop() == 0
+    quiesced.start()
+    assert read_parameter(peer, "constant_current_mA") == 1234
+    assert quiesced.stop() == 0
+    assert "saved parameters are used" in quiesced.log_text()
+
+    # Who edits the configuration means it.
+    quiesced.write_config("constant_current_mA = 777\n")
+    quiesced.start()
+    assert read_parameter(peer, "constant_current_mA") == 777
+    assert quiesced.stop() == 0
+    assert "[parameters] has changed" in quiesced.log_text()
+
+
+def test_damaged_saved_parameters_are_not_used(quiesced: Quiesced) -> None:
+    peer = quiesced.peer
+    quiesced.start()
+    set_parameter(peer, "constant_current_mA", 1234)
+    assert peer.request("SAVE").signals["result"] == DONE
+    assert quiesced.stop() == 0
+    file = quiesced.state / "parameters.bin"
+    data = bytearray(file.read_bytes())
+    data[-5] ^= 1
+    file.write_bytes(data)
+    quiesced.start()
+    assert read_parameter(peer, "constant_current_mA") == 5000
+    assert quiesced.stop() == 0
+    assert "saved parameters are not used: " in quiesced.log_text()
+
+
+def test_applied_parameters_change_the_tick_rate(quiesced: Quiesced) -> None:
+    quiesced.start()
+    peer = quiesced.peer
+    set_parameter(peer, "tick_rate_Hz", 1000)
+    assert read_parameter(peer, "tick_rate_Hz") == 1000
+    assert quiesced.stop() == 0
+    assert "restarted with new parameters" in quiesced.log_text()
+
+
+def test_reload_takes_good_parameters_only(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    peer = quiesced.peer
+    quiesced.write_config("safe_current_mA = 40\n")
+    quiesced.signal(signal.SIGHUP)
+    quiesced.wait_log("restarted with new parameters")
+    assert read_parameter(peer, "safe_current_mA") == 40
+
+    quiesced.write_config("safe_current_mA = -1\nlaw = 'wrong'\n")
+    quiesced.signal(signal.SIGHUP)
+    quiesced.wait_log("parameters stay: ")
+    assert "parameters.safe_current_mA: expected an integer in 0" in quiesced.log_text()
+    assert "(and 1 more: --check)" in quiesced.log_text()
+    assert read_parameter(peer, "safe_current_mA") == 40
+    peer.wait_state(RUN, peer.count())
+    after = peer.count()
+    assert quiesced.stop() == 0
+    off = peer.wait("CurrentDemand", lambda s: s["driver_is_enabled"] == 0, after)
+    assert off.signals["current_cmd_mA"] == 40
+
+
+def test_reload_does_not_forget_a_latched_fault(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    peer = quiesced.peer
+    peer.estop = True
+    peer.wait_state(FAULT)
+    peer.estop = False
+    quiesced.write_config("safe_current_mA = 40\n")
+    quiesced.signal(signal.SIGHUP)
+    quiesced.wait_log("parameters stay: a fault is latched")
+    after = peer.count()
+    peer.wait("Status", lambda s: s["fault"] == ESTOP, after)
+    assert quiesced.stop() == 0
+
+
+def test_second_instance_is_refused(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    assert quiesced.process is not None
+    result = quiesced.run()
+    assert result.returncode == 2
+    assert result.stderr.count("\n") == 1
+    assert f"process {quiesced.process.pid} holds" in result.stderr
+    assert quiesced.run("--make-safe").returncode == 1  # it leaves a live controller alone
+    peer = quiesced.peer
+    peer.wait_state(RUN, peer.count())
+    assert quiesced.stop() == 0
+
+
+def test_make_safe_after_a_kill(quiesced: Quiesced) -> None:
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    quiesced.signal(signal.SIGKILL)
+    assert quiesced.wait() == -signal.SIGKILL
+    after = quiesced.peer.count()
+    result = quiesced.run("--make-safe")
+    assert (result.returncode, result.stderr) == (0, "")
+    off = quiesced.peer.wait("CurrentDemand", lambda s: s["driver_is_enabled"] == 0, after)
+    assert off.signals["current_cmd_mA"] == 40
+    # The lock is free again: it restarts.
+    after = quiesced.peer.count()
+    quiesced.start()
+    quiesced.peer.wait_state(RUN, after)
+    assert quiesced.stop() == 0
+
+
+def test_make_safe_does_what_it_can(quiesced: Quiesced) -> None:
+    lines = '[gpio]\nenable_output = { line = "gpiochip999:0" }\nwrong = 1\n'
+    quiesced.write_config(more=lines)
+    result = quiesced.run("--make-safe")
+    assert result.returncode == 1
+    assert "gpio.wrong: unknown key" in result.stderr
+    assert "gpio.enable_output: " in result.stderr
+    quiesced.peer.wait("CurrentDemand", lambda s: s["driver_is_enabled"] == 0)
+
+
+def test_full_disk_for_the_log(quiesced: Quiesced) -> None:
+    quiesced.write_config(to='"/dev/full"')
+    start_running(quiesced)
+    peer = quiesced.peer
+    peer.wait("Identification", after=peer.count())
+    assert quiesced.stop() == 0
+    log = quiesced.log_text()
+    assert log.count("log file /dev/full: No space left on device") == 1
+    assert len(log.splitlines()) == 1
+
+
+def test_full_disk_for_the_state(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    peer = quiesced.peer
+    # What a full disk does to each write, without a disk of our own.
+    (quiesced.state / "state.json.new").mkdir()
+    quiesced.signal(signal.SIGUSR1)
+    quiesced.wait_log("status file: not written: ")
+    after = peer.count()
+    peer.wait("Status", lambda s: s["state"] == RUN, after)
+    (quiesced.state / "state.json.new").rmdir()
+    quiesced.signal(signal.SIGUSR1)
+    quiesced.wait_log("status file: written again")
+    assert quiesced.stop() == 0
+
+
+def test_save_that_fails_is_answered(quiesced: Quiesced) -> None:
+    quiesced.start()
+    peer = quiesced.peer
+    peer.wait("Status")
+    (quiesced.state / "parameters.bin").mkdir()
+    assert peer.request("SAVE").signals["result"] == STORE_FAILED
+    assert quiesced.stop() == 0
+    assert "parameters not saved: " in quiesced.log_text()
+
+
+def test_closed_standard_files(quiesced: Quiesced) -> None:
+    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.process = subprocess.Popen(
+        ["/bin/sh", "-c", 'exec "$0" --config "$1" <&- >&- 2>&-', quiesced.program, quiesced.config]
+    )
+    quiesced.peer.wait_state(RUN)
+    assert quiesced.stop() == 0
+    assert quiesced.status()["can"]["malformed"] == 0
+
+
+def test_stderr_that_nobody_reads(quiesced: Quiesced) -> None:
+    reader, writer = os.pipe()
+    start = {"stderr": writer}
+    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    os.set_blocking(writer, False)
+    filled = 0
+    try:
+        while True:
+            filled += os.write(writer, b"x" * 4096)
+    except BlockingIOError:
+        os.set_blocking(writer, True)
+    quiesced.start(**start)
+    os.close(writer)
+    quiesced.peer.wait_state(RUN)
+    assert quiesced.stop() == 0
+    os.close(reader)
+    assert filled > 0
+
+
+def test_lost_and_found_serial_line(quiesced: Quiesced, tmp_path: Path) -> None:
+    """The adapter is unplugged and plugged in again."""
+    link = tmp_path / "adapter"
+    link.symlink_to(quiesced.peer.line)
+    quiesced.write_config()
+    quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, str(link)))
+    start_running(quiesced)
+    master, slave, line = open_pty()
+    second = Peer(master, line, operator={"enable": 1, "fault_reset": 0})
+    link.unlink()
+    link.symlink_to(line)
+    hang_up(quiesced)
+    second.wait_state(RUN)
+    assert quiesced.stop() == 0
+    log = quiesced.log_text()
+    assert "CAN: " in log
+    os.close(slave)
+    os.close(master)
+
+
+def hang_up(quiesced: Quiesced) -> None:
+    """Closes the pty's master side for good."""
+    null = os.open("/dev/null", os.O_RDWR)
+    os.dup2(null, quiesced.peer.master)
+    os.close(null)
+
+
+def test_ends_after_ticks(quiesced: Quiesced) -> None:
+    quiesced.start("--ticks", "700")
+    assert quiesced.wait() == 0
+    assert quiesced.status()["loop"]["ticks"] == 700
+    assert quiesced.status()["tick"] == 700 + quiesced.status()["loop"]["overruns"]
+
+
+def test_real_time_rights_are_named(quiesced: Quiesced) -> None:
+    quiesced.write_config(priority="80")
+    result = quiesced.run("--ticks", "10", preexec_fn=drop_realtime)
+    assert result.returncode == 2, result.stderr
+    assert result.stderr.count("\n") == 1
+    assert "CAP_SYS_NICE" in result.stderr
+
+
+def drop_realtime() -> None:
+    """Without the limit and, for root, without the capability after exec."""
+    cap_sys_nice, pr_capbset_drop = 23, 24
+    resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
+    ctypes.CDLL(None).prctl(pr_capbset_drop, cap_sys_nice, 0, 0, 0)
+
+
+@pytest.mark.parametrize("arguments", [["--wrong"], ["--ticks", "0"], ["--ticks"], ["--config"]])
+def test_wrong_arguments(quiesced: Quiesced, arguments: list[str]) -> None:
+    result = subprocess.run(
+        [quiesced.program, *arguments], capture_output=True, text=True, timeout=PATIENCE_S
+    )
+    assert result.returncode == 2
+    assert result.stderr.startswith("quiesced: ")
+    assert result.stderr.count("\n") == 1
