@@ -115,7 +115,7 @@ def allowed_headers(root: Path, source: Source) -> set[str]:
         if parts[1] == "include":
             return interface
         backend = headers_in(root, source.folder) | headers_in(root, "hal/sim")
-        return interface | backend | comm | PUBLIC | {"app.h"}
+        return interface | backend | comm | PUBLIC | {"app.h", "node.h"}
     layer = parts[1]
     if layer == "base":
         return base
