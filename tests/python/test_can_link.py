@@ -1,0 +1,214 @@
+"""Buses that go away, bytes that are no frames, and logs that are sent again."""
+
+import os
+import random
+import socket
+import threading
+import tty
+from collections.abc import Iterator
+from pathlib import Path
+
+import can
+import pytest
+from conftest import run_quiesce
+from quiesce.can.buses import Bus
+from quiesce.can.link import Back, Link, Lost
+from quiesce.can.slcan import SlcanBus, frame_of
+from quiesce.can.writers import open_log
+
+WAIT_S = 30.0  # far more than anything takes
+
+
+@pytest.fixture
+def line(tmp_path: Path) -> Iterator[tuple[int, str]]:
+    """A pseudo-terminal: our end, and the path of the other one."""
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    yield master, os.ttyname(slave)
+    os.close(master)
+    os.close(slave)
+
+
+def received(bus: SlcanBus, count: int) -> list[can.Message]:
+    return [bus.recv(WAIT_S) for _ in range(count)]
+
+
+def test_frames_come_through_in_any_pieces(line) -> None:
+    master, path = line
+    with SlcanBus(path) as bus:
+        for piece in (b"t1", b"002AB", b"CD\rT18FF12", b"341EE\rr12", b"38\r\n\rt7FF0\r"):
+            os.write(master, piece)
+        frames = received(bus, 4)
+    assert [one.arbitration_id for one in frames] == [0x100, 0x18FF1234, 0x123, 0x7FF]
+    assert [bytes(one.data) for one in frames] == [b"\xab\xcd", b"\xee", b"", b""]
+    assert frames[2].is_remote_frame and frames[2].dlc == 8 and frames[1].is_extended_id
+
+
+def test_noise_is_dropped_and_frames_between_it_are_not(line) -> None:
+    master, path = line
+    rng = random.Random(3)
+    alphabet = bytes(range(256)) + b"tTrR0123456789ABCDEF" * 20
+    with SlcanBus(path) as bus:
+        for i in range(300):
+            noise = bytes(rng.choice(alphabet) for _ in range(rng.randint(0, 60)))
+            # A noise that happens to be a frame would be one.
+            noise = b"".join(b"?" + part for part in noise.replace(b"\n", b"\r").split(b"\r"))
+            os.write(master, noise + b"\rt100%d" % 2 + b"%04X\r" % i)
+            (frame,) = received(bus, 1)
+            assert (frame.arbitration_id, bytes(frame.data)) == (0x100, i.to_bytes(2, "big"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"t", b"t10", b"t100", b"t1009", b"t1002AB", b"t1002ABX", b"tFFF0", b"T2000000001AA",
+        b"t1 02ABCD", b"T00000000", b"r1009", b"rFFF0", b"t100\xff", b"t10-2ABCD", b"t1002A\x00CD",
+    ],
+)  # fmt: skip
+def test_malformed_lines_are_no_frames(text: bytes, line) -> None:
+    assert frame_of(text, 0.0) is None
+    master, path = line
+    with SlcanBus(path) as bus:
+        os.write(master, text + b"\rt1000\r")
+        (frame,) = received(bus, 1)
+        assert frame.arbitration_id == 0x100 and bus.malformed == 1
+
+
+def test_endless_lines_are_counted_once(line) -> None:
+    master, path = line
+    with SlcanBus(path) as bus:
+        os.write(master, b"t" * 3000 + b"\rt1000\r")
+        assert received(bus, 1)[0].arbitration_id == 0x100
+        assert bus.malformed == 1
+
+
+class Server:
+    """An SLCAN adapter on TCP."""
+
+    def __init__(self) -> None:
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.channel = f"socket://127.0.0.1:{self._listener.getsockname()[1]}"
+
+    def accept(self) -> socket.socket:
+        connection, _ = self._listener.accept()
+        return connection
+
+    def close(self) -> None:
+        self._listener.close()
+
+
+@pytest.fixture
+def server() -> Iterator[Server]:
+    one = Server()
+    yield one
+    one.close()
+
+
+def next_event(link: Link) -> object:
+    event = link.receive(WAIT_S)
+    assert event is not None
+    return event
+
+
+def test_a_link_tells_loss_and_return_in_order(server: Server) -> None:
+    connections: list[socket.socket] = []
+    accepting = threading.Thread(target=lambda: connections.append(server.accept()))
+    accepting.start()
+    with Link(Bus("slcan", server.channel, None, ())) as link:
+        accepting.join()
+        for number in range(3):
+            connections[-1].sendall(b"t10%d0\r" % number)
+            event = next_event(link)
+            assert isinstance(event, can.Message) and event.arbitration_id == 0x100 + number
+            connections.pop().close()
+            assert isinstance(next_event(link), Lost)
+            connections.append(server.accept())
+            event = next_event(link)
+            assert isinstance(event, Back) and event.gap_s > 0.0
+        assert link.is_up
+    connections.pop().close()
+
+
+def test_sending_on_a_lost_bus_says_so(server: Server) -> None:
+    accepting = threading.Thread(target=lambda: server.accept().close())
+    accepting.start()
+    with Link(Bus("slcan", server.channel, None, ())) as link:
+        accepting.join()
+        server.close()  # nobody to come back to
+        assert isinstance(next_event(link), Lost)
+        assert link.send(0x100, b"\1") is None
+
+
+# replay
+
+
+def log_of(path: Path) -> Path:
+    log = open_log(path, lambda: [])
+    for i, frame_id in enumerate((0x010, 0x100, 0x020, 0x108, 0x050, 0x400, 0x123, 0x100)):
+        log.write(
+            can.Message(
+                timestamp=1000.0 + 0.01 * i,
+                arbitration_id=frame_id,
+                is_extended_id=False,
+                data=bytes([i]),
+            )
+        )
+    log.close()
+    return path
+
+
+def sent(master: int) -> list[int]:
+    """Ids of the frames up to the C that closes the channel."""
+    data = b""
+    while not data.endswith(b"C\r"):
+        data += os.read(master, 4096)
+    return [int(one[1:4], 16) for one in data.split(b"\r") if one.startswith(b"t")]
+
+
+@pytest.mark.parametrize(
+    ("options", "ids"),
+    [
+        ([], [0x100, 0x108, 0x123, 0x100]),
+        (["--only", "Status,0x123"], [0x100, 0x123, 0x100]),
+        (["--only", "CurrentDemand"], []),
+        (
+            ["--include-commands", "--speed", "100"],
+            [0x010, 0x100, 0x020, 0x108, 0x050, 0x400, 0x123, 0x100],
+        ),
+    ],
+)
+def test_replay_withholds_commands(line, tmp_path: Path, options, ids) -> None:
+    master, path = line
+    log = log_of(tmp_path / "a.log")
+    result = run_quiesce(tmp_path, "can", "replay", log, "--bus", f"slcan:{path}", *options)
+    assert result.returncode == 0, result.stderr
+    assert sent(master) == ids
+    assert f"{len(ids)} frames sent" in result.stderr
+    is_whole = not options
+    assert ("4 commands not sent" in result.stderr) == is_whole
+
+
+def test_replay_of_a_damaged_log_sends_nothing(line, tmp_path: Path) -> None:
+    master, path = line
+    log = log_of(tmp_path / "a.log")
+    log.write_text(log.read_text() + "garbage\n")
+    result = run_quiesce(tmp_path, "can", "replay", log, "--bus", f"slcan:{path}")
+    assert result.returncode == 2 and "line 9" in result.stderr
+    os.set_blocking(master, False)
+    with pytest.raises(BlockingIOError):
+        os.read(master, 1)
+
+
+def test_replay_over_udp(tmp_path: Path) -> None:
+    channel, port = "239.74.163.2", random.Random(os.getpid()).randint(20000, 60000)
+    try:
+        bus = can.Bus(interface="udp_multicast", channel=channel, port=port)
+    except (can.CanError, OSError) as error:
+        pytest.skip(f"no multicast here: {error}")
+    options = ["--bus", f"udp_multicast:{channel}", "--bus-option", f"port={port}"]
+    with bus:
+        log = log_of(tmp_path / "a.log")
+        result = run_quiesce(tmp_path, "can", "replay", log, *options)
+        assert result.returncode == 0, result.stderr
+        ids = [bus.recv(WAIT_S).arbitration_id for _ in range(4)]
+    assert ids == [0x100, 0x108, 0x123, 0x100]
