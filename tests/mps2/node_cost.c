@@ -1,0 +1,99 @@
+// What the CAN interface costs, in instructions. Between the markers, by the order's first word:
+// 0: can_node_inputs and can_node_tick, 1: can_node_receive of an acceleration sample, 2:
+// node_tick, the controller with its messages. Sensor, driver and operator send, raw samples
+// stream, a fault comes and goes.
+#include "can_make.h"
+#include "counted_call.h"
+#include "hal_sim.h"
+#include "mailbox.h"
+#include "node.h"
+#include "print.h"
+
+#define FAULT_EVERY_TICKS 3000u
+#define OPERATOR_EVERY_TICKS 100u
+#define REQUEST_EVERY_TICKS 10u
+
+enum { COUNT_CAN_TICK = 0, COUNT_RECEIVE = 1, COUNT_NODE_TICK = 2 };
+
+typedef struct {
+    uint32_t what;
+    uint32_t ticks;
+} order_t;
+
+typedef struct {
+    node_t node;
+    hal_accel_t accel;
+    hal_current_t driver;
+    node_inputs_t board;
+    can_node_tick_t tick;
+    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+} rig_t;
+
+static void tick_messages(rig_t *rig) {
+    can_node_inputs(&rig->node.can, 1, &rig->node.bus);
+    (void)can_node_tick(&rig->node.can, &rig->tick, &rig->node.app.out, rig->frames);
+}
+
+static void tick_node(rig_t *rig) {
+    (void)node_tick(&rig->node, &rig->board, rig->frames);
+}
+
+static void receive(rig_t *rig, can_frame_t frame, bool is_counted) {
+    if (is_counted) {
+        counted_call((counted_function_t)node_receive, (uintptr_t)&rig->node, (uintptr_t)&frame, 0);
+    } else {
+        node_receive(&rig->node, &frame);
+    }
+}
+
+static void receive_all(rig_t *rig, uint32_t i, uint32_t what) {
+    const uint8_t alive = (uint8_t)(i % 16u);
+    receive(rig, make_accel((int32_t)(i * 2654435761u) >> 16, false, false, alive),
+            what == COUNT_RECEIVE);
+    if (i % OPERATOR_EVERY_TICKS == 0) {
+        receive(rig, make_operator(true, false, (uint8_t)(i / OPERATOR_EVERY_TICKS % 16u)), false);
+    }
+    if (i % REQUEST_EVERY_TICKS == 0) {
+        const bool is_stream = i % (100u * REQUEST_EVERY_TICKS) == 0;
+        const uint8_t operation = is_stream
+                                      ? QUIESCE_CAN_SERVICE_REQUEST_OPERATION_RAW_STREAM_CHOICE
+                                      : QUIESCE_CAN_SERVICE_REQUEST_OPERATION_READ_CHOICE;
+        receive(rig, make_request(operation, 3, is_stream ? 3600 : 0, alive), false);
+    }
+}
+
+static void run(rig_t *rig, const order_t *order) {
+    for (uint32_t i = 0; i < order->ticks; i++) {
+        int32_t counts;
+        receive_all(rig, i, order->what);
+        const bool has_fault = i % FAULT_EVERY_TICKS > FAULT_EVERY_TICKS / 2u;
+        hal_sim_accel_set(&rig->accel, (int32_t)(i * 2654435761u) >> 16, !has_fault);
+        if (order->what == COUNT_NODE_TICK) {
+            counted_call((counted_function_t)tick_node, (uintptr_t)rig, 0, 0);
+            continue;
+        }
+        app_tick(&rig->node.app, &(app_operator_t){.enable = true}, 1);
+        rig->tick.accel_is_fresh = node_accel_sample(&rig->node, &counts);
+        if (order->what == COUNT_CAN_TICK) {
+            counted_call((counted_function_t)tick_messages, (uintptr_t)rig, 0, 0);
+        } else {
+            tick_messages(rig);
+        }
+    }
+}
+
+int main(void) {
+    static rig_t rig;
+    const order_t order = *(const volatile order_t *)MAILBOX_BASE;
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    rig.board = (node_inputs_t){.enable = true, .ticks_elapsed = 1};
+    if (!node_init(&rig.node, &params, NODE_ENABLE_BOARD, &rig.accel, &rig.driver)) {
+        return 1;
+    }
+    counted_call_init();
+    run(&rig, &order);
+    print("ram_bytes", sizeof rig.node.can);
+    print("stack_bytes", counted_call_stack_bytes());
+    return 0;
+}
