@@ -208,3 +208,36 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     rig.until("1234 mA again", lambda _: rig.seen["CurrentDemand"]["current_cmd_mA"] == 1234)
     rig.until_state("RUN")
     assert {DATABASE.get_message_by_frame_id(i).name for i in CONTROLLER} == rig.seen.keys()
+
+
+def test_image_ignores_and_counts_what_is_damaged(rig: Rig) -> None:
+    message = DATABASE.get_message_by_name("OperatorCommand")
+    rig.until("the first report", lambda name: name == "CanHealth")
+    assert rig.seen["CanHealth"]["rejected_crc"] == rig.seen["CanHealth"]["rejected_shape"] == 0
+
+    def send(data: bytes, **kind: bool) -> None:
+        kind = {"is_extended_id": False, **kind}
+        rig.bus.send(can.Message(arbitration_id=message.frame_id, data=data, **kind))
+
+    for i in range(40):
+        good = encode(message, i, enable=1)
+        send(good[:-1] + bytes([good[-1] ^ (i + 1)]))
+    for i in range(10):
+        good = encode(message, i, enable=1)
+        send(good[:1])
+        send(good + good)
+        send(good, is_extended_id=True)
+        send(b"", is_remote_frame=True)
+        rig.bus.serialPortOrig.write(b"t05\r\xff\x00\x80T\rt0502ZZ00\r" + b"t" * 300 + b"\r")
+
+    def is_counted(name: str) -> bool:
+        assert not rig.seen.get("Status", {}).get("is_enabled")
+        health = rig.seen["CanHealth"]
+        return name == "CanHealth" and (health["rejected_crc"], health["rejected_shape"]) == (
+            40,
+            40,
+        )
+
+    rig.until("40 wrong CRCs and 40 wrong shapes", is_counted)
+    rig.enable = 1
+    rig.until("enabled", lambda _: rig.seen["Status"]["is_enabled"])
