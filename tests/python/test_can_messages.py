@@ -235,6 +235,10 @@ MISTAKES = {
     "little-endian (@1) only": ("freq_uHz : 0|32@1-", "freq_uHz : 7|32@0-"),
     "id 0x110 is SpectrumPeak0's": ("BO_ 273 SpectrumPeak1", "BO_ 272 SpectrumPeak1"),
     "overlapping": ("fault_reset : 1|1@1+", "fault_reset : 0|1@1+"),
+    "GenMsgStartDelayTime must be below": (
+        '"GenMsgStartDelayTime" BO_ 264 2;',
+        '"GenMsgStartDelayTime" BO_ 264 20;',
+    ),
     "classic frames of 11-bit ids only": ("BO_ 264 Motion", "BO_ 2147483912 Motion"),
 }
 

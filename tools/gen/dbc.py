@@ -141,6 +141,11 @@ def find_signal(message: Message, name: str) -> Signal | None:
     return next((signal for signal in message.signals if signal.name == name), None)
 
 
+def attribute(message: Message, name: str) -> int:
+    found = message.dbc.attributes.get(name)
+    return int(found.value) if found is not None else 0
+
+
 def check_signal(message: Message, signal: Signal) -> None:
     if signal.scale != 1 or signal.offset != 0 or signal.is_float:
         refuse(message, f"{signal.name}: scale 1 and offset 0 only, integers are sub-units")
@@ -162,6 +167,14 @@ def check_protection(message: Message) -> None:
         refuse(message, "alive and crc must not be multiplexed")
 
 
+def check_times(message: Message) -> None:
+    cycle_ms, start_ms = (
+        attribute(message, f"GenMsg{name}Time") for name in ("Cycle", "StartDelay")
+    )
+    if start_ms >= max(cycle_ms, 1):
+        refuse(message, "GenMsgStartDelayTime must be below GenMsgCycleTime")
+
+
 def check(database: Database) -> None:
     """ValueError, one line, where the firmware could not be sure of what it sends or takes."""
     names: dict[int, str] = {}
@@ -174,17 +187,13 @@ def check(database: Database) -> None:
         for signal in message.signals:
             check_signal(message, signal)
         check_protection(message)
+        check_times(message)
 
 
 def bus_messages(database: Database) -> list[Message]:
     """Messages of a real bus, in the order of their ids."""
     messages = [m for m in database.messages if not SIMULATED & {*m.senders, *m.receivers}]
     return sorted(messages, key=lambda message: message.frame_id)
-
-
-def attribute(message: Message, name: str) -> int:
-    found = message.dbc.attributes.get(name)
-    return int(found.value) if found is not None else 0
 
 
 def table_row(message: Message) -> str:
