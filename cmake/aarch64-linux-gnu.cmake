@@ -20,7 +20,7 @@ set(ENV{PKG_CONFIG_LIBDIR}
     "${QUIESCE_ARM64_ROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${QUIESCE_ARM64_ROOT}/usr/share/pkgconfig")
 
 # Unit tests run in QEMU's user mode, where it is installed, with the unpacked libraries.
-find_program(QEMU_AARCH64 qemu-aarch64)
+find_program(QEMU_AARCH64 NAMES qemu-aarch64 qemu-aarch64-static)
 if(QEMU_AARCH64)
   set(CMAKE_CROSSCOMPILING_EMULATOR "${QEMU_AARCH64};-L;${QUIESCE_ARM64_ROOT}")
 endif()
