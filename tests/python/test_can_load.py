@@ -122,6 +122,17 @@ def test_load_prints_what_it_computes(quiesce) -> None:
     assert table.returncode == 0 and "no bound" in table.stdout
 
 
+def test_the_bench_says_what_it_could_not_judge(quiesce) -> None:
+    result = quiesce("bench", "can", "--no-vm", "--check", "--json")
+    assert result.returncode == 3, result.stderr
+    report = json.loads(result.stdout)
+    figures = {one["name"]: one for one in report["figures"]}
+    computed = ("bus_load_pct", "bus_load_raw_pct", "demand_response_ms")
+    assert all(figures[name]["ok"] for name in computed)
+    assert figures["slcan_baud_needed"]["value"] == 921_600
+    assert figures["estop_ticks"]["value"] is None and report["context"]["absent"]
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

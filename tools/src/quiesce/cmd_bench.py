@@ -4,13 +4,13 @@ import argparse
 import json
 from pathlib import Path
 
-from quiesce import bench_control, bench_fuzzy, bench_identify, bench_signal, bench_sweep
+from quiesce import bench_can, bench_control, bench_fuzzy, bench_identify, bench_signal, bench_sweep
 from quiesce.atomic import output_files
 from quiesce.paths import build_folder, shown
 
 # Each has NAME, HELP, DESCRIPTION, add_options(parser) and measure(args, folder) -> Report, which
 # writes its plots into the folder. UsageError for bad input, before anything is measured.
-BENCHES = (bench_signal, bench_fuzzy, bench_control, bench_sweep, bench_identify)
+BENCHES = (bench_signal, bench_fuzzy, bench_control, bench_sweep, bench_identify, bench_can)
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,
 unit, goal, better (lower or higher) and ok. The output folder receives it as NAME.json, too.

@@ -107,6 +107,7 @@ def report(recorder, link) -> None:  # type: ignore[no-untyped-def]
 
     for file in recorder.files:
         is_mdf = isinstance(file, MdfFile) and not file.failure
-        print(f"{shown(file.target if is_mdf else file.path)}: {file.frames} frames")
+        count = "cut where the disk was full" if file.error else f"{file.frames} frames"
+        print(f"{shown(file.target if is_mdf else file.path)}: {count}")
     noise = f", {link.malformed} malformed lines" if link.malformed else ""
     print(summary_line(recorder.traffic.summary()) + noise, file=sys.stderr)

@@ -63,6 +63,16 @@ class Preamble:
     def frames(self) -> list[Any]:
         return [self.identity] * (self.identity is not None) + self._parameters
 
+    def text(self) -> str:
+        """What files begin with, for people."""
+        if not self.values:
+            return "no controller answers: the log has no parameters"
+        version = "an unknown version"
+        if self.identification:
+            parts = ("version_major", "version_minor", "version_patch")
+            version = "version " + ".".join(str(self.identification[one]) for one in parts)
+        return f"every file begins with the controller's {len(self.values)} parameters, {version}"
+
     def poll(self) -> Any:
         """Sends the next request where one is due; returns its frame."""
         data = self._reader.poll(time.monotonic())
@@ -178,8 +188,8 @@ class Recorder:
         for frame in held:
             if id(frame) not in known:
                 self.file.write(frame)
-        if self.plan.asks and not first:
-            self._say("no controller answers: this log has no parameters")
+        if self.plan.asks:
+            self._say(self.preamble.text())
 
     def _write_preamble(self, time_s: float) -> None:
         for frame in self.preamble.frames:

@@ -49,6 +49,7 @@ class LogFile:
 
     def write(self, frame: Any) -> None:
         self._writer.on_message_received(frame)
+        self.file.mark()
         self.frames += 1
         if self.first_s is None:
             self.first_s = frame.timestamp

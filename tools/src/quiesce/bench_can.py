@@ -1,0 +1,85 @@
+"""`quiesce bench can`: bus load and response times from the DBC, the rest in a virtual machine."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from quiesce.bench_report import Figure, Report
+from quiesce.errors import UsageError
+from quiesce.table import format_table
+
+NAME = "can"
+HELP = "the CAN interface: bus load, response times, the Linux controller in a virtual machine"
+DESCRIPTION = """Computes bus load and worst-case response times from quiesce.dbc, then boots the
+Linux controller in a virtual machine (an arm64 kernel under QEMU) and measures there: frames lost,
+emergency stop, bit equality with the host, lateness beside cyclictest's. Nothing that is measured
+in emulation says how a real board keeps its time."""
+
+BITRATE = 500_000
+DEMAND = "CurrentDemand"
+# Of the virtual machine: name, unit, goal.
+VM_FIGURES = (
+    ("vm_frames_lost", "frames", 0.0),
+    ("estop_ticks", "ticks", 2.0),
+    ("vm_trace_mismatches", "ticks", 0.0),
+    ("lateness_over_cyclictest", "1", 1.5),
+    ("vm_seconds", "s", None),
+)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--no-vm", action="store_true", help="only what is computed; the rest counts as absent"
+    )
+
+
+def computed_figures() -> tuple[list[Figure], str]:
+    """Figures that follow from the DBC, and a table of the messages."""
+    from quiesce.can import load
+    from quiesce.can.database import load as load_database
+
+    database = load_database()
+    cyclic, raw = load.cyclic(database), load.named(database, load.RAW)
+    analysis = load.Analysis(load.on_bus(database), BITRATE)
+    _, baud = load.baud_needed(load.slcan_messages(database))
+    figures = [
+        Figure("bus_load_pct", load.load_pct(cyclic, BITRATE), "%", 34.0, "lower"),
+        Figure("bus_load_raw_pct", load.load_pct(cyclic + raw, BITRATE), "%", 62.0, "lower"),
+        Figure("demand_response_ms", analysis.response_ms(DEMAND), "ms", 0.55, "lower"),
+        Figure("slcan_baud_needed", baud, "baud", None, "lower"),
+    ]
+    rows = []
+    for stream in analysis.streams:
+        response_ms = analysis.response_ms(stream.message.name)
+        bound = "no bound" if response_ms is None else f"{response_ms:.3f}"
+        rows.append([stream.message.name, str(stream.bits), str(stream.message.period_ms), bound])
+    table = format_table(["message, sensor node too", "bits", "period ms", "response ms"], rows)
+    return figures, table
+
+
+def vm_figures(args: argparse.Namespace) -> tuple[dict[str, Any], list[str]]:
+    """Values by name, and why there are none."""
+    from quiesce import vm
+
+    if args.no_vm:
+        return {}, ["virtual machine: left out (--no-vm)"]
+    if not hasattr(vm, "measure"):
+        return {}, ["virtual machine: this installation cannot measure in one"]
+    try:
+        return vm.measure(), []
+    except UsageError as error:  # QEMU or a package is absent
+        return {}, [f"virtual machine: {error}"]
+
+
+def measure(args: argparse.Namespace, folder: Path) -> Report:
+    figures, table = computed_figures()
+    values, absent = vm_figures(args)
+    figures += [
+        Figure(name, values.get(name), unit, goal, "lower") for name, unit, goal in VM_FIGURES
+    ]
+    context = {"bitrate": BITRATE, **{k: v for k, v in values.items() if k not in names()}}
+    return Report(NAME, figures, context, [table], absent)
+
+
+def names() -> set[str]:
+    return {name for name, _, _ in VM_FIGURES}
