@@ -57,18 +57,17 @@ static void search_chip(const char *chip, const char *name, gpio_find_t find, se
                         gpio_place_t *place) {
     char path[sizeof "/dev/" + sizeof((struct dirent *)0)->d_name];
     (void)snprintf(path, sizeof path, "/dev/%s", chip);
-    errno = 0;
-    const int offset = strlen(path) < GPIO_PATH_BYTES ? find(path, name) : -1;
     search->chips++;
-    if (offset < 0) {
+    errno = ENAMETOOLONG;
+    const int lines = strlen(path) < GPIO_PATH_BYTES ? find(path, name, &place->offset) : -1;
+    if (lines < 0) {
         search->refused = errno == EACCES || errno == EPERM ? errno : search->refused;
         return;
     }
-    if (search->found == 0) {
+    if (lines > 0) {
         (void)snprintf(place->chip, sizeof place->chip, "%.*s", GPIO_PATH_BYTES - 1, path);
-        place->offset = (unsigned int)offset;
     }
-    search->found++;
+    search->found += lines;
 }
 
 static bool locate_by_name(const char *name, gpio_find_t find, gpio_place_t *place,

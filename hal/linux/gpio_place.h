@@ -14,8 +14,9 @@ typedef struct {
     unsigned int offset;
 } gpio_place_t;
 
-/// Offset of the named line on a chip, or -1: no such line, or (errno is set) no such chip.
-typedef int (*gpio_find_t)(const char *chip, const char *name);
+/// How many lines of a chip have the name, and the offset of the last one; -1 and errno where the
+/// chip cannot be asked.
+typedef int (*gpio_find_t)(const char *chip, const char *name, unsigned int *offset);
 
 /// The line's place. A name is looked for on every chip and must be there once.
 /// Returns false iff the specification is malformed or there is no such line, or more than one.

@@ -6,6 +6,7 @@
 #include <gpiod.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct gpio_line {
     struct gpiod_chip *chip;
@@ -13,17 +14,22 @@ struct gpio_line {
     int fd;
 };
 
-static int find(const char *chip_path, const char *name) {
+static int find(const char *chip_path, const char *name, unsigned int *offset) {
     struct gpiod_chip *const chip = gpiod_chip_open(chip_path);
+    int found = 0;
     if (chip == NULL) {
         return -1;
     }
-    struct gpiod_line *const line = gpiod_chip_find_line(chip, name);
-    const int offset = line != NULL ? (int)gpiod_line_offset(line) : -1;
-    const int number = errno;
+    for (unsigned int i = 0; i < gpiod_chip_num_lines(chip); i++) {
+        struct gpiod_line *const line = gpiod_chip_get_line(chip, i);
+        const char *const line_name = line != NULL ? gpiod_line_name(line) : NULL;
+        if (line_name != NULL && strcmp(line_name, name) == 0) {
+            *offset = i;
+            found++;
+        }
+    }
     gpiod_chip_close(chip);
-    errno = number;
-    return offset;
+    return found;
 }
 
 static int flags_of(const gpio_spec_t *spec) {

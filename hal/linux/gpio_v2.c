@@ -6,6 +6,7 @@
 #include <gpiod.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct gpio_line {
     struct gpiod_line_request *request;
@@ -14,16 +15,31 @@ struct gpio_line {
     int fd;
 };
 
-static int find(const char *chip_path, const char *name) {
+static bool has_name(struct gpiod_chip *chip, unsigned int offset, const char *name) {
+    struct gpiod_line_info *const line = gpiod_chip_get_line_info(chip, offset);
+    const char *const line_name = line != NULL ? gpiod_line_info_get_name(line) : NULL;
+    const bool is_same = line_name != NULL && strcmp(line_name, name) == 0;
+    gpiod_line_info_free(line);
+    return is_same;
+}
+
+static int find(const char *chip_path, const char *name, unsigned int *offset) {
     struct gpiod_chip *const chip = gpiod_chip_open(chip_path);
+    int found = 0;
     if (chip == NULL) {
         return -1;
     }
-    const int offset = gpiod_chip_get_line_offset_from_name(chip, name);
-    const int number = errno;
+    struct gpiod_chip_info *const info = gpiod_chip_get_info(chip);
+    const size_t lines = info != NULL ? gpiod_chip_info_get_num_lines(info) : 0u;
+    gpiod_chip_info_free(info);
+    for (unsigned int i = 0; i < lines; i++) {
+        if (has_name(chip, i, name)) {
+            *offset = i;
+            found++;
+        }
+    }
     gpiod_chip_close(chip);
-    errno = number;
-    return offset;
+    return found;
 }
 
 static struct gpiod_line_settings *new_settings(const gpio_spec_t *spec, bool is_output,

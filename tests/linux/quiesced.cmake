@@ -1,0 +1,28 @@
+# The parts of the program, and its lock-step server against the simulated one.
+if(CMAKE_CROSSCOMPILING)
+  return()
+endif()
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+add_executable(
+  test_quiesced
+  quiesced/test_config.cpp
+  quiesced/test_handover.cpp
+  quiesced/test_log.cpp
+  quiesced/test_notify.cpp
+  quiesced/test_options.cpp
+  quiesced/test_state.cpp
+  quiesced/test_tick_source.cpp)
+target_link_libraries(test_quiesced PRIVATE quiesced_core quiesce_warnings GTest::gtest_main)
+target_include_directories(test_quiesced PRIVATE quiesced)
+target_compile_definitions(
+  test_quiesced PRIVATE QUIESCED_EXAMPLE="${CMAKE_SOURCE_DIR}/linux/packaging/quiesced.toml")
+gtest_discover_tests(test_quiesced TEST_PREFIX quiesced. DISCOVERY_MODE PRE_TEST)
+
+add_executable(test_quiesced_lockstep quiesced/test_lockstep.cpp)
+target_link_libraries(test_quiesced_lockstep PRIVATE lockstep_can quiesce_warnings GTest::gtest_main)
+add_dependencies(test_quiesced_lockstep quiesced)
+target_compile_definitions(test_quiesced_lockstep
+                           PRIVATE QUIESCED_PROGRAM="$<TARGET_FILE:quiesced>")
+gtest_discover_tests(test_quiesced_lockstep TEST_PREFIX quiesced. DISCOVERY_MODE PRE_TEST)
