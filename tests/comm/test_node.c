@@ -309,6 +309,26 @@ static void test_save_stores_what_is_in_effect(void) {
     TEST_ASSERT_EQUAL_UINT32(2, kept.calls);
 }
 
+static void test_slow_store_is_answered_by_its_owner(void) {
+    store_t kept = {.is_full = false};
+    struct quiesce_can_service_reply_t reply;
+    node.store = store;
+    node.store_context = &kept;
+    node.store_is_slow = true;
+    receive(make_request(OP(SAVE), 0, 0, 3));
+    for (uint32_t i = 0; i < 50; i++) {
+        run(1);
+        TEST_ASSERT_NOT_EQUAL(QUIESCE_CAN_SERVICE_REPLY_FRAME_ID, frames[frame_count - 1u].id);
+    }
+    TEST_ASSERT_EQUAL_UINT32(50, kept.calls);
+    can_node_answer(&node.can, CAN_NODE_STORE_FAILED, 0);
+    run(1);
+    TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_SERVICE_REPLY_FRAME_ID, frames[frame_count - 1u].id);
+    (void)quiesce_can_service_reply_unpack(&reply, frames[frame_count - 1u].data, 8);
+    TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, reply.result);
+    TEST_ASSERT_EQUAL_UINT32(50, kept.calls);
+}
+
 static void test_leaving_switches_the_output_off(void) {
     can_frame_t frame;
     run(2000);
@@ -343,6 +363,7 @@ int main(void) {
     RUN_TEST(test_refused_parameters_are_mended_over_the_bus);
     RUN_TEST(test_use_params_says_what_is_wrong);
     RUN_TEST(test_save_stores_what_is_in_effect);
+    RUN_TEST(test_slow_store_is_answered_by_its_owner);
     RUN_TEST(test_leaving_switches_the_output_off);
     RUN_TEST(test_lost_ticks_reach_the_controller);
     return UNITY_END();
