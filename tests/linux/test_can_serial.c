@@ -221,10 +221,11 @@ static void test_adapter_is_set_opened_and_closed(void) {
 
 static void test_line_is_raw_at_the_speed_that_was_asked_for(void) {
     struct termios set;
-    open_bus((can_bus_options_t){.serial_baud = 921600});
+    // QEMU's user mode, which runs this for arm64, passes on no higher one.
+    open_bus((can_bus_options_t){.serial_baud = 460800});
     TEST_ASSERT_EQUAL_INT(0, tcgetattr(keeper, &set));
-    TEST_ASSERT_EQUAL_UINT32(B921600, cfgetospeed(&set));
-    TEST_ASSERT_EQUAL_UINT32(B921600, cfgetispeed(&set));
+    TEST_ASSERT_EQUAL_UINT32(B460800, cfgetospeed(&set));
+    TEST_ASSERT_EQUAL_UINT32(B460800, cfgetispeed(&set));
     TEST_ASSERT_EQUAL_UINT32(0, set.c_lflag & (ICANON | ECHO | ISIG));
     TEST_ASSERT_EQUAL_UINT32(0, set.c_iflag & (IXON | ICRNL));
 }
