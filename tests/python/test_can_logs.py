@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import random
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -144,6 +145,18 @@ def test_notes_are_where_the_format_has_a_place(tmp_path: Path) -> None:
 
     with MDF(tmp_path / "a.mf4") as mdf:
         assert "bus lost: Ä gap" in mdf.header.comment
+
+
+def test_candump_logs_are_those_of_can_utils(tmp_path: Path) -> None:
+    """No marks of direction, which Wireshark does not take; can-utils make an ASC log of it."""
+    path = write(tmp_path / "a.log", [frame(0), frame(1, b"\xab", 0x18FF1234)])
+    first, second = path.read_text().splitlines()
+    assert first == f"(1700000000.250000) can0 100#{status(0).hex().upper()}"
+    assert second == "(1700000000.260000) can0 18FF1234#AB"
+    if shutil.which("log2asc") is None:
+        pytest.skip("can-utils are not installed")
+    subprocess.run(["log2asc", "-I", path, "-O", tmp_path / "a.asc", "can0"], check=True)
+    assert [one.arbitration_id for one in read_log(tmp_path / "a.asc")] == [0x100, 0x18FF1234]
 
 
 def test_trc_of_other_tools_is_read(tmp_path: Path) -> None:

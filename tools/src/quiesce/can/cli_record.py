@@ -5,6 +5,7 @@ import math
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 from quiesce.can.buses import add_bus_options, bus_of
 from quiesce.can.options import add_database_option, check_seconds, database_of
@@ -101,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
     return EXIT_FAILED if failed else 0
 
 
-def report(recorder, link) -> None:  # type: ignore[no-untyped-def]
+def report(recorder: Any, link: Any) -> None:
     from quiesce.can.traffic import summary_line
     from quiesce.can.writers import MdfFile
 

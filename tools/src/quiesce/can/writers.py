@@ -18,6 +18,8 @@ from quiesce.errors import one_line
 # Uncompressed bytes of a BLF container: what a power cut loses.
 BLF_CONTAINER_BYTES = 16 * 1024
 COMMIT_BYTES = 64 * 1024
+# As candump has it: CAN_ERR_FLAG and CAN_ERR_BUSERROR, no detail.
+ERROR_FRAME = "20000080#0000000000000000"
 
 Attachment = tuple[str, bytes, str]  # file name, content, MIME type
 
@@ -70,12 +72,22 @@ class LogFile:
             self._writer.stop()
 
 
+class PlainCandump(can.CanutilsLogWriter):
+    """As 'candump -L' writes it. python-can marks what was received and sent at the end of each
+    line, which Wireshark takes for an error."""
+
+    def on_message_received(self, msg: Any) -> None:
+        digits = 8 if msg.is_extended_id else 3
+        data = "R" if msg.is_remote_frame else bytes(msg.data).hex().upper()
+        text = f"{msg.arbitration_id:0{digits}X}#{data}"
+        if msg.is_error_frame:
+            text = ERROR_FRAME
+        self.file.write(f"({msg.timestamp:.6f}) can0 {text}\n")
+
+
 class CandumpFile(LogFile):
     def _open(self) -> Any:
-        return can.CanutilsLogWriter(self.file, channel="can0")
-
-    def write(self, frame: Any) -> None:
-        super().write(with_channel(frame, "can0"))
+        return PlainCandump(self.file)
 
 
 class CsvFile(LogFile):
@@ -112,7 +124,7 @@ class BlfFile(LogFile):
         self._writer.log_event(ascii_text, time_s)
 
 
-class MdfFile(CandumpFile):
+class MdfFile(LogFile):
     """attachments: what goes along; called when the file is closed."""
 
     def __init__(self, path: Path, attachments: Callable[[], Sequence[Attachment]]) -> None:
@@ -124,6 +136,12 @@ class MdfFile(CandumpFile):
         self._notes: list[str] = []
         self._thread: threading.Thread | None = None
         super().__init__(path.with_name(path.name + ".log"))
+
+    def _open(self) -> Any:
+        return can.CanutilsLogWriter(self.file)
+
+    def write(self, frame: Any) -> None:
+        super().write(with_channel(frame, "can0"))
 
     def note(self, text: str, time_s: float) -> None:
         self._notes.append(f"{time_s:.6f} {one_line(text)}")
