@@ -1,5 +1,9 @@
 #include "condition.h"
 
+// What a single missing sample takes off a run of good ones: a sensor at half our rate never counts
+// as good, one that misses a tick in ten does.
+#define SLIP_COSTS_TICKS 4u
+
 void condition_init(condition_t *self, const condition_cfg_t *cfg) {
     const int64_t omega_q32 = cfg->dc_cutoff_mHz * TWO_PI_PER_MILLI_Q32 / cfg->tick_rate_Hz;
     const int64_t one_q32 = INT64_C(1) << 32;
@@ -99,7 +103,11 @@ void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_
         take_good_sample(self, counts);
     } else {
         self->bad_ticks = increment_sat_u32(self->bad_ticks);
-        self->good_ticks = 0;
+        // A single missing sample now and then is how a sensor's clock meets ours, no illness.
+        const bool is_slip = out->flag == CONDITION_LOST && self->bad_ticks == 1u;
+        self->good_ticks = is_slip && self->good_ticks > SLIP_COSTS_TICKS
+                               ? self->good_ticks - SLIP_COSTS_TICKS
+                               : 0u;
     }
     const bool is_dead = out->flag == CONDITION_STUCK || out->flag == CONDITION_QUIET;
     out->is_fault = is_dead || self->bad_ticks > self->cfg.max_age_ticks;

@@ -64,7 +64,8 @@ typedef struct {
     uint32_t same_samples; ///< identical samples in a row, the first one included
     condition_noise_t noise;
     uint32_t bad_ticks;  ///< bad samples in a row
-    uint32_t good_ticks; ///< good samples in a row, saturating
+    uint32_t good_ticks; ///< good samples in a row, saturating; a single missing one takes
+                         ///< 4 off
 } condition_t;
 
 typedef struct {
@@ -72,7 +73,8 @@ typedef struct {
     int32_t raw_um_s2;     ///< before DC removal: the newest good sample, 0 until there was one
     condition_flag_t flag; ///< of this tick's sample
     bool is_fault;         ///< the bad run is older than max_age_ticks (stuck, quiet: at once)
-    uint32_t good_ticks;   ///< good samples in a row, saturating
+    uint32_t good_ticks;   ///< good samples in a row, saturating; a single missing one takes
+                           ///< 4 off
 } condition_out_t;
 
 void condition_init(condition_t *self, const condition_cfg_t *cfg);

@@ -84,12 +84,29 @@ static void test_dropout_holds_the_last_sample_then_faults_after_the_age_limit(v
         TEST_ASSERT_EQUAL(i > config.max_age_ticks, out.is_fault);
         // Held without moving the DC part; nothing once it is a fault.
         TEST_ASSERT_INT32_WITHIN(30000, out.is_fault ? 0 : 7129707, out.accel_um_s2);
-        TEST_ASSERT_EQUAL_UINT32(0, out.good_ticks);
+        TEST_ASSERT_EQUAL_UINT32(i == 1u ? 997 : 0, out.good_ticks);
     }
     step(1);
     TEST_ASSERT_EQUAL(CONDITION_GOOD, out.flag);
     TEST_ASSERT_FALSE(out.is_fault);
     TEST_ASSERT_EQUAL_UINT32(1, out.good_ticks);
+}
+
+// Good samples in a row after a second in which every period-th sample is missing.
+static uint32_t good_after_slips(uint32_t period) {
+    condition_init(&condition, &config);
+    for (uint32_t i = 1; i <= 1000; i++) {
+        condition_step(&condition, (int32_t)(i % 3u), i % period != 0u, &out);
+        TEST_ASSERT_FALSE(out.is_fault);
+    }
+    return out.good_ticks;
+}
+
+static void test_a_slip_now_and_then_does_not_end_a_run_of_good_samples(void) {
+    TEST_ASSERT_EQUAL_UINT32(990 - 40, good_after_slips(100));
+    TEST_ASSERT_EQUAL_UINT32(900 - 400, good_after_slips(10));
+    TEST_ASSERT_LESS_THAN_UINT32(5, good_after_slips(5));
+    TEST_ASSERT_LESS_THAN_UINT32(5, good_after_slips(2));
 }
 
 static void test_saturated_and_out_of_range_samples_are_told_apart(void) {
@@ -239,6 +256,7 @@ int main(void) {
     RUN_TEST(test_offset_follows_slowly_and_a_tone_passes);
     RUN_TEST(test_full_scale_saturates_at_the_limit);
     RUN_TEST(test_dropout_holds_the_last_sample_then_faults_after_the_age_limit);
+    RUN_TEST(test_a_slip_now_and_then_does_not_end_a_run_of_good_samples);
     RUN_TEST(test_saturated_and_out_of_range_samples_are_told_apart);
     RUN_TEST(test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off);
     RUN_TEST(test_noise_is_judged_by_its_rms_at_every_rate);
