@@ -187,8 +187,17 @@ def check_preamble(frames: list[can.Message]) -> None:
     assert [one["param_value"] for one in raw] == [one["default"] for one in parameters()]
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("suffix", [".log", ".asc", ".blf", ".csv", ".mf4"])
+@pytest.mark.parametrize(
+    ("suffix", "number"),
+    [
+        (".log", signal.SIGINT),
+        (".asc", signal.SIGTERM),
+        (".blf", signal.SIGINT),
+        (".csv", signal.SIGTERM),
+        (".mf4", signal.SIGINT),
+        (".mf4", signal.SIGTERM),
+    ],
+)
 def test_record_is_whole_however_it_ends(
     controller: Controller, tmp_path: Path, suffix: str, number: int
 ) -> None:
@@ -374,6 +383,25 @@ def test_bad_options(
     out, err = capsys.readouterr()
     assert out == "" and len(err.splitlines()) == 1 and words in err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_packages_are_loaded_by_the_actions_that_need_them(tmp_path: Path) -> None:
+    code = "import sys, quiesce.cli; print({'can', 'cantools', 'asammdf'} & set(sys.modules))"
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "tools/src")}
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=env)
+    assert result.stdout == "set()\n", result.stderr
+
+
+def test_an_absent_package_is_named(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "cantools", None)
+    load.cache_clear()
+    try:
+        assert main(["can", "load"]) == 2
+    finally:
+        load.cache_clear()
+    assert "package cantools is not installed" in capsys.readouterr().err
 
 
 def test_list_says_why(quiesce) -> None:

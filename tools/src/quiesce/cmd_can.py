@@ -1,6 +1,7 @@
 """`quiesce can ACTION`: the CAN interface from a computer. One module an action."""
 
 import argparse
+from collections.abc import Callable
 
 from quiesce.can import (
     cli_check,
@@ -14,6 +15,16 @@ from quiesce.can import (
     cli_set,
     cli_stop,
 )
+from quiesce.errors import UsageError
+
+# Import name and package.
+PACKAGES = {
+    "can": "python-can",
+    "cantools": "cantools",
+    "asammdf": "asammdf",
+    "serial": "pyserial",
+    "msgpack": "msgpack",
+}
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
 ACTIONS = (
@@ -53,3 +64,23 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     actions = parser.add_subparsers(metavar="ACTION", required=True)
     for action in ACTIONS:
         action.add_parser(actions)
+    for one in actions.choices.values():
+        one.set_defaults(run=with_packages(one.get_default("run")))
+
+
+def with_packages(run: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:
+    """UsageError where one of the packages that only these actions need is not installed."""
+
+    def checked(args: argparse.Namespace) -> int:
+        try:
+            return run(args)
+        except ModuleNotFoundError as error:
+            if error.name not in PACKAGES:
+                raise
+            package = PACKAGES[error.name]
+            raise UsageError(
+                f"the Python package {package} is not installed; './tools/setup python' installs "
+                "all that tools/requirements.txt names"
+            )
+
+    return checked
