@@ -137,14 +137,21 @@ void read_log(Section &section, LogConfig &log) {
     }
 }
 
-/// What needs [can] without having it.
+/// What needs [can] without having it; "": nothing.
+std::string bus_user(const Section &root, const Config &config) {
+    if (root.has("accel") && config.accel.source == AccelSource::can) {
+        return "accel.source";
+    }
+    if (root.has("current") && config.current.output == CurrentOutput::can) {
+        return "current.output";
+    }
+    return config.enable_from != NODE_ENABLE_BOARD ? "operator.enable" : "";
+}
+
 void check_bus(Section &root, const Config &config) {
-    const char *needed_by = config.accel.source == AccelSource::can       ? "accel.source"
-                            : config.current.output == CurrentOutput::can ? "current.output"
-                            : config.enable_from != NODE_ENABLE_BOARD     ? "operator.enable"
-                                                                          : nullptr;
-    if (needed_by != nullptr && !root.has("can")) {
-        root.wrong("can", std::string("missing; ") + needed_by + " needs a table [can]");
+    const std::string user = bus_user(root, config);
+    if (!user.empty() && !root.has("can")) {
+        root.wrong("can", "missing; " + user + " needs a table [can]");
     }
 }
 

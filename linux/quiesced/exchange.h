@@ -9,6 +9,7 @@
 #include "devices.h"
 #include "log_ring.h"
 #include "mailbox.h"
+#include "notify.h"
 #include "replaceable.h"
 
 namespace quiesced {
@@ -63,6 +64,7 @@ struct Exchange {
     void wake() const;
 
     LogRing log;
+    const Notifier manager; ///< of services; for both
     Peripherals peripherals;
     std::atomic<std::uint64_t> ticks{0}; ///< done since the start
     std::atomic<bool> loop_has_ended{false};

@@ -7,6 +7,7 @@
 
 namespace quiesced {
 
+// The compiler checks its arguments as printf's. NOLINTNEXTLINE(cert-dcl50-cpp)
 void LogRing::log(LogLevel level, const char *format, ...) {
     const std::size_t written = written_.load(std::memory_order_relaxed);
     if (written - taken_.load(std::memory_order_acquire) >= kLines) {

@@ -244,8 +244,19 @@ void Loop::look_after_devices() {
     if (bus_ != nullptr) {
         can_bus_maintain(bus_, monotonic_ns());
     }
+    feed_watchdogs(monotonic_ns());
+}
+
+/// Both say that the loop goes on; the disk, which the other thread may wait for, has no part in
+/// it.
+void Loop::feed_watchdogs(std::int64_t now_ns) {
     if (watchdog_ != nullptr) {
-        watchdog_feed(watchdog_, monotonic_ns());
+        watchdog_feed(watchdog_, now_ns);
+    }
+    const Notifier &manager = exchange_.manager;
+    if (manager.watchdog_period_ns() > 0 && now_ns >= next_notice_ns_) {
+        next_notice_ns_ = now_ns + manager.watchdog_period_ns();
+        manager.send("WATCHDOG=1");
     }
 }
 

@@ -44,6 +44,7 @@ class Loop {
     void look_after_devices();
     void look_after_accel();
     void look_after_current();
+    void feed_watchdogs(std::int64_t now_ns);
     void report(std::int64_t now_ns);
     Snapshot snapshot() const;
     void put_snapshot();
@@ -80,6 +81,7 @@ class Loop {
     std::uint32_t silent_ticks_ = 0; ///< without a sample of the accelerometer
     std::uint32_t current_failures_ = 0;
     std::uint32_t adaptation_age_s_ = 0;
+    std::int64_t next_notice_ns_ = 0; ///< to the service manager
     bool store_is_pending_ = false;
     quiesce_adaptation_t adaptation_{};
     bool has_adaptation_ = false;

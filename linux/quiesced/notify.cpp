@@ -56,7 +56,7 @@ Notifier::~Notifier() {
     }
 }
 
-void Notifier::send(const std::string &state) const {
+void Notifier::send(std::string_view state) const {
     if (socket_ >= 0) {
         (void)::send(socket_, state.data(), state.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     }

@@ -4,7 +4,7 @@
 #define QUIESCED_NOTIFY_H
 
 #include <cstdint>
-#include <string>
+#include <string_view>
 
 namespace quiesced {
 
@@ -17,7 +17,8 @@ class Notifier {
     ~Notifier();
 
     /// "READY=1", lines separated by newlines. Never blocks; a manager that is gone is no error.
-    void send(const std::string &state) const;
+    /// Needs no heap.
+    void send(std::string_view state) const;
 
     /// Half the watchdog's timeout; 0: nobody watches.
     std::int64_t watchdog_period_ns() const { return watchdog_period_ns_; }

@@ -44,7 +44,7 @@ void Trouble::note(const std::string &error, LogSink &sink) {
 
 Service::Service(const Config &config, Exchange &exchange, LogSink &sink)
     : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
-      configured_(config.params), thread_([this] { run(); }) {}
+      manager_(exchange.manager), configured_(config.params), thread_([this] { run(); }) {}
 
 Service::~Service() {
     exchange_.loop_has_ended.store(true);
@@ -87,7 +87,7 @@ void Service::work(std::int64_t now_ns) {
         next_devices_ns_ = now_ns + kSecond_ns;
         look_after_devices();
     }
-    tell_manager(now_ns);
+    tell_manager();
 }
 
 void Service::drain_log() {
@@ -177,22 +177,14 @@ void Service::look_after_devices() {
     input(devices.data_ready_input, gpio.data_ready_input, "data_ready_input");
 }
 
-void Service::tell_manager(std::int64_t now_ns) {
-    const std::uint64_t ticks = exchange_.ticks.load();
-    if (!is_ready_ && ticks > 0) {
+void Service::tell_manager() {
+    if (!is_ready_ && exchange_.ticks.load() > 0) {
         is_ready_ = true;
         manager_.send("READY=1\nMAINPID=" + std::to_string(getpid()));
     }
     if (!is_stopping_ && stop_is_requested()) {
         is_stopping_ = true;
         manager_.send("STOPPING=1");
-    }
-    // A loop that stands still is not covered up.
-    if (manager_.watchdog_period_ns() > 0 && now_ns >= next_watchdog_ns_ &&
-        ticks != watched_ticks_) {
-        next_watchdog_ns_ = now_ns + manager_.watchdog_period_ns();
-        watched_ticks_ = ticks;
-        manager_.send("WATCHDOG=1");
     }
 }
 

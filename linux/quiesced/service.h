@@ -8,7 +8,6 @@
 
 #include "exchange.h"
 #include "log_sink.h"
-#include "notify.h"
 #include "state_store.h"
 
 namespace quiesced {
@@ -46,14 +45,14 @@ class Service {
     void look_after_devices();
     void write_files();
     void store_params();
-    void tell_manager(std::int64_t now_ns);
+    void tell_manager();
     void say_last_words();
 
     const Config &config_;
     Exchange &exchange_;
     LogSink &sink_;
     StateStore store_;
-    Notifier manager_;
+    const Notifier &manager_;
     quiesce_params_t configured_; ///< what [parameters] says, last time that it was read
 
     Snapshot last_{};
@@ -62,8 +61,6 @@ class Service {
     std::uint32_t told_dropped_ = 0;
     std::int64_t next_status_ns_ = 0;
     std::int64_t next_devices_ns_ = 0;
-    std::int64_t next_watchdog_ns_ = 0;
-    std::uint64_t watched_ticks_ = 0;
     bool is_ready_ = false;
     bool is_stopping_ = false;
     bool is_reloading_ = false;

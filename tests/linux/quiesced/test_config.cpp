@@ -159,7 +159,7 @@ const Malformed kMalformed[] = {
     {"param_number", "[parameters]\nlaw = 5\n", "q.toml:8: parameters.law: expected an integer"},
     {"param_choice", "[parameters]\ntick_rate_Hz = 700\n",
      "q.toml:8: parameters.tick_rate_Hz: expected one of: 500, 1000, 2000, 4000; found 700"},
-    {"param_contradiction", "[parameters]\nmax_current_mA = 100\nsafe_current_mA = 200\n",
+    {"param_contradiction", "[parameters]\nmax_current_mA = 6000\nsafe_current_mA = 7000\n",
      "q.toml:9: parameters.safe_current_mA: "},
     {"no_toml", "[parameters\n", "q.toml:7: "},
     {"twice", "[can]\n", "q.toml:7: "},
