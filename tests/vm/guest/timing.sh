@@ -2,6 +2,7 @@
 # the virtual time of the instructions. cyclictest is the ruler: same priority, interval and load.
 . /vm/lib.sh
 PRESSES=16
+CONTROLLER=quiesced-gpiod2
 
 gpio_sim ESTOP ENABLE FAULT
 vcan
@@ -17,7 +18,7 @@ vm_node vcan0 sensor &
 start /run/timing.toml
 vm_estop vcan0 "$SIM/sim_gpio0/pull" $PRESSES || exit 1
 stop
-report timing code=$CODE
+report timing code=$CODE said="$(grep 'parameter hash' $LOG)"
 echo "RESULT {\"name\": \"status\", \"status\": $(tr -d '\n' <$STATUS)}"
 grep 'emergency stop' $LOG | sed 's/^/LOG /'
 ticks="$(field ticks)"

@@ -62,6 +62,10 @@ class Machine:
         self.close()
 
     @property
+    def process_id(self) -> int:
+        return self._process.pid
+
+    @property
     def qmp(self) -> Qmp:
         if self._qmp is None:
             self._qmp = Qmp(self._qmp_socket)
@@ -99,7 +103,9 @@ class Machine:
         """All console lines, after the guest has switched itself off."""
         with self._grown:
             if not self._grown.wait_for(lambda: self._is_over, timeout_s):
-                raise BenchFailure(f"the guest hangs: not off after {timeout_s:.0f} s; {self.tail()}")
+                raise BenchFailure(
+                    f"the guest hangs: not off after {timeout_s:.0f} s; {self.tail()}"
+                )
         return list(self.lines)
 
     def tail(self) -> str:
@@ -155,7 +161,14 @@ def _command(boot: Boot, qmp_fd: int, qtest_fd: int) -> list[str]:
     command += ["-accel", "tcg", "-display", "none", "-monitor", "none", "-no-reboot"]
     command += ["-nodefaults", "-nic", "none", "-serial", "stdio"]
     command += ["-chardev", f"socket,id=qmp,fd={qmp_fd}", "-mon", "chardev=qmp,mode=control"]
-    command += ["-chardev", f"socket,id=qtest,fd={qtest_fd}", "-qtest", "chardev:qtest", "-qtest-log", "none"]
+    command += [
+        "-chardev",
+        f"socket,id=qtest,fd={qtest_fd}",
+        "-qtest",
+        "chardev:qtest",
+        "-qtest-log",
+        "none",
+    ]
     command += ["-kernel", str(boot.kernel), "-initrd", str(boot.initramfs)]
     # loglevel: a kernel message never tears a line of ours apart; a panic is still told.
     kernel = f"console=ttyAMA0 loglevel=1 panic=-1 vm={boot.script}"

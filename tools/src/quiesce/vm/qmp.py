@@ -36,6 +36,13 @@ class Qmp:
             if "error" in reply:
                 raise BenchFailure(f"QEMU refused {command}: {reply['error'].get('desc')}")
 
+    def ending(self) -> str:
+        """Why the machine stopped ("guest-shutdown", "guest-reset"); waits for it."""
+        while True:
+            event = self._read()
+            if event.get("event") == "SHUTDOWN":
+                return str(event["data"]["reason"])
+
     def device(self, kind: str) -> str:
         """Path of the machine's only device of that type ("pl061"); its number varies."""
         folder = "/machine/unattached"
