@@ -4,6 +4,7 @@ import os
 import random
 import socket
 import threading
+import time
 import tty
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,8 +13,10 @@ import can
 import pytest
 from conftest import run_quiesce
 from quiesce.can.buses import Bus
+from quiesce.can.database import load
 from quiesce.can.link import Back, Link, Lost
 from quiesce.can.slcan import SlcanBus, frame_of
+from quiesce.can.traffic import Seen
 from quiesce.can.writers import open_log
 
 WAIT_S = 30.0  # far more than anything takes
@@ -137,6 +140,30 @@ def test_sending_on_a_lost_bus_says_so(server: Server) -> None:
         server.close()  # nobody to come back to
         assert isinstance(next_event(link), Lost)
         assert link.send(0x100, b"\1") is None
+
+
+@pytest.mark.parametrize(("start_s", "is_shifted"), [(12.5, True), (None, False)])
+def test_clocks_that_count_from_their_start_are_shifted(start_s, is_shifted: bool) -> None:
+    """Two ends of python-can's virtual bus; the frames keep their distance."""
+    channel = f"clocks-{start_s}"
+    options = (("preserve_timestamps", True),)
+    first_s = time.time() if start_s is None else start_s
+    with (
+        Link(Bus("virtual", channel, None, options)) as link,
+        can.Bus(interface="virtual", channel=channel, preserve_timestamps=True) as other,
+    ):
+        for i in range(2):
+            other.send(can.Message(arbitration_id=1, timestamp=first_s + 0.25 * i))
+        stamps_s = [next_event(link).timestamp for _ in range(2)]
+    assert stamps_s[1] - stamps_s[0] == pytest.approx(0.25, abs=1e-6)
+    assert (stamps_s[0] != first_s) == is_shifted
+    assert abs(stamps_s[0] - time.time()) < WAIT_S
+
+
+def test_rate_is_of_the_last_second() -> None:
+    seen = Seen(load().by_name["Motion"], times_s=[10.0 + 0.1 * i for i in range(30)])
+    assert seen.rate_Hz(12.95) == 10.0
+    assert seen.rate_Hz(20.0) == 0.0
 
 
 # replay

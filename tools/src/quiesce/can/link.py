@@ -14,6 +14,10 @@ from quiesce.errors import UsageError
 
 REOPEN_S = 0.5
 READ_S = 0.1
+# Packets in a row that are no frames: the driver is broken, not the bus noisy.
+MAX_NOISE = 100
+# A driver's clock that is further off counts from its own start.
+CLOCK_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,7 @@ class Link:
         self._sending = threading.Lock()
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._malformed = 0
+        self._shift_s: float | None = None
 
     def __enter__(self) -> "Link":
         try:
@@ -109,17 +114,29 @@ class Link:
         return True
 
     def _read(self) -> None:
+        noise = 0
         while not self._stop.is_set():
             try:
                 message = self._driver.recv(READ_S)
             except Exception as error:
-                if is_noise(error):
+                noise += 1
+                if is_noise(error) and noise < MAX_NOISE:
                     self._malformed += 1
                 else:
                     self._lose(error)
+                    noise = 0
                 continue
             if message is not None:
+                noise = 0
+                self._stamp(message)
                 self._events.put(message)
+
+    def _stamp(self, message: Any) -> None:
+        """Some adapters count from their own start: the first frame ties that to the clock."""
+        if self._shift_s is None:
+            off_s = time.time() - message.timestamp
+            self._shift_s = off_s if abs(off_s) > CLOCK_S else 0.0
+        message.timestamp += self._shift_s
 
     def _lose(self, error: Exception) -> None:
         lost_s = time.time()
@@ -131,6 +148,7 @@ class Link:
             except Exception:
                 continue
             self._driver = driver
+            self._shift_s = None
             now_s = time.time()
             self._events.put(Back(now_s, now_s - lost_s))
             return
