@@ -285,6 +285,16 @@ def test_decode_prints_what_comes_before_the_fault(quiesce, tmp_path: Path) -> N
     assert "line 6" in result.stderr and "Traceback" not in result.stderr
 
 
+def test_decode_of_pages(quiesce, tmp_path: Path) -> None:
+    pages = [bytes([page, 10, 2, 0, 1, 0, 0, 0]) for page in (0, 5, 9)]
+    path = write(tmp_path / "a.log", [frame(i, page, 0x120) for i, page in enumerate(pages)])
+    result = quiesce("can", "decode", path)
+    assert result.returncode == 0, result.stderr
+    first, second, third = result.stdout.splitlines()
+    assert "freeze_fault=ESTOP" in first and "freeze_displacement_amp_nm" in second
+    assert third.endswith("FaultFreeze")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -8,7 +8,7 @@ from typing import Any
 
 from quiesce.can.buses import add_bus_options, bus_of
 from quiesce.can.database import CYCLIC
-from quiesce.can.options import add_database_option, check_seconds, database_of
+from quiesce.can.options import check_seconds
 from quiesce.errors import EXIT_FAILED, UsageError
 from quiesce.table import format_table
 
@@ -61,11 +61,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     add_bus_options(parser)
-    add_database_option(parser)
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.can.database import load
     from quiesce.can.link import Link
     from quiesce.can.services import Services
     from quiesce.can.traffic import Traffic
@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     check_seconds("--seconds", args.seconds)
     if not 0.0 < args.tolerance <= 100.0:
         raise UsageError(f"--tolerance {args.tolerance:g}: percent, above 0, at most 100")
-    database = database_of(args)
+    database = load()
     traffic = Traffic(database)
     gaps: list[str] = []
 

@@ -78,12 +78,12 @@ def tell(file: Path, traffic: Any) -> dict[str, Any]:
 
 
 def signals_of(database: Any, frame: Any) -> dict[str, Any]:
-    """Empty where the length is not the message's. Labels are strings."""
+    """Empty where the length is not the message's, or it has no such page. Labels are strings."""
     message = database.by_id[frame.arbitration_id]
     if len(frame.data) != message.length:
         return {}
     signals = database.decode(message.frame_id, bytes(frame.data))
-    return {name: v if isinstance(v, int) else str(v) for name, v in signals.items()}
+    return {name: v if isinstance(v, int | float) else str(v) for name, v in signals.items()}
 
 
 def text_writer() -> Callable[..., None]:
@@ -92,7 +92,7 @@ def text_writer() -> Callable[..., None]:
         signals = signals_of(database, frame)
         body = " ".join(f"{key}={value}" for key, value in signals.items() if key != "crc")
         mark = "" if verdict == "ok" else f"  [{verdict}]"
-        print(f"{frame.timestamp:.6f}  {name:<15} {body}{mark}")
+        print(f"{frame.timestamp:.6f}  {name:<15} {body}{mark}".rstrip())
 
     return write
 

@@ -6,7 +6,7 @@ import time
 from typing import Any
 
 from quiesce.can.buses import add_bus_options, bus_of
-from quiesce.can.options import add_database_option, check_seconds, database_of
+from quiesce.can.options import check_seconds
 from quiesce.table import format_table
 
 EPILOG = """examples:
@@ -33,17 +33,17 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--seconds", type=float, metavar="T", help="how long (until Ctrl-C)")
     add_bus_options(parser)
-    add_database_option(parser)
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.can.database import load
     from quiesce.can.link import Link
     from quiesce.can.stopping import until_stopped
 
     if args.seconds is not None:
         check_seconds("--seconds", args.seconds)
-    bus, database = bus_of(args), database_of(args)
+    bus, database = bus_of(args), load()
     is_terminal = sys.stdout.isatty()
     with until_stopped() as stop, Link(bus) as link:
         view = View(link, database)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.can.buses import add_bus_options, bus_of
-from quiesce.can.options import add_database_option, check_seconds, database_of
+from quiesce.can.options import check_seconds
 from quiesce.errors import EXIT_FAILED, UsageError
 from quiesce.paths import shown
 
@@ -48,7 +48,6 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--listen", action="store_true", help="send nothing: no parameters in the log"
     )
     add_bus_options(parser)
-    add_database_option(parser)
     parser.set_defaults(run=run)
 
 
@@ -69,6 +68,7 @@ def say(text: str) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.can.database import load
     from quiesce.can.link import Link
     from quiesce.can.recorder import Plan, Recorder, open_first
     from quiesce.can.stopping import until_stopped
@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     check(args)
     size = None if args.rotate_mb is None else int(args.rotate_mb * 1e6)
     plan = Plan(args.out, size, args.rotate_s, not args.listen)
-    bus, database = bus_of(args), database_of(args)
+    bus, database = bus_of(args), load()
     with until_stopped() as stop, Link(bus) as link:
         recorder = Recorder(link, database, plan, say)
         open_first(recorder)

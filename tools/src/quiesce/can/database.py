@@ -60,8 +60,14 @@ class Database:
         self._codecs = {one.frame_id: one for one in self.codec.messages}
 
     def decode(self, frame_id: int, data: bytes) -> dict[str, Any]:
-        """Signals by name: integers, or the label where the value has one."""
-        return self._codecs[frame_id].decode(data, decode_choices=True)
+        """Signals by name: numbers, or the label where the value has one. Empty where the data are
+        of no page that the message has."""
+        from cantools.database import DecodeError
+
+        try:
+            return self._codecs[frame_id].decode(data, decode_choices=True)
+        except DecodeError:
+            return {}
 
     def raw(self, frame_id: int, data: bytes) -> dict[str, Any]:
         """Signals by name, integers only."""
