@@ -245,6 +245,18 @@ def test_mdf_carries_database_and_parameters(controller: Controller, tool, tmp_p
     assert dump["identification"]["version_minor"] >= 0
 
 
+def test_record_of_every_sample(controller: Controller, tool, tmp_path: Path) -> None:
+    controller.start()
+    assert tool("record", "--out", "run.blf", "--seconds", "4", "--raw").returncode == 0
+    raw = DATABASE.by_name["RawSample"].frame_id
+    ticks = [
+        DATABASE.raw(raw, bytes(one.data))["tick_low"]
+        for one in read_log(tmp_path / "run.blf")
+        if one.arbitration_id == raw
+    ]
+    assert len(ticks) > 100 and ticks == sorted(set(ticks))
+
+
 def test_record_without_a_controller(controller: Controller, tool, tmp_path: Path) -> None:
     controller.start("--silent")
     result = tool("record", "--out", "run.log", "--seconds", "4")
@@ -369,6 +381,7 @@ def test_monitor_draws_a_table_on_a_terminal(controller: Controller, tmp_path: P
         (["monitor", "--bus", "slcan:/dev/null", "--bus-option", "x"], "KEY=VALUE"),
         (["monitor", "--bus", "slcan:/dev/null", "--seconds", "0"], "--seconds"),
         (["record", "--out", "a.db", "--bus", "virtual:x"], ".mf4"),
+        (["record", "--out", "a.log", "--bus", "virtual:x", "--raw", "--listen"], "--listen"),
         (["record", "--out", "a.log", "--bus", "virtual:x", "--rotate-mb", "0"], "--rotate-mb"),
         (["record", "--out", "a.log", "--bus", "virtual:x", "--rotate-s", "nan"], "--rotate-s"),
         (["check", "--bus", "virtual:x", "--tolerance", "0"], "--tolerance"),

@@ -15,6 +15,7 @@ from quiesce.paths import shown
 EPILOG = """examples:
   quiesce can record --out run.blf --bus socketcan:can0
   quiesce can record --out run.mf4 --seconds 60 --bus slcan:/dev/ttyACM0
+  quiesce can record --out raw.blf --raw --bus slcan:/dev/ttyACM0@921600
   quiesce can record --out long.asc --rotate-mb 100 --rotate-s 3600 --bus socketcan:can0
 
 The suffix chooses the format: .log (candump), .asc, .blf, .csv or .mf4. Every file begins with the
@@ -45,6 +46,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )  # fmt: skip
     parser.add_argument("--rotate-s", type=float, metavar="T", help="next file at this age")
     parser.add_argument(
+        "--raw", action="store_true", help="every sample, too: asks for RawSample (+27 %% bus load)"
+    )
+    parser.add_argument(
         "--listen", action="store_true", help="send nothing: no parameters in the log"
     )
     add_bus_options(parser)
@@ -57,6 +61,8 @@ def check(args: argparse.Namespace) -> None:
     for option, value in (("--seconds", args.seconds), ("--rotate-s", args.rotate_s)):
         if value is not None:
             check_seconds(option, value)
+    if args.raw and args.listen:
+        raise UsageError("--raw asks the controller, --listen sends nothing: choose one")
     if args.rotate_mb is not None and not (
         math.isfinite(args.rotate_mb) and args.rotate_mb >= 0.01
     ):
@@ -76,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
 
     check(args)
     size = None if args.rotate_mb is None else int(args.rotate_mb * 1e6)
-    plan = Plan(args.out, size, args.rotate_s, not args.listen)
+    plan = Plan(args.out, size, args.rotate_s, not args.listen, args.raw)
     bus, database = bus_of(args), load()
     with until_stopped() as stop, Link(bus) as link:
         recorder = Recorder(link, database, plan, say)

@@ -19,6 +19,9 @@ from quiesce.errors import BenchFailure, UsageError
 # For the controller's identity, sent once a second, and all its parameters.
 PREAMBLE_S = 3.0
 READ_AGAIN_S = 5.0
+# A raw stream ends by itself so long after the last request for it.
+RAW_S = 10
+RAW_AGAIN_S = 4.0
 IDLE_S = 0.005
 
 
@@ -30,6 +33,7 @@ class Plan:
     rotate_bytes: int | None
     rotate_s: float | None
     asks: bool  # request the parameters; False: never send anything
+    streams_raw: bool = False  # keep asking for every sample
 
     @property
     def rotates(self) -> bool:
@@ -58,6 +62,11 @@ class Preamble:
     @property
     def is_complete(self) -> bool:
         return bool(self.values) and self.identity is not None
+
+    @property
+    def is_over(self) -> bool:
+        """No request is under way."""
+        return self._reader.is_over
 
     @property
     def frames(self) -> list[Any]:
@@ -95,6 +104,30 @@ class Preamble:
             self._started_s = time.monotonic()
 
 
+class RawStream:
+    """Keeps the controller sending every sample."""
+
+    def __init__(self, link: Link, database: Database) -> None:
+        self._link = link
+        self._requests = Requests(database)
+        self._due_s = 0.0
+
+    def poll(self) -> Any:
+        """Asks where it is time to; returns the frame."""
+        now_s = time.monotonic()
+        if now_s < self._due_s:
+            return None
+        self._due_s = now_s + RAW_AGAIN_S
+        return self._ask(RAW_S)
+
+    def end(self) -> Any:
+        return self._ask(0)
+
+    def _ask(self, seconds: int) -> Any:
+        data = self._requests.make("RAW_STREAM", value=seconds)
+        return self._link.send(self._requests.request_id, data)
+
+
 class Recorder:
     """Takes everything from the link until told to stop; run() is all there is to do."""
 
@@ -104,6 +137,7 @@ class Recorder:
         self.plan = plan
         self.traffic = Traffic(database)
         self.preamble = Preamble(link, database)
+        self.raw = RawStream(link, database) if plan.streams_raw else None
         self.files: list[LogFile] = []
         self._link = link
         self._database = database
@@ -141,9 +175,7 @@ class Recorder:
         return until_s is not None and time.monotonic() - self._started_s >= until_s
 
     def step(self) -> None:
-        sent = self.preamble.poll() if self.plan.asks else None
-        if sent is not None:
-            self.keep(sent)
+        self._ask()
         event = self._link.receive(IDLE_S)
         if event is None:
             self.file.commit()
@@ -153,8 +185,18 @@ class Recorder:
         self._check_disk()
         self._rotate_if_due()
 
+    def _ask(self) -> None:
+        """One request at a time: parameters first, then samples."""
+        sent = self.preamble.poll() if self.plan.asks else None
+        if self.raw is not None and self.preamble.is_over:
+            sent = self.raw.poll()
+        if sent is not None:
+            self.keep(sent)
+
     def _drain(self) -> None:
         """What has arrived already."""
+        if self.raw is not None:
+            self.raw.end()
         while (event := self._link.receive_now()) is not None:
             self.take(event)
 
