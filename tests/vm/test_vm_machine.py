@@ -5,14 +5,14 @@ import select
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
-
-from conftest import ROOT
 from quiesce.errors import BenchFailure
 from quiesce.vm.boots import Vm
 from quiesce.vm.results import results_of
 
+ROOT = Path(__file__).resolve().parents[2]
 STARTER = """
 import sys, time
 sys.path.insert(0, sys.argv[1])

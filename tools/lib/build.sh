@@ -4,7 +4,7 @@
 # What a build folder was configured from; another value needs a fresh one.
 build_stamp() {
     printf '%s %s\n' "$ROOT" "$1"
-    cat "$ROOT/CMakePresets.json" "$ROOT/cmake/arm-none-eabi.cmake" | sha256sum
+    cat "$ROOT/CMakePresets.json" "$ROOT"/cmake/{arm-none-eabi,aarch64-linux-gnu}.cmake | sha256sum
 }
 
 # build_progress PRESET: reads ninja's lines; a counter on a terminal, one line elsewhere.

@@ -56,6 +56,10 @@ run_pytest_package() {
     .venv/bin/python -m pytest tests/package --durations=10
 }
 
+run_pytest_vm() {
+    .venv/bin/python -m pytest tests/vm --durations=5
+}
+
 run_coverage() {
     .venv/bin/python -m gcovr --root . --object-directory build/coverage --filter firmware/ \
         --exclude firmware/comm/generated/ --print-summary --fail-under-line 98
