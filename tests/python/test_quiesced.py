@@ -4,13 +4,14 @@ import ctypes
 import os
 import resource
 import signal
+import socket
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from conftest import require
-from quiesced_peer import BUILD, PATIENCE_S, Peer, Quiesced, open_pty
+from quiesced_peer import BUILD, PATIENCE_S, Peer, Quiesced, open_pty, protected, slcan
 
 IDLE, RUN, SAFE, FAULT = 1, 2, 3, 4
 ESTOP = 10
@@ -391,3 +392,104 @@ def test_wrong_arguments(quiesced: Quiesced, arguments: list[str]) -> None:
     assert result.returncode == 2
     assert result.stderr.startswith("quiesced: ")
     assert result.stderr.count("\n") == 1
+
+
+def receive_until(manager: socket.socket, text: str) -> str:
+    """Reads datagrams of sd_notify up to the one that holds the text."""
+    while True:
+        message = manager.recv(4096).decode()
+        if text in message:
+            return message
+
+
+def test_service_manager_is_kept_informed(quiesced: Quiesced, tmp_path: Path) -> None:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+        manager.settimeout(PATIENCE_S)
+        manager.bind(str(tmp_path / "notify"))
+        environment = {"NOTIFY_SOCKET": str(tmp_path / "notify"), "WATCHDOG_USEC": "200000"}
+        quiesced.start(env={**os.environ, **environment})
+        receive_until(manager, "READY=1")
+        receive_until(manager, "WATCHDOG=1")
+        receive_until(manager, "STATUS=")
+        quiesced.signal(signal.SIGHUP)
+        assert "MONOTONIC_USEC=" in receive_until(manager, "RELOADING=1")
+        receive_until(manager, "READY=1")
+        quiesced.signal(signal.SIGTERM)
+        receive_until(manager, "STOPPING=1")
+        assert quiesced.wait() == 0
+
+
+def test_check_explains_everything(quiesced: Quiesced) -> None:
+    quiesced.write_config("law = 'magic'\nsafe_current_mA = -1\n", more="[watchdog]\n")
+    result = quiesced.run("--check")
+    assert result.returncode == 2
+    lines = result.stdout.splitlines()
+    assert len(lines) == 3
+    assert all(line.startswith(f"{quiesced.config}:") for line in lines)
+
+    more = '[gpio]\nestop_input = { line = "NO_SUCH_LINE" }\n[watchdog]\ndevice = "/dev/no_such"\n'
+    quiesced.write_config(more=more)
+    result = quiesced.run("--check")
+    assert result.returncode == 0, result.stdout
+    assert 'note: gpio.estop_input: "NO_SUCH_LINE": ' in result.stdout
+    assert "note: watchdog.device: /dev/no_such: No such file" in result.stdout
+    assert not quiesced.state.exists()  # it touches nothing
+
+
+@pytest.mark.parametrize(
+    ("more", "key"),
+    [
+        ('[watchdog]\ndevice = "/dev/no_such_watchdog"\n', "watchdog.device"),
+        ('[gpio]\nestop_input = { line = "NO_SUCH_LINE" }\n', "gpio.estop_input"),
+        ('[gpio]\nenable_output = { line = "gpiochip999:0" }\n', "gpio.enable_output"),
+    ],
+)
+def test_missing_devices_are_named(quiesced: Quiesced, more: str, key: str) -> None:
+    quiesced.write_config(more=more)
+    result = quiesced.run("--ticks", "10")
+    assert result.returncode == 2
+    assert result.stderr.startswith(f"quiesced: {key}: ")
+    assert result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        ('source = "can"', 'source = "iio"\ndevice = "no_such"', "accel.device"),
+        ('source = "can"', 'source = "adxl355"\ndevice = "/dev/no_such"', "accel.device"),
+        (
+            'output = "can"',
+            'output = "pwm"\nchip = "pwmchip99"\nperiod_ns = 50000\nfull_scale_mA = 5000',
+            "current.chip",
+        ),
+        (
+            'output = "can"',
+            'output = "dac"\ndevice = "no"\nzero_code = 0\nfull_scale_code = 9\nfull_scale_mA = 1',
+            "current.device",
+        ),
+        ('interface = "slcan:', 'interface = "slcan:/no/such', "can.interface"),
+    ],
+)
+def test_missing_peripherals_are_named(quiesced: Quiesced, old: str, new: str, key: str) -> None:
+    quiesced.config.write_text(quiesced.config.read_text().replace(old, new))
+    result = quiesced.run("--ticks", "10")
+    assert result.returncode == 2
+    assert result.stderr.startswith(f"quiesced: {key}: ")
+    assert result.stderr.count("\n") == 1
+    assert quiesced.run("--make-safe").returncode == (0 if key == "accel.device" else 1)
+
+
+def test_flood_leaves_control_undisturbed(quiesced: Quiesced) -> None:
+    """More than a bus can carry, most of it with a wrong CRC."""
+    start_running(quiesced)
+    peer = quiesced.peer
+    wrong = slcan(*protected("OperatorCommand", enable=0, fault_reset=0, alive=3))[:-2] + b"X\r"
+    stale = slcan(*protected("OperatorCommand", enable=0, fault_reset=0, alive=3))
+    for _ in range(200):
+        peer.send_raw((wrong + stale) * 10)
+    peer.wait_state(RUN, peer.count())
+    assert read_parameter(peer, "tick_rate_Hz") == 500
+    assert quiesced.stop() == 0
+    status = quiesced.status()["can"]
+    assert status["malformed"] == 2000
+    assert status["rejected_alive"] > 0
