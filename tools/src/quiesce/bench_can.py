@@ -59,14 +59,15 @@ def computed_figures() -> tuple[list[Figure], str]:
 
 def vm_figures(args: argparse.Namespace) -> tuple[dict[str, Any], list[str]]:
     """Values by name, and why there are none."""
-    from quiesce import vm
-
     if args.no_vm:
         return {}, ["virtual machine: left out (--no-vm)"]
-    if not hasattr(vm, "measure"):
+    try:
+        from quiesce.vm import measure
+    except ImportError:
         return {}, ["virtual machine: this installation cannot measure in one"]
     try:
-        return vm.measure(), []
+        # A function, or the module of that function.
+        return getattr(measure, "measure", measure)(), []
     except UsageError as error:  # QEMU or a package is absent
         return {}, [f"virtual machine: {error}"]
 
