@@ -61,13 +61,10 @@ def vm_figures(args: argparse.Namespace) -> tuple[dict[str, Any], list[str]]:
     """Values by name, and why there are none."""
     if args.no_vm:
         return {}, ["virtual machine: left out (--no-vm)"]
+    from quiesce.vm.measure import measure
+
     try:
-        from quiesce.vm import measure
-    except ImportError:
-        return {}, ["virtual machine: this installation cannot measure in one"]
-    try:
-        # A function, or the module of that function.
-        return getattr(measure, "measure", measure)(), []
+        return dict(measure()), []
     except UsageError as error:  # QEMU or a package is absent
         return {}, [f"virtual machine: {error}"]
 
