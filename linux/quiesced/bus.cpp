@@ -9,8 +9,6 @@ namespace quiesced {
 
 namespace {
 
-constexpr int kSendAttempts = 1000; // a millisecond apart
-
 constexpr std::array<std::uint32_t, 4> kLockstepIds = {
     QUIESCE_CAN_LOCKSTEP_CONTROL_FRAME_ID, QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_FRAME_ID,
     QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID};
@@ -41,8 +39,8 @@ Bus open_bus(const CanConfig &config, BusUse use) {
     return bus;
 }
 
-bool send_patiently(can_bus_t *bus, const can_frame_t &frame) {
-    for (int i = 0; i < kSendAttempts; ++i) {
+bool send_patiently(can_bus_t *bus, const can_frame_t &frame, int patience_ms) {
+    for (int i = 0; i < patience_ms; ++i) {
         if (can_bus_send(bus, &frame)) {
             return true;
         }

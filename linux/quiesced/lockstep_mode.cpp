@@ -18,6 +18,7 @@ namespace quiesced {
 
 namespace {
 
+constexpr int kPatience_ms = 1000;
 constexpr int kLongestWait_ms = 100; // a lost bus is looked for again after it
 
 /// Sends the replies in their order; what the bus does not take within a second is lost, and the
@@ -26,7 +27,7 @@ void answer(can_bus_t *bus, lockstep_can_t &server, const can_frame_t &frame) {
     std::array<can_frame_t, LOCKSTEP_CAN_MAX_REPLIES> replies;
     const std::uint32_t count = lockstep_can_receive(&server, &frame, replies.data());
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (!send_patiently(bus, replies[i])) {
+        if (!send_patiently(bus, replies[i], kPatience_ms)) {
             (void)std::fprintf(stderr, "quiesced: CAN: a reply was not taken\n");
         }
     }
@@ -41,7 +42,7 @@ void wait_for_frames(can_bus_t *bus) {
 void serve(can_bus_t *bus, lockstep_can_t &server) {
     can_frame_t frame{};
     lockstep_can_greet(&server, &frame);
-    (void)send_patiently(bus, frame);
+    (void)send_patiently(bus, frame, kPatience_ms);
     while (!server.is_stopped && !stop_is_requested()) {
         wait_for_frames(bus);
         while (!server.is_stopped && can_bus_receive(bus, &frame, nullptr)) {

@@ -12,7 +12,8 @@ constexpr int kMaxReceived = 64; // frames a tick; the rest waits for the next o
 constexpr std::uint32_t kAdaptationEvery_s = 60;
 constexpr int kFarewells = 3; // one might be lost
 constexpr int kFarewellPause_ms = 2;
-constexpr int kLastAttempts = 1000; // a millisecond apart
+constexpr int kFarewellPatience_ms = 200; // well below the least timeout of a watchdog
+constexpr int kLastAttempts = 1000;       // a millisecond apart
 
 /// A restart would forget it.
 bool has_latched_fault(const node_t &node) {
@@ -351,7 +352,7 @@ void Loop::leave() {
         node_leave(&node_, &frame);
         enable_output_.set(devices_.enable_output, false, true, log_);
         // No tick has to be kept any more: a full queue is waited for.
-        if (bus_ != nullptr && !send_patiently(bus_, frame)) {
+        if (bus_ != nullptr && !send_patiently(bus_, frame, kFarewellPatience_ms)) {
             log_.log(LogLevel::error, "CAN: the farewell frame was not taken");
             break;
         }

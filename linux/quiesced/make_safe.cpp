@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kFarewells = 5; // the first may repeat the alive counter that the driver saw last
 constexpr int kPause_ms = 5;
+constexpr int kPatience_ms = 1000;
 
 void complain(const std::string &line) {
     (void)std::fprintf(stderr, "quiesced: %s\n", line.c_str());
@@ -60,7 +61,7 @@ void say_farewell(const CanConfig &config, const quiesce_params_t &params,
     for (int i = 0; i < kFarewells; ++i) {
         can_frame_t frame{};
         can_node_farewell(node.get(), safe_current_mA, &frame);
-        if (!send_patiently(bus.get(), frame)) {
+        if (!send_patiently(bus.get(), frame, kPatience_ms)) {
             throw quiesce::InputError("can.interface: " + config.interface +
                                       " does not take the farewell frame; is the bus up?");
         }

@@ -1,6 +1,7 @@
 #include "service.h"
 
 #include <cstdio>
+#include <cstring>
 
 #include <poll.h>
 #include <unistd.h>
@@ -141,11 +142,23 @@ void Service::store_params() {
     exchange_.store_result.store(error.empty() ? StoreResult::stored : StoreResult::failed);
 }
 
-void Service::write_files() {
+/// Spares the disk what it has already.
+void Service::store_adaptation() {
     quiesce_adaptation_t adaptation;
-    if (exchange_.adaptation.take(adaptation)) {
-        adaptation_trouble_.note(store_.save_adaptation(adaptation), sink_);
+    if (!exchange_.adaptation.take(adaptation) ||
+        (stored_adaptation_ &&
+         std::memcmp(&*stored_adaptation_, &adaptation, sizeof adaptation) == 0)) {
+        return;
     }
+    const std::string error = store_.save_adaptation(adaptation);
+    adaptation_trouble_.note(error, sink_);
+    if (error.empty()) {
+        stored_adaptation_ = adaptation;
+    }
+}
+
+void Service::write_files() {
+    store_adaptation();
     if (exchange_.snapshot.take(last_)) {
         status_trouble_.note(replace_file(store_.status_file(), status_json(last_)), sink_);
         manager_.send("STATUS=" + status_line(last_));

@@ -3,6 +3,7 @@
 #ifndef QUIESCED_SERVICE_H
 #define QUIESCED_SERVICE_H
 
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -44,6 +45,7 @@ class Service {
     void finish_reload();
     void look_after_devices();
     void write_files();
+    void store_adaptation();
     void store_params();
     void tell_manager();
     void say_last_words();
@@ -56,6 +58,7 @@ class Service {
     quiesce_params_t configured_; ///< what [parameters] says, last time that it was read
 
     Snapshot last_{};
+    std::optional<quiesce_adaptation_t> stored_adaptation_; ///< by this run
     Trouble status_trouble_{"status file"};
     Trouble adaptation_trouble_{"what was learnt"};
     std::uint32_t told_dropped_ = 0;

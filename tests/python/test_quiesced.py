@@ -186,6 +186,21 @@ def test_damaged_saved_parameters_are_not_used(quiesced: Quiesced) -> None:
     assert "saved parameters are not used: " in quiesced.log_text()
 
 
+def test_what_was_learnt_outlives_a_restart(quiesced: Quiesced) -> None:
+    quiesced.write_config("law = 'phase'\n")
+    start_running(quiesced)
+    assert quiesced.stop() == 0
+    assert (quiesced.state / "adaptation.bin").exists()
+    quiesced.start()
+    assert quiesced.stop() == 0
+    assert "what was learnt before is used" in quiesced.log_text()
+
+    (quiesced.state / "adaptation.bin").write_bytes(b"damaged")
+    quiesced.start()
+    assert quiesced.stop() == 0
+    assert "what was learnt is not used: " in quiesced.log_text()
+
+
 def test_applied_parameters_change_the_tick_rate(quiesced: Quiesced) -> None:
     quiesced.start()
     peer = quiesced.peer
