@@ -1,17 +1,18 @@
 # Faults, one after the other. Each step waits for what the one before has caused.
+# shellcheck source=tests/vm/guest/lib.sh
 . /vm/lib.sh
 
 # refused NAME FILE: the controller must not start.
 refused() {
     start "$2"
-    wait $PID
-    report "$1" code=$? said="$(cat $LOG)"
+    wait "$PID"
+    report "$1" code=$? said="$(cat "$LOG")"
 }
 
 # end_record: the recorder stops at this frame and says what it has seen.
 end_record() {
     cansend vcan0 7FF#
-    wait $RECORD
+    wait "$RECORD"
 }
 
 record() {
@@ -28,7 +29,6 @@ lines() {
 gpio_sim ESTOP ENABLE FAULT
 vcan
 vm_node vcan0 all &
-NODE=$!
 config /run/good.toml
 
 # What is not there
@@ -47,13 +47,13 @@ HOLDER=$!
 is_held() { gpioinfo | grep -q '"ESTOP".*used'; }
 await is_held
 refused taken_line /run/good.toml
-kill $HOLDER
-wait $HOLDER
+kill "$HOLDER"
+wait "$HOLDER"
 
 # A second instance
 running /run/good.toml
-first=$PID
-log=$LOG
+first="$PID"
+log="$LOG"
 LOG=/run/second.log
 refused second_instance /run/good.toml
 LOG=$log
@@ -69,11 +69,11 @@ await says 'interface is down'
 ticks_down="$(field ticks)"
 status
 report interface_down down=$(($(field down) - down)) \
-    ticks_go_on=$(($(field ticks) > ticks_down)) said="$(grep 'CAN: interface is down' $LOG)"
+    ticks_go_on=$(($(field ticks) > ticks_down)) said="$(grep 'CAN: interface is down' "$LOG")"
 iproute2 link set vcan0 up
 await says 'interface is up'
 await is_in_state RUN
-report interface_up state="$(field state)" said="$(grep 'CAN: interface is up' $LOG)"
+report interface_up state="$(field state)" said="$(grep 'CAN: interface is up' "$LOG")"
 
 # Error frames, as a controller chip would report them: passive, bus-off, restarted
 cansend vcan0 20000004#0010000000000000
@@ -85,36 +85,36 @@ cansend vcan0 20000100#0000000000000000
 await says 'CAN: error active'
 await is_in_state RUN
 report error_frames bus_off="$(field bus_off)" restarts="$(field restarts)" \
-    error_frames="$(field error_frames)" state="$(field state)" said="$(grep 'CAN: ' $LOG)"
+    error_frames="$(field error_frames)" state="$(field state)" said="$(grep 'CAN: ' "$LOG")"
 
 # A flood of everything that is wrong
 status
 overruns="$(field overruns)"
 crc="$(field rejected_crc)"
-faults="$(grep -c 'fault [^N]' $LOG)"
+faults="$(grep -c 'fault [^N]' "$LOG")"
 record flood
 vm_flood vcan0 20000
 end_record
 status
 report flooded state="$(field state)" rejected_crc=$(($(field rejected_crc) - crc)) \
     rejected_shape="$(field rejected_shape)" overruns=$(($(field overruns) - overruns)) \
-    faults=$(($(grep -c 'fault [^N]' $LOG) - faults))
+    faults=$(($(grep -c 'fault [^N]' "$LOG") - faults))
 
 # SIGTERM: the safe frame is the last
 record sigterm
 stop
 end_record
 lines
-report terminated code=$CODE enable="$enable" fault="$fault"
+report terminated code="$CODE" enable="$enable" fault="$fault"
 
 # kill -9, what systemd does then, and the next start
 running /run/good.toml
 record killed
-kill -KILL $PID
-wait $PID
+kill -KILL "$PID"
+wait "$PID"
 end_record
 record make_safe
-$CONTROLLER --make-safe --config /run/good.toml >/run/make_safe.log 2>&1
+"$CONTROLLER" --make-safe --config /run/good.toml >/run/make_safe.log 2>&1
 code=$?
 end_record
 lines
@@ -144,7 +144,7 @@ rm /run/tiny/fill
 await is_in_state RUN
 saved="$(vm_request vcan0 5 0 0)"
 await says 'takes lines again'
-report full_disk refused="$refused_save" saved="$saved" state="$(field state)" said="$(cat $LOG)"
+report full_disk refused="$refused_save" saved="$saved" state="$(field state)" said="$(cat "$LOG")"
 stop
 umount /run/tiny
 STATUS=/run/state/state.json
@@ -156,5 +156,5 @@ running /run/watchdog.toml
 report watchdog_armed state="$(field state)"
 dmesg -n 5
 echo "TEST-RC 0"
-kill -KILL $PID
+kill -KILL "$PID"
 wait

@@ -24,7 +24,7 @@ await() {
         tries=$((tries - 1))
         if [ "$tries" -eq 0 ]; then
             echo "waited in vain for: $*"
-            tail -n 8 $LOG
+            tail -n 8 "$LOG"
             exit 1
         fi
         usleep 10000
@@ -64,33 +64,33 @@ config() {
 # start FILE: the controller; PID is its process, what it says goes to LOG.
 start() {
     mkdir -p /run/state
-    : >$LOG # what an earlier one said must not be taken for this one's
-    $CONTROLLER --config "$1" >$LOG 2>&1 &
+    : >"$LOG" # what an earlier one said must not be taken for this one's
+    "$CONTROLLER" --config "$1" >"$LOG" 2>&1 &
     PID=$!
 }
 
 # stop: SIGTERM; CODE is how it ended.
 stop() {
-    kill -TERM $PID
-    wait $PID
+    kill -TERM "$PID"
+    wait "$PID"
     CODE=$?
 }
 
 # says TEXT: on stderr, or in a log file of its own.
 says() {
-    cat $LOG /run/tiny/log 2>/dev/null | grep -q -- "$1"
+    cat "$LOG" /run/tiny/log 2>/dev/null | grep -q -- "$1"
 }
 
 # status: the status file as it is now.
 status() {
-    rm -f $STATUS
-    kill -USR1 $PID
-    await test -s $STATUS
+    rm -f "$STATUS"
+    kill -USR1 "$PID"
+    await test -s "$STATUS"
 }
 
 # field KEY: a number or word of the status file.
 field() {
-    sed -n "s/.*\"$1\": \"\{0,1\}\([^\",}]*\).*/\1/p" $STATUS | head -n 1
+    sed -n "s/.*\"$1\": \"\{0,1\}\([^\",}]*\).*/\1/p" "$STATUS" | head -n 1
 }
 
 is_in_state() {

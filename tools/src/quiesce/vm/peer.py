@@ -6,6 +6,7 @@ from typing import Any
 
 from quiesce.can.database import Database, load
 from quiesce.can.e2e import ALIVE_PERIOD, JUMPED, OK, alive_of, protect
+from quiesce.can.link import close_line
 from quiesce.can.traffic import Traffic
 from quiesce.errors import BenchFailure
 
@@ -36,7 +37,10 @@ class Peer:
         self.demands = 0  # demand frames that came
 
     def close(self) -> None:
-        self._bus.shutdown()
+        try:
+            self._bus.shutdown()
+        except Exception:  # it says goodbye first, and the machine may be gone
+            close_line(self._bus)
 
     @property
     def malformed(self) -> int:
