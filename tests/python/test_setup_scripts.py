@@ -340,8 +340,7 @@ def tree(clone: Clone) -> Clone:
     shutil.copytree(ROOT / "tools/check", clone.root / "tools/check")
     for name in (".clang-format", ".clang-tidy", "ruff.toml"):
         shutil.copy(ROOT / name, clone.root)
-    folders = ("bench/mps2", "firmware", "hal/mps2", "linux", "sim_hil", "tests", "tools/gen", ".ci")
-    for folder in folders:
+    for folder in "bench/mps2 firmware hal/mps2 linux sim_hil tests tools/gen .ci".split():
         (clone.root / folder).mkdir(parents=True)
     clean = "int clean(int a);\n\nint clean(int a) {\n    return a + 1;\n}\n"
     for name in ("bench/mps2/clean.c", "firmware/clean.c", "hal/mps2/clean.c", "sim_hil/clean.cpp"):
