@@ -1,5 +1,6 @@
 #include "line_finder.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -53,8 +54,9 @@ std::string trouble_at(const std::string &chip, const std::string &offset) {
         return path + ": " + std::strerror(errno);
     }
     gpio_v2_line_info info;
-    const auto number = static_cast<std::uint32_t>(std::strtoul(offset.c_str(), nullptr, 10));
-    const std::string trouble =
+    const auto number = static_cast<std::uint32_t>(
+        std::min<unsigned long>(std::strtoul(offset.c_str(), nullptr, 10), UINT32_MAX));
+    std::string trouble =
         line_info(fd, number, info) ? judged(info).trouble : path + " has no line " + offset;
     close(fd);
     return trouble;

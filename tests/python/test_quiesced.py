@@ -384,6 +384,41 @@ def test_ends_after_ticks(quiesced: Quiesced) -> None:
     assert quiesced.status()["tick"] == 700 + quiesced.status()["loop"]["overruns"]
 
 
+COUNTER = r"""
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
+static long count;
+static void note(void) { count += gettid() == getpid(); }
+void *malloc(size_t n) { note(); return __libc_malloc(n); }
+void *calloc(size_t n, size_t size) { note(); return __libc_calloc(n, size); }
+void *realloc(void *p, size_t n) { note(); return __libc_realloc(p, n); }
+__attribute__((destructor)) static void tell(void) {
+    FILE *out = fopen(getenv("COUNTER_FILE"), "w");
+    fprintf(out, "%ld", count);
+    fclose(out);
+}
+"""
+
+
+def test_the_loop_allocates_nothing(quiesced: Quiesced, tmp_path: Path) -> None:
+    """However long it runs, its thread has asked for memory equally often."""
+    library, counts = tmp_path / "counter.so", tmp_path / "count"
+    (tmp_path / "counter.c").write_text(COUNTER)
+    build = ["cc", "-shared", "-fPIC", "-O1", "-o", library, tmp_path / "counter.c"]
+    subprocess.run(build, check=True)
+    environment = {**os.environ, "LD_PRELOAD": str(library), "COUNTER_FILE": str(counts)}
+    asked = []
+    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    for ticks in ("200", "2000"):
+        quiesced.start("--ticks", ticks, env=environment)
+        assert quiesced.wait() == 0
+        asked.append(int(counts.read_text()))
+    assert asked[0] == asked[1] > 0
+
+
 def test_real_time_rights_are_named(quiesced: Quiesced) -> None:
     quiesced.write_config(priority="80")
     result = quiesced.run("--ticks", "10", preexec_fn=drop_realtime)
