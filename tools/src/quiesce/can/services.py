@@ -16,9 +16,10 @@ IDENTIFICATION = "Identification"
 DONE = "DONE"
 NO_SUCH_PARAMETER = "NO_SUCH_PARAMETER"
 BUSY = "BUSY"
-# A reply takes a tick and the way there and back; adapters on USB and UARTs add milliseconds.
+# A reply takes a tick and the way there and back; adapters on USB and UARTs add milliseconds. Tried
+# for 1.5 s: a computer under load may leave a controller on it without time for as long.
 REPLY_S = 0.15
-TRIES = 4
+TRIES = 10
 MAX_PARAMETERS = 256  # the index has 8 bits
 
 
