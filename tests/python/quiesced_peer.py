@@ -103,13 +103,14 @@ class Frame:
 
 @dataclass
 class Peer:
-    """The bus's other nodes. The sensor node sends a sample for every demand frame, the operator
-    repeats what he commands; both only once they are told to."""
+    """The bus's other nodes. The sensor node sends a sample for every demand frame; the operator
+    repeats what he commands, and acknowledges again and again where he does."""
 
     master: int
     line: str
     feeds_sensor: bool = True
     operator: dict[str, int] | None = None
+    acknowledges: bool = False
     estop: bool = False
     frames: list[Frame] = field(default_factory=list)
 
@@ -188,7 +189,8 @@ class Peer:
             self.send_raw(slcan(*accel_sample(self._demands)))
         if self._demands % 5 == 0:
             if self.operator is not None:
-                self.send("OperatorCommand", **self.operator)
+                is_pressed = self.acknowledges and self._demands // 50 % 2
+                self.send("OperatorCommand", **{**self.operator, "fault_reset": int(is_pressed)})
             if self.estop:
                 self.send("EmergencyStop", code=23205)
 

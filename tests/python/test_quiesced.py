@@ -32,7 +32,7 @@ def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
 
 
 def start_running(quiesced: Quiesced, *arguments: str) -> None:
-    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.peer.operator = {"enable": 1}
     quiesced.start(*arguments)
     quiesced.peer.wait_state(RUN)
 
@@ -72,10 +72,10 @@ def test_status_file_on_request(quiesced: Quiesced) -> None:
 def test_operator_withdraws(quiesced: Quiesced) -> None:
     start_running(quiesced)
     after = quiesced.peer.count()
-    quiesced.peer.operator = {"enable": 0, "fault_reset": 0}
+    quiesced.peer.operator = {"enable": 0}
     quiesced.peer.wait_state(IDLE, after)
     after = quiesced.peer.count()
-    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.peer.operator = {"enable": 1}
     quiesced.peer.wait_state(RUN, after)
     after = quiesced.peer.count()
     quiesced.peer.operator = None  # no frames any more: not enabled
@@ -93,9 +93,9 @@ def test_emergency_stop_latches_until_it_is_acknowledged(quiesced: Quiesced) -> 
     assert off.signals["current_cmd_mA"] == 0
     assert peer.wait("Status", lambda s: s["state"] == FAULT, after).signals["fault"] == ESTOP
     peer.estop = False
-    peer.wait("Status", lambda s: s["is_estop"] == 0, peer.count())
+    peer.wait_state(FAULT, peer.count())
     after = peer.count()
-    peer.operator = {"enable": 1, "fault_reset": 1}
+    peer.acknowledges = True
     peer.wait_state(RUN, after)
     assert quiesced.stop() == 0
     assert "fault ESTOP" in quiesced.log_text()
@@ -322,7 +322,7 @@ def test_save_that_fails_is_answered(quiesced: Quiesced) -> None:
 
 
 def test_closed_standard_files(quiesced: Quiesced) -> None:
-    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.peer.operator = {"enable": 1}
     quiesced.process = subprocess.Popen(
         ["/bin/sh", "-c", 'exec "$0" --config "$1" <&- >&- 2>&-', quiesced.program, quiesced.config]
     )
@@ -334,7 +334,7 @@ def test_closed_standard_files(quiesced: Quiesced) -> None:
 def test_stderr_that_nobody_reads(quiesced: Quiesced) -> None:
     reader, writer = os.pipe()
     start = {"stderr": writer}
-    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.peer.operator = {"enable": 1}
     os.set_blocking(writer, False)
     filled = 0
     try:
@@ -358,7 +358,7 @@ def test_lost_and_found_serial_line(quiesced: Quiesced, tmp_path: Path) -> None:
     quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, str(link)))
     start_running(quiesced)
     master, slave, line = open_pty()
-    second = Peer(master, line, operator={"enable": 1, "fault_reset": 0})
+    second = Peer(master, line, operator={"enable": 1})
     link.unlink()
     link.symlink_to(line)
     hang_up(quiesced)
@@ -411,7 +411,7 @@ def test_the_loop_allocates_nothing(quiesced: Quiesced, tmp_path: Path) -> None:
     subprocess.run(build, check=True)
     environment = {**os.environ, "LD_PRELOAD": str(library), "COUNTER_FILE": str(counts)}
     asked = []
-    quiesced.peer.operator = {"enable": 1, "fault_reset": 0}
+    quiesced.peer.operator = {"enable": 1}
     for ticks in ("200", "2000"):
         quiesced.start("--ticks", ticks, env=environment)
         assert quiesced.wait() == 0
