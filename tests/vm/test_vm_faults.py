@@ -1,8 +1,11 @@
 """Third boot: faults, each waited for by what it causes; docs/quiesced.md has the reactions."""
 
+import re
+
 import pytest
 from quiesce.can.database import load
 from quiesce.vm.boots import FaultRun
+from quiesce.vm.initramfs import BACKEND_TESTS
 
 EVENTS = ("error passive", "bus-off (", "bus-off: restart", "error active")
 
@@ -10,6 +13,13 @@ EVENTS = ("error passive", "bus-off (", "bus-off: restart", "error active")
 def demand(result: dict) -> dict:
     """The last demand frame that the guest recorded, decoded."""
     return load().raw(0x010, bytes.fromhex(result["last"]))
+
+
+@pytest.mark.parametrize("name", BACKEND_TESTS)
+def test_backend_tests_pass_on_a_real_kernel(faults: FaultRun, name: str) -> None:
+    result = faults.results[name]
+    assert result["code"] == 0, result["said"]
+    assert re.fullmatch(r"[1-9]\d* Tests 0 Failures 0 Ignored ?", result["said"])
 
 
 @pytest.mark.parametrize(

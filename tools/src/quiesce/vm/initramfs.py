@@ -15,6 +15,8 @@ MODULES = [
     *("virtio_pci", "virtio_console", "gpio_sim"),
 ]
 LATER_MODULES = ["softdog"]  # a script loads them when it wants them
+# Unit tests that want a kernel with CAN and gpio-sim.
+BACKEND_TESTS = ("test_can_kernel", "test_gpio_lines_1", "test_gpio_lines_2")
 TOOLS = {
     **{name: f"usr/bin/{name}" for name in ("slcand", "cansend", "candump", "gpioset", "gpioinfo")},
     "cyclictest": "usr/bin/cyclictest",
@@ -82,13 +84,16 @@ def _add_programs(archive: Archive, parts: Parts) -> None:
     programs = {f"bin/{name}": parts.arm64 / file for name, file in TOOLS.items()}
     programs["bin/quiesced"] = parts.programs / "linux/quiesced/quiesced"
     programs["bin/quiesced-gpiod2"] = parts.programs_gpiod2 / "linux/quiesced/quiesced"
+    for name in BACKEND_TESTS:
+        programs[f"bin/{name}"] = parts.programs / "tests/linux" / name
     for file in sorted((parts.programs / "tests/vm/guest").glob("vm_*")):
         if file.is_file() and not file.suffix:
             programs[f"bin/{file.name}"] = file
     for name, file in programs.items():
         _add(archive, name, file)
-    built = parts.programs_gpiod2 / "hal/linux"  # libgpiod 2.x, which Debian 12 does not have
-    libraries = closure(parts.arm64, list(programs.values()), (built,))
+    # libgpiod 2.x, which Debian 12 does not have; both builds make it.
+    built = (parts.programs / "hal/linux", parts.programs_gpiod2 / "hal/linux")
+    libraries = closure(parts.arm64, list(programs.values()), built)
     libraries["ld-linux-aarch64.so.1"] = parts.arm64 / "lib/ld-linux-aarch64.so.1"
     for name, file in libraries.items():
         _add(archive, f"lib/{name}", file)
