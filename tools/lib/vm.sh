@@ -39,7 +39,7 @@ vm_apt() {
     printf 'deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] %s bookworm main\n' \
         "${mirror:-http://deb.debian.org/debian}" >"$apt/etc/apt/sources.list"
     VM_APT=(-o "Dir=$apt" -o "Dir::State::status=$apt/var/lib/dpkg/status"
-        -o Dir::Etc::sourceparts=- -o Acquire::Languages=none
+        -o Dir::Etc::sourceparts=- -o Acquire::Languages=none -o APT::Update::Error-Mode=any
         -o APT::Architecture=arm64 -o APT::Architectures::=arm64 -o APT::Architectures::=amd64
         -o "APT::Sandbox::User=$(id -un)")
 }
@@ -63,15 +63,19 @@ vm_index() {
     VM_HAS_INDEX=1
 }
 
+# vm_cache_is_whole NAME: the cache has that list and every file in it.
+vm_cache_is_whole() {
+    [ -f "$VM_CACHE/$1.sha256" ] &&
+        (cd "$VM_CACHE" && tail -n +2 "$1.sha256" | sha256sum --status --check - 2>/dev/null)
+}
+
 # vm_list NAME PACKAGE...: "SHA256  FILE" of each into CACHE/NAME.sha256. The list of a cache that
 # holds all its files stays as it is: versions change when the cache is removed.
 vm_list() {
-    local list="$VM_CACHE/$1.sha256" wanted
+    local name="$1" list="$VM_CACHE/$1.sha256" wanted
     shift
     wanted="# $*"
-    [ -f "$list" ] && [ "$(head -n 1 "$list")" = "$wanted" ] &&
-        (cd "$VM_CACHE" && tail -n +2 "$list" | sha256sum --status --check - 2>/dev/null) &&
-        return 0
+    vm_cache_is_whole "$name" && [ "$(head -n 1 "$list")" = "$wanted" ] && return 0
     vm_index
     run_logged setup-vm-list apt-get "${VM_APT[@]}" --print-uris download "$@" ||
         fail "Debian's arm64 packages lack one of: $* (log: build/logs/setup-vm-list.log)"
@@ -172,17 +176,17 @@ gpio_sim_build() {
     aarch64-linux-gnu-strip --strip-debug -o "$1/gpio-sim.ko" "$work/gpio-sim.ko"
 }
 
-# vm_kernel_packages: into VM_KERNEL_PACKAGES. The list in the cache knows the version that it has.
+# vm_kernel_packages: into VM_KERNEL_PACKAGES. A whole cache knows the version that it has.
 vm_kernel_packages() {
     local image version
     VM_KERNEL_PACKAGES=()
-    if [ -f "$VM_CACHE/kernel.sha256" ]; then
+    if vm_cache_is_whole kernel; then
         read -r -a VM_KERNEL_PACKAGES < <(sed -n '1s/^# //p' "$VM_CACHE/kernel.sha256")
         return 0
     fi
     vm_index
-    image="$(apt-cache "${VM_APT[@]}" depends "linux-image-$VM_FLAVOUR" |
-        sed -n 's/.*Depends: \(linux-image-\)/\1/p' | head -n 1)"
+    image="$(apt-cache "${VM_APT[@]}" depends "linux-image-$VM_FLAVOUR" 2>/dev/null |
+        sed -n 's/.*Depends: \(linux-image-\)/\1/p' | head -n 1 || true)"
     version="${image#linux-image-}"
     [ -n "$version" ] || fail "Debian has no linux-image-$VM_FLAVOUR: is the list of packages whole?"
     VM_KERNEL_PACKAGES=("$image" "linux-headers-$version"
