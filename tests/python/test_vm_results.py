@@ -154,7 +154,7 @@ def link(rx: int, tx: int, dropped: int = 0) -> dict:
 
 def bus_run(after: dict, echo_wrong: int = 0) -> BusRun:
     results = {"before_echo": link(5, 7), "after_echo": after}
-    return BusRun(results, {}, echo_wrong, {}, Estop({}, {}, []), [], {}, [], 0)
+    return BusRun(results, {}, echo_wrong, {}, Estop({}, {}, ""), [], {}, [], 0)
 
 
 @pytest.mark.parametrize(

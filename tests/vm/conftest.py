@@ -4,6 +4,7 @@ QUIESCE_BUILD names another folder with the builds.
 """
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,29 +12,35 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/src"))
 
-from quiesce.errors import UsageError  # noqa: E402
+from quiesce.errors import BenchFailure, UsageError  # noqa: E402
 from quiesce.vm import boots  # noqa: E402
 
 
-@pytest.fixture(scope="session")
-def vm():
+def told(run, *arguments):
+    """What the boot brings back; a boot that fails is told in one line."""
     try:
-        with boots.opened() as opened:
-            yield opened
-    except UsageError as error:
+        return run(*arguments)
+    except (UsageError, BenchFailure) as error:
         pytest.fail(str(error), pytrace=False)
 
 
 @pytest.fixture(scope="session")
-def bus(vm) -> boots.BusRun:
-    return boots.run_bus(vm)
+def vm() -> Iterator[boots.Vm]:
+    parts = told(boots.Parts.built)
+    with boots.opened(parts) as opened:
+        yield opened
 
 
 @pytest.fixture(scope="session")
-def timing(vm) -> boots.TimingRun:
-    return boots.run_timing(vm)
+def bus(vm: boots.Vm) -> boots.BusRun:
+    return told(boots.run_bus, vm)
 
 
 @pytest.fixture(scope="session")
-def faults(vm) -> boots.FaultRun:
-    return boots.run_faults(vm)
+def timing(vm: boots.Vm) -> boots.TimingRun:
+    return told(boots.run_timing, vm)
+
+
+@pytest.fixture(scope="session")
+def faults(vm: boots.Vm) -> boots.FaultRun:
+    return told(boots.run_faults, vm)

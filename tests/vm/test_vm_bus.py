@@ -52,8 +52,7 @@ def test_emergency_stop_from_outside_reaches_bus_and_lines(bus: BusRun) -> None:
     assert bus.estop.status["is_estop"] == 1
     assert bus.estop.demand["driver_is_enabled"] == 0
     assert bus.estop.demand["current_cmd_mA"] == 300
-    assert bus.estop.freeze_faults
-    assert set(bus.estop.freeze_faults) == {"ESTOP"}
+    assert bus.estop.freeze_fault == "ESTOP"
 
 
 def test_controller_leaves_in_order(bus: BusRun) -> None:

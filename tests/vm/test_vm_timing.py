@@ -24,6 +24,7 @@ def test_emergency_stop_takes_two_ticks_at_the_most(timing: TimingRun) -> None:
     assert len({one["pressed_ns"] % TICK_NS // (TICK_NS // 16) for one in presses(timing)}) >= 12
     assert estop_ticks(timing) <= 2
     assert {one["current_mA"] for one in presses(timing)} == {300}
+    assert max(one["late_frames"] for one in presses(timing)) <= 1
 
 
 def test_edges_that_the_controller_logged_are_the_presses(timing: TimingRun) -> None:

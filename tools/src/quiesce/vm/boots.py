@@ -27,6 +27,7 @@ ECHOES = 10_000  # as in tests/vm/guest/bus.sh
 ENABLE_LINE, FAULT_LINE, ESTOP_LINE = 1, 2, 5
 LOCKSTEP_SEED = 1
 RAW_STREAM_S = 1
+FREEZE_PAGES = 6
 ACKNOWLEDGE_EVERY = 50  # demand frames
 
 Results = dict[str, dict[str, Any]]
@@ -58,7 +59,7 @@ class Estop:
 
     status: dict[str, Any]
     demand: dict[str, Any]
-    freeze_faults: list[str]  # of page 0, as they came
+    freeze_fault: str
 
 
 @dataclass(frozen=True)
@@ -145,11 +146,11 @@ def _press(gpio: Qtest, peer: Peer) -> Estop:
     peer.until(lambda: gpio.output(FAULT_LINE) is True, "the fault line is on")
     peer.until(lambda: gpio.output(ENABLE_LINE) is False, "the enable line is off")
     status, demand = peer.values("Status"), peer.values("CurrentDemand")
-    faults = _freeze_faults(peer)
+    fault = _freeze_fault(peer)
     gpio.set_input(ESTOP_LINE, False)
     peer.until(lambda: peer.values("Status").get("is_estop") == 0, "released")
     _acknowledge(peer)
-    return Estop(status, demand, faults)
+    return Estop(status, demand, fault)
 
 
 def _acknowledge(peer: Peer) -> None:
@@ -163,26 +164,14 @@ def _acknowledge(peer: Peer) -> None:
     peer.until(is_answered, "running again after the acknowledgement")
 
 
-def _freeze_faults(peer: Peer) -> list[str]:
-    """Asks for the freeze frame; faults that its first pages name until all six pages have come."""
+def _freeze_fault(peer: Peer) -> str:
+    """Asks for the freeze frame; the fault that it names, when all its pages have come."""
+    peer.freeze.clear()
     reply = peer.request("FREEZE_FRAME")
-    faults: list[str] = []
-    pages: set[int] = set()
-    frame_id = peer.database.by_name["FaultFreeze"].frame_id
-
-    def take() -> bool:
-        frame = peer.step()
-        if frame.arbitration_id == frame_id:
-            page = peer.database.decode(frame_id, bytes(frame.data))
-            pages.add(int(page["page"]))
-            if page["page"] == 0:
-                faults.append(str(page["freeze_fault"]))
-        return len(pages) == 6
-
     if str(reply["result"]) != "DONE":
         raise BenchFailure(f"the controller has no freeze frame of the stop: {reply}")
-    peer.until(take, "six pages of the freeze frame")
-    return faults
+    peer.until(lambda: len(peer.freeze) == FREEZE_PAGES, "all pages of the freeze frame")
+    return str(peer.freeze[0]["freeze_fault"])
 
 
 @dataclass(frozen=True)

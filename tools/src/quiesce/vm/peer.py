@@ -31,7 +31,7 @@ class Peer:
         self.database: Database = load()
         self.traffic = Traffic(self.database)
         self.refused: list[str] = []  # frames that the DBC cannot explain
-        self.has_sensor = True
+        self.freeze: dict[int, dict[str, Any]] = {}  # pages of the freeze frame, as they came last
         self._fault_reset = False
         self._alive: dict[str, int] = {}
         self.demands = 0  # demand frames that came
@@ -142,14 +142,15 @@ class Peer:
 
     def _decode(self, frame: Any) -> None:
         try:
-            self.database.decode(frame.arbitration_id, bytes(frame.data))
+            signals = self.database.decode(frame.arbitration_id, bytes(frame.data))
+            if "freeze_number" in signals:
+                self.freeze[int(signals["page"])] = signals
         except Exception as error:  # cantools has no common class
             self.refused.append(f"{frame.arbitration_id:03X} {frame.data.hex()}: {error}")
 
     def _answer_demand(self) -> None:
         self.demands += 1
-        if self.has_sensor:
-            self.send_message("AccelSample", accel_counts=_counts(self.demands))
+        self.send_message("AccelSample", accel_counts=_counts(self.demands))
         if self.demands % COMMAND_EVERY == 0:
             self.send_message("OperatorCommand", enable=1, fault_reset=int(self._fault_reset))
             self._fault_reset = False
