@@ -21,7 +21,8 @@ def told(run, *arguments):
     try:
         return run(*arguments)
     except (UsageError, BenchFailure) as error:
-        pytest.fail(str(error), pytrace=False)
+        line = str(error)
+    pytest.fail(line, pytrace=False)
 
 
 @pytest.fixture(scope="session")

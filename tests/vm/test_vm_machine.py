@@ -13,18 +13,20 @@ from quiesce.vm.boots import Vm
 from quiesce.vm.results import results_of
 
 ROOT = Path(__file__).resolve().parents[2]
-STARTER = """
-import sys, time
+USER = """
+import sys
+from pathlib import Path
 sys.path.insert(0, sys.argv[1])
-from quiesce.vm import boots
-with boots.opened() as vm, vm.boot("timing.sh", is_deterministic=True) as machine:
+from quiesce.vm.machine import Boot, Machine
+with Machine(Boot(Path(sys.argv[2]), Path(sys.argv[3]), "timing.sh", True)) as machine:
     print(machine.process_id, flush=True)
     machine.wait_end()
 """
 
 
 def test_emulator_dies_with_its_user(vm: Vm) -> None:
-    command = [sys.executable, "-c", STARTER, str(ROOT / "tools/src")]
+    paths = (ROOT / "tools/src", vm.parts.vmlinuz, vm.initramfs)
+    command = [sys.executable, "-c", USER, *map(str, paths)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as user:
         assert user.stdout is not None
         emulator = os.pidfd_open(int(user.stdout.readline()))
