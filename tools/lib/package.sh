@@ -33,15 +33,26 @@ root_mark() {
     root_stamp | as_root tee "$1/.$2" >/dev/null
 }
 
-# root_fetch ARCH: build/package/root-ARCH, unpacked: libraries and dpkg's database.
+# root_fetch NAME ARCH PACKAGE...: build/package/root-NAME, unpacked: a Debian with these packages.
 root_fetch() {
-    local folder="$CLEAN_ROOTS/root-$1"
+    local name="$1" folder="$CLEAN_ROOTS/root-$1"
+    shift
     root_has "$folder" fetched && return 0
-    say "package: a clean Debian 12 for $1 into build/package/root-$1"
+    say "package: a clean Debian 12 for $1 into build/package/root-$name"
     mkdir -p "$CLEAN_ROOTS"
-    retry "package-root-$1" as_root "$ROOT/tools/lib/clean_root" fetch "$1" "$folder" ||
-        fail "could not fetch a clean Debian 12 for $1 (log: build/logs/package-root-$1.log). Check the network, then run again"
+    retry "package-root-$name" as_root "$ROOT/tools/lib/clean_root" fetch "$1" "$folder" "${@:2}" ||
+        fail "could not fetch a clean Debian 12 for $1 (log: build/logs/package-root-$name.log). Check the network, then run again"
     root_mark "$folder" fetched
+}
+
+# root_of ARCH: to build against and to install packages in.
+root_of() {
+    root_fetch "$1" "$1" systemd-standalone-sysusers
+}
+
+# root_service: to boot in a virtual machine.
+root_service() {
+    root_fetch service arm64 systemd udev kmod iproute2
 }
 
 # root_configure ARCH: the packages' own scripts have run in it: packages can be installed.
