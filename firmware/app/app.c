@@ -18,6 +18,7 @@ void app_tick(app_t *app, const app_operator_t *op, uint32_t ticks_elapsed) {
     in->enable = op->enable;
     in->estop = op->estop;
     in->fault_reset = op->fault_reset;
+    in->driver_has_failed = op->driver_has_failed;
     in->accel_is_fresh = hal_accel_read(app->accel, app->axis, &in->accel_counts);
     in->current_is_measured = hal_current_read(app->current, &in->current_meas_mA);
     quiesce_step(&app->controller, in, &app->out);

@@ -11,6 +11,7 @@ typedef struct {
     bool enable;
     bool estop;
     bool fault_reset;
+    bool driver_has_failed; ///< no wish, but it comes the same way
 } app_operator_t;
 
 typedef struct {

@@ -123,6 +123,7 @@ uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
         .enable = is_enabled(node, inputs),
         .estop = inputs->estop || node->bus.estop,
         .fault_reset = inputs->fault_reset || node->bus.fault_reset,
+        .driver_has_failed = inputs->driver_has_failed || node->bus.driver_has_failed,
     };
     app_tick(&node->app, &op, inputs->ticks_elapsed);
     const can_node_tick_t tick = {

@@ -18,6 +18,7 @@ typedef struct {
     bool enable;
     bool estop;
     bool fault_reset;
+    bool driver_has_failed; ///< it takes no command; what it says on the bus adds
     uint32_t ticks_elapsed; ///< 1, more where ticks were lost
     uint32_t overruns;      ///< these and the following: see can_node_tick_t
     uint32_t lateness_us;

@@ -81,6 +81,7 @@ static void take_stop(can_receive_t *self, const can_frame_t *frame) {
         return;
     }
     accept(self, &self->stop);
+    self->is_stop_seen = true;
 }
 
 static void take_accel(can_receive_t *self, const can_frame_t *frame) {
@@ -96,6 +97,13 @@ static void take_accel(can_receive_t *self, const can_frame_t *frame) {
     }
 }
 
+// A driver that is off, or waits for our demand, is well; a status that nobody knows is not.
+static bool is_failure(uint32_t driver_status) {
+    return driver_status != QUIESCE_CAN_CURRENT_MEASURED_DRIVER_STATUS_OK_CHOICE &&
+           driver_status != QUIESCE_CAN_CURRENT_MEASURED_DRIVER_STATUS_OFF_CHOICE &&
+           driver_status != QUIESCE_CAN_CURRENT_MEASURED_DRIVER_STATUS_DEMAND_LOST_CHOICE;
+}
+
 static void take_current(can_receive_t *self, const can_frame_t *frame) {
     struct quiesce_can_current_measured_t current;
     if (!is_good(self, &self->current, QUIESCE_CAN_AT_CURRENT_MEASURED, frame)) {
@@ -104,6 +112,7 @@ static void take_current(can_receive_t *self, const can_frame_t *frame) {
     (void)quiesce_can_current_measured_unpack(&current, frame->data, frame->length);
     accept(self, &self->current);
     self->current_meas_mA = current.current_meas_mA;
+    self->driver_has_failed = is_failure(current.driver_status);
 }
 
 static void take_operator(can_receive_t *self, const can_frame_t *frame) {
@@ -165,12 +174,14 @@ void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *
     *inputs = (can_node_inputs_t){
         .enable = is_operated && self->enable,
         .fault_reset = is_operated && self->is_reset_edge,
-        .estop = self->stop.is_present,
+        .estop = self->stop.is_present || self->is_stop_seen,
         .accel_is_fresh = accel_is_fresh,
         .accel_counts = accel_is_fresh ? self->accel_counts : 0,
         .current_is_measured = current_is_measured,
         .current_meas_mA = current_is_measured ? self->current_meas_mA : 0,
+        .driver_has_failed = current_is_measured && self->driver_has_failed,
     };
+    self->is_stop_seen = false;
     self->accel_is_fresh = false;
     self->is_reset_edge = false;
     self->is_released = self->is_released && is_operated;

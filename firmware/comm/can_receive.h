@@ -14,6 +14,7 @@ typedef struct {
     int32_t accel_counts; ///< 0 unless accel_is_fresh
     bool current_is_measured;
     int32_t current_meas_mA; ///< 0 unless current_is_measured
+    bool driver_has_failed;  ///< CurrentMeasured says open load, short, heat or supply
 } can_node_inputs_t;
 
 /// Counters of what was refused, saturating at 2^32 - 1.
@@ -44,6 +45,8 @@ typedef struct {
     int32_t accel_counts;
     bool accel_is_fresh; ///< since the last tick
     int32_t current_meas_mA;
+    bool driver_has_failed;
+    bool is_stop_seen; ///< since the last tick: a stop counts however long that tick is late
     bool enable;
     bool is_released;   ///< the last OperatorCommand had fault_reset = 0
     bool is_reset_edge; ///< since the last tick

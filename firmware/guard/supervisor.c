@@ -61,11 +61,15 @@ static bool is_faulted(quiesce_state_t state) {
     return state == QUIESCE_STATE_SAFE || state == QUIESCE_STATE_FAULT;
 }
 
-// An emergency stop switches the driver off even where another latched fault already holds FAULT;
-// only refused parameters, which no acknowledgement may clear, keep their place.
+// What switches the driver off does so even where another latched fault already holds FAULT, and an
+// emergency stop is always told; only refused parameters, which no acknowledgement may clear, keep
+// their place.
 static bool is_stop_on_top(const supervisor_t *self, const supervisor_in_t *in) {
-    return in->latched_fault == QUIESCE_FAULT_ESTOP && self->fault != QUIESCE_FAULT_ESTOP &&
-           self->fault != QUIESCE_FAULT_PARAMETER;
+    if (self->fault == QUIESCE_FAULT_PARAMETER || in->latched_fault == self->fault) {
+        return false;
+    }
+    return in->latched_fault == QUIESCE_FAULT_ESTOP ||
+           (supervisor_switches_off(in->latched_fault) && !supervisor_switches_off(self->fault));
 }
 
 bool supervisor_step(supervisor_t *self, const supervisor_in_t *in) {

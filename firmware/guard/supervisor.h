@@ -37,10 +37,15 @@ static inline bool supervisor_allows_output(const supervisor_t *self) {
     return self->state == QUIESCE_STATE_RUN;
 }
 
+/// Whether a fault, while it holds FAULT, keeps the driver's output stage off.
+static inline bool supervisor_switches_off(quiesce_fault_t fault) {
+    return fault == QUIESCE_FAULT_ESTOP || fault == QUIESCE_FAULT_PARAMETER ||
+           fault == QUIESCE_FAULT_DRIVER_FAILED;
+}
+
 /// Whether the driver's output stage may be on.
 static inline bool supervisor_allows_driver(const supervisor_t *self) {
-    return self->state != QUIESCE_STATE_FAULT ||
-           (self->fault != QUIESCE_FAULT_ESTOP && self->fault != QUIESCE_FAULT_PARAMETER);
+    return self->state != QUIESCE_STATE_FAULT || !supervisor_switches_off(self->fault);
 }
 
 #endif

@@ -33,10 +33,11 @@ typedef enum {
     QUIESCE_FAULT_SENSOR_RANGE = 5,         ///< samples beyond full scale for sensor_max_age_ticks
     QUIESCE_FAULT_DRIVER_NOT_FOLLOWING = 6, ///< measured current off the command (latched)
     QUIESCE_FAULT_COIL_OPEN = 7,            ///< no current although commanded (latched)
-    QUIESCE_FAULT_CURRENT_LOST = 8,  ///< current_check is on, no measurement arrives (latched)
-    QUIESCE_FAULT_TICK_LOST = 9,     ///< the tick number jumped
-    QUIESCE_FAULT_ESTOP = 10,        ///< emergency stop (latched)
-    QUIESCE_FAULT_SENSOR_QUIET = 11, ///< less noise than sensor_min_noise_counts over a second
+    QUIESCE_FAULT_CURRENT_LOST = 8,   ///< current_check is on, no measurement arrives (latched)
+    QUIESCE_FAULT_TICK_LOST = 9,      ///< the tick number jumped
+    QUIESCE_FAULT_ESTOP = 10,         ///< emergency stop (latched)
+    QUIESCE_FAULT_SENSOR_QUIET = 11,  ///< less noise than sensor_min_noise_counts over a second
+    QUIESCE_FAULT_DRIVER_FAILED = 12, ///< the current driver says so or takes no command (latched)
     QUIESCE_FAULT_COUNT
 } quiesce_fault_t;
 
@@ -50,6 +51,7 @@ typedef struct {
     bool enable;              ///< operator enables the output
     bool estop;               ///< emergency stop
     bool fault_reset;         ///< operator acknowledges a latched fault (acts on its rising edge)
+    bool driver_has_failed;   ///< the current driver reports a fault, or cannot be told its current
 } quiesce_in_t;
 
 /// What the adaptation of law phase is doing.
@@ -106,7 +108,7 @@ typedef struct {
 /// One tick's output.
 typedef struct {
     int32_t current_cmd_mA; ///< 0 .. max_current_mA
-    bool driver_enable;     ///< false only in FAULT after ESTOP or PARAMETER
+    bool driver_enable;     ///< false only in FAULT after ESTOP, PARAMETER or DRIVER_FAILED
     quiesce_telemetry_t telemetry;
 } quiesce_out_t;
 

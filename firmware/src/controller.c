@@ -107,14 +107,17 @@ static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
     return sample->is_fault ? (quiesce_fault_t)fault_of[sample->flag] : QUIESCE_FAULT_NONE;
 }
 
-static quiesce_fault_t driver_fault(current_verdict_t verdict) {
+static quiesce_fault_t latched_fault(const quiesce_in_t *in, current_verdict_t verdict) {
     static const uint8_t fault_of[] = {
         [CURRENT_OK] = QUIESCE_FAULT_NONE,
         [CURRENT_NOT_FOLLOWING] = QUIESCE_FAULT_DRIVER_NOT_FOLLOWING,
         [CURRENT_OPEN_COIL] = QUIESCE_FAULT_COIL_OPEN,
         [CURRENT_MISSING] = QUIESCE_FAULT_CURRENT_LOST,
     };
-    return (quiesce_fault_t)fault_of[verdict];
+    if (in->estop) {
+        return QUIESCE_FAULT_ESTOP;
+    }
+    return in->driver_has_failed ? QUIESCE_FAULT_DRIVER_FAILED : (quiesce_fault_t)fault_of[verdict];
 }
 
 static bool is_tick_lost(controller_t *self, uint32_t tick) {
@@ -158,7 +161,7 @@ static void supervise(controller_t *self, const quiesce_in_t *in, const conditio
     const quiesce_fault_t sensor = sensor_fault(sample);
     const supervisor_in_t events = {
         .clearing_fault = sensor != QUIESCE_FAULT_NONE ? sensor : lost,
-        .latched_fault = in->estop ? QUIESCE_FAULT_ESTOP : driver_fault(verdict),
+        .latched_fault = latched_fault(in, verdict),
         .is_ready = sample->good_ticks >= (uint32_t)self->params.sensor_recover_ticks,
         .enable = in->enable,
         .fault_reset = in->fault_reset,

@@ -166,6 +166,7 @@ node_inputs_t Loop::board_inputs(std::uint32_t elapsed) {
     node_inputs_t inputs{};
     inputs.enable = board_enable();
     inputs.estop = estop_.is_pressed(devices_.estop_input, log_);
+    inputs.driver_has_failed = !is_drivable();
     inputs.ticks_elapsed = elapsed;
     const hal_tick_t &timing = source_.timing();
     inputs.overruns = timing.overruns;
@@ -196,13 +197,19 @@ void Loop::send(const can_frame_t *frames, std::uint32_t count) {
     }
 }
 
+/// Whether the driver takes its current: a CAN driver looks after itself.
+bool Loop::is_drivable() {
+    if (config_.current.output == CurrentOutput::can) {
+        return true;
+    }
+    CurrentDevice *device = devices_.current.get();
+    return device != nullptr && device->failures() == current_failures_;
+}
+
 void Loop::write_lines() {
-    // A driver that cannot be told its current is switched off.
-    const bool is_drivable =
-        config_.current.output == CurrentOutput::can || devices_.current.get() != nullptr;
     const bool rewrite = is_due_each_second();
-    enable_output_.set(devices_.enable_output, node_.app.out.driver_enable && is_drivable, rewrite,
-                       log_);
+    enable_output_.set(devices_.enable_output, node_.app.out.driver_enable && is_drivable(),
+                       rewrite, log_);
     fault_output_.set(devices_.fault_output, node_.app.out.telemetry.fault != QUIESCE_FAULT_NONE,
                       rewrite, log_);
 }

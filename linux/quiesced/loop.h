@@ -40,6 +40,7 @@ class Loop {
     void keep_adaptation();
     void after_restart();
     void send(const can_frame_t *frames, std::uint32_t count);
+    bool is_drivable();
     void write_lines();
     void look_after_devices();
     void look_after_accel();

@@ -15,7 +15,7 @@ namespace quiesced {
 namespace {
 
 constexpr std::array<const char *, 5> kStates = {"INIT", "IDLE", "RUN", "SAFE", "FAULT"};
-constexpr std::array<const char *, 12> kFaults = {"NONE",
+constexpr std::array<const char *, 13> kFaults = {"NONE",
                                                   "PARAMETER",
                                                   "SENSOR_LOST",
                                                   "SENSOR_SATURATED",
@@ -26,7 +26,8 @@ constexpr std::array<const char *, 12> kFaults = {"NONE",
                                                   "CURRENT_LOST",
                                                   "TICK_LOST",
                                                   "ESTOP",
-                                                  "SENSOR_QUIET"};
+                                                  "SENSOR_QUIET",
+                                                  "DRIVER_FAILED"};
 static_assert(kFaults.size() == QUIESCE_FAULT_COUNT, "every fault has a name");
 
 template <std::size_t Count>

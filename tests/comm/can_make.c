@@ -29,7 +29,14 @@ can_frame_t make_accel(int32_t counts, bool is_saturated, bool is_bad, uint8_t a
 }
 
 can_frame_t make_current(int16_t current_mA, uint8_t alive) {
-    const struct quiesce_can_current_measured_t wire = {.current_meas_mA = current_mA};
+    return make_driver(current_mA, QUIESCE_CAN_CURRENT_MEASURED_DRIVER_STATUS_OK_CHOICE, alive);
+}
+
+can_frame_t make_driver(int16_t current_mA, uint8_t driver_status, uint8_t alive) {
+    const struct quiesce_can_current_measured_t wire = {
+        .current_meas_mA = current_mA,
+        .driver_status = driver_status,
+    };
     uint8_t data[CAN_MAX_BYTES];
     (void)quiesce_can_current_measured_pack(data, &wire, sizeof data);
     return protect(QUIESCE_CAN_AT_CURRENT_MEASURED, data, alive);

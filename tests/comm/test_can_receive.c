@@ -166,6 +166,27 @@ static void test_stop_is_accepted_whatever_its_counter(void) {
     TEST_ASSERT_FALSE(inputs.estop);
 }
 
+static void test_stop_counts_however_late_its_tick_is(void) {
+    take(make_stop(STOP, 0));
+    can_receive_inputs(&bus, 100000, &inputs);
+    TEST_ASSERT_TRUE(inputs.estop);
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.estop);
+}
+
+static void test_driver_that_reports_a_fault_has_failed(void) {
+    // OK, OFF, OPEN_LOAD, SHORT, OVER_TEMPERATURE, SUPPLY, DEMAND_LOST, then what nobody knows.
+    static const bool has_failed[16] = {false, false, true, true, true, true, false, true,
+                                        true,  true,  true, true, true, true, true,  true};
+    for (uint8_t status = 0; status < 16u; status++) {
+        take(make_driver(100, status, status));
+        pass(1);
+        TEST_ASSERT_EQUAL(has_failed[status], inputs.driver_has_failed);
+    }
+    pass(60);
+    TEST_ASSERT_FALSE(inputs.driver_has_failed);
+}
+
 static void test_stop_with_another_code_is_none(void) {
     for (uint32_t code = 0; code <= UINT16_MAX; code++) {
         if (code != STOP) {
@@ -352,6 +373,8 @@ int main(void) {
     RUN_TEST(test_hanging_sender_is_not_taken_for_a_new_one);
     RUN_TEST(test_any_counter_is_accepted_after_silence);
     RUN_TEST(test_stop_is_accepted_whatever_its_counter);
+    RUN_TEST(test_stop_counts_however_late_its_tick_is);
+    RUN_TEST(test_driver_that_reports_a_fault_has_failed);
     RUN_TEST(test_stop_with_another_code_is_none);
     RUN_TEST(test_fault_reset_acts_on_its_edge_for_one_tick);
     RUN_TEST(test_edge_between_two_ticks_is_seen);

@@ -147,6 +147,32 @@ static void test_stop_of_the_board_acts_in_its_tick(void) {
     TEST_ASSERT_FALSE(driver.is_enabled);
 }
 
+static void check_failed_driver(void) {
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_DRIVER_FAILED, node.app.out.telemetry.fault);
+    TEST_ASSERT_EQUAL_INT32(250, driver.command_mA);
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
+    TEST_ASSERT_EQUAL_UINT8(0, demand().driver_is_enabled);
+}
+
+static void test_driver_that_fails_is_switched_off_until_it_is_acknowledged(void) {
+    run(400);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    board.driver_has_failed = true;
+    run(1);
+    check_failed_driver();
+    board.driver_has_failed = false;
+    run(1000);
+    check_failed_driver();
+    board.fault_reset = true;
+    run(400);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    receive(make_driver(0, QUIESCE_CAN_CURRENT_MEASURED_DRIVER_STATUS_SHORT_CHOICE, 0));
+    run(1);
+    check_failed_driver();
+}
+
 static void test_stop_is_acknowledged_over_the_bus_once_it_is_released(void) {
     run(2000);
     receive(make_stop(STOP, 0));
@@ -354,6 +380,7 @@ int main(void) {
     RUN_TEST(test_operator_who_falls_silent_is_not_enabled);
     RUN_TEST(test_stop_on_the_bus_acts_in_the_next_tick);
     RUN_TEST(test_stop_of_the_board_acts_in_its_tick);
+    RUN_TEST(test_driver_that_fails_is_switched_off_until_it_is_acknowledged);
     RUN_TEST(test_stop_is_acknowledged_over_the_bus_once_it_is_released);
     RUN_TEST(test_bus_sample_is_there_for_its_tick);
     RUN_TEST(test_raw_stream_has_the_samples_that_the_controller_got);

@@ -164,6 +164,20 @@ static void test_emergency_stop_switches_off_on_top_of_any_latched_fault(void) {
     TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
 }
 
+static void test_failed_driver_is_switched_off_and_gives_way_to_an_emergency_stop_only(void) {
+    drive(NONE, QUIESCE_FAULT_CURRENT_LOST, true, true, false);
+    TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor));
+    drive(NONE, QUIESCE_FAULT_DRIVER_FAILED, true, true, false);
+    TEST_ASSERT_EQUAL(QUIESCE_FAULT_DRIVER_FAILED, supervisor.fault);
+    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
+    drive(NONE, QUIESCE_FAULT_CURRENT_LOST, true, true, false);
+    TEST_ASSERT_EQUAL(QUIESCE_FAULT_DRIVER_FAILED, supervisor.fault);
+    drive(NONE, QUIESCE_FAULT_ESTOP, true, true, false);
+    drive(NONE, QUIESCE_FAULT_DRIVER_FAILED, true, true, false);
+    TEST_ASSERT_EQUAL(QUIESCE_FAULT_ESTOP, supervisor.fault);
+    TEST_ASSERT_EQUAL_UINT32(3, supervisor.fault_count);
+}
+
 static void test_refused_parameters_never_leave_fault(void) {
     supervisor_init(&supervisor, QUIESCE_FAULT_PARAMETER);
     for (uint32_t i = 0; i < 20; i++) {
@@ -187,6 +201,7 @@ int main(void) {
     RUN_TEST(test_latched_fault_needs_an_edge_with_the_cause_gone);
     RUN_TEST(test_latched_fault_outranks_a_clearing_one_and_interrupts_safe);
     RUN_TEST(test_emergency_stop_switches_off_on_top_of_any_latched_fault);
+    RUN_TEST(test_failed_driver_is_switched_off_and_gives_way_to_an_emergency_stop_only);
     RUN_TEST(test_refused_parameters_never_leave_fault);
     return UNITY_END();
 }
