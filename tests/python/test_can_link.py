@@ -6,7 +6,7 @@ import socket
 import threading
 import time
 import tty
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import can
@@ -66,6 +66,9 @@ def test_noise_is_dropped_and_frames_between_it_are_not(line) -> None:
     [
         b"t", b"t10", b"t100", b"t1009", b"t1002AB", b"t1002ABX", b"tFFF0", b"T2000000001AA",
         b"t1 02ABCD", b"T00000000", b"r1009", b"rFFF0", b"t100\xff", b"t10-2ABCD", b"t1002A\x00CD",
+        b"t 104aabbccdd", b"t+104aabbccdd", b"t1_04aabbccdd", b"t0104aabbccddZZ!!@", b"T+18FF12340",
+        b"t100 ", b"t1002 A B", b"t10+0", b"t1002ABCD1", b"t1002ABCD12", b"t1002ABCD12345",
+        b"t1002ABCDXXXX", b"r10041", b"t1000\x00",
     ],
 )  # fmt: skip
 def test_malformed_lines_are_no_frames(text: bytes, line) -> None:
@@ -75,6 +78,23 @@ def test_malformed_lines_are_no_frames(text: bytes, line) -> None:
         os.write(master, text + b"\rt1000\r")
         (frame,) = received(bus, 1)
         assert frame.arbitration_id == 0x100 and bus.malformed == 1
+
+
+def test_time_stamps_after_frames_are_dropped(line) -> None:
+    master, path = line
+    with SlcanBus(path) as bus:
+        for text in (b"t1002ABcd12aF", b"T18FF12348" + b"11" * 8 + b"FFFF", b"r10081234"):
+            os.write(master, text + b"\r")
+        frames = received(bus, 3)
+        assert bus.malformed == 0
+    assert [bytes(one.data) for one in frames] == [b"\xab\xcd", b"\x11" * 8, b""]
+    assert [one.dlc for one in frames] == [2, 8, 8]
+
+
+def test_socketcan_takes_fd_frames_unless_told_not_to() -> None:
+    assert Bus("socketcan", "can0", None, ()).driver_options() == {"fd": True}
+    assert Bus("socketcan", "can0", None, (("fd", False),)).driver_options() == {"fd": False}
+    assert Bus("pcan", "PCAN_USBBUS1", 500_000, ()).driver_options() == {"bitrate": 500_000}
 
 
 def test_endless_lines_are_counted_once(line) -> None:
@@ -169,9 +189,12 @@ def test_rate_is_of_the_last_second() -> None:
 # replay
 
 
-def log_of(path: Path) -> Path:
+LOGGED = (0x010, 0x100, 0x020, 0x108, 0x050, 0x400, 0x123, 0x100)
+
+
+def log_of(path: Path, ids: Sequence[int] = LOGGED) -> Path:
     log = open_log(path, lambda: [])
-    for i, frame_id in enumerate((0x010, 0x100, 0x020, 0x108, 0x050, 0x400, 0x123, 0x100)):
+    for i, frame_id in enumerate(ids):
         log.write(
             can.Message(
                 timestamp=1000.0 + 0.01 * i,
@@ -200,7 +223,7 @@ def sent(master: int) -> list[int]:
         (["--only", "CurrentDemand"], []),
         (
             ["--include-commands", "--speed", "100"],
-            [0x010, 0x100, 0x020, 0x108, 0x050, 0x400, 0x123, 0x100],
+            list(LOGGED),
         ),
     ],
 )
@@ -212,7 +235,33 @@ def test_replay_withholds_commands(line, tmp_path: Path, options, ids) -> None:
     assert sent(master) == ids
     assert f"{len(ids)} frames sent" in result.stderr
     is_whole = not options
-    assert ("4 commands not sent" in result.stderr) == is_whole
+    assert ("4 withheld" in result.stderr) == is_whole
+
+
+def test_replay_withholds_by_the_shipped_ids_with_any_dbc(line, tmp_path: Path) -> None:
+    """The controller takes what its own DBC says, whatever the log was of."""
+    master, path = line
+    dbc = tmp_path / "foreign.dbc"
+    dbc.write_text(
+        'VERSION ""\nBU_: ECU\nBO_ 16 Harmless: 4 ECU\n SG_ a : 0|8@1+ (1,0) [0|255] "" ECU\n'
+    )
+    log = log_of(tmp_path / "a.log", (0x010, 0x020, 0x050, 0x400, 0x101))
+    options = ["--bus", f"slcan:{path}", "--dbc", dbc]
+    for only in ([], ["--only", "Harmless,0x101"]):
+        result = run_quiesce(tmp_path, "can", "replay", log, *options, *only)
+        assert result.returncode == 0, result.stderr
+        assert sent(master) == [0x101]
+
+
+def test_replay_withholds_measurements_and_lock_step(line, tmp_path: Path) -> None:
+    master, path = line
+    ids = (0x030, 0x040, 0x5FF, 0x600, 0x601, 0x603, 0x608, 0x620, 0x6FF, 0x700)
+    log = log_of(tmp_path / "a.log", ids)
+    bus = ["--bus", f"slcan:{path}"]
+    result = run_quiesce(tmp_path, "can", "replay", log, *bus)
+    assert sent(master) == [0x5FF, 0x700] and "8 withheld" in result.stderr
+    assert run_quiesce(tmp_path, "can", "replay", log, *bus, "--include-commands").returncode == 0
+    assert sent(master) == list(ids)
 
 
 def test_replay_of_a_damaged_log_sends_nothing(line, tmp_path: Path) -> None:
@@ -231,7 +280,7 @@ def test_replay_over_udp(tmp_path: Path) -> None:
     try:
         bus = can.Bus(interface="udp_multicast", channel=channel, port=port)
     except (can.CanError, OSError) as error:
-        pytest.skip(f"no multicast here: {error}")
+        pytest.skip(f"no network interface here has a route for multicast ({channel}): {error}")
     options = ["--bus", f"udp_multicast:{channel}", "--bus-option", f"port={port}"]
     with bus:
         log = log_of(tmp_path / "a.log")

@@ -118,6 +118,19 @@ def test_load_prints_what_it_computes(quiesce) -> None:
     report = json.loads(result.stdout)
     assert report["messages"][0]["name"] == "CurrentDemand"
     assert report["messages"][0]["response_ms"] == pytest.approx(0.46)
+    totals = {name: round(value, 1) for name, value in report["load_pct"].items()}
+    assert totals == {
+        "cyclic": 33.7,
+        "with_raw": 60.7,
+        "with_sensor_node": 54.7,
+        "with_sensor_node_and_raw": 81.7,
+        "everything": 87.1,
+    }
+    for command in (("can", "load"), ("bench", "can", "--no-vm")):
+        out = quiesce(*command).stdout
+        for total in totals.values():
+            assert f"  {total}\n" in out
+        assert "The first leaves out AccelSample" in out
     table = quiesce("can", "load", "--bitrate", "125000", "--sensor-node")
     assert table.returncode == 0 and "no bound" in table.stdout
 
@@ -130,6 +143,9 @@ def test_the_bench_says_what_it_could_not_judge(quiesce) -> None:
     computed = ("bus_load_pct", "bus_load_raw_pct", "demand_response_ms")
     assert all(figures[name]["ok"] for name in computed)
     assert figures["slcan_baud_needed"]["value"] == 921_600
+    assert report["context"]["load_pct"]["with_sensor_node_and_raw"] == pytest.approx(
+        81.7, abs=0.05
+    )
     assert figures["estop_ticks"]["value"] is None and report["context"]["absent"]
 
 

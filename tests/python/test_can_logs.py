@@ -11,10 +11,14 @@ from pathlib import Path
 
 import can
 import pytest
+from can.util import CAN_FD_DLC
 from conftest import ROOT
+from quiesce.can.buses import Bus
 from quiesce.can.database import load
 from quiesce.can.e2e import protect
+from quiesce.can.link import Link
 from quiesce.can.readers import read_log
+from quiesce.can.recorder import Plan, Recorder, open_first
 from quiesce.can.writers import FORMATS, MdfFile, open_log
 from quiesce.errors import UsageError
 
@@ -153,10 +157,137 @@ def test_candump_logs_are_those_of_can_utils(tmp_path: Path) -> None:
     first, second = path.read_text().splitlines()
     assert first == f"(1700000000.250000) can0 100#{status(0).hex().upper()}"
     assert second == "(1700000000.260000) can0 18FF1234#AB"
+    assert [one.arbitration_id for one in asc_of(path)] == [0x100, 0x18FF1234]
+
+
+def asc_of(log: Path) -> list[can.Message]:
+    """What can-utils make of a candump log."""
     if shutil.which("log2asc") is None:
-        pytest.skip("can-utils are not installed")
-    subprocess.run(["log2asc", "-I", path, "-O", tmp_path / "a.asc", "can0"], check=True)
-    assert [one.arbitration_id for one in read_log(tmp_path / "a.asc")] == [0x100, 0x18FF1234]
+        pytest.skip("log2asc is missing: Debian package can-utils (./tools/setup test)")
+    asc = log.with_suffix(".asc")
+    subprocess.run(["log2asc", "-I", log, "-O", asc, "can0"], check=True)
+    return list(read_log(asc))
+
+
+# CAN FD, remote and error frames
+
+
+def fd_frame(index: int, length: int, fast: bool = True, passive: bool = False) -> can.Message:
+    message = frame(index, bytes(range(1, length + 1)), 0x18FF1234 if index % 3 == 2 else 0x108)
+    message.is_fd, message.bitrate_switch = True, fast
+    message.error_state_indicator = passive
+    return message
+
+
+def fd_frames() -> list[can.Message]:
+    """Every length, 8 bytes and fewer too, with every mark, between classic frames."""
+    frames: list[can.Message] = []
+    for length in CAN_FD_DLC:
+        for fast, passive in ((True, False), (False, False), (True, True), (False, True)):
+            frames += [fd_frame(len(frames), length, fast, passive), frame(len(frames) + 1)]
+    return frames
+
+
+def shape(one: can.Message) -> tuple[object, ...]:
+    marks = (one.is_fd, one.bitrate_switch, one.error_state_indicator)
+    return (one.arbitration_id, one.is_extended_id, *marks, bytes(one.data))
+
+
+FD_FORMATS = [one for one in FORMATS if one != ".csv"]
+
+
+@pytest.mark.parametrize("suffix", FD_FORMATS)
+def test_fd_frames_survive_the_way_through_a_file(tmp_path: Path, suffix: str) -> None:
+    path = write(tmp_path / f"a{suffix}", fd_frames())
+    assert [shape(one) for one in read_log(path)] == [shape(one) for one in fd_frames()]
+    with can.LogReader(path) as reader:
+        theirs = [(one.arbitration_id, one.is_fd, bytes(one.data)) for one in reader]
+    assert theirs == [(one.arbitration_id, one.is_fd, bytes(one.data)) for one in fd_frames()]
+
+
+def test_candump_logs_of_fd_and_remote_frames_are_those_of_can_utils(tmp_path: Path) -> None:
+    remote = can.Message(
+        timestamp=START_S, arbitration_id=0x123, is_extended_id=False, is_remote_frame=True, dlc=8
+    )
+    path = write(tmp_path / "a.log", [fd_frame(0, 12), fd_frame(1, 8, False, True), remote])
+    lines = [one.split()[2] for one in path.read_text().splitlines()]
+    assert lines == ["108##10102030405060708090A0B0C", "108##20102030405060708", "123#R8"]
+    frames = asc_of(path)
+    assert [one.is_fd for one in frames] == [True, True, False]
+    assert [len(one.data) for one in frames] == [12, 8, 0]
+
+
+def test_csv_leaves_fd_frames_out_and_says_so(tmp_path: Path) -> None:
+    log = open_log(tmp_path / "a.csv", attachments)
+    for one in (frame(0), fd_frame(1, 8), fd_frame(2, 12), frame(3)):
+        log.write(one)
+    log.close()
+    assert "cannot hold CAN FD frames, 2 left out" in log.failure and "\n" not in log.failure
+    assert [shape(one) for one in read_log(log.path)] == [shape(frame(0)), shape(frame(3))]
+
+
+@pytest.mark.parametrize("kind", ["is_remote_frame", "is_error_frame"])
+def test_an_mdf_that_lacks_frames_keeps_the_log_that_has_them(tmp_path: Path, kind: str) -> None:
+    log = open_log(tmp_path / "a.mf4", attachments)
+    assert isinstance(log, MdfFile)
+    odd = can.Message(timestamp=START_S + 0.01, arbitration_id=0, is_extended_id=False)
+    setattr(odd, kind, True)
+    for one in (frame(0), odd, fd_frame(2, 12)):
+        log.write(one)
+    log.close()
+    log.finish()
+    assert "1 remote or error frames are not in it" in log.failure and log.result == log.target
+    wanted = [shape(frame(0)), shape(fd_frame(2, 12))]
+    assert [shape(one) for one in read_log(tmp_path / "a.mf4")] == wanted
+    kept = list(read_log(tmp_path / "a.mf4.log"))
+    assert len(kept) == 3 and getattr(kept[1], kind)
+
+
+# Recordings of a bus without a controller, python-can's virtual one
+
+
+def recorded(plan: Plan, frames: list[can.Message], said: list[str]) -> Recorder:
+    """A step of the recorder for each frame."""
+    with (
+        Link(Bus("virtual", str(plan.out), None, ())) as link,
+        can.Bus(interface="virtual", channel=str(plan.out)) as other,
+    ):
+        recorder = Recorder(link, DATABASE, plan, said.append)
+        open_first(recorder)
+        for number, one in enumerate(frames, 1):
+            other.send(one)
+            while recorder.traffic.frames < number:
+                recorder.step()
+        recorder.close()
+    return recorder
+
+
+def test_recording_fd_frames_into_csv_is_told_at_once(tmp_path: Path) -> None:
+    said: list[str] = []
+    plan = Plan(tmp_path / "a.csv", None, None, False)
+    recorder = recorded(plan, [frame(0), fd_frame(1, 12), fd_frame(2, 8), frame(3)], said)
+    assert len(list(read_log(plan.out))) == recorder.file.frames == 2
+    first, last = said
+    assert "1 left out" in first and "2 left out" in last
+
+
+def test_recording_goes_past_a_file_that_appears(tmp_path: Path) -> None:
+    plan = Plan(tmp_path / "a.log", 1, None, False)
+
+    class Others(list[can.Message]):
+        """Another program makes the files of the next numbers once the recording has begun."""
+
+        def __iter__(self):
+            (tmp_path / "a_0002.log").write_text("theirs")
+            (tmp_path / "a_0003.log").write_text("theirs")
+            yield from super().__iter__()
+
+    recorder = recorded(plan, Others(frame(i) for i in range(3)), [])
+    assert [one.path.name for one in recorder.files] == [
+        f"a_{number:04d}.log" for number in (1, 4, 5, 6)
+    ]
+    assert [one.frames for one in recorder.files] == [1, 1, 1, 0]
+    assert {(tmp_path / f"a_000{i}.log").read_text() for i in (2, 3)} == {"theirs"}
 
 
 def test_trc_of_other_tools_is_read(tmp_path: Path) -> None:
@@ -183,6 +314,10 @@ ASC = "date Tue Nov 14 22:13:20.250 2023\nbase hex  timestamps absolute\ninterna
         ("a.log", CANDUMP + "(1.6) can0 FFF#01\n", "line 2"),
         ("a.log", CANDUMP + "(nan) can0 100#01\n", "line 2"),
         ("a.log", CANDUMP + "(1.6) can0 100#010203040506070809\n", "line 2"),
+        ("a.log", CANDUMP + "(1.6) can0 100##1010203040506070809\n", "line 2"),
+        ("a.log", CANDUMP + "(1.6) can0 100##\n", "line 2"),
+        ("a.log", CANDUMP + "(1.6) can0 100##X01\n", "line 2"),
+        ("a.log", CANDUMP + "(1.6) can0 100##1" + "00" * 65 + "\n", "line 2"),
         ("a.csv", "time,id\n1,2\n", "expected the columns"),
         ("a.csv", CSV + "1.5,0x100,0,0,0,8,AQID\n", "line 2"),
         ("a.csv", CSV + "1.5,0x100,0,0,0,3,AQ", "line 2"),

@@ -33,18 +33,18 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def computed_figures() -> tuple[list[Figure], str]:
-    """Figures that follow from the DBC, and a table of the messages."""
+def computed_figures() -> tuple[list[Figure], dict[str, float], list[str]]:
+    """Figures that follow from the DBC; all loads; tables of the loads and the messages."""
     from quiesce.can import load
     from quiesce.can.database import load as load_database
 
     database = load_database()
-    cyclic, raw = load.cyclic(database), load.named(database, load.RAW)
+    totals = load.totals_pct(database, BITRATE)
     analysis = load.Analysis(load.on_bus(database), BITRATE)
     _, baud = load.baud_needed(load.slcan_messages(database))
     figures = [
-        Figure("bus_load_pct", load.load_pct(cyclic, BITRATE), "%", 34.0, "lower"),
-        Figure("bus_load_raw_pct", load.load_pct(cyclic + raw, BITRATE), "%", 62.0, "lower"),
+        Figure("bus_load_pct", totals["cyclic"], "%", 34.0, "lower"),
+        Figure("bus_load_raw_pct", totals["with_raw"], "%", 62.0, "lower"),
         Figure("demand_response_ms", analysis.response_ms(DEMAND), "ms", 0.55, "lower"),
         Figure("slcan_baud_needed", baud, "baud", None, "lower"),
     ]
@@ -54,7 +54,7 @@ def computed_figures() -> tuple[list[Figure], str]:
         bound = "no bound" if response_ms is None else f"{response_ms:.3f}"
         rows.append([stream.message.name, str(stream.bits), str(stream.message.period_ms), bound])
     table = format_table(["message, sensor node too", "bits", "period ms", "response ms"], rows)
-    return figures, table
+    return figures, totals, [load.totals_table(totals, BITRATE), table]
 
 
 def vm_figures(args: argparse.Namespace) -> tuple[dict[str, Any], list[str]]:
@@ -70,13 +70,14 @@ def vm_figures(args: argparse.Namespace) -> tuple[dict[str, Any], list[str]]:
 
 
 def measure(args: argparse.Namespace, folder: Path) -> Report:
-    figures, table = computed_figures()
+    figures, totals, tables = computed_figures()
     values, absent = vm_figures(args)
     figures += [
         Figure(name, values.get(name), unit, goal, "lower") for name, unit, goal in VM_FIGURES
     ]
-    context = {"bitrate": BITRATE, **{k: v for k, v in values.items() if k not in names()}}
-    return Report(NAME, figures, context, [table], absent)
+    context = {"bitrate": BITRATE, "load_pct": totals}
+    context |= {k: v for k, v in values.items() if k not in names()}
+    return Report(NAME, figures, context, tables, absent)
 
 
 def names() -> set[str]:

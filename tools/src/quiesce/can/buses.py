@@ -2,7 +2,7 @@
 
 import argparse
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from quiesce.errors import UsageError, one_line
@@ -27,13 +27,28 @@ class Bus:
     def name(self) -> str:
         return f"{self.interface}:{self.channel}"
 
+    def with_default(self, key: str, value: Any) -> "Bus":
+        """The same with an option that the user did not give."""
+        if key in dict(self.options):
+            return self
+        return replace(self, options=(*self.options, (key, value)))
+
+    def driver_options(self) -> dict[str, Any]:
+        """What the driver gets beside the channel."""
+        options = dict(self.options)
+        if self.bitrate is not None:
+            options["bitrate"] = self.bitrate
+        if self.interface == "socketcan":
+            # Without it the kernel hands this socket no FD frames. Classic interfaces take it, too;
+            # a kernel without CAN FD refuses it, and python-can goes on with classic frames.
+            options.setdefault("fd", True)
+        return options
+
     def open(self) -> Any:
         """A python-can bus. Exception of any class, as the driver has it, where it fails."""
         from quiesce.can.python_can import can
 
-        options = dict(self.options)
-        if self.bitrate is not None:
-            options["bitrate"] = self.bitrate
+        options = self.driver_options()
         if self.interface == "slcan" and os.name == "posix":
             from quiesce.can.slcan import SlcanBus
 

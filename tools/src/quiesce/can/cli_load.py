@@ -68,8 +68,7 @@ def computed(args: argparse.Namespace) -> dict[str, Any]:
     from quiesce.can import load
 
     database = database_of(args)
-    cyclic, raw = load.cyclic(database), load.named(database, load.RAW)
-    sensor = load.named(database, load.SENSOR)
+    raw, sensor = load.named(database, load.RAW), load.named(database, load.SENSOR)
     left_out = ([] if args.sensor_node else sensor) + (raw if args.no_raw else [])
     chosen = [one for one in load.on_bus(database) if one not in left_out]
     if not chosen:
@@ -81,12 +80,7 @@ def computed(args: argparse.Namespace) -> dict[str, Any]:
     )
     return {
         "bitrate": args.bitrate,
-        "load_pct": {
-            "cyclic": load.load_pct(cyclic, args.bitrate),
-            "with_raw": load.load_pct(cyclic + raw, args.bitrate),
-            "with_sensor_node": load.load_pct(cyclic + sensor, args.bitrate),
-            "everything": load.load_pct(load.on_bus(database), args.bitrate),
-        },
+        "load_pct": load.totals_pct(database, args.bitrate),
         "messages": [row(analysis, index) for index in range(len(analysis.streams))],
         "slcan": {
             "bits_per_s": need,
@@ -115,6 +109,8 @@ def row(analysis: Any, index: int) -> dict[str, Any]:
 
 
 def text(report: dict[str, Any]) -> str:
+    from quiesce.can.load import totals_table
+
     rows = [
         [
             one["name"],
@@ -129,14 +125,13 @@ def text(report: dict[str, Any]) -> str:
         for one in report["messages"]
     ]
     head = ["message", "id", "bytes", "bits", "period ms", "load %", "response ms", ""]
-    load, slcan = report["load_pct"], report["slcan"]
+    slcan = report["slcan"]
     return "\n".join(
         [
             format_table(head, rows, left=(0, 1, 7)),
             "",
-            f"load at {report['bitrate']} bit/s: cyclic {load['cyclic']:.1f} %, with raw streaming "
-            f"{load['with_raw']:.1f} %, with a sensor node {load['with_sensor_node']:.1f} %, "
-            f"everything at once {load['everything']:.1f} %",
+            totals_table(report["load_pct"], report["bitrate"]),
+            "",
             f"SLCAN: a controller on a UART sends {slcan['bits_per_s_without_raw']:.0f} bit/s: "
             f"{rate_text(slcan['baud_without_raw'])}; with raw streaming "
             f"{slcan['bits_per_s']:.0f}: {rate_text(slcan['baud'])}",

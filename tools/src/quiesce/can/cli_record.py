@@ -23,7 +23,9 @@ controller's Identification and all its parameters as ServiceReply frames; .mf4 
 DBC and the parameters as attached files. With rotation: run_0001.blf, run_0002.blf ...
 Ctrl-C and SIGTERM end it, with complete files. A bus that is lost is opened again; the gap is a
 comment in .asc and .mf4, a marker in .blf. On a full disk what was written stays readable.
-Exit codes: 1 the disk was full or an .mf4 could not be made, 2 bad input.
+CAN FD frames go into every format but .csv.
+Exit codes: 1 the disk was full, an .mf4 could not be made, or a format could not hold some frame
+(.csv: CAN FD; .mf4: remote and error frames, which stay in NAME.mf4.log); 2 bad input.
 """
 
 FORMATS = (".log", ".asc", ".blf", ".csv", ".mf4")
@@ -78,7 +80,6 @@ def run(args: argparse.Namespace) -> int:
     from quiesce.can.link import Link
     from quiesce.can.recorder import Plan, Recorder, open_first
     from quiesce.can.stopping import until_stopped
-    from quiesce.can.writers import MdfFile
 
     check(args)
     size = None if args.rotate_mb is None else int(args.rotate_mb * 1e6)
@@ -104,17 +105,14 @@ def run(args: argparse.Namespace) -> int:
             recorder.run(stop, args.seconds, TELL_S, tell)
         finally:
             report(recorder, link)
-    failed = any(isinstance(file, MdfFile) and file.failure for file in recorder.files)
-    return EXIT_FAILED if failed else 0
+    return EXIT_FAILED if any(file.failure for file in recorder.files) else 0
 
 
 def report(recorder: Any, link: Any) -> None:
     from quiesce.can.traffic import summary_line
-    from quiesce.can.writers import MdfFile
 
     for file in recorder.files:
-        is_mdf = isinstance(file, MdfFile) and not file.failure
         count = "cut where the disk was full" if file.error else f"{file.frames} frames"
-        print(f"{shown(file.target if is_mdf else file.path)}: {count}")
+        print(f"{shown(file.result)}: {count}")
     noise = f", {link.malformed} malformed lines" if link.malformed else ""
     print(summary_line(recorder.traffic.summary()) + noise, file=sys.stderr)

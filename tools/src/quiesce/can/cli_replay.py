@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.can.buses import add_bus_options, bus_of
+from quiesce.can.database import FIRST_LOCKSTEP_ID
 from quiesce.can.options import add_database_option, add_only_option, database_of, ids_of
 from quiesce.errors import EXIT_FAILED, UsageError
 
@@ -16,11 +17,16 @@ EPILOG = """examples:
   quiesce can replay run.blf --bus udp_multicast:239.74.163.2
   quiesce can replay run.asc --only Status,Motion --speed 10 --bus socketcan:can0
 
-Never sends what commands something (CurrentDemand, EmergencyStop, OperatorCommand, and
-ServiceRequest, which may change parameters), unless --include-commands.
+Never sends what a controller or a driver would act on, unless --include-commands: CurrentDemand,
+EmergencyStop, OperatorCommand, ServiceRequest (which may change parameters), what sensor nodes and
+drivers send (AccelSample, CurrentMeasured), lock-step messages (0x600 .. 0x6FF). Their ids are
+those of the shipped DBC; --dbc only names messages for --only.
 """
 
 COMMANDS = ("CurrentDemand", "EmergencyStop", "OperatorCommand", "ServiceRequest")
+# The controller would take what they sent for what is.
+MEASURING = ("Sensor", "Driver")
+LOCKSTEP_IDS = range(FIRST_LOCKSTEP_ID, 0x700)
 TELL_S = 5.0
 # Frames that are due at once wait no longer than a timer can tell.
 LEAST_WAIT_S = 0.0005
@@ -40,7 +46,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     add_only_option(parser)
     parser.add_argument(
-        "--include-commands", action="store_true", help="send commands and requests, too"
+        "--include-commands", action="store_true", help="send what is acted on, too: see below"
     )
     add_bus_options(parser)
     add_database_option(parser)
@@ -56,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--speed {args.speed:g}: above 0, please")
     bus, database = bus_of(args), database_of(args)
     only = ids_of(args.only, database)
-    withheld = set() if args.include_commands else command_ids(database)
+    withheld = set() if args.include_commands else withheld_ids()
     for _ in read_log(args.file):  # the whole of it, before anything is sent
         pass
     counts = {"sent": 0, "refused": 0, "withheld": 0}
@@ -71,15 +77,25 @@ def run(args: argparse.Namespace) -> int:
             counts["sent" if is_sent else "refused"] += 1
     text = f"{counts['sent']} frames sent"
     if counts["withheld"]:
-        text += f", {counts['withheld']} commands not sent (--include-commands sends them)"
+        text += (
+            f", {counts['withheld']} withheld: commands, measurements or lock-step "
+            "(--include-commands sends them)"
+        )
     if counts["refused"]:
         text += f", {counts['refused']} not taken by the bus"
     print(text, file=sys.stderr)
     return EXIT_FAILED if counts["refused"] else 0
 
 
-def command_ids(database: Any) -> set[int]:
-    return {database.by_name[name].frame_id for name in COMMANDS if name in database.by_name}
+def withheld_ids() -> set[int]:
+    """What a controller or a driver acts on. Of the shipped DBC in any case: the controller on
+    the bus knows no other."""
+    from quiesce.can.database import load
+
+    database = load()
+    commands = {database.by_name[name].frame_id for name in COMMANDS}
+    measured = {one.frame_id for one in database.messages if one.sender in MEASURING}
+    return commands | measured | set(LOCKSTEP_IDS)
 
 
 def as_sent(frame: Any) -> Any:

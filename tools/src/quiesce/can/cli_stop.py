@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     from quiesce.can.stopping import until_stopped
 
     check_seconds("--timeout-s", args.timeout_s)
-    bus = bus_of(args)
+    bus = without_pause(bus_of(args))
     if not args.yes and not is_confirmed(bus.name):
         print("quiesce: not stopped", file=sys.stderr)
         return EXIT_FAILED
@@ -56,6 +56,13 @@ def run(args: argparse.Namespace) -> int:
         return EXIT_FAILED
     print(f"stopped: the controller reports state {state}, fault ESTOP")
     return 0
+
+
+def without_pause(bus: Any) -> Any:
+    """Serial lines pause after opening for boards that reset then (quiesce.can.slcan). An emergency
+    stop must not wait for that: a board that did not reset gets the first frame at once, one that
+    did gets a later one."""
+    return bus.with_default("sleep_after_open", 0.0) if bus.interface == "slcan" else bus
 
 
 def is_confirmed(name: str) -> bool:

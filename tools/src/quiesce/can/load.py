@@ -17,6 +17,7 @@ from quiesce.can.database import (
     Database,
     Message,
 )
+from quiesce.table import format_table
 
 DEFAULT_BITRATE = 500_000
 ERROR_FRAME_BITS = 31  # with what follows it, the paper's section 3.4
@@ -60,13 +61,47 @@ def load_pct(messages: Sequence[Message], bitrate: int) -> float:
 
 
 def cyclic(database: Database) -> list[Message]:
-    """What a bus without a sensor node carries all the time, and while a fault or an emergency
-    stop holds: everything with a cycle time but samples."""
+    """What the controller's own configuration puts on a bus all the time, and while a fault or an
+    emergency stop holds: everything with a cycle time but samples. A sensor node's AccelSample is
+    only on buses that have one."""
     return [
         m
         for m in database.messages
         if m.send_type in (CYCLIC, CYCLIC_IF_ACTIVE) and m.name not in (RAW, SENSOR)
     ]
+
+
+def totals_pct(database: Database, bitrate: int) -> dict[str, float]:
+    """Loads of the bus in what it may carry."""
+    base, raw, sensor = cyclic(database), named(database, RAW), named(database, SENSOR)
+    chosen = {
+        "cyclic": base,
+        "with_raw": base + raw,
+        "with_sensor_node": base + sensor,
+        "with_sensor_node_and_raw": base + sensor + raw,
+        "everything": on_bus(database),
+    }
+    return {name: load_pct(messages, bitrate) for name, messages in chosen.items()}
+
+
+TOTAL_WORDS = {
+    "cyclic": "cyclic messages of the controller's own configuration, no sensor node",
+    "with_raw": "the same with raw streaming",
+    "with_sensor_node": "cyclic messages with a sensor node on the bus",
+    "with_sensor_node_and_raw": "the same with raw streaming",
+    "everything": "everything at once, services too",
+}
+LEFT_OUT = (
+    "The first leaves out AccelSample: a sensor node sends it, and exists only on buses that have "
+    "one."
+)
+
+
+def totals_table(totals: dict[str, float], bitrate: int) -> str:
+    """totals: of totals_pct()."""
+    rows = [[words, f"{totals[name]:.1f}"] for name, words in TOTAL_WORDS.items()]
+    head = [f"load at {bitrate} bit/s", "%"]
+    return f"{format_table(head, rows, left=(0,))}\n{LEFT_OUT}"
 
 
 def on_bus(database: Database) -> list[Message]:

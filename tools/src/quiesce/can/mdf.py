@@ -37,18 +37,28 @@ def write_mdf(
     messages: Iterable[Any],
     attachments: Sequence[tuple[str, bytes, str]],
     comment: str,
-) -> None:
+) -> int:
     """attachments: file name, content, MIME type; the first is the database of the frames.
 
     Frames without data (remote, error) are left out: tools expect other groups for them, and the
-    interface has none.
+    interface has none. Returns how many.
     """
     from asammdf import MDF, Signal
     from asammdf.blocks.v4_blocks import SourceInformation
     from asammdf.blocks.v4_constants import BUS_TYPE_CAN, SOURCE_BUS
 
     quiet()
-    chunks = chunks_of(one for one in messages if not one.is_remote_frame | one.is_error_frame)
+    left_out = 0
+
+    def data_frames() -> Iterator[Any]:
+        nonlocal left_out
+        for one in messages:
+            if one.is_remote_frame or one.is_error_frame:
+                left_out += 1
+            else:
+                yield one
+
+    chunks = chunks_of(data_frames())
     first = next(chunks, [])
     with MDF(version="4.10") as mdf:
         start_s = first[0].timestamp if first else datetime.now(UTC).timestamp()
@@ -71,6 +81,7 @@ def write_mdf(
         for name, content, mime in attachments[1:]:
             mdf.attach(content, file_name=name, mime=mime)
         mdf.save(file, compression=2, overwrite=True)
+    return left_out
 
 
 def chunks_of(messages: Iterable[Any]) -> Iterator[list[Any]]:
@@ -92,9 +103,12 @@ def samples_of(frames: Sequence[Any]) -> Any:
     for name, values in (
         ("ID", [one.arbitration_id for one in frames]),
         ("IDE", [one.is_extended_id for one in frames]),
-        ("DLC", [one.dlc for one in frames]),
+        ("DLC", [can.util.len2dlc(one.dlc) for one in frames]),
         ("DataLength", [len(one.data) for one in frames]),
         ("Dir", [not one.is_rx for one in frames]),
+        ("EDL", [one.is_fd for one in frames]),
+        ("BRS", [one.bitrate_switch for one in frames]),
+        ("ESI", [one.error_state_indicator for one in frames]),
     ):
         samples[f"{FRAME}.{name}"] = values
     rows = b"".join(bytes(one.data).ljust(MAX_BYTES, b"\0") for one in frames)
@@ -142,15 +156,19 @@ def frames_of(signal: Any, start_s: float) -> list[Any]:
             is_extended_id=bool(is_extended),
             is_rx=direction in (0, b"Rx"),
             is_fd=bool(is_fd),
+            bitrate_switch=bool(is_fd and is_fast),
+            error_state_indicator=bool(is_fd and is_passive),
             data=bytes(data[i][: lengths[i]]),
         )
-        for i, (time_s, frame_id, is_extended, direction, is_fd) in enumerate(
+        for i, (time_s, frame_id, is_extended, direction, is_fd, is_fast, is_passive) in enumerate(
             zip(
                 signal.timestamps,
                 column("ID", 0),
                 column("IDE", 0),
                 column("Dir", 0),
                 column("EDL", 0),
+                column("BRS", 0),
+                column("ESI", 0),
                 strict=True,
             )
         )

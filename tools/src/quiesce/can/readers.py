@@ -8,6 +8,8 @@ from typing import Any
 from quiesce.can.python_can import can
 from quiesce.errors import UsageError, one_line
 
+from can.util import CAN_FD_DLC  # isort: skip
+
 CSV_HEADER = "timestamp,arbitration_id,extended,remote,error,dlc,data"
 FORMATS = ".log (candump), .asc, .blf, .csv, .mf4, .trc"
 MAX_STANDARD_ID = 0x7FF
@@ -87,6 +89,8 @@ def check_frame(message: Any) -> None:
         raise ValueError(f"{message.dlc} bytes announced, {len(message.data)} there")
     if message.dlc > 8 and not message.is_fd:
         raise ValueError(f"{message.dlc} bytes in a classic frame")
+    if message.is_fd and message.dlc not in CAN_FD_DLC:
+        raise ValueError(f"{message.dlc} bytes in a CAN FD frame")
     if not abs(message.timestamp) < float("inf"):
         raise ValueError("time stamp is not finite")
 

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from quiesce.can.link import Back, Link, Lost
 from quiesce.can.parameters import hash_of, name_of
 from quiesce.can.services import ReadAll, Requests
 from quiesce.can.traffic import Traffic
-from quiesce.can.writers import LogFile, MdfFile, open_log
+from quiesce.can.writers import PART_SUFFIX, LogFile, MdfFile, open_log
 from quiesce.errors import BenchFailure, UsageError
 
 # For the controller's identity, sent once a second, and all its parameters.
@@ -44,6 +45,15 @@ class Plan:
         if not self.rotates:
             return self.out
         return self.out.with_name(f"{self.out.stem}_{number:04d}{self.out.suffix}")
+
+    def stale(self) -> Path | None:
+        """A file that an earlier recording of that name left, where this one might get to."""
+        if not self.rotates or not self.out.parent.is_dir():
+            return None
+        stem, suffix = re.escape(self.out.stem), re.escape(self.out.suffix)
+        series = re.compile(rf"{stem}_\d{{4,}}{suffix}({re.escape(PART_SUFFIX)})?")
+        found = (one for one in self.out.parent.iterdir() if series.fullmatch(one.name))
+        return min(found, default=None)
 
 
 class Preamble:
@@ -139,6 +149,8 @@ class Recorder:
         self.preamble = Preamble(link, database)
         self.raw = RawStream(link, database) if plan.streams_raw else None
         self.files: list[LogFile] = []
+        self._number = 0  # of the last file
+        self._is_warned = False
         self._link = link
         self._database = database
         self._say = say
@@ -151,9 +163,17 @@ class Recorder:
         return self.files[-1]
 
     def open(self) -> None:
-        """OSError where the file cannot be made or exists."""
-        path = self.plan.file(len(self.files) + 1)
-        self.files.append(open_log(path, self._attachments))
+        """OSError where the file cannot be made, or is the first and exists."""
+        while True:
+            self._number += 1
+            try:
+                file = open_log(self.plan.file(self._number), self._attachments)
+                break
+            except FileExistsError:
+                # Somebody made it since the start: neither theirs nor what comes may be lost.
+                if not self.files:
+                    raise
+        self.files.append(file)
         self._file_started_s = time.monotonic()
 
     def run(self, stop: Any, until_s: float | None, every_s: float, tell: Any) -> None:
@@ -183,6 +203,7 @@ class Recorder:
             self.take(event)
             event = self._link.receive_now()
         self._check_disk()
+        self._warn()
         self._rotate_if_due()
 
     def _ask(self) -> None:
@@ -257,6 +278,12 @@ class Recorder:
         self._say(text)
         self.file.note(text, time_s)
 
+    def _warn(self) -> None:
+        """At once and once, where the format cannot hold what comes; totals follow at the end."""
+        if not self._is_warned and self.file.failure:
+            self._is_warned = True
+            self._say(self.file.failure)
+
     def _check_disk(self) -> None:
         file = self.file
         if file.error is not None:
@@ -274,8 +301,8 @@ class Recorder:
         for file in self.files:
             if isinstance(file, MdfFile):
                 file.finish()
-                if file.failure:
-                    self._say(file.failure)
+            if file.failure:
+                self._say(file.failure)
 
     def _attachments(self) -> list[tuple[str, bytes, str]]:
         """The database and the parameters, for formats that take files."""
@@ -291,11 +318,14 @@ class Recorder:
 
 
 def open_first(recorder: Recorder) -> None:
-    """UsageError where the first file cannot be made."""
+    """UsageError where the first file cannot be made, or files of an earlier series are there."""
     path = recorder.plan.file(1)
+    stale = recorder.plan.stale()
+    if stale is not None:
+        raise UsageError(f"{stale} exists, of an earlier recording; choose another --out")
     try:
         recorder.open()
-    except FileExistsError:
-        raise UsageError(f"{path} exists; choose another --out")
+    except FileExistsError as error:
+        raise UsageError(f"{error.filename} exists; choose another --out")
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror}; choose another --out")

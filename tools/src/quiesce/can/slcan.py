@@ -5,6 +5,7 @@ that is no ASCII leaves it unable to decode anything after. Here a malformed lin
 dropped and forgotten.
 """
 
+import re
 import select
 import time
 from collections import deque
@@ -15,8 +16,17 @@ from quiesce.can.python_can import can  # isort: skip
 from can.exceptions import CanInitializationError, error_check
 from can.interfaces.slcan import slcanBus
 
-# tIIILDD.. and its variants; beyond it a line is noise.
-MAX_LINE = 26
+# TIIIIIIIILDD.. with 8 bytes and a time stamp; beyond it a line is noise.
+MAX_LINE = 30
+# Kind, id, length; then data and possibly a time stamp. Hexadecimal digits only: Python's int()
+# also takes blanks, signs and underscores.
+FRAME = re.compile(
+    rb"(?:([tr])([0-9A-Fa-f]{3})|([TR])([0-9A-Fa-f]{8}))([0-8])((?:[0-9A-Fa-f]{2})*)"
+)
+TIME_STAMP_DIGITS = 4
+# Serial lines whose opening may reset the board behind them.
+BOARDS = ("/dev/ttyACM", "/dev/ttyUSB")
+RESET_S = 2.0
 READ_BYTES = 4096
 BELL = 0x07
 
@@ -26,9 +36,9 @@ class SlcanBus(slcanBus):
     long."""
 
     def __init__(self, channel: str, **options: Any) -> None:
-        # Only a line that a board's reset hangs on needs the pause after opening.
-        is_board = channel.startswith(("/dev/ttyACM", "/dev/ttyUSB"))
-        options.setdefault("sleep_after_open", 2.0 if is_board else 0.0)
+        # A board that resets when its line is opened would miss the commands that open its channel
+        # and the first requests. 'stop' does not wait: it opens with 0 and repeats its frame.
+        options.setdefault("sleep_after_open", RESET_S if channel.startswith(BOARDS) else 0.0)
         self.malformed = 0
         self._frames: deque[can.Message] = deque()
         self._line = bytearray()
@@ -72,18 +82,15 @@ class SlcanBus(slcanBus):
 
 
 def frame_of(line: bytes, now_s: float) -> can.Message | None:
-    """None where the line is not exactly a classic frame. Time stamps after it are dropped."""
-    is_extended = line[:1] in (b"T", b"R")
-    is_remote = line[:1] in (b"r", b"R")
-    digits = 8 if is_extended else 3
-    try:
-        frame_id = int(line[1 : 1 + digits].decode("ascii"), 16)
-        length = int(line[1 + digits : 2 + digits].decode("ascii"))
-        text = "" if is_remote else line[2 + digits : 2 + digits + 2 * length].decode("ascii")
-        data = bytes.fromhex(text)
-    except ValueError:  # UnicodeDecodeError is one
+    """None where the line is not exactly a classic frame. A time stamp after it is dropped."""
+    match = FRAME.fullmatch(line)
+    if match is None:
         return None
-    if length > 8 or len(line) < 2 + digits or (not is_remote and len(data) != length):
+    short, short_id, long, long_id, length_digit, rest = match.groups()
+    is_extended, is_remote = short is None, (short or long) in (b"r", b"R")
+    frame_id, length = int(short_id or long_id, 16), int(length_digit)
+    digits = 0 if is_remote else 2 * length
+    if len(rest) not in (digits, digits + TIME_STAMP_DIGITS):
         return None
     if frame_id > (0x1FFFFFFF if is_extended else 0x7FF):
         return None
@@ -93,5 +100,5 @@ def frame_of(line: bytes, now_s: float) -> can.Message | None:
         is_extended_id=is_extended,
         is_remote_frame=is_remote,
         dlc=length,
-        data=None if is_remote else data,
+        data=None if is_remote else bytes.fromhex(rest[:digits].decode()),
     )

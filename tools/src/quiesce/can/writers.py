@@ -18,6 +18,9 @@ from quiesce.errors import one_line
 # Uncompressed bytes of a BLF container: what a power cut loses.
 BLF_CONTAINER_BYTES = 16 * 1024
 COMMIT_BYTES = 64 * 1024
+PART_SUFFIX = ".log"  # after .mf4: the frames until that file is made
+CANFD_BRS = 0x01
+CANFD_ESI = 0x02
 # As candump has it: CAN_ERR_FLAG and CAN_ERR_BUSERROR, no detail.
 ERROR_FRAME = "20000080#0000000000000000"
 
@@ -49,6 +52,16 @@ class LogFile:
         """Why nothing more can be written."""
         return self.file.error
 
+    @property
+    def failure(self) -> str:
+        """What is not in the file that should be; empty: nothing."""
+        return ""
+
+    @property
+    def result(self) -> Path:
+        """The file that is there in the end."""
+        return self.path
+
     def write(self, frame: Any) -> None:
         self._writer.on_message_received(frame)
         self.file.mark()
@@ -72,27 +85,66 @@ class LogFile:
             self._writer.stop()
 
 
-class PlainCandump(can.CanutilsLogWriter):
-    """As 'candump -L' writes it. python-can marks what was received and sent at the end of each
-    line, which Wireshark takes for an error."""
+class Candump(can.CanutilsLogWriter):
+    """As 'candump -L' writes it."""
 
     def on_message_received(self, msg: Any) -> None:
-        digits = 8 if msg.is_extended_id else 3
-        data = "R" if msg.is_remote_frame else bytes(msg.data).hex().upper()
-        text = f"{msg.arbitration_id:0{digits}X}#{data}"
-        if msg.is_error_frame:
-            text = ERROR_FRAME
-        self.file.write(f"({msg.timestamp:.6f}) can0 {text}\n")
+        self.file.write(f"({msg.timestamp:.6f}) can0 {candump_text(msg)}{self.direction(msg)}\n")
+
+    def direction(self, _: Any) -> str:
+        """Of the direction. None: Wireshark takes it for an error."""
+        return ""
+
+
+class MarkedCandump(Candump):
+    """With what was received (R) and sent (T), as python-can has it."""
+
+    def direction(self, msg: Any) -> str:
+        return "" if msg.is_error_frame else " R" if msg.is_rx else " T"
+
+
+def candump_text(msg: Any) -> str:
+    """ID#DATA, ID##FLAGSDATA for CAN FD, ID#RLENGTH for remote frames."""
+    if msg.is_error_frame:
+        return ERROR_FRAME
+    frame_id = f"{msg.arbitration_id:0{8 if msg.is_extended_id else 3}X}"
+    if msg.is_remote_frame:
+        return f"{frame_id}#R{msg.dlc or ''}"
+    flags = ""
+    if msg.is_fd:
+        flags = f"#{msg.bitrate_switch * CANFD_BRS | msg.error_state_indicator * CANFD_ESI:X}"
+    return f"{frame_id}#{flags}{bytes(msg.data).hex().upper()}"
 
 
 class CandumpFile(LogFile):
     def _open(self) -> Any:
-        return PlainCandump(self.file)
+        return Candump(self.file)
 
 
 class CsvFile(LogFile):
+    """python-can's columns cannot tell CAN FD: such frames are left out, and that is told."""
+
+    def __init__(self, path: Path) -> None:
+        self._left_out = 0
+        super().__init__(path)
+
     def _open(self) -> Any:
         return can.CSVWriter(self.file)
+
+    def write(self, frame: Any) -> None:
+        if frame.is_fd:
+            self._left_out += 1
+        else:
+            super().write(frame)
+
+    @property
+    def failure(self) -> str:
+        if not self._left_out:
+            return ""
+        return (
+            f"{self.path}: .csv cannot hold CAN FD frames, {self._left_out} left out; record them "
+            "into .log, .asc, .blf or .mf4"
+        )
 
 
 class AscFile(LogFile):
@@ -131,17 +183,24 @@ class MdfFile(LogFile):
         if path.exists():
             raise FileExistsError(17, "File exists", str(path))
         self.target = path
-        self.failure = ""
+        self._failure = ""
+        self._is_made = False
         self._attachments = attachments
         self._notes: list[str] = []
         self._thread: threading.Thread | None = None
-        super().__init__(path.with_name(path.name + ".log"))
+        super().__init__(path.with_name(path.name + PART_SUFFIX))
 
     def _open(self) -> Any:
-        return can.CanutilsLogWriter(self.file)
+        return MarkedCandump(self.file)
 
-    def write(self, frame: Any) -> None:
-        super().write(with_channel(frame, "can0"))
+    @property
+    def failure(self) -> str:
+        """After finish(): why there is only the candump log, or what only that one holds."""
+        return self._failure
+
+    @property
+    def result(self) -> Path:
+        return self.target if self._is_made else self.path
 
     def note(self, text: str, time_s: float) -> None:
         self._notes.append(f"{time_s:.6f} {one_line(text)}")
@@ -156,7 +215,7 @@ class MdfFile(LogFile):
         self._thread.start()
 
     def finish(self) -> None:
-        """`failure` then says why there is only the candump log, if so."""
+        """Waits for the MDF4 file."""
         if self._thread is not None:
             self._thread.join()
 
@@ -167,13 +226,20 @@ class MdfFile(LogFile):
         part = self.target.with_name(self.target.name + ".part.mf4")
         try:
             frames = read_log(self.path) if self.frames else ()
-            write_mdf(part, frames, attachments, "\n".join(self._notes))
+            left_out = write_mdf(part, frames, attachments, "\n".join(self._notes))
             part.replace(self.target)
-            self.path.unlink()
+            self._is_made = True
+            if left_out:
+                self._failure = (
+                    f"{self.target}: {left_out} remote or error frames are not in it; {self.path} "
+                    "has all frames"
+                )
+            else:
+                self.path.unlink()
         except Exception as error:  # of asammdf, or the disk
             with contextlib.suppress(OSError):
                 part.unlink()
-            self.failure = f"{self.target}: {one_line(error)[:200]}; the frames are in {self.path}"
+            self._failure = f"{self.target}: {one_line(error)[:200]}; the frames are in {self.path}"
 
 
 def with_channel(frame: Any, channel: Any) -> Any:
