@@ -21,7 +21,9 @@ VM_KERNEL_PARTS=('./boot/vmlinuz-*' './lib/modules/*/kernel/net/can/*'
     './lib/modules/*/kernel/drivers/char/*' './lib/modules/*/kernel/drivers/watchdog/*'
     './lib/modules/*/kernel/fs/configfs/*')
 
-# gpio-sim is in no Debian kernel: it is built from Debian's own sources (GPL-2.0), out of tree.
+# gpio-sim is in no Debian kernel: it is built from Debian's own sources (GPL-2.0), out of tree. The
+# sums are those of one version of the sources; another one's files are as apt has verified them.
+GPIO_SIM_VERSION=6.1.176-1
 GPIO_SIM_FILES=(drivers/gpio/gpio-sim.c drivers/gpio/gpiolib.h kernel/irq/irq_sim.c)
 GPIO_SIM_SHA256="119a85063ac76efcfb9ff8ce87990f38133930a35d013e614a2e631ce8a67b95  gpio-sim.c
 56b20e6827aa7eafded0bb997b3549924f4462c0018c111a35147c797cc1ffd5  gpiolib.h
@@ -133,14 +135,25 @@ arm64_setup() {
     mv "$work" "$ARM64_ROOT"
 }
 
-# gpio_sim_is_complete FOLDER: the three files, as their checksums say.
+# gpio_sim_is_complete FOLDER: the three files, as the folder's own sums say, or those of here.
 gpio_sim_is_complete() {
-    [ -d "$1" ] && (cd "$1" && sha256sum --status --check - <<<"$GPIO_SIM_SHA256" 2>/dev/null)
+    local sums="$GPIO_SIM_SHA256"
+    [ ! -f "$1/sums" ] || sums="$(cat "$1/sums")"
+    [ -d "$1" ] && (cd "$1" && sha256sum --status --check - <<<"$sums" 2>/dev/null)
+}
+
+# gpio_sim_note FOLDER VERSION: notes the sums of another version's files where all three are there.
+gpio_sim_note() {
+    [ "$2" != "$GPIO_SIM_VERSION" ] || return 0
+    gpio_sim_is_complete "$1" && return 0
+    (cd "$1" && sha256sum "${GPIO_SIM_FILES[@]##*/}") >"$1/sums.new" 2>/dev/null || return 0
+    mv "$1/sums.new" "$1/sums"
+    say "set-up: linux-source-6.1 is $2, the checksums in tools/lib/vm.sh are of $GPIO_SIM_VERSION; gpio-sim's files are those that apt verified"
 }
 
 # gpio_sim_fetch: three files of Debian's kernel sources (139 MB) into CACHE/gpio-sim.
 gpio_sim_fetch() {
-    local folder="$VM_CACHE/gpio-sim" archive
+    local folder="$VM_CACHE/gpio-sim" archive version
     gpio_sim_is_complete "$folder" && return 0
     vm_index
     vm_download linux-source-6.1
@@ -153,12 +166,15 @@ gpio_sim_fetch() {
             tar -xO ./usr/src/linux-source-6.1.tar.xz 2>/dev/null | xz -dc 2>/dev/null |
             tar -x -C "$folder" --no-same-owner --occurrence=1 --transform 's#.*/##' \
                 "${GPIO_SIM_FILES[@]/#/linux-source-6.1/}") || true
+    version="${archive##*/linux-source-6.1_}"
+    gpio_sim_note "$folder" "${version%_all.deb}"
     gpio_sim_is_complete "$folder" ||
         fail "gpio-sim refused: its files in ${archive##*/} are not the ones with the checksums in tools/lib/vm.sh. See what has changed in them, then change the checksums"
     rm "$archive"
 }
 
 # gpio_sim_build FOLDER VERSION: FOLDER/gpio-sim.ko for the kernel whose headers are in FOLDER/headers.
+# The kernel's Makefile takes no space in a path.
 gpio_sim_build() {
     local headers="$1/headers/usr/src/linux-headers-$2" work="$1/gpio-sim"
     mkdir -p "$work"
@@ -193,17 +209,17 @@ vm_kernel_packages() {
         "linux-headers-${version%-"$VM_FLAVOUR"}-common-rt" linux-kbuild-6.1:amd64)
 }
 
-# vm_kernel_unpack FOLDER: kernel and modules into FOLDER/root, headers into FOLDER/headers.
+# vm_kernel_unpack FOLDER HEADERS: kernel and modules into FOLDER/root, headers into HEADERS.
 vm_kernel_unpack() {
     local file
-    mkdir -p "$1/root" "$1/headers"
+    mkdir -p "$1/root" "$2"
     while IFS= read -r file; do
         case "${file##*/}" in
         linux-image-*)
             dpkg-deb --fsys-tarfile "$file" |
                 tar -x -C "$1/root" --no-same-owner --wildcards "${VM_KERNEL_PARTS[@]}"
             ;;
-        *) dpkg-deb -x "$file" "$1/headers" ;;
+        *) dpkg-deb -x "$file" "$2" ;;
         esac
     done < <(vm_files kernel)
 }
@@ -218,12 +234,13 @@ vm_kernel_setup() {
     vm_fetch kernel "${VM_KERNEL_PACKAGES[@]}"
     gpio_sim_fetch
     rm -rf "$work"
-    vm_kernel_unpack "$work" || fail "cannot unpack the kernel's packages. Is the disk full?"
+    work_folder
+    vm_kernel_unpack "$work" "$WORK/headers" || fail "cannot unpack the kernel's packages. Is the disk full?"
     version="${VM_KERNEL_PACKAGES[0]#linux-image-}"
-    gpio_sim_build "$work" "$version"
+    gpio_sim_build "$WORK" "$version"
+    mv "$WORK/gpio-sim.ko" "$work/gpio-sim.ko"
     mv "$work/root/boot/vmlinuz-$version" "$work/vmlinuz"
     printf '%s\n' "$version" >"$work/version"
-    rm -rf "$work/headers" "$work/gpio-sim"
     vm_stamp >"$work/.complete"
     rm -rf "$VM_KERNEL"
     mv "$work" "$VM_KERNEL"
