@@ -22,6 +22,7 @@ typedef struct {
 } current_pwm_options_t;
 
 typedef struct current_pwm current_pwm_t;
+/// Waits up to a second for the right to write to the channel: udev gives it after the export.
 current_pwm_t *current_pwm_open(const current_pwm_options_t *options, hal_current_t *current,
                                 linux_error_t *error);
 /// Leaves the duty at zero current and the output on or off as the last command said.

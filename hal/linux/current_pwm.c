@@ -3,6 +3,9 @@
 // Order of writes: the duty cycle is right before the output goes on; the output is off before the
 // duty cycle moves. An inverted driver has its full current at 0 % and so where the output is off:
 // it is kept on, at 100 %.
+//
+// A channel that has just been exported belongs to root until udev's rule has given it to the
+// program's group, a moment later: opening waits for that.
 #include "current_backends.h"
 #include "current_scale.h"
 #include "sysfs.h"
@@ -11,9 +14,12 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define UNKNOWN (-1)
+#define ACCESS_TRIES 100
+#define ACCESS_PAUSE_NS 10000000 // 1 s in all
 
 struct current_pwm {
     sysfs_path_t folder;
@@ -91,6 +97,27 @@ static bool export_channel(const current_pwm_options_t *options, sysfs_path_t *f
                       options->channel);
 }
 
+/// False where one of the channel's files is there but not to be written.
+static bool is_ours(const sysfs_path_t *folder) {
+    static const char *const files[] = {"period", "duty_cycle", "enable", "polarity"};
+    sysfs_path_t path;
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (sysfs_path(&path, NULL, "%s/%s", folder->text, files[i]) &&
+            faccessat(AT_FDCWD, path.text, W_OK, AT_EACCESS) != 0 && errno == EACCES) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Where rights do not come, the first write says so.
+static void await_rights(const sysfs_path_t *folder) {
+    const struct timespec pause = {.tv_nsec = ACCESS_PAUSE_NS};
+    for (int tries = 0; tries < ACCESS_TRIES && !is_ours(folder); tries++) {
+        (void)nanosleep(&pause, NULL);
+    }
+}
+
 static bool get(const current_pwm_t *self, const char *file, int64_t *value, linux_error_t *error) {
     sysfs_path_t path;
     char text[SYSFS_TEXT_BYTES];
@@ -152,8 +179,11 @@ static int open_kept(const current_pwm_t *self, const char *file, linux_error_t 
 
 static bool set_up(current_pwm_t *self, const current_pwm_options_t *options,
                    linux_error_t *error) {
-    if (!export_channel(options, &self->folder, error) ||
-        !set_period(self, options->period_ns, error)) {
+    if (!export_channel(options, &self->folder, error)) {
+        return false;
+    }
+    await_rights(&self->folder);
+    if (!set_period(self, options->period_ns, error)) {
         return false;
     }
     self->duty_fd = open_kept(self, "duty_cycle", error);

@@ -10,10 +10,13 @@
 #include <stdlib.h>
 #include <sys/inotify.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #define CHIP "pwm/pwmchip0"
 #define CHANNEL CHIP "/pwm1"
+#define NOBODY 65534
 
 static char root[SCRATCH_BYTES];
 static char order[256];
@@ -270,6 +273,89 @@ static void test_malformed_files_are_one_line(void) {
     assert_refused(&options, "No space left");
 }
 
+/// Of all files of the channel.
+static void set_rights(mode_t mode) {
+    static const char *const files[] = {"/period", "/duty_cycle", "/enable"};
+    for (size_t i = 0; i < 3u; i++) {
+        char name[SCRATCH_BYTES];
+        (void)snprintf(name, sizeof name, "%s%s", CHANNEL, files[i]);
+        TEST_ASSERT_EQUAL_INT(0, chmod(scratch_path(name), mode));
+    }
+}
+
+/// Opens in a process that is not root, as the service; its end code is 0 where that succeeds, and
+/// the pipe gets a byte before and the error's text after it.
+static pid_t open_in_child(int talk[2]) {
+    TEST_ASSERT_EQUAL_INT(0, chmod(scratch_path("."), 0755));
+    TEST_ASSERT_EQUAL_INT(0, pipe(talk));
+    const pid_t child = fork();
+    TEST_ASSERT_TRUE(child >= 0);
+    if (child == 0) {
+        const current_pwm_options_t options = options_of(false);
+        const bool is_user = geteuid() != 0 || setresuid(NOBODY, NOBODY, NOBODY) == 0;
+        const bool is_told = write(talk[1], "!", 1) == 1;
+        const bool is_open =
+            is_user && is_told && current_pwm_open(&options, &current, &error) != NULL;
+        const ssize_t length = (ssize_t)strlen(error.text);
+        _exit(write(talk[1], error.text, (size_t)length) == length && is_open ? 0 : 1);
+    }
+    TEST_ASSERT_EQUAL_INT(0, close(talk[1]));
+    char told;
+    TEST_ASSERT_EQUAL_INT(1, read(talk[0], &told, 1));
+    return child;
+}
+
+static int end_code(pid_t child) {
+    int status;
+    TEST_ASSERT_EQUAL_INT(child, waitpid(child, &status, 0));
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+/// Letter of /proc/PID/stat: S where it sleeps, Z where it has ended.
+static char state_of(pid_t child) {
+    char path[64];
+    char state = '?';
+    (void)snprintf(path, sizeof path, "/proc/%d/stat", (int)child);
+    FILE *const file = fopen(path, "re");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL_INT(1, fscanf(file, "%*d (%*[^)]) %c", &state));
+    TEST_ASSERT_EQUAL_INT(0, fclose(file));
+    return state;
+}
+
+static void test_opening_waits_for_the_rights(void) {
+    int talk[2];
+    make_channel("0\n", "0\n", "0\n", NULL);
+    set_rights(0444);
+    const pid_t child = open_in_child(talk);
+    char state;
+    do {
+        state = state_of(child);
+    } while (state != 'S' && state != 'Z'); // all that it sleeps for is the rights
+    TEST_ASSERT_EQUAL_CHAR('S', state);
+    TEST_ASSERT_EQUAL_STRING("", writes());
+    set_rights(0666);
+    TEST_ASSERT_EQUAL_INT(0, end_code(child));
+    TEST_ASSERT_EQUAL_INT(0, close(talk[0]));
+    TEST_ASSERT_EQUAL_STRING("50000", scratch_read(CHANNEL "/period"));
+    assert_output("0", "0");
+}
+
+static void test_rights_that_do_not_come_are_one_line(void) {
+    int talk[2];
+    make_channel("0\n", "0\n", "0\n", NULL);
+    set_rights(0444);
+    const pid_t child = open_in_child(talk);
+    TEST_ASSERT_EQUAL_INT(1, end_code(child));
+    const ssize_t bytes = read(talk[0], error.text, sizeof error.text - 1u);
+    TEST_ASSERT_TRUE(bytes > 0);
+    error.text[bytes] = '\0';
+    TEST_ASSERT_EQUAL_INT(0, close(talk[0]));
+    assert_one_line(&error, "period: cannot write 50000: Permission denied");
+    TEST_ASSERT_EQUAL_STRING("", writes());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_opening_gives_zero_current_and_the_output_off);
@@ -283,5 +369,7 @@ int main(void) {
     RUN_TEST(test_wrong_options_are_one_line);
     RUN_TEST(test_channel_that_does_not_appear_is_one_line);
     RUN_TEST(test_malformed_files_are_one_line);
+    RUN_TEST(test_opening_waits_for_the_rights);
+    RUN_TEST(test_rights_that_do_not_come_are_one_line);
     return UNITY_END();
 }
