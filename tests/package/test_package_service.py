@@ -30,6 +30,8 @@ FACTS = {
     "stop": "inactive success",
     "farewell": "yes",
     "failures_to_make_safe": "0",
+    "tries": "yes",
+    "late_interface": "yes",
 }
 
 

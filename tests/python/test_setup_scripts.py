@@ -89,7 +89,7 @@ def assert_one_line(result: subprocess.CompletedProcess[str], *words: str) -> No
 @pytest.mark.parametrize(
     ("name", "arguments", "words"),
     [
-        ("setup", ["everything"], ["everything", "run, test or python"]),
+        ("setup", ["everything"], ["everything", "run, test, all or python"]),
         ("setup", ["run", "test"], ["one argument"]),
         ("bench_images", ["cmsis_cost", "all"], ["all", "signal_cost"]),
         ("bench_peers", ["python", "matlab"], ["matlab", "fuzzylite"]),
@@ -162,6 +162,19 @@ def test_names_the_package_that_cannot_be_had(clone: Clone) -> None:
     last = result.stderr.splitlines()[-1]
     assert "do not offer: clang-tidy-14. " in last
     assert "Debian 12" in last
+
+
+def test_all_packages_of_the_tests_come_in_one_go(clone: Clone) -> None:
+    clone.fake("id", "echo 0")
+    clone.fake("dpkg-query", "exit 1")
+    clone.fake("apt-get", "exit 0")
+    clone.script("setup", "all", QUIESCE_PYTHON="/none")
+    update, install = clone.calls("apt-get")
+    assert update.endswith("update")
+    words = install.split()
+    for name in ("cmake", "clang-14", "gcc-aarch64-linux-gnu", "mmdebstrap"):
+        assert name in words
+    assert "valgrind" not in words  # of benchmarks
 
 
 def test_network_failure_is_tried_three_times_and_told_in_one_line(clone: Clone) -> None:

@@ -2,6 +2,7 @@
 
 import hashlib
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -109,6 +110,56 @@ def test_other_kernel_sources_are_refused(scripts: Clone) -> None:
     last = result.stderr.splitlines()[-1]
     assert "gpio-sim refused" in last
     assert "linux-source-6.1_6.1.999-1_all.deb" in last
+
+
+def kernel_sources(folder: Path, version: str) -> Path:
+    """A package of kernel sources with three files that are not those of the checksums."""
+    files = ("drivers/gpio/gpio-sim.c", "drivers/gpio/gpiolib.h", "kernel/irq/irq_sim.c")
+    for name in files:
+        file = folder / "linux-source-6.1" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(f"/* {name} of {version} */\n")
+    tree = folder / "tree"
+    (tree / "usr/src").mkdir(parents=True)
+    archive = tree / "usr/src/linux-source-6.1.tar.xz"
+    subprocess.run(["tar", "-cJf", archive, "-C", folder, "linux-source-6.1"], check=True)
+    (tree / "DEBIAN").mkdir()
+    (tree / "DEBIAN/control").write_text(
+        f"Package: linux-source-6.1\nVersion: {version}\nArchitecture: all\n"
+        "Maintainer: nobody <nobody@localhost>\nDescription: sources\n"
+    )
+    package = folder / f"linux-source-6.1_{version}_all.deb"
+    subprocess.run(["dpkg-deb", "--build", tree, package], check=True, capture_output=True)
+    return package
+
+
+def fetch_gpio_sim(scripts: Clone, package: Path) -> subprocess.CompletedProcess[str]:
+    (scripts.root / "build/vm/cache").mkdir(parents=True)
+    scripts.fake("apt-get", f"""case "$*" in *download*) cp "{package}" . ;; esac""")
+    return scripts.function(SETUP, "gpio_sim_fetch && gpio_sim_fetch")
+
+
+def test_newer_kernel_sources_are_taken_as_apt_verified_them(
+    scripts: Clone, tmp_path: Path
+) -> None:
+    result = fetch_gpio_sim(scripts, kernel_sources(tmp_path / "new", "6.1.999-1"))
+    assert result.returncode == 0, result.stderr
+    assert len(scripts.calls("apt-get")) == 2  # list and package: the second time all is there
+    told = [line for line in result.stderr.splitlines() if "apt verified" in line]
+    assert len(told) == 1 and "linux-source-6.1 is 6.1.999-1" in told[0]
+    folder = scripts.root / "build/vm/cache/gpio-sim"
+    assert "6.1.999-1" in (folder / "gpio-sim.c").read_text()
+    (folder / "gpio-sim.c").write_text("changed")
+    assert scripts.function(SETUP, f"gpio_sim_is_complete '{folder}'").returncode == 1
+
+
+def test_kernel_sources_of_the_known_version_have_the_known_files(
+    scripts: Clone, tmp_path: Path
+) -> None:
+    version = scripts.function(SETUP, 'printf %s "$GPIO_SIM_VERSION"').stdout
+    result = fetch_gpio_sim(scripts, kernel_sources(tmp_path / "known", version))
+    assert result.returncode == 2
+    assert "gpio-sim refused" in result.stderr.splitlines()[-1]
 
 
 def test_changed_file_of_gpio_sim_is_not_complete(scripts: Clone) -> None:

@@ -10,9 +10,14 @@ package_version() {
     dpkg-parsechangelog --file "$PACKAGING/debian/changelog" --show-field Version
 }
 
-# as_root COMMAND...: ends the script where there is no way to become root.
+# need_root: into AS_ROOT; ends the script where there is no way. What as_root is called in logs all
+# that is said: ask before.
+need_root() {
+    packages_as_root ||
+        fail "a clean Debian root needs root rights, and here is neither root nor sudo: run as root"
+}
+
 as_root() {
-    packages_as_root || fail "a clean Debian root needs root rights: neither root nor sudo here"
     "${AS_ROOT[@]}" "$@"
 }
 
@@ -34,13 +39,17 @@ root_mark() {
 }
 
 # root_fetch NAME ARCH PACKAGE...: build/package/root-NAME, unpacked: a Debian with these packages.
+# Those of root-ARCH are kept in build/package/fetched-ARCH: no other root fetches them again.
 root_fetch() {
     local name="$1" folder="$CLEAN_ROOTS/root-$1"
     shift
     root_has "$folder" fetched && return 0
+    need_root
     say "package: a clean Debian 12 for $1 into build/package/root-$name"
     mkdir -p "$CLEAN_ROOTS"
-    retry "package-root-$name" as_root "$ROOT/tools/lib/clean_root" fetch "$1" "$folder" "${@:2}" ||
+    [ "$name" != "$1" ] || as_root rm -rf "$CLEAN_ROOTS/fetched-$1"
+    retry "package-root-$name" as_root "$ROOT/tools/lib/clean_root" fetch "$1" "$folder" \
+        "$CLEAN_ROOTS/fetched-$1" "${@:2}" ||
         fail "could not fetch a clean Debian 12 for $1 (log: build/logs/package-root-$name.log). Check the network, then run again"
     root_mark "$folder" fetched
 }
@@ -59,37 +68,41 @@ root_service() {
 root_configure() {
     local folder="$CLEAN_ROOTS/root-$1" log="package-configure-$1"
     root_has "$folder" configured && return 0
+    need_root
     say "package: configuring build/package/root-$1"
     run_logged "$log" as_root "$ROOT/tools/lib/clean_root" configure "$folder" ||
         fail "build/package/root-$1 cannot be configured (log: build/logs/$log.log). Remove it, then run again" 1
     root_mark "$folder" configured
 }
 
-# package_cmake ARCH: the arguments of CMake that only this architecture needs.
-package_cmake() {
-    [ "$1" = amd64 ] || printf '%s' "-DCMAKE_TOOLCHAIN_FILE=$ROOT/cmake/aarch64-linux-gnu.cmake"
+# package_libraries ARCH FOLDER: the libraries of build/package/root-ARCH into FOLDER/root, and its
+# database into FOLDER/database as dpkg-shlibdeps wants to see it: with the paths of those.
+package_libraries() {
+    local origin="$CLEAN_ROOTS/root-$1" libraries
+    libraries="usr/lib/$(dpkg-architecture --host-arch "$1" --query DEB_HOST_MULTIARCH)"
+    mkdir -p "$2/root/$libraries"
+    find "$origin/$libraries" -maxdepth 1 -name '*.so*' -exec cp -P -t "$2/root/$libraries" {} +
+    cp -R "$origin/var/lib/dpkg" "$2/database"
+    sed -i -e 's#^/lib/#/usr/lib/#' -e "s#^/#$2/root/#" "$2"/database/info/*.list
 }
 
-# package_database ARCH FOLDER: the database of build/package/root-ARCH into FOLDER as dpkg-shlibdeps
-# wants to see it: with the paths that the libraries have here.
-package_database() {
-    local origin="$CLEAN_ROOTS/root-$1"
-    cp -R "$origin/var/lib/dpkg" "$2"
-    sed -i -e 's#^/lib/#/usr/lib/#' -e "s#^/#$origin/#" "$2"/info/*.list
-}
-
-# package_build ARCH OUT: OUT/packages/quiesced_VERSION_ARCH.deb, made in OUT/package/ARCH. The same
-# sources give the same file, wherever and whenever it is made.
+# package_build ARCH OUT: OUT/packages/quiesced_VERSION_ARCH.deb. Debian's tools take no space in a
+# path: they see the sources through a link. The same sources give the same file, wherever and
+# whenever it is made.
 package_build() {
-    local arch="$1" work="$2/package/$1" file start_s=$SECONDS
+    local arch="$1" work file cmake="" start_s=$SECONDS
     file="quiesced_$(package_version)_$arch.deb"
-    rm -rf "$work"
+    work_folder
+    work="$WORK_FOLDER/$arch"
     mkdir -p "$work/quiesce" "$2/packages"
     cp -R "$PACKAGING/debian" "$work/quiesce/debian"
-    package_database "$arch" "$work/database"
+    ln -s "$ROOT" "$work/source"
+    [ "$arch" = amd64 ] ||
+        cmake="-DCMAKE_TOOLCHAIN_FILE=$work/source/cmake/aarch64-linux-gnu.cmake"
+    package_libraries "$arch" "$work"
     (cd "$work/quiesce" && umask 022 &&
-        QUIESCE_SOURCE="$ROOT" QUIESCE_ROOT="$CLEAN_ROOTS/root-$arch" \
-            QUIESCE_DATABASE="$work/database" QUIESCE_CMAKE="$(package_cmake "$arch")" \
+        QUIESCE_SOURCE="$work/source" QUIESCE_ROOT="$work/root" \
+            QUIESCE_DATABASE="$work/database" QUIESCE_CMAKE="$cmake" \
             DEB_BUILD_OPTIONS="noautodbgsym nocheck" run_logged "package-$arch" \
             dpkg-buildpackage --build=binary --no-sign --no-check-builddeps --host-arch "$arch") || {
         tail -n 40 "$LOG_DIR/package-$arch.log" >&2

@@ -1,10 +1,12 @@
 # shellcheck shell=bash
 # Debian packages: which are missing, and how they are installed. Sourced by tools/setup.
 
-# packages_of GROUP: package names of tools/packages.txt; group test includes group run.
+# packages_of GROUP: package names of tools/packages.txt; every group includes group run, and all is
+# what the whole of ./tools/test needs.
 packages_of() {
     awk -v group="$1" '/^#/ || NF == 0 { next }
-        $1 == "run" || $1 == group { print $2 }' "$ROOT/tools/packages.txt"
+        $1 == "run" || $1 == group || (group == "all" && $1 != "bench") { print $2 }' \
+        "$ROOT/tools/packages.txt"
 }
 
 # packages_missing PACKAGE...: those that dpkg does not know as installed.

@@ -235,10 +235,10 @@ vm_kernel_setup() {
     gpio_sim_fetch
     rm -rf "$work"
     work_folder
-    vm_kernel_unpack "$work" "$WORK/headers" || fail "cannot unpack the kernel's packages. Is the disk full?"
+    vm_kernel_unpack "$work" "$WORK_FOLDER/headers" || fail "cannot unpack the kernel's packages. Is the disk full?"
     version="${VM_KERNEL_PACKAGES[0]#linux-image-}"
-    gpio_sim_build "$WORK" "$version"
-    mv "$WORK/gpio-sim.ko" "$work/gpio-sim.ko"
+    gpio_sim_build "$WORK_FOLDER" "$version"
+    mv "$WORK_FOLDER/gpio-sim.ko" "$work/gpio-sim.ko"
     mv "$work/root/boot/vmlinuz-$version" "$work/vmlinuz"
     printf '%s\n' "$version" >"$work/version"
     vm_stamp >"$work/.complete"

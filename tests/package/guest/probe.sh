@@ -18,6 +18,8 @@ await() { # await WHAT COMMAND...: for a minute at most
     tell "$what" yes
 }
 other_process() { [ "$(property ActiveState)" = active ] && [ "$(property MainPID)" != "$pid" ]; }
+is_active() { [ "$(property ActiveState)" = active ]; }
+has_tried() { [ "$(property NRestarts)" -ge "$1" ]; }
 has_logged() { [ "$(logged "$1")" -gt 0 ]; }
 
 udevadm settle
@@ -53,5 +55,13 @@ systemctl stop quiesced
 tell stop "$(property ActiveState) $(property Result)"
 tell farewell "$(has_logged "safe current, output off" && echo yes)"
 tell failures_to_make_safe "$(logged "Control process exited")"
+
+# A CAN interface that comes late.
+ip link del vcan0
+systemctl start quiesced
+await tries has_tried 8
+ip link add vcan0 type vcan
+ip link set vcan0 up
+await late_interface is_active
 tell end
 systemctl poweroff --force --force
