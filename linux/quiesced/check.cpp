@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "config.h"
+#include "fault_store.h"
 #include "instance_lock.h"
 #include "line_finder.h"
 #include "state_store.h"
@@ -96,6 +97,10 @@ void note_state(const Config &config) {
     }
     std::string what;
     (void)StateStore(folder).effective(config.params, what);
+    if (!what.empty()) {
+        note(what);
+    }
+    (void)FaultStore(folder).load(what);
     if (!what.empty()) {
         note(what);
     }

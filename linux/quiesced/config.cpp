@@ -197,6 +197,7 @@ ConfigReading read_config(const std::string &file, Needs needs) {
     quiesce_params_default(&out.config.params);
     attempt(out.problems, [&] {
         const quiesce::TomlFile toml(file);
+        out.is_toml = true;
         Section root(toml.root(), out.problems);
         read_root(root, needs, out.config);
     });

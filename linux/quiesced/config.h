@@ -105,6 +105,7 @@ enum class Needs { peripherals, bus_only };
 /// A file as far as it could be read, and every line that says what is wrong with it.
 struct ConfigReading {
     Config config;
+    bool is_toml = false; ///< else nothing could be read
     std::vector<std::string> problems;
 };
 

@@ -16,8 +16,8 @@ class EmergencyStop {
     /// kernel's time stamp.
     bool is_pressed(Replaceable<Line> &line, LogRing &log);
 
-    /// The tick's command has left at this time; is_safe: it was the safe current with the driver
-    /// off. Logs the first of them after an edge.
+    /// Once a tick. is_safe: the tick's command has left, at this time, and was the safe current
+    /// with the driver off. Logs the first of them after an edge.
     void command_sent(bool is_safe, std::int64_t time_ns, std::uint32_t tick, LogRing &log);
 
   private:

@@ -27,8 +27,9 @@ struct Snapshot {
 
     quiesce_telemetry_t telemetry;
     bool is_driver_enabled;
-    bool is_enabled; ///< the operator's enable, from wherever it comes
-    bool is_estop;   ///< likewise
+    bool is_enabled;          ///< the operator's enable, from wherever it comes
+    bool is_estop;            ///< likewise
+    std::uint32_t kept_fault; ///< of an earlier run, not acknowledged yet
     std::uint32_t param_hash;
     hal_tick_t timing;
     std::uint64_t ticks;
@@ -73,6 +74,10 @@ struct Exchange {
     Mailbox<Snapshot> snapshot;
     Mailbox<quiesce_adaptation_t> adaptation;
     Mailbox<quiesce_params_t> to_store;
+    Mailbox<quiesce_params_t> in_effect; ///< after each restart with others
+    /// To be kept until it is acknowledged, QUIESCE_FAULT_NONE: nothing; before the start: what an
+    /// earlier run left.
+    std::atomic<std::uint32_t> latched_fault{QUIESCE_FAULT_NONE};
 
     // To the loop.
     std::atomic<bool> snapshot_is_wanted{false};

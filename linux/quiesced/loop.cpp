@@ -1,6 +1,7 @@
 #include "loop.h"
 
 #include "clock.h"
+#include "frame_sender.h"
 #include "names.h"
 #include "signals.h"
 
@@ -15,18 +16,12 @@ constexpr int kFarewellPause_ms = 2;
 constexpr int kFarewellPatience_ms = 200; // well below the least timeout of a watchdog
 constexpr int kLastAttempts = 1000;       // a millisecond apart
 
-/// A restart would forget it.
-bool has_latched_fault(const node_t &node) {
-    const quiesce_telemetry_t &telemetry = node.app.out.telemetry;
-    return telemetry.state == QUIESCE_STATE_FAULT && telemetry.fault != QUIESCE_FAULT_PARAMETER;
-}
-
 } // namespace
 
 Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange, can_bus_t *bus,
            watchdog_t *watchdog)
     : config_(config), exchange_(exchange), devices_(exchange.peripherals), log_(exchange.log),
-      bus_(bus), watchdog_(watchdog), estop_(config.gpio.estop_input.has_value()),
+      bus_(bus), watchdog_(watchdog), latch_(exchange), estop_(config.gpio.estop_input.has_value()),
       changes_(exchange.log) {
     accel_ = {read_accel, this};
     current_ = {write_current, read_current, this};
@@ -48,9 +43,13 @@ bool Loop::read_accel(void *self, hal_axis_t axis, std::int32_t *counts) {
 }
 
 void Loop::write_current(void *self, std::int32_t current_mA, bool enable) {
-    CurrentDevice *device = static_cast<Loop *>(self)->devices_.current.get();
+    auto &loop = *static_cast<Loop *>(self);
+    CurrentDevice *device = loop.devices_.current.get();
+    loop.is_written_ = false;
     if (device != nullptr) {
-        hal_current_write(&device->handle, current_mA, enable);
+        const std::uint32_t failures = device->failures();
+        hal_current_write(&device->handle, current_mA, enable && !loop.latch_.is_holding());
+        loop.is_written_ = device->failures() == failures;
     }
 }
 
@@ -97,7 +96,7 @@ void Loop::keep_adaptation() {
 }
 
 void Loop::use_params(const quiesce_params_t &params) {
-    if (has_latched_fault(node_)) {
+    if (latched_fault(node_) != QUIESCE_FAULT_NONE) { // a restart would forget it
         log_.log(LogLevel::error, "parameters stay: a fault is latched; acknowledge it first");
         return;
     }
@@ -121,6 +120,7 @@ void Loop::after_restart() {
         return;
     }
     restarts_ = node_.restarts;
+    has_new_params_ = true;
     log_.log(LogLevel::info, "restarted with new parameters, hash %08x",
              static_cast<unsigned>(can_node_param_hash(&node_.params)));
     const auto rate_Hz = static_cast<std::uint32_t>(node_.params.tick_rate_Hz);
@@ -184,17 +184,14 @@ bool Loop::is_safe_command() const {
            !node_.app.out.driver_enable;
 }
 
-/// The demand frame, which is the first, has left when its write returns.
+/// The command has left with the demand frame, or, where the driver is at this machine, was written
+/// in the control step.
 void Loop::send(const can_frame_t *frames, std::uint32_t count) {
-    for (std::uint32_t i = 0; bus_ != nullptr && i < count; ++i) {
-        (void)can_bus_send(bus_, &frames[i]);
-        if (i == 0) {
-            estop_.command_sent(is_safe_command(), monotonic_ns(), node_.app.tick, log_);
-        }
-    }
-    if (bus_ == nullptr || count == 0) {
-        estop_.command_sent(is_safe_command(), monotonic_ns(), node_.app.tick, log_);
-    }
+    const std::int64_t written_ns = is_written_ ? monotonic_ns() : 0;
+    const std::int64_t demand_ns = send_frames(bus_, frames, count);
+    const std::int64_t left_ns =
+        config_.current.output == CurrentOutput::can ? demand_ns : written_ns;
+    estop_.command_sent(left_ns != 0 && is_safe_command(), left_ns, node_.app.tick, log_);
 }
 
 /// Whether the driver takes its current: a CAN driver looks after itself.
@@ -274,6 +271,7 @@ Snapshot Loop::snapshot() const {
     snapshot.is_driver_enabled = node_.app.out.driver_enable;
     snapshot.is_enabled = node_.app.in.enable;
     snapshot.is_estop = node_.app.in.estop;
+    snapshot.kept_fault = latch_.held();
     snapshot.param_hash = can_node_param_hash(&node_.params);
     snapshot.timing = source_.timing();
     snapshot.ticks = exchange_.ticks.load();
@@ -301,9 +299,17 @@ void Loop::put_adaptation() {
     }
 }
 
+void Loop::put_params() {
+    if (has_new_params_ && exchange_.in_effect.put(node_.params)) {
+        has_new_params_ = false;
+        exchange_.wake();
+    }
+}
+
 void Loop::report(std::int64_t now_ns) {
     changes_.control(node_.app.out.telemetry);
     changes_.overruns(source_.timing().overruns, now_ns);
+    put_params();
     if (bus_ != nullptr) {
         changes_.bus(bus_);
     }
@@ -323,11 +329,13 @@ void Loop::tick(std::uint32_t elapsed) {
     if (can_node_task(&node_.can) == CAN_NODE_APPLY) {
         keep_adaptation();
     }
-    const node_inputs_t inputs = board_inputs(elapsed);
+    node_inputs_t inputs = board_inputs(elapsed);
+    latch_.before_tick(inputs);
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
     const std::uint32_t count = node_tick(&node_, &inputs, frames);
     send(frames, count);
     write_lines();
+    latch_.after_tick(node_);
     after_restart();
     look_after_devices();
     report(monotonic_ns());

@@ -8,6 +8,7 @@
 #include "bus.h"
 #include "change_log.h"
 #include "emergency_stop.h"
+#include "fault_latch.h"
 #include "output_line.h"
 #include "tick_source.h"
 
@@ -15,8 +16,9 @@ namespace quiesced {
 
 class Loop {
   public:
-    /// Starts the controller from rest: the current driver gets the safe current. exchange and its
-    /// peripherals, bus and watchdog (null: none) must outlive the loop.
+    /// Starts the controller from rest: the current driver gets the safe current. Where
+    /// exchange.latched_fault has a fault, the driver stays off until it is acknowledged. exchange
+    /// and its peripherals, bus and watchdog (null: none) must outlive the loop.
     Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange, can_bus_t *bus,
          watchdog_t *watchdog);
     Loop(const Loop &) = delete;
@@ -50,6 +52,7 @@ class Loop {
     Snapshot snapshot() const;
     void put_snapshot();
     void put_adaptation();
+    void put_params();
     void leave();
     void put_last();
 
@@ -71,6 +74,7 @@ class Loop {
     hal_accel_t accel_{};
     hal_current_t current_{};
     node_t node_{};
+    FaultLatch latch_;
     TickSource source_;
     EmergencyStop estop_;
     OutputLine enable_output_{"enable_output"};
@@ -84,6 +88,8 @@ class Loop {
     std::uint32_t adaptation_age_s_ = 0;
     std::int64_t next_notice_ns_ = 0; ///< to the service manager
     bool store_is_pending_ = false;
+    bool has_new_params_ = false; ///< that the other thread does not know yet
+    bool is_written_ = false;     ///< the current of this tick, at this machine's driver
     quiesce_adaptation_t adaptation_{};
     bool has_adaptation_ = false;
 };

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "check.h"
+#include "clear_fault.h"
 #include "lockstep_mode.h"
 #include "make_safe.h"
 #include "names.h"
@@ -20,6 +21,8 @@ int run(const quiesced::Options &options) {
         return quiesced::check(options.config_file);
     case quiesced::Mode::make_safe:
         return quiesced::make_safe(options.config_file);
+    case quiesced::Mode::clear_fault:
+        return quiesced::clear_fault(options.config_file);
     case quiesced::Mode::lockstep:
         return quiesced::run_lockstep(options.config_file);
     case quiesced::Mode::version:

@@ -7,6 +7,7 @@
 #include "devices.h"
 #include "input_error.h"
 #include "instance_lock.h"
+#include "kept_config.h"
 #include "signals.h"
 #include "state_store.h"
 
@@ -69,30 +70,83 @@ void say_farewell(const CanConfig &config, const quiesce_params_t &params,
     }
 }
 
-} // namespace
-
-int make_safe(const std::string &config_file) {
-    install_signals(); // a SIGTERM does not stop it half-way
-    const ConfigReading reading = read_config(config_file, Needs::peripherals);
-    const Config &config = reading.config;
-    for (const std::string &line : reading.problems) {
-        complain(line);
-    }
-    if (const long pid = InstanceLock::holder(config.state.folder); pid != 0) {
-        complain("process " + std::to_string(pid) + " controls the outputs; stop it first");
-        return 1;
-    }
-    std::string note;
-    const quiesce_params_t params = StateStore(config.state.folder).effective(config.params, note);
+bool release_outputs(const Config &config, const quiesce_params_t &params) {
     const std::int32_t safe_current_mA = quiesce_params_safe_current_mA(&params);
-
-    bool is_safe = reading.problems.empty();
+    bool is_safe = true;
     is_safe &= do_step([&] { release_line(config.gpio.enable_output, "gpio.enable_output"); });
     is_safe &= do_step([&] { release_driver(config.current, safe_current_mA); });
     is_safe &= do_step([&] { release_line(config.gpio.fault_output, "gpio.fault_output"); });
     if (config.can) {
         is_safe &= do_step([&] { say_farewell(*config.can, params, safe_current_mA); });
     }
+    return is_safe;
+}
+
+quiesce_params_t params_of(const Config &config, const std::string &state_folder) {
+    std::string note;
+    return StateStore(state_folder).effective(config.params, note);
+}
+
+bool has_line(const GpioConfig &gpio, const LineConfig &line) {
+    return (gpio.enable_output && gpio.enable_output->line == line.line) ||
+           (gpio.fault_output && gpio.fault_output->line == line.line);
+}
+
+void drop_lines(const GpioConfig &other, GpioConfig &gpio) {
+    if (gpio.enable_output && has_line(other, *gpio.enable_output)) {
+        gpio.enable_output.reset();
+    }
+    if (gpio.fault_output && has_line(other, *gpio.fault_output)) {
+        gpio.fault_output.reset();
+    }
+}
+
+void complain_about(const ConfigReading &reading) {
+    for (const std::string &line : reading.problems) {
+        complain(line);
+    }
+}
+
+/// What the last controller ran with.
+bool release_kept(const KeptConfig &store, const ConfigReading &kept,
+                  const std::string &state_folder) {
+    complain_about(kept);
+    const auto params = store.load_params();
+    return release_outputs(kept.config, params ? *params : params_of(kept.config, state_folder)) &&
+           kept.problems.empty();
+}
+
+} // namespace
+
+Config other_outputs(const Config &config, const Config &other) {
+    Config left = config;
+    drop_lines(other.gpio, left.gpio);
+    const CurrentConfig &mine = config.current;
+    const CurrentConfig &theirs = other.current;
+    if (mine.output == theirs.output && mine.device == theirs.device &&
+        mine.channel == theirs.channel) {
+        left.current.output = CurrentOutput::can; // there is nothing to write
+    }
+    if (config.can && other.can && config.can->interface == other.can->interface) {
+        left.can.reset();
+    }
+    return left;
+}
+
+int make_safe(const std::string &config_file) {
+    install_signals(); // a SIGTERM does not stop it half-way
+    const ConfigReading today = read_config(config_file, Needs::peripherals);
+    complain_about(today);
+    const std::string folder = today.is_toml ? today.config.state.folder : fallback_state_folder();
+    if (const long pid = InstanceLock::holder(folder); pid != 0) {
+        complain("process " + std::to_string(pid) + " controls the outputs; stop it first");
+        return 1;
+    }
+    const KeptConfig store(folder);
+    const auto kept = store.load();
+    bool is_safe = kept ? release_kept(store, *kept, folder) : today.problems.empty();
+    const Config left = kept ? other_outputs(today.config, kept->config) : today.config;
+    is_safe &= release_outputs(left, params_of(today.config, folder));
     return is_safe ? 0 : 1;
 }
 

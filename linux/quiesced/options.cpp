@@ -7,13 +7,15 @@
 namespace quiesced {
 
 const char *const kUsage =
-    "usage: quiesced [--config FILE] [--check | --make-safe | --lockstep] [--ticks N]\n"
+    "usage: quiesced [--config FILE] [--ticks N]\n"
+    "       quiesced [--config FILE] --check | --make-safe | --clear-fault | --lockstep\n"
     "\n"
     "Runs the vibration controller on this machine's peripherals and CAN bus.\n"
     "\n"
     "  --config FILE  configuration; otherwise /etc/quiesced/quiesced.toml\n"
     "  --check        explain what is wrong with the configuration, touch nothing\n"
     "  --make-safe    bring every output to its safe state, then end\n"
+    "  --clear-fault  forget the latched fault that a stopped controller has left\n"
     "  --lockstep     serve a bench on the CAN bus, tick by tick, without peripherals\n"
     "  --ticks N      end after N control ticks\n"
     "  --version, --help\n"
@@ -25,8 +27,13 @@ const char *const kUsage =
 namespace {
 
 const std::map<std::string, Mode> kModes = {
-    {"--check", Mode::check},     {"--make-safe", Mode::make_safe}, {"--lockstep", Mode::lockstep},
-    {"--version", Mode::version}, {"--help", Mode::help},           {"-h", Mode::help},
+    {"--check", Mode::check},
+    {"--make-safe", Mode::make_safe},
+    {"--clear-fault", Mode::clear_fault},
+    {"--lockstep", Mode::lockstep},
+    {"--version", Mode::version},
+    {"--help", Mode::help},
+    {"-h", Mode::help},
 };
 
 std::uint64_t parse_ticks(const std::string &text) {

@@ -8,7 +8,7 @@
 
 namespace quiesced {
 
-enum class Mode { run, check, make_safe, lockstep, version, help };
+enum class Mode { run, check, make_safe, clear_fault, lockstep, version, help };
 
 struct Options {
     Mode mode = Mode::run;

@@ -5,8 +5,10 @@
 
 #include <malloc.h>
 
+#include "fault_store.h"
 #include "input_error.h"
 #include "instance_lock.h"
+#include "kept_config.h"
 #include "loop.h"
 #include "names.h"
 #include "service.h"
@@ -73,10 +75,29 @@ void log_note(const std::string &note, LogRing &log) {
     }
 }
 
+/// Before anything is switched on.
+void keep_config(const ReadConfig &read, const quiesce_params_t &params, LogRing &log) {
+    KeptConfig kept(read.config.state.folder);
+    const std::string error = kept.keep(read.text, params);
+    if (!error.empty()) {
+        log_note("--make-safe will have to use the configuration's file as it is then: " + error,
+                 log);
+    }
+}
+
+void log_kept_fault(const std::string &note, LogRing &log) {
+    if (!note.empty()) {
+        log.log(LogLevel::error,
+                "%s: safe current, driver off until then (OperatorCommand, or --clear-fault)",
+                note.c_str());
+    }
+}
+
 } // namespace
 
 int run_controller(const std::string &config_file, std::uint64_t ticks) {
-    const Config config = require_config(config_file, Needs::peripherals);
+    const ReadConfig read = require_config_text(config_file);
+    const Config &config = read.config;
     install_signals();
     const InstanceLock lock(config.state.folder);
     prepare_heap();
@@ -87,9 +108,12 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const quiesce_params_t params = store.effective(config.params, params_note);
     std::string adaptation_note;
     const auto adaptation = store.load_adaptation(adaptation_note);
+    std::string fault_note;
+    exchange->latched_fault.store(FaultStore(config.state.folder).load(fault_note));
 
     open_peripherals(config, exchange->peripherals);
     const Bus bus = config.can ? open_bus(*config.can, BusUse::controller) : nullptr;
+    keep_config(read, params, exchange->log);
     const Service service(config, *exchange, sink);
     become_realtime(config.loop);
     // Last, because it cannot always be stopped again.
@@ -98,6 +122,7 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     log_start(config, params, exchange->log);
     log_note(params_note, exchange->log);
     log_note(adaptation_note, exchange->log);
+    log_kept_fault(fault_note, exchange->log);
     if (adaptation) {
         loop->use_adaptation(*adaptation);
     }

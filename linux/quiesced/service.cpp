@@ -45,7 +45,9 @@ void Trouble::note(const std::string &error, LogSink &sink) {
 
 Service::Service(const Config &config, Exchange &exchange, LogSink &sink)
     : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
-      manager_(exchange.manager), configured_(config.params), thread_([this] { run(); }) {}
+      faults_(config.state.folder), kept_(config.state.folder), manager_(exchange.manager),
+      configured_(config.params), stored_fault_(exchange.latched_fault.load()),
+      thread_([this] { run(); }) {}
 
 Service::~Service() {
     exchange_.loop_has_ended.store(true);
@@ -73,7 +75,9 @@ void Service::wait() {
 }
 
 void Service::work(std::int64_t now_ns) {
+    store_fault(now_ns); // first: the program may be killed at any time
     drain_log();
+    keep_params();
     store_params();
     if (take_reload_request()) {
         reload();
@@ -142,6 +146,32 @@ void Service::store_params() {
     exchange_.store_result.store(error.empty() ? StoreResult::stored : StoreResult::failed);
 }
 
+void Service::store_fault(std::int64_t now_ns) {
+    const std::uint32_t fault = exchange_.latched_fault.load();
+    if (fault == stored_fault_ || now_ns < next_fault_ns_) {
+        return;
+    }
+    const std::string error = faults_.keep(fault);
+    fault_trouble_.note(error, sink_);
+    if (!error.empty()) {
+        next_fault_ns_ = now_ns + kSecond_ns;
+        return;
+    }
+    stored_fault_ = fault;
+    sink_.write(LogLevel::info, fault == QUIESCE_FAULT_NONE
+                                    ? "the kept fault is forgotten"
+                                    : std::string("fault ") + fault_name(fault) +
+                                          " is kept until it is acknowledged");
+}
+
+/// What --make-safe has to use.
+void Service::keep_params() {
+    quiesce_params_t params;
+    if (exchange_.in_effect.take(params)) {
+        params_trouble_.note(kept_.keep_params(params), sink_);
+    }
+}
+
 /// Spares the disk what it has already.
 void Service::store_adaptation() {
     quiesce_adaptation_t adaptation;
@@ -203,8 +233,11 @@ void Service::tell_manager() {
 
 void Service::say_last_words() {
     manager_.send("STOPPING=1");
+    next_fault_ns_ = 0;
+    store_fault(monotonic_ns());
     drain_log();
     store_params();
+    keep_params();
     write_files();
     if (last_.ticks > 0) {
         sink_.write(LogLevel::info, "lateness: " + histogram_line(last_.timing.lateness));

@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "exchange.h"
+#include "fault_store.h"
+#include "kept_config.h"
 #include "log_sink.h"
 #include "state_store.h"
 
@@ -47,6 +49,8 @@ class Service {
     void write_files();
     void store_adaptation();
     void store_params();
+    void store_fault(std::int64_t now_ns);
+    void keep_params();
     void tell_manager();
     void say_last_words();
 
@@ -54,15 +58,21 @@ class Service {
     Exchange &exchange_;
     LogSink &sink_;
     StateStore store_;
+    FaultStore faults_;
+    KeptConfig kept_;
     const Notifier &manager_;
     quiesce_params_t configured_; ///< what [parameters] says, last time that it was read
 
     Snapshot last_{};
+    std::uint32_t stored_fault_;                            ///< as on the disk
     std::optional<quiesce_adaptation_t> stored_adaptation_; ///< by this run
     Trouble status_trouble_{"status file"};
     Trouble adaptation_trouble_{"what was learnt"};
+    Trouble fault_trouble_{"latched fault"};
+    Trouble params_trouble_{"parameters for --make-safe"};
     std::uint32_t told_dropped_ = 0;
     std::int64_t next_status_ns_ = 0;
+    std::int64_t next_fault_ns_ = 0; ///< after a failure
     std::int64_t next_devices_ns_ = 0;
     bool is_ready_ = false;
     bool is_stopping_ = false;

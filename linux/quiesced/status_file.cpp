@@ -25,6 +25,7 @@ void put_control(std::ostream &out, const Snapshot &snapshot) {
     out << "  \"tick\": " << t.tick << ",\n"
         << "  \"state\": \"" << state_name(t.state) << "\",\n"
         << "  \"fault\": \"" << fault_name(t.fault) << "\",\n"
+        << "  \"kept_fault\": \"" << fault_name(snapshot.kept_fault) << "\",\n"
         << "  \"fault_count\": " << t.fault_count << ",\n"
         << "  \"is_enabled\": " << truth(snapshot.is_enabled) << ",\n"
         << "  \"is_estop\": " << truth(snapshot.is_estop) << ",\n"
