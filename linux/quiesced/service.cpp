@@ -168,7 +168,11 @@ void Service::store_fault(std::int64_t now_ns) {
 void Service::keep_params() {
     quiesce_params_t params;
     if (exchange_.in_effect.take(params)) {
-        params_trouble_.note(kept_.keep_params(params), sink_);
+        const std::string error = kept_.keep_params(params);
+        params_trouble_.note(error, sink_);
+        if (error.empty()) {
+            sink_.write(LogLevel::debug, "parameters for --make-safe are kept");
+        }
     }
 }
 

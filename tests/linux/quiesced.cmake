@@ -8,8 +8,10 @@ include(GoogleTest)
 add_executable(
   test_quiesced
   quiesced/test_config.cpp
+  quiesced/test_fault.cpp
   quiesced/test_handover.cpp
   quiesced/test_log.cpp
+  quiesced/test_make_safe.cpp
   quiesced/test_notify.cpp
   quiesced/test_options.cpp
   quiesced/test_state.cpp

@@ -18,6 +18,7 @@ TEST(Options, all_are_read) {
     EXPECT_EQ(parse_options({"--check"}).mode, Mode::check);
     EXPECT_EQ(parse_options({"--make-safe"}).mode, Mode::make_safe);
     EXPECT_EQ(parse_options({"--lockstep"}).mode, Mode::lockstep);
+    EXPECT_EQ(parse_options({"--clear-fault"}).mode, Mode::clear_fault);
     EXPECT_EQ(parse_options({"--version"}).mode, Mode::version);
     EXPECT_EQ(parse_options({"-h"}).mode, Mode::help);
     EXPECT_EQ(parse_options({"--ticks", "12"}).ticks, 12U);
@@ -35,6 +36,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::vector<std::string>{""}, std::vector<std::string>{"--config"},
                     std::vector<std::string>{"--config", ""},
                     std::vector<std::string>{"--check", "--lockstep"},
+                    std::vector<std::string>{"--make-safe", "--clear-fault"},
                     std::vector<std::string>{"--ticks", "0"},
                     std::vector<std::string>{"--ticks", "-1"},
                     std::vector<std::string>{"--ticks", "1x"},

@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "fault_latch.h"
+#include "fault_store.h"
+#include "temporary_folder.h"
+
+namespace quiesced {
+namespace {
+
+TEST(FaultStore, keeps_a_fault_until_it_is_forgotten) {
+    const TemporaryFolder folder;
+    FaultStore store(folder.path());
+    std::string note = "x";
+    EXPECT_EQ(store.load(note), QUIESCE_FAULT_NONE);
+    EXPECT_EQ(note, "");
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_COIL_OPEN), "");
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_ESTOP), "");
+    EXPECT_EQ(store.load(note), QUIESCE_FAULT_ESTOP);
+    EXPECT_EQ(note.rfind("fault ESTOP of 2", 0), 0U) << note;
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
+    EXPECT_EQ(store.load(note), QUIESCE_FAULT_NONE);
+    EXPECT_EQ(note, "");
+}
+
+TEST(FaultStore, a_record_that_cannot_be_read_counts_as_an_emergency_stop) {
+    const TemporaryFolder folder;
+    FaultStore store(folder.path());
+    for (const char *damage : {"", "short", "NVM1 but nothing that follows from it"}) {
+        write_text(store.file(), damage);
+        std::string note;
+        EXPECT_EQ(store.load(note), QUIESCE_FAULT_ESTOP);
+        EXPECT_NE(note.find("its record cannot be read: "), std::string::npos) << note;
+    }
+    EXPECT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
+    std::string note;
+    EXPECT_EQ(store.load(note), QUIESCE_FAULT_NONE);
+    EXPECT_NE(FaultStore("/no/such/folder").keep(QUIESCE_FAULT_ESTOP), "");
+}
+
+/// The core with a sensor and no bus, as the loop runs it.
+class Rig {
+  public:
+    explicit Rig(std::uint32_t kept) : exchange(std::make_unique<Exchange>()) {
+        exchange->latched_fault.store(kept);
+        latch = std::make_unique<FaultLatch>(*exchange);
+        accel_ = {[](void *self, hal_axis_t, std::int32_t *counts) {
+                      *counts = static_cast<Rig *>(self)->count_++ % 7;
+                      return true;
+                  },
+                  this};
+        current_ = {[](void *self, std::int32_t, bool enable) {
+                        static_cast<Rig *>(self)->is_driver_enabled = enable;
+                    },
+                    [](void *, std::int32_t *) { return false; }, this};
+        quiesce_params_t params{};
+        quiesce_params_default(&params);
+        (void)node_init(node.get(), &params, NODE_ENABLE_BOARD, &accel_, &current_);
+    }
+
+    std::uint32_t tick(bool is_pressed, bool is_reset) {
+        node_inputs_t inputs{};
+        inputs.enable = true;
+        inputs.estop = is_pressed;
+        inputs.fault_reset = is_reset;
+        inputs.ticks_elapsed = 1;
+        latch->before_tick(inputs);
+        can_frame_t frames[CAN_NODE_MAX_FRAMES];
+        (void)node_tick(node.get(), &inputs, frames);
+        latch->after_tick(*node);
+        return node->app.out.telemetry.state;
+    }
+
+    std::uint32_t kept() const { return exchange->latched_fault.load(); }
+
+    std::unique_ptr<Exchange> exchange;
+    std::unique_ptr<FaultLatch> latch;
+    std::unique_ptr<node_t> node = std::make_unique<node_t>();
+    bool is_driver_enabled = false;
+
+  private:
+    hal_accel_t accel_{};
+    hal_current_t current_{};
+    std::int32_t count_ = 0;
+};
+
+TEST(FaultLatch, without_a_kept_fault_the_core_starts) {
+    Rig rig(QUIESCE_FAULT_NONE);
+    EXPECT_FALSE(rig.latch->is_holding());
+    EXPECT_EQ(rig.tick(false, false), QUIESCE_STATE_INIT);
+    EXPECT_TRUE(rig.is_driver_enabled);
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_NONE);
+}
+
+TEST(FaultLatch, a_kept_fault_holds_from_the_first_tick_until_one_edge) {
+    Rig rig(QUIESCE_FAULT_COIL_OPEN);
+    for (int i = 0; i < 100; ++i) {
+        EXPECT_TRUE(rig.latch->is_holding());
+        ASSERT_EQ(rig.tick(false, false), QUIESCE_STATE_FAULT);
+        ASSERT_FALSE(rig.is_driver_enabled);
+    }
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_COIL_OPEN);
+    // The button stays pressed: one edge.
+    EXPECT_EQ(rig.tick(false, true), QUIESCE_STATE_FAULT);
+    EXPECT_EQ(rig.tick(false, true), QUIESCE_STATE_FAULT);
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_COIL_OPEN);
+    EXPECT_EQ(rig.tick(false, true), QUIESCE_STATE_INIT);
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_NONE);
+    EXPECT_EQ(rig.latch->held(), QUIESCE_FAULT_NONE);
+}
+
+TEST(FaultLatch, a_button_that_is_stuck_acknowledges_nothing) {
+    Rig rig(QUIESCE_FAULT_ESTOP);
+    for (int i = 0; i < 100; ++i) {
+        ASSERT_EQ(rig.tick(false, true), QUIESCE_STATE_FAULT);
+    }
+    EXPECT_TRUE(rig.latch->is_holding());
+}
+
+TEST(FaultLatch, a_pressed_stop_is_not_acknowledged) {
+    Rig rig(QUIESCE_FAULT_ESTOP);
+    (void)rig.tick(true, false);
+    (void)rig.tick(true, true);
+    EXPECT_TRUE(rig.latch->is_holding());
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_ESTOP);
+}
+
+TEST(FaultLatch, a_stop_right_after_the_acknowledgement_is_kept) {
+    Rig rig(QUIESCE_FAULT_COIL_OPEN);
+    (void)rig.tick(false, false);
+    (void)rig.tick(false, true);
+    for (int i = 0; i < 10; ++i) {
+        ASSERT_EQ(rig.tick(true, false), QUIESCE_STATE_FAULT);
+    }
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_ESTOP);
+}
+
+TEST(FaultLatch, a_fault_of_this_run_is_kept_until_it_is_acknowledged) {
+    Rig rig(QUIESCE_FAULT_NONE);
+    (void)rig.tick(false, false);
+    (void)rig.tick(true, false);
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_ESTOP);
+    (void)rig.tick(false, false);
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_ESTOP);
+    EXPECT_EQ(rig.tick(false, true), QUIESCE_STATE_INIT);
+    EXPECT_EQ(rig.kept(), QUIESCE_FAULT_NONE);
+}
+
+} // namespace
+} // namespace quiesced
