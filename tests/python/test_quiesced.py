@@ -177,21 +177,6 @@ def test_status_says_which_fault_is_kept(quiesced: Quiesced) -> None:
     assert "note: fault CURRENT_LOST of 2" in quiesced.run("--check").stdout
 
 
-def test_pressed_stop_is_not_acknowledged(quiesced: Quiesced) -> None:
-    latch_estop(quiesced)
-    assert quiesced.stop() == 0
-    peer = quiesced.peer
-    peer.estop = peer.acknowledges = True
-    after = peer.count()
-    quiesced.start()
-    # The first frame may come after the first acknowledgement.
-    peer.wait("Status", lambda s: s["is_estop"] == 1, after)
-    stays_off(quiesced, peer.count())
-    peer.estop = False
-    peer.wait_state(RUN, peer.count())
-    assert quiesced.stop() == 0
-
-
 def test_fault_is_cleared_without_a_bus(quiesced: Quiesced) -> None:
     latch_estop(quiesced)
     refused = quiesced.run("--clear-fault")

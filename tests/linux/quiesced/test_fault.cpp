@@ -127,6 +127,17 @@ TEST(FaultLatch, a_pressed_stop_is_not_acknowledged) {
     EXPECT_EQ(rig.kept(), QUIESCE_FAULT_ESTOP);
 }
 
+TEST(FaultLatch, a_stop_on_the_bus_is_not_acknowledged) {
+    Rig rig(QUIESCE_FAULT_ESTOP);
+    (void)rig.tick(false, false);
+    const can_frame_t stop = {
+        QUIESCE_CAN_EMERGENCY_STOP_FRAME_ID, 3, false, false, {0xA5, 0x5A, 0}};
+    node_receive(rig.node.get(), &stop);
+    (void)rig.tick(false, true);
+    ASSERT_TRUE(rig.node->bus.estop);
+    EXPECT_TRUE(rig.latch->is_holding());
+}
+
 TEST(FaultLatch, a_stop_right_after_the_acknowledgement_is_kept) {
     Rig rig(QUIESCE_FAULT_COIL_OPEN);
     (void)rig.tick(false, false);
