@@ -46,7 +46,7 @@ std::string fallback_state_folder() {
 std::string KeptConfig::keep(const std::string &text, const quiesce_params_t &params) {
     // Parameters of an earlier configuration do not belong to this one.
     (void)unlink(params_file().c_str());
-    const std::string error = replace_file(config_file(), text);
+    std::string error = replace_file(config_file(), text);
     if (!error.empty()) {
         (void)unlink(config_file().c_str());
         return error;

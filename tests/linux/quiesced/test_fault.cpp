@@ -6,6 +6,10 @@
 #include "fault_store.h"
 #include "temporary_folder.h"
 
+extern "C" {
+#include "quiesce_can_tables.h"
+}
+
 namespace quiesced {
 namespace {
 
@@ -130,8 +134,9 @@ TEST(FaultLatch, a_pressed_stop_is_not_acknowledged) {
 TEST(FaultLatch, a_stop_on_the_bus_is_not_acknowledged) {
     Rig rig(QUIESCE_FAULT_ESTOP);
     (void)rig.tick(false, false);
-    const can_frame_t stop = {
-        QUIESCE_CAN_EMERGENCY_STOP_FRAME_ID, 3, false, false, {0xA5, 0x5A, 0}};
+    can_frame_t stop{QUIESCE_CAN_EMERGENCY_STOP_FRAME_ID, 4, false, false, {0xA5, 0x5A, 0, 0}};
+    std::uint8_t alive = 0;
+    e2e_protect(&quiesce_can_messages[QUIESCE_CAN_AT_EMERGENCY_STOP].e2e, &alive, &stop);
     node_receive(rig.node.get(), &stop);
     (void)rig.tick(false, true);
     ASSERT_TRUE(rig.node->bus.estop);
