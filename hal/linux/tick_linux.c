@@ -131,11 +131,27 @@ void tick_linux_wait(hal_tick_t *tick) {
     tick->next_ns += (1 + lost) * tick->period_ns;
 }
 
-void tick_linux_begin(hal_tick_t *tick, int64_t due_ns) {
-    const int64_t since_ns = due_ns - tick->next_ns + tick->period_ns; // since the tick before
-    const int64_t periods = (since_ns + tick->period_ns / 2) / tick->period_ns;
-    begin(tick, due_ns, tick_linux_now_ns(), to_u32(periods > 1 ? periods : 1));
-    tick->next_ns = due_ns + tick->period_ns;
+static int64_t within(int64_t value, int64_t limit) {
+    return value < -limit ? -limit : value > limit ? limit : value;
+}
+
+bool tick_linux_begin(hal_tick_t *tick, int64_t due_ns) {
+    const int64_t period_ns = tick->period_ns;
+    const int64_t half_ns = period_ns / 2;
+    const int64_t late_ns = due_ns - tick->next_ns;
+    if (tick->has_begun && (due_ns - tick->last_ns < half_ns || late_ns < -half_ns)) {
+        add_up(&tick->early, 1u);
+        return false;
+    }
+    const int64_t lost = late_ns > 0 ? (late_ns + half_ns) / period_ns : 0;
+    begin(tick, due_ns, tick_linux_now_ns(), to_u32(1 + lost));
+    // The first start says where the grid is.
+    const int64_t off_ns = late_ns - lost * period_ns;
+    tick->next_ns += (1 + lost) * period_ns +
+                     (tick->has_begun ? within(off_ns, period_ns / TICK_FOLLOWS) : off_ns);
+    tick->last_ns = due_ns;
+    tick->has_begun = true;
+    return true;
 }
 
 void tick_linux_work_done(hal_tick_t *tick) {

@@ -18,8 +18,11 @@ typedef struct {
 struct hal_tick {
     uint32_t period_ns;
     int64_t next_ns;      ///< due time of the next tick
+    int64_t last_ns;      ///< tick_linux_begin: due time of the last tick
+    bool has_begun;       ///< tick_linux_begin: there was one
     uint32_t elapsed;     ///< for hal_tick_elapsed
     uint32_t overruns;    ///< ticks lost since the start, saturating
+    uint32_t early;       ///< starts that tick_linux_begin refused, saturating
     uint32_t lateness_ns; ///< of the last tick
     uint32_t work_ns;     ///< from the last tick's start to tick_linux_work_done
     int64_t start_ns;
@@ -41,9 +44,16 @@ bool tick_linux_thread(const tick_thread_options_t *options, linux_error_t *erro
 /// counted, and told by hal_tick_elapsed. Returns early with 0 elapsed on a signal.
 void tick_linux_wait(hal_tick_t *tick);
 
+/// How far tick_linux_begin follows another clock: 1 / this of the period.
+#define TICK_FOLLOWS 50
+
 /// Instead of tick_linux_wait where something else starts the ticks (a data-ready edge at due_ns,
-/// CLOCK_MONOTONIC). Ticks between it and the one before count as lost, to the nearest period.
-void tick_linux_begin(hal_tick_t *tick, int64_t due_ns);
+/// CLOCK_MONOTONIC). Ticks stay tied to real time: they are due on a grid of periods, which the
+/// starts move by 2 % of a period a tick at the most, so that another clock's tolerance is no
+/// fault. A start half a period or more behind the grid tells lost ticks. Returns false, and counts
+/// in tick->early, iff the start comes more than half a period before the grid or less than half a
+/// period after the last one: it is no tick.
+bool tick_linux_begin(hal_tick_t *tick, int64_t due_ns);
 
 /// The tick's work is done: times it.
 void tick_linux_work_done(hal_tick_t *tick);

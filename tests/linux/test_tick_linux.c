@@ -112,21 +112,52 @@ static void test_signal_ends_the_wait_without_a_tick(void) {
 
 static void test_edges_count_to_the_nearest_period(void) {
     TEST_ASSERT_TRUE(hal_tick_start(&tick, 1000));
-    const int64_t start_ns = tick.next_ns - 1000000;
     static const struct {
-        int64_t after_ns; ///< the edge before
-        uint32_t periods;
-    } edges[] = {{1000000, 1}, {990000, 1}, {1490000, 1}, {1510000, 2}, {400000, 1}, {5000000, 5}};
-    int64_t edge_ns = start_ns;
+        int64_t after_ns; ///< the edge before, the first one the start
+        uint32_t periods; ///< 0: no tick
+        int64_t next_ns;  ///< after the edge
+    } edges[] = {
+        {400000, 1, 1000000}, {1000000, 1, 1000000}, {990000, 1, 1000000}, {1490000, 1, 530000},
+        {510000, 1, 1000000}, {1510000, 2, 1470000}, {400000, 0, 1070000}, {560000, 0, 510000},
+        {10000, 1, 1480000},  {6480000, 6, 1000000},
+    };
+    int64_t edge_ns = tick.next_ns - 1000000;
     uint32_t lost = 0;
+    uint32_t early = 0;
     for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
         edge_ns += edges[i].after_ns;
-        tick_linux_begin(&tick, edge_ns);
+        TEST_ASSERT_EQUAL(edges[i].periods > 0u, tick_linux_begin(&tick, edge_ns));
         TEST_ASSERT_EQUAL_UINT32(edges[i].periods, hal_tick_elapsed(&tick));
-        TEST_ASSERT_EQUAL_INT64(edge_ns + 1000000, tick.next_ns);
-        lost += edges[i].periods - 1u;
+        TEST_ASSERT_EQUAL_INT64(edges[i].next_ns, tick.next_ns - edge_ns);
+        lost += edges[i].periods > 0u ? edges[i].periods - 1u : 0u;
+        early += edges[i].periods == 0u ? 1u : 0u;
     }
     TEST_ASSERT_EQUAL_UINT32(lost, tick.overruns);
+    TEST_ASSERT_EQUAL_UINT32(early, tick.early);
+}
+
+/// Whatever the line's rate, the ticks that are told are those of real time.
+static void test_edges_of_any_rate_do_not_change_the_time_base(void) {
+    static const uint32_t edge_ns[] = {100000,  333333,  500000,  510000,  700000,  980000, 990000,
+                                       1000000, 1010000, 1020000, 1050000, 1400000, 2500000};
+    for (size_t i = 0; i < sizeof edge_ns / sizeof edge_ns[0]; i++) {
+        const uint32_t edges = 4000000000u / edge_ns[i]; // 4 s: 4000 ticks
+        uint32_t elapsed = 0;
+        uint32_t ticks = 0;
+        TEST_ASSERT_TRUE(hal_tick_start(&tick, 1000));
+        const int64_t first_ns = tick.next_ns;
+        for (uint32_t edge = 0; edge < edges; edge++) {
+            // The kernel stamps them up to 40 us late.
+            const int64_t jitter_ns = (int64_t)(edge * 7919u % 40000u);
+            ticks += tick_linux_begin(&tick, first_ns + (int64_t)edge * edge_ns[i] + jitter_ns);
+            elapsed += hal_tick_elapsed(&tick);
+        }
+        TEST_ASSERT_UINT32_WITHIN(80 + 3, 4000, elapsed); // 2 %
+        TEST_ASSERT_EQUAL_UINT32(edges - ticks, tick.early);
+        TEST_ASSERT_EQUAL_UINT32(elapsed - ticks, tick.overruns);
+        const bool is_tolerated = edge_ns[i] >= 980000u && edge_ns[i] <= 1020000u;
+        TEST_ASSERT_EQUAL(is_tolerated, tick.early == 0u && tick.overruns == 0u);
+    }
 }
 
 static void test_bins_are_powers_of_two_us(void) {
@@ -136,9 +167,10 @@ static void test_bins_are_powers_of_two_us(void) {
     } cases[] = {{-50000000, 0}, {HOUR_NS, 23}};
     TEST_ASSERT_TRUE(hal_tick_start(&tick, 1000));
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const uint32_t before = tick.lateness.bins[cases[i].bin];
-        tick_linux_begin(&tick, tick_linux_now_ns() - cases[i].late_ns);
-        TEST_ASSERT_EQUAL_UINT32(before + 1u, tick.lateness.bins[cases[i].bin]);
+        const int64_t due_ns = tick_linux_now_ns() - cases[i].late_ns;
+        TEST_ASSERT_TRUE(hal_tick_start(&tick, 1000));
+        TEST_ASSERT_TRUE(tick_linux_begin(&tick, due_ns));
+        TEST_ASSERT_EQUAL_UINT32(1, tick.lateness.bins[cases[i].bin]);
     }
     for (uint32_t bin = 1; bin < 23u; bin++) { // the bin fits the time that was measured
         tick.work = (tick_histogram_t){0};
@@ -227,6 +259,7 @@ int main(void) {
     RUN_TEST(test_overruns_and_lateness_saturate);
     RUN_TEST(test_signal_ends_the_wait_without_a_tick);
     RUN_TEST(test_edges_count_to_the_nearest_period);
+    RUN_TEST(test_edges_of_any_rate_do_not_change_the_time_base);
     RUN_TEST(test_bins_are_powers_of_two_us);
     RUN_TEST(test_wrong_thread_options_are_one_line);
     RUN_TEST(test_thread_is_what_was_asked_for_or_names_the_missing_right);
