@@ -4,29 +4,63 @@
 
 #include "can_bus.h"
 
+#include <stdatomic.h>
+
 /// Pause between two looks for an interface that is gone.
 #define CAN_REOPEN_NS INT64_C(100000000)
 #define CAN_RESTART_DEFAULT_MS 100u
 
+typedef enum {
+    CAN_RECOVERY_IDLE = 0,  ///< the user's
+    CAN_RECOVERY_ASKED = 1, ///< nobody's: whoever calls can_bus_recover first takes it
+    CAN_RECOVERY_TAKEN = 2, ///< that thread's
+    CAN_RECOVERY_DONE = 3,  ///< the user's again
+} can_recovery_stage_t;
+
+/// What the user of a bus and can_bus_recover hand to each other. `stage` says who may touch the
+/// rest. The file descriptors go with it: each has one owner at any time.
+typedef struct {
+    atomic_int stage;       ///< of can_recovery_stage_t
+    can_bus_state_t reason; ///< DOWN: look for the interface; OFF: ask for the restart
+    int fd;                 ///< in: to be looked at; out: to be used; -1: none
+    int gone_fd;            ///< in: to be closed; -1: none
+    bool is_new;            ///< out: fd was opened
+    bool is_up;             ///< out: the interface can be used
+    int answer;             ///< out: the kernel's to the restart, an errno; 0: done
+} can_recovery_t;
+
+/// recover is called by the thread that has taken bus->recovery; it touches nothing but that, and
+/// of the backend's state what never changes or is said to be its own. adopt, like all the others,
+/// belongs to the user of the bus.
 typedef struct {
     bool (*receive)(can_bus_t *bus, can_frame_t *frame, int64_t *time_ns);
     bool (*send)(can_bus_t *bus, const can_frame_t *frame);
-    void (*maintain)(can_bus_t *bus, int64_t now_ns);
+    void (*recover)(can_bus_t *bus);
+    void (*adopt)(can_bus_t *bus); ///< the file descriptor is in place already
     void (*close)(can_bus_t *bus);
 } can_backend_t;
 
 struct can_bus {
     const can_backend_t *backend;
-    int fd; ///< -1: gone
+    int fd;      ///< -1: gone, or handed to can_bus_recover
+    int gone_fd; ///< of what has vanished, still open; -1: none
     can_bus_state_t state;
     can_bus_counters_t counters;
     can_bus_event_t event;
-    int64_t retry_ns; ///< next look for what is gone, next restart; 0: at once
+    int64_t retry_ns;   ///< next look for what is gone, next restart; 0: at once
+    int64_t restart_ns; ///< pause between restarts
+    can_recovery_t recovery;
 };
 
 /// Each returns NULL and says why. The options were checked by can_bus_open.
 can_bus_t *can_socket_open(const can_bus_options_t *options, linux_error_t *error);
 can_bus_t *can_serial_open(const can_bus_options_t *options, linux_error_t *error);
+
+/// A bus without a file descriptor.
+void can_bus_init(can_bus_t *bus, const can_backend_t *backend);
+
+/// Closes what is still open of it, whoever had it last.
+void can_bus_close_files(can_bus_t *bus);
 
 /// Adds to a counter, which stops at its greatest value.
 void can_bus_count(uint32_t *counter, uint32_t by);
@@ -34,7 +68,10 @@ void can_bus_count(uint32_t *counter, uint32_t by);
 /// Notes what happened, unless that is what happened last.
 __attribute__((format(printf, 2, 3))) void can_bus_note(can_bus_t *bus, const char *format, ...);
 
-/// The bus went down or vanished: counted and noted where it was not so before.
+/// The bus went down: counted and noted where it was not so before.
 void can_bus_went_down(can_bus_t *bus, const char *why);
+
+/// It is gone: its file descriptor is not used any more.
+void can_bus_vanished(can_bus_t *bus, const char *why);
 
 #endif

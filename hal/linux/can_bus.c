@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #define SERIAL_PREFIX "slcan:"
 
@@ -59,10 +60,70 @@ bool can_bus_send(can_bus_t *bus, const can_frame_t *frame) {
     return is_sent;
 }
 
-void can_bus_maintain(can_bus_t *bus, int64_t now_ns) {
+/// Hands over what recovery needs. A bus that is off keeps its file: it tells of the restart.
+static void ask(can_bus_t *bus, int64_t now_ns) {
+    can_recovery_t *const recovery = &bus->recovery;
+    const bool is_off = bus->state == CAN_BUS_OFF;
+    bus->retry_ns = now_ns + (is_off ? bus->restart_ns : CAN_REOPEN_NS);
+    recovery->reason = bus->state;
+    recovery->fd = is_off ? -1 : bus->fd;
+    recovery->gone_fd = bus->gone_fd;
+    recovery->is_new = false;
+    recovery->is_up = false;
+    recovery->answer = 0;
+    bus->fd = is_off ? bus->fd : -1;
+    bus->gone_fd = -1;
+    atomic_store_explicit(&recovery->stage, CAN_RECOVERY_ASKED, memory_order_release);
+}
+
+static void adopt(can_bus_t *bus) {
+    if (bus->recovery.reason == CAN_BUS_DOWN) {
+        bus->fd = bus->recovery.fd;
+        bus->recovery.fd = -1;
+    }
+    bus->backend->adopt(bus);
+    atomic_store_explicit(&bus->recovery.stage, CAN_RECOVERY_IDLE, memory_order_relaxed);
+}
+
+bool can_bus_maintain(can_bus_t *bus, int64_t now_ns) {
+    const int stage = atomic_load_explicit(&bus->recovery.stage, memory_order_acquire);
+    if (stage == CAN_RECOVERY_ASKED || stage == CAN_RECOVERY_TAKEN) {
+        return false;
+    }
+    if (stage == CAN_RECOVERY_DONE) {
+        adopt(bus);
+    }
     const bool is_wrong = bus->state == CAN_BUS_DOWN || bus->state == CAN_BUS_OFF;
-    if (is_wrong && now_ns >= bus->retry_ns) {
-        bus->backend->maintain(bus, now_ns);
+    if (!is_wrong || now_ns < bus->retry_ns) {
+        return false;
+    }
+    ask(bus, now_ns);
+    return true;
+}
+
+static void close_file(int *fd) {
+    if (*fd >= 0) {
+        (void)close(*fd);
+    }
+    *fd = -1;
+}
+
+void can_bus_recover(can_bus_t *bus) {
+    can_recovery_t *const recovery = &bus->recovery;
+    int expected = CAN_RECOVERY_ASKED;
+    if (!atomic_compare_exchange_strong_explicit(&recovery->stage, &expected, CAN_RECOVERY_TAKEN,
+                                                 memory_order_acquire, memory_order_relaxed)) {
+        return;
+    }
+    close_file(&recovery->gone_fd);
+    bus->backend->recover(bus);
+    atomic_store_explicit(&recovery->stage, CAN_RECOVERY_DONE, memory_order_release);
+}
+
+void can_bus_repair(can_bus_t *bus, int64_t now_ns) {
+    if (can_bus_maintain(bus, now_ns)) {
+        can_bus_recover(bus);
+        (void)can_bus_maintain(bus, now_ns);
     }
 }
 
@@ -80,6 +141,23 @@ const can_bus_event_t *can_bus_last_event(const can_bus_t *bus) {
 
 int can_bus_fd(const can_bus_t *bus) {
     return bus->fd;
+}
+
+void can_bus_init(can_bus_t *bus, const can_backend_t *backend) {
+    *bus = (can_bus_t){
+        .backend = backend,
+        .fd = -1,
+        .gone_fd = -1,
+        .state = CAN_BUS_DOWN,
+        .recovery = {.fd = -1, .gone_fd = -1},
+    };
+}
+
+void can_bus_close_files(can_bus_t *bus) {
+    close_file(&bus->fd);
+    close_file(&bus->gone_fd);
+    close_file(&bus->recovery.fd);
+    close_file(&bus->recovery.gone_fd);
 }
 
 void can_bus_count(uint32_t *counter, uint32_t by) {
@@ -105,4 +183,10 @@ void can_bus_went_down(can_bus_t *bus, const char *why) {
         bus->retry_ns = 0;
     }
     can_bus_note(bus, "%s", why);
+}
+
+void can_bus_vanished(can_bus_t *bus, const char *why) {
+    can_bus_went_down(bus, why);
+    bus->gone_fd = bus->fd;
+    bus->fd = -1;
 }

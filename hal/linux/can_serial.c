@@ -21,11 +21,13 @@
 
 typedef struct {
     can_bus_t bus; ///< first
+    // What never changes
     char path[PATH_BYTES];
     speed_t speed;     ///< B0: leave it
     char commands[16]; ///< that open the adapter, or none
     bool takes_all;
     uint8_t wanted[IDS / 8u]; ///< a bit an id
+    // The user's
     slcan_decoder_t decoder;
     uint32_t malformed_seen; ///< of the decoder's count
     uint8_t read[READ_BYTES];
@@ -112,8 +114,8 @@ static int set_line(const can_serial_t *self, int fd) {
     return 0;
 }
 
-/// Opens the line, in self->bus.fd. Returns 0, or an errno.
-static int attach(can_serial_t *self) {
+/// Opens the line. Returns 0, or an errno.
+static int open_line(const can_serial_t *self, int *line_fd) {
     const int fd = open(self->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) {
         return errno;
@@ -127,20 +129,22 @@ static int attach(can_serial_t *self) {
         (void)close(fd);
         return number;
     }
+    *line_fd = fd;
+    return 0;
+}
+
+/// The line in self->bus.fd is a new one.
+static void begin(can_serial_t *self) {
     slcan_decoder_init(&self->decoder);
     self->malformed_seen = 0;
     self->read_at = 0;
     self->read_end = 0;
     self->unsent_bytes = 0;
-    self->bus.fd = fd;
     self->bus.state = CAN_BUS_UP;
-    return 0;
 }
 
 static void vanish(can_serial_t *self) {
-    can_bus_went_down(&self->bus, "serial line is gone");
-    (void)close(self->bus.fd);
-    self->bus.fd = -1;
+    can_bus_vanished(&self->bus, "serial line is gone");
 }
 
 /// Fills the buffer. Returns false where nothing has arrived.
@@ -231,26 +235,27 @@ static bool send_frame(can_bus_t *bus, const can_frame_t *frame) {
     return true;
 }
 
-static void maintain(can_bus_t *bus, int64_t now_ns) {
-    can_serial_t *const self = (can_serial_t *)bus;
-    bus->retry_ns = now_ns + CAN_REOPEN_NS;
-    if (attach(self) == 0) {
+static void recover(can_bus_t *bus) {
+    bus->recovery.is_new = open_line((const can_serial_t *)bus, &bus->recovery.fd) == 0;
+}
+
+static void adopt(can_bus_t *bus) {
+    if (bus->recovery.is_new) {
+        begin((can_serial_t *)bus);
         can_bus_note(bus, "serial line is back");
     }
 }
 
 static void close_serial(can_bus_t *bus) {
     can_serial_t *const self = (can_serial_t *)bus;
-    if (bus->fd >= 0) {
-        if (self->commands[0] != '\0' && write(bus->fd, "C\r", 2) != 2) {
-            can_bus_count(&bus->counters.tx_dropped, 1);
-        }
-        (void)close(bus->fd);
+    if (bus->fd >= 0 && self->commands[0] != '\0' && write(bus->fd, "C\r", 2) != 2) {
+        can_bus_count(&bus->counters.tx_dropped, 1);
     }
+    can_bus_close_files(bus);
     free(self);
 }
 
-static const can_backend_t backend = {receive, send_frame, maintain, close_serial};
+static const can_backend_t backend = {receive, send_frame, recover, adopt, close_serial};
 
 static void refuse(const char *path, int number, linux_error_t *error) {
     switch (number) {
@@ -312,16 +317,17 @@ can_bus_t *can_serial_open(const can_bus_options_t *options, linux_error_t *erro
         (void)linux_fail(error, "out of memory");
         return NULL;
     }
-    self->bus = (can_bus_t){.backend = &backend, .fd = -1, .state = CAN_BUS_DOWN};
+    can_bus_init(&self->bus, &backend);
     if (!set_up(self, options, error)) {
         free(self);
         return NULL;
     }
-    const int number = attach(self);
+    const int number = open_line(self, &self->bus.fd);
     if (number != 0) {
         refuse(self->path, number, error);
         free(self);
         return NULL;
     }
+    begin(self);
     return &self->bus;
 }

@@ -23,16 +23,18 @@
 
 typedef struct {
     can_bus_t bus; ///< first
+    // What never changes
     char name[IFNAMSIZ];
-    int interface_index;
     bool use_fd;
     bool has_filters;
     uint32_t filter_count;
     struct can_filter filters[CAN_BUS_MAX_IDS];
-    uint32_t kernel_drops; ///< SO_RXQ_OVFL's last count of this socket
     int route_fd;
+    // The user's
+    uint32_t kernel_drops; ///< SO_RXQ_OVFL's last count of this socket
+    // Recovery's
+    int interface_index;
     uint32_t sequence; ///< of restart requests
-    int64_t restart_ns;
 } can_socket_t;
 
 static int64_t to_ns(const struct timespec *time) {
@@ -71,13 +73,13 @@ static bool ask(const can_socket_t *self, int fd, unsigned long what, struct ifr
     return ioctl(fd, what, answer) == 0;
 }
 
-static bool is_up(const can_socket_t *self) {
+static bool is_up(const can_socket_t *self, int fd) {
     struct ifreq answer;
-    return ask(self, self->bus.fd, SIOCGIFFLAGS, &answer) && (answer.ifr_flags & IFF_UP) != 0;
+    return ask(self, fd, SIOCGIFFLAGS, &answer) && (answer.ifr_flags & IFF_UP) != 0;
 }
 
-/// A socket bound to the interface, in self->bus.fd. Returns 0, or an errno.
-static int attach(can_socket_t *self) {
+/// A socket bound to the interface. Returns 0, or an errno.
+static int open_socket(can_socket_t *self, int *socket_fd) {
     struct ifreq answer;
     const int fd = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
     if (fd < 0) {
@@ -88,21 +90,13 @@ static int attach(can_socket_t *self) {
                                              .can_ifindex = answer.ifr_ifindex};
         if (bind(fd, (const struct sockaddr *)&address, sizeof address) == 0) {
             self->interface_index = answer.ifr_ifindex;
-            self->kernel_drops = 0;
-            self->bus.fd = fd;
+            *socket_fd = fd;
             return 0;
         }
     }
     const int number = errno;
     (void)close(fd);
     return number;
-}
-
-static void detach(can_socket_t *self) {
-    if (self->bus.fd >= 0) {
-        (void)close(self->bus.fd);
-    }
-    self->bus.fd = -1;
 }
 
 /// An error of a call on the socket.
@@ -113,8 +107,7 @@ static void take_errno(can_socket_t *self, int number) {
         break;
     case ENODEV:
     case ENXIO:
-        can_bus_went_down(&self->bus, "interface is gone");
-        detach(self);
+        can_bus_vanished(&self->bus, "interface is gone");
         break;
     default: // nothing to read, or no room to send: counted by the caller
         break;
@@ -131,7 +124,7 @@ static void take_error_frame(can_socket_t *self, const struct canfd_frame *frame
     }
     if (bus->state == CAN_BUS_OFF) {
         can_bus_count(&bus->counters.bus_off, 1);
-        bus->retry_ns = tick_linux_now_ns() + self->restart_ns;
+        bus->retry_ns = tick_linux_now_ns() + bus->restart_ns;
         can_bus_note(bus, "bus-off");
     } else {
         can_bus_note(bus, bus->state == CAN_BUS_PASSIVE ? "error passive" : "error active");
@@ -235,12 +228,14 @@ static bool send_frame(can_bus_t *bus, const can_frame_t *frame) {
     return false;
 }
 
-/// Asks for the restart after a bus-off, again and again until the controller says that it is up.
-static void restart(can_socket_t *self) {
-    can_bus_t *const bus = &self->bus;
-    self->sequence++;
-    const int answer = can_restart(self->route_fd, self->interface_index, self->sequence);
+/// The kernel's answer to the restart request, which is repeated until the controller says that it
+/// is up. Where it has said so meanwhile, the answer is no news.
+static void adopt_answer(can_bus_t *bus) {
+    const int answer = bus->recovery.answer;
     can_bus_count(&bus->counters.restarts, 1);
+    if (bus->state != CAN_BUS_OFF) {
+        return;
+    }
     switch (answer) {
     case 0:
         can_bus_note(bus, "bus-off: restart asked for");
@@ -263,43 +258,57 @@ static void restart(can_socket_t *self) {
 
 /// Looks for the interface: up again, gone, or another one of the same name.
 static void look(can_socket_t *self) {
-    can_bus_t *const bus = &self->bus;
+    can_recovery_t *const recovery = &self->bus.recovery;
     struct ifreq answer;
-    if (bus->fd >= 0 && (!ask(self, bus->fd, SIOCGIFINDEX, &answer) ||
-                         answer.ifr_ifindex != self->interface_index)) {
-        can_bus_note(bus, "interface is gone");
-        detach(self);
+    if (recovery->fd >= 0 && (!ask(self, recovery->fd, SIOCGIFINDEX, &answer) ||
+                              answer.ifr_ifindex != self->interface_index)) {
+        (void)close(recovery->fd);
+        recovery->fd = -1;
     }
-    if (bus->fd < 0 && attach(self) != 0) {
+    if (recovery->fd < 0) {
+        recovery->is_new = open_socket(self, &recovery->fd) == 0;
+    }
+    recovery->is_up = recovery->fd >= 0 && is_up(self, recovery->fd);
+}
+
+static void recover(can_bus_t *bus) {
+    can_socket_t *const self = (can_socket_t *)bus;
+    if (bus->recovery.reason == CAN_BUS_OFF) {
+        self->sequence++;
+        bus->recovery.answer = can_restart(self->route_fd, self->interface_index, self->sequence);
+    } else {
+        look(self);
+    }
+}
+
+static void adopt(can_bus_t *bus) {
+    can_socket_t *const self = (can_socket_t *)bus;
+    if (bus->recovery.reason == CAN_BUS_OFF) {
+        adopt_answer(bus);
         return;
     }
-    if (is_up(self)) {
+    if (bus->fd < 0 || bus->recovery.is_new) {
+        can_bus_note(bus, "interface is gone");
+    }
+    if (bus->recovery.is_new) {
+        self->kernel_drops = 0;
+    }
+    if (bus->recovery.is_up) {
         bus->state = CAN_BUS_UP;
         can_bus_note(bus, "interface is up");
     }
 }
 
-static void maintain(can_bus_t *bus, int64_t now_ns) {
-    can_socket_t *const self = (can_socket_t *)bus;
-    if (bus->state == CAN_BUS_OFF) {
-        bus->retry_ns = now_ns + self->restart_ns;
-        restart(self);
-    } else {
-        bus->retry_ns = now_ns + CAN_REOPEN_NS;
-        look(self);
-    }
-}
-
 static void close_socket(can_bus_t *bus) {
     can_socket_t *const self = (can_socket_t *)bus;
-    detach(self);
+    can_bus_close_files(bus);
     if (self->route_fd >= 0) {
         (void)close(self->route_fd);
     }
     free(self);
 }
 
-static const can_backend_t backend = {receive, send_frame, maintain, close_socket};
+static const can_backend_t backend = {receive, send_frame, recover, adopt, close_socket};
 
 static bool refuse(const char *name, int number, linux_error_t *error) {
     switch (number) {
@@ -357,17 +366,17 @@ can_bus_t *can_socket_open(const can_bus_options_t *options, linux_error_t *erro
         (void)linux_fail(error, "out of memory");
         return NULL;
     }
-    self->bus = (can_bus_t){.backend = &backend, .fd = -1, .state = CAN_BUS_DOWN};
+    can_bus_init(&self->bus, &backend);
     memcpy(self->name, options->interface, strlen(options->interface));
     self->use_fd = options->use_fd;
-    self->restart_ns = (int64_t)restart_ms * 1000000;
+    self->bus.restart_ns = (int64_t)restart_ms * 1000000;
     self->route_fd = can_restart_open();
     set_filters(self, options);
-    const int number = attach(self);
+    const int number = open_socket(self, &self->bus.fd);
     if (number != 0 ? !refuse(self->name, number, error) : !check_fd(self, error)) {
         close_socket(&self->bus);
         return NULL;
     }
-    self->bus.state = is_up(self) ? CAN_BUS_UP : CAN_BUS_DOWN;
+    self->bus.state = is_up(self, self->bus.fd) ? CAN_BUS_UP : CAN_BUS_DOWN;
     return &self->bus;
 }

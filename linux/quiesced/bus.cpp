@@ -44,7 +44,7 @@ bool send_patiently(can_bus_t *bus, const can_frame_t &frame, int patience_ms) {
         if (can_bus_send(bus, &frame)) {
             return true;
         }
-        can_bus_maintain(bus, monotonic_ns());
+        can_bus_repair(bus, monotonic_ns());
         sleep_ms(1);
     }
     return false;

@@ -19,7 +19,8 @@ enum class BusUse { controller, lockstep };
 /// Throws InputError: "can.interface: what, and what to do".
 Bus open_bus(const CanConfig &config, BusUse use);
 
-/// Sends a frame to a bus that takes it within some time. Blocks: not for the control loop.
+/// Sends a frame to a bus that takes it within some time, and repairs it meanwhile. Blocks: not for
+/// the control loop.
 /// Returns false iff the bus does not take it.
 bool send_patiently(can_bus_t *bus, const can_frame_t &frame, int patience_ms);
 

@@ -8,6 +8,7 @@
 
 #include <unistd.h>
 
+#include "board_fit.h"
 #include "config.h"
 #include "fault_store.h"
 #include "instance_lock.h"
@@ -96,7 +97,7 @@ void note_state(const Config &config) {
         note("quiesced runs now, process " + std::to_string(pid));
     }
     std::string what;
-    (void)StateStore(folder).effective(config.params, what);
+    (void)start_params(config, StateStore(folder), what);
     if (!what.empty()) {
         note(what);
     }

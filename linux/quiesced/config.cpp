@@ -1,7 +1,9 @@
 #include "config.h"
 
 #include <algorithm>
+#include <map>
 
+#include "board_fit.h"
 #include "parameter_section.h"
 #include "section.h"
 
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kMaxCurrent_mA = 20000;
 constexpr std::int64_t kMaxCode = 0xFFFFFF;
+constexpr std::uint32_t kMaxAdxl355Rate_Hz = 4000;
 constexpr std::size_t kInterfaceNameBytes = 15; // IFNAMSIZ - 1
 
 /// Reads [key] where it is there; says that it is missing where it is required.
@@ -107,12 +110,31 @@ void read_line(Section &gpio, const char *key, std::optional<LineConfig> &line) 
     });
 }
 
+/// The kernel would refuse the second one with a less helpful message. A name and a place may still
+/// be the same line.
+void check_lines(Section &gpio) {
+    std::map<std::string, std::string> users;
+    TomlTable table = gpio.table();
+    for (const std::string &key : table.keys()) {
+        Problems told_before;
+        attempt(told_before, [&] {
+            const std::string line = table.table(key).text("line");
+            const auto [user, is_new] = users.emplace(line, key);
+            if (!is_new) {
+                gpio.wrong(key.c_str(), "\"" + line + "\" is the line of " + user->second +
+                                            "; expected another one");
+            }
+        });
+    }
+}
+
 void read_gpio(Section &section, GpioConfig &gpio) {
     read_line(section, "enable_output", gpio.enable_output);
     read_line(section, "fault_output", gpio.fault_output);
     read_line(section, "estop_input", gpio.estop_input);
     read_line(section, "enable_input", gpio.enable_input);
     read_line(section, "data_ready_input", gpio.data_ready_input);
+    check_lines(section);
 }
 
 bool is_absolute(const std::string &path) {
@@ -155,6 +177,22 @@ void check_bus(Section &root, const Config &config) {
     }
 }
 
+/// As fast as the ticks that it starts. Beside a timer twice as fast, so that each tick finds a new
+/// sample.
+std::uint32_t default_rate_Hz(const Config &config) {
+    const auto tick_rate_Hz = static_cast<std::uint32_t>(config.params.tick_rate_Hz);
+    return config.gpio.data_ready_input ? tick_rate_Hz
+                                        : std::min(2 * tick_rate_Hz, kMaxAdxl355Rate_Hz);
+}
+
+void check_fit(Section &root, const Config &config) {
+    const std::optional<Misfit> misfit = find_misfit(config, config.params);
+    if (misfit) {
+        Section section(root.table().table(misfit->section), root.problems());
+        section.wrong(misfit->key, misfit->reason.data());
+    }
+}
+
 void read_root(Section &root, Needs needs, Config &config) {
     const bool has_peripherals = needs == Needs::peripherals;
     with_section(root, "loop", false, [&](Section &s) { read_loop(s, config.loop); });
@@ -176,8 +214,14 @@ void read_root(Section &root, Needs needs, Config &config) {
     with_section(root, "parameters", false,
                  [&](Section &s) { config.params = read_parameters(s); });
     root.end();
+    if (config.accel.rate_Hz == 0) {
+        config.accel.rate_Hz = default_rate_Hz(config);
+    }
     if (has_peripherals) {
         check_bus(root, config);
+    }
+    if (has_peripherals && root.problems().empty()) {
+        check_fit(root, config);
     }
 }
 

@@ -36,7 +36,7 @@ struct AccelConfig {
     std::string trigger; ///< "": leave it as it is
     std::uint32_t clock_Hz = 5'000'000;
     std::uint32_t range_g = 2;
-    std::uint32_t rate_Hz = 2000;
+    std::uint32_t rate_Hz = 0; ///< adxl355; where it is not given, read_config chooses it
 };
 
 enum class CurrentOutput { can, pwm, dac };

@@ -84,6 +84,10 @@ struct Exchange {
     std::atomic<StoreResult> store_result{StoreResult::none};
     Mailbox<quiesce_params_t> new_params;
 
+    /// The loop's, or null. The other thread calls nothing but can_bus_recover. Set it before both
+    /// start.
+    can_bus_t *bus = nullptr;
+
     int wake_fd; ///< an eventfd
 };
 

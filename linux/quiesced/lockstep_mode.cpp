@@ -36,7 +36,7 @@ void answer(can_bus_t *bus, lockstep_can_t &server, const can_frame_t &frame) {
 void wait_for_frames(can_bus_t *bus) {
     pollfd ready = {can_bus_fd(bus), POLLIN, 0};
     (void)poll(&ready, 1, kLongestWait_ms);
-    can_bus_maintain(bus, monotonic_ns());
+    can_bus_repair(bus, monotonic_ns());
 }
 
 void serve(can_bus_t *bus, lockstep_can_t &server) {

@@ -1,5 +1,6 @@
 #include "loop.h"
 
+#include "board_fit.h"
 #include "clock.h"
 #include "frame_sender.h"
 #include "names.h"
@@ -92,6 +93,19 @@ void Loop::keep_adaptation() {
     has_adaptation_ = node_.params.law == QUIESCE_LAW_PHASE;
     if (has_adaptation_) {
         quiesce_adaptation_save(&node_.app.controller, &adaptation_);
+    }
+}
+
+/// What the node does not know: what the board can do.
+void Loop::prepare_apply() {
+    if (can_node_task(&node_.can) != CAN_NODE_APPLY) {
+        return;
+    }
+    keep_adaptation();
+    const std::optional<Misfit> misfit = find_misfit(config_, *can_node_staged(&node_.can));
+    if (misfit && latched_fault(node_) == QUIESCE_FAULT_NONE) {
+        can_node_answer(&node_.can, CAN_NODE_CONTRADICTION, misfit->index);
+        log_.log(LogLevel::error, "parameters stay: %s", misfit->reason.data());
     }
 }
 
@@ -242,13 +256,18 @@ void Loop::look_after_current() {
     }
 }
 
+/// What it takes to get the bus back may wait: it is the other thread's.
+void Loop::look_after_bus() {
+    if (bus_ != nullptr && can_bus_maintain(bus_, monotonic_ns())) {
+        exchange_.wake();
+    }
+}
+
 void Loop::look_after_devices() {
     look_after_accel();
     look_after_current();
     (void)devices_.data_ready_input.pick_up();
-    if (bus_ != nullptr) {
-        can_bus_maintain(bus_, monotonic_ns());
-    }
+    look_after_bus();
     feed_watchdogs(monotonic_ns());
 }
 
@@ -326,9 +345,7 @@ void Loop::tick(std::uint32_t elapsed) {
     take_new_params();
     receive();
     answer_store();
-    if (can_node_task(&node_.can) == CAN_NODE_APPLY) {
-        keep_adaptation();
-    }
+    prepare_apply();
     node_inputs_t inputs = board_inputs(elapsed);
     latch_.before_tick(inputs);
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
@@ -361,13 +378,24 @@ void Loop::run(std::uint64_t ticks) {
     leave();
 }
 
+/// No tick has to be kept any more: a full queue is waited for.
+bool Loop::say_farewell(const can_frame_t &frame) {
+    for (int i = 0; i < kFarewellPatience_ms; ++i) {
+        if (can_bus_send(bus_, &frame)) {
+            return true;
+        }
+        look_after_bus();
+        sleep_ms(1);
+    }
+    return false;
+}
+
 void Loop::leave() {
     can_frame_t frame{};
     for (int i = 0; i < kFarewells; ++i) {
         node_leave(&node_, &frame);
         enable_output_.set(devices_.enable_output, false, true, log_);
-        // No tick has to be kept any more: a full queue is waited for.
-        if (bus_ != nullptr && !send_patiently(bus_, frame, kFarewellPatience_ms)) {
+        if (bus_ != nullptr && !say_farewell(frame)) {
             log_.log(LogLevel::error, "CAN: the farewell frame was not taken");
             break;
         }

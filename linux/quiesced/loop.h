@@ -40,11 +40,13 @@ class Loop {
     void use_params(const quiesce_params_t &params);
     void answer_store();
     void keep_adaptation();
+    void prepare_apply();
     void after_restart();
     void send(const can_frame_t *frames, std::uint32_t count);
     bool is_drivable();
     void write_lines();
     void look_after_devices();
+    void look_after_bus();
     void look_after_accel();
     void look_after_current();
     void feed_watchdogs(std::int64_t now_ns);
@@ -54,6 +56,7 @@ class Loop {
     void put_adaptation();
     void put_params();
     void leave();
+    bool say_farewell(const can_frame_t &frame);
     void put_last();
 
     bool is_safe_command() const;

@@ -5,6 +5,7 @@
 
 #include <malloc.h>
 
+#include "board_fit.h"
 #include "fault_store.h"
 #include "input_error.h"
 #include "instance_lock.h"
@@ -105,7 +106,7 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const auto exchange = std::make_unique<Exchange>();
     const StateStore store(config.state.folder);
     std::string params_note;
-    const quiesce_params_t params = store.effective(config.params, params_note);
+    const quiesce_params_t params = start_params(config, store, params_note);
     std::string adaptation_note;
     const auto adaptation = store.load_adaptation(adaptation_note);
     std::string fault_note;
@@ -114,6 +115,7 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     open_peripherals(config, exchange->peripherals);
     const Bus bus = config.can ? open_bus(*config.can, BusUse::controller) : nullptr;
     keep_config(read, params, exchange->log);
+    exchange->bus = bus.get();
     const Service service(config, *exchange, sink);
     become_realtime(config.loop);
     // Last, because it cannot always be stopped again.

@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "board_fit.h"
 #include "clock.h"
 #include "histogram.h"
 #include "input_error.h"
@@ -77,6 +78,9 @@ void Service::wait() {
 void Service::work(std::int64_t now_ns) {
     store_fault(now_ns); // first: the program may be killed at any time
     drain_log();
+    if (exchange_.bus != nullptr) {
+        can_bus_recover(exchange_.bus);
+    }
     keep_params();
     store_params();
     if (take_reload_request()) {
@@ -117,6 +121,10 @@ void Service::reload() {
         const quiesce_params_t params = store_.effective(fresh.params, note);
         if (!note.empty()) {
             sink_.write(LogLevel::info, note);
+        }
+        // The board is still that of the start.
+        if (const std::optional<Misfit> misfit = find_misfit(config_, params)) {
+            throw quiesce::InputError(misfit->reason.data());
         }
         if (!exchange_.new_params.put(params)) {
             sink_.write(LogLevel::error, "parameters stay: the last reload is not through yet");

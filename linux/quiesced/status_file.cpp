@@ -54,6 +54,7 @@ void put_loop(std::ostream &out, const Snapshot &snapshot) {
     out << "  \"loop\": {\n"
         << "    \"ticks\": " << snapshot.ticks << ",\n"
         << "    \"overruns\": " << snapshot.timing.overruns << ",\n"
+        << "    \"early_edges\": " << snapshot.timing.early << ",\n"
         << "    \"lateness\": " << histogram_json(snapshot.timing.lateness) << ",\n"
         << "    \"work\": " << histogram_json(snapshot.timing.work) << "\n  },\n";
 }

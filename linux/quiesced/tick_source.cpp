@@ -29,13 +29,18 @@ int wait_readable(int fd, std::int64_t duration_ns, short &found) {
 void TickSource::start(std::uint32_t rate_Hz, bool has_line) {
     has_line_ = has_line;
     timing_ = hal_tick_t{};
+    rate_Hz_ = rate_Hz;
+    edge_rate_.start(rate_Hz);
     (void)hal_tick_start(&timing_, rate_Hz); // all rates that a parameter may have can be made
 }
 
 void TickSource::change_rate(std::uint32_t rate_Hz) {
     const hal_tick_t before = timing_;
+    rate_Hz_ = rate_Hz;
+    edge_rate_.start(rate_Hz);
     (void)hal_tick_start(&timing_, rate_Hz);
     timing_.overruns = before.overruns;
+    timing_.early = before.early;
     timing_.lateness = before.lateness;
     timing_.work = before.work;
     timing_.lateness_ns = before.lateness_ns;
@@ -51,22 +56,37 @@ std::uint32_t TickSource::wait(Replaceable<Line> &line, LogRing &log) {
 }
 
 std::uint32_t TickSource::begin(std::int64_t due_ns) {
-    tick_linux_begin(&timing_, due_ns);
+    (void)tick_linux_begin(&timing_, due_ns);
     return hal_tick_elapsed(&timing_);
 }
 
+void TickSource::log_rate(LogRing &log) const {
+    if (edge_rate_.is_off()) {
+        log.log(LogLevel::error,
+                "data_ready_input: %u edges a second, tick_rate_Hz is %u; ticks keep to "
+                "tick_rate_Hz, set the sensor's rate to it",
+                static_cast<unsigned>(edge_rate_.rate_Hz()), static_cast<unsigned>(rate_Hz_));
+    } else {
+        log.log(LogLevel::info, "data_ready_input: %u edges a second, as tick_rate_Hz",
+                static_cast<unsigned>(edge_rate_.rate_Hz()));
+    }
+}
+
 /// Returns false iff no edge has come since the last call; else the newest one's time.
-bool TickSource::take_edges(gpio_line_t *line, std::int64_t &time_ns) {
+bool TickSource::take_edges(gpio_line_t *line, std::int64_t &time_ns, LogRing &log) {
     constexpr int most = 64; // edges a tick: the loop stays bounded
     gpio_edge_t edge{};
-    bool has_edge = false;
+    std::uint32_t edges = 0;
     for (int i = 0; i < most && gpio_next_edge(line, &edge); ++i) {
         if (edge.is_active) {
             time_ns = edge.time_ns;
-            has_edge = true;
+            ++edges;
         }
     }
-    return has_edge;
+    if (edges > 0 && edge_rate_.count(edges, time_ns)) {
+        log_rate(log);
+    }
+    return edges > 0;
 }
 
 std::uint32_t TickSource::wait_for_edge(Replaceable<Line> &line, LogRing &log) {
@@ -82,8 +102,12 @@ std::uint32_t TickSource::wait_for_edge(Replaceable<Line> &line, LogRing &log) {
             return begin(monotonic_ns());
         }
         std::int64_t time_ns = 0;
-        if (take_edges(line.get(), time_ns)) {
-            return begin(time_ns);
+        if (take_edges(line.get(), time_ns, log)) {
+            const std::uint32_t elapsed = begin(time_ns);
+            if (elapsed > 0) {
+                return elapsed;
+            }
+            continue; // too early
         }
         bool level = false;
         if ((found & (POLLERR | POLLHUP | POLLNVAL)) != 0 || !gpio_get(line.get(), &level)) {

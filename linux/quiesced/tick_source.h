@@ -2,6 +2,7 @@
 #ifndef QUIESCED_TICK_SOURCE_H
 #define QUIESCED_TICK_SOURCE_H
 
+#include "edge_rate.h"
 #include "exchange.h"
 
 namespace quiesced {
@@ -15,8 +16,9 @@ class TickSource {
     void change_rate(std::uint32_t rate_Hz);
 
     /// Waits for the next tick. Returns how many have elapsed: 1, more where ticks were lost, 0
-    /// where a signal came first. Without an edge the tick starts after two periods, one of them
-    /// lost. Gives the line up where the kernel has lost it.
+    /// where a signal came first. Edges that come too early are counted, not taken
+    /// (tick_linux_begin); without one the tick starts after two periods, one of them lost. A rate
+    /// that stays off is logged once. Gives the line up where the kernel has lost it.
     std::uint32_t wait(Replaceable<Line> &line, LogRing &log);
 
     /// The tick's work is done.
@@ -26,10 +28,13 @@ class TickSource {
 
   private:
     std::uint32_t wait_for_edge(Replaceable<Line> &line, LogRing &log);
-    static bool take_edges(gpio_line_t *line, std::int64_t &time_ns);
+    bool take_edges(gpio_line_t *line, std::int64_t &time_ns, LogRing &log);
     std::uint32_t begin(std::int64_t due_ns);
+    void log_rate(LogRing &log) const;
 
     hal_tick_t timing_{};
+    EdgeRate edge_rate_;
+    std::uint32_t rate_Hz_ = 0;
     bool has_line_ = false;
 };
 

@@ -17,7 +17,7 @@ static char name[16];
 static bool is_made;
 static int peer;
 static can_bus_t *bus;
-static int64_t now_ns; ///< of the calls of can_bus_maintain
+static int64_t now_ns; ///< of the calls of can_bus_repair
 static linux_error_t error;
 
 void setUp(void) {
@@ -72,7 +72,7 @@ static void tell(uint32_t id, uint8_t second_byte) {
 
 static void maintain_later(void) {
     now_ns += SECOND_NS;
-    can_bus_maintain(bus, now_ns);
+    can_bus_repair(bus, now_ns);
 }
 
 static void assert_receives(uint32_t id) {
@@ -149,7 +149,7 @@ static void test_error_frames_lead_to_the_restart_request(void) {
     assert_receives_nothing();
     TEST_ASSERT_EQUAL(CAN_BUS_OFF, can_bus_state(bus));
     TEST_ASSERT_EQUAL_STRING("bus-off", can_bus_last_event(bus)->text);
-    can_bus_maintain(bus, off_ns); // not before restart_ms
+    can_bus_repair(bus, off_ns); // not before restart_ms
     TEST_ASSERT_EQUAL_UINT32(0, can_bus_counters(bus)->restarts);
     maintain_later();
     TEST_ASSERT_EQUAL_UINT32(1, can_bus_counters(bus)->restarts);

@@ -289,13 +289,13 @@ static void test_line_that_vanishes_is_found_again(void) {
         TEST_ASSERT_FALSE(can_bus_receive(bus, &frame, NULL));
         TEST_ASSERT_EQUAL_UINT32(round, can_bus_counters(bus)->down);
         TEST_ASSERT_EQUAL_STRING("serial line is gone", can_bus_last_event(bus)->text);
-        can_bus_maintain(bus, now_ns);
+        can_bus_repair(bus, now_ns);
         TEST_ASSERT_EQUAL(CAN_BUS_DOWN, can_bus_state(bus));
         plug_in();
-        can_bus_maintain(bus, now_ns + 1); // not yet
+        can_bus_repair(bus, now_ns + 1); // not yet
         TEST_ASSERT_EQUAL(CAN_BUS_DOWN, can_bus_state(bus));
         now_ns += INT64_C(1000000000);
-        can_bus_maintain(bus, now_ns);
+        can_bus_repair(bus, now_ns);
         TEST_ASSERT_EQUAL(CAN_BUS_UP, can_bus_state(bus));
         TEST_ASSERT_EQUAL_STRING("serial line is back", can_bus_last_event(bus)->text);
         TEST_ASSERT_EQUAL_UINT32(2u * round, can_bus_last_event(bus)->number);
