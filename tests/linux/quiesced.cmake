@@ -7,7 +7,9 @@ include(GoogleTest)
 
 add_executable(
   test_quiesced
+  quiesced/test_board_fit.cpp
   quiesced/test_config.cpp
+  quiesced/test_edge_rate.cpp
   quiesced/test_fault.cpp
   quiesced/test_handover.cpp
   quiesced/test_log.cpp
@@ -16,7 +18,7 @@ add_executable(
   quiesced/test_options.cpp
   quiesced/test_state.cpp
   quiesced/test_tick_source.cpp)
-target_link_libraries(test_quiesced PRIVATE quiesced_core quiesce_warnings GTest::gtest_main)
+target_link_libraries(test_quiesced PRIVATE can_make quiesced_core quiesce_warnings GTest::gtest_main)
 target_include_directories(test_quiesced PRIVATE quiesced)
 target_compile_definitions(
   test_quiesced PRIVATE QUIESCED_EXAMPLE="${CMAKE_SOURCE_DIR}/linux/packaging/quiesced.toml")

@@ -8,8 +8,10 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <pthread.h>
 #include <pty.h>
 #include <sched.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/ioctl.h>
@@ -305,6 +307,113 @@ static void test_line_that_vanishes_is_found_again(void) {
     }
 }
 
+static void notice_that_it_is_gone(void) {
+    can_frame_t frame = {.id = 0x10};
+    while (can_bus_state(bus) != CAN_BUS_DOWN) {
+        TEST_ASSERT_FALSE(can_bus_receive(bus, &frame, NULL));
+        (void)can_bus_send(bus, &frame);
+    }
+}
+
+/// The user's part opens and closes nothing, however often it is called.
+static void test_user_waits_for_nothing_while_another_thread_recovers(void) {
+    const can_frame_t frame = {.id = 0x10};
+    char text[8];
+    open_bus((can_bus_options_t){.bitrate = 500000});
+    const int fd = can_bus_fd(bus);
+    unplug();
+    notice_that_it_is_gone();
+    TEST_ASSERT_NOT_EQUAL(-1, fcntl(fd, F_GETFD)); // closing may block: it is still open
+    plug_in();
+    const uint32_t dropped = can_bus_counters(bus)->tx_dropped;
+    TEST_ASSERT_TRUE(can_bus_maintain(bus, 1));
+    for (uint32_t i = 1; i <= 3; i++) {
+        TEST_ASSERT_FALSE(can_bus_maintain(bus, INT64_MAX / 2)); // asked for already
+        TEST_ASSERT_FALSE(can_bus_send(bus, &frame));
+        TEST_ASSERT_EQUAL_UINT32(dropped + i, can_bus_counters(bus)->tx_dropped);
+    }
+    TEST_ASSERT_NOT_EQUAL(-1, fcntl(fd, F_GETFD));
+    // Nobody has opened the new line: that would have sent commands.
+    TEST_ASSERT_EQUAL_INT(0, poll(&(struct pollfd){.fd = adapter, .events = POLLIN}, 1, 0));
+
+    can_bus_recover(bus); // what the other thread does
+    TEST_ASSERT_EQUAL(CAN_BUS_DOWN, can_bus_state(bus));
+    TEST_ASSERT_FALSE(can_bus_send(bus, &frame));
+    TEST_ASSERT_EQUAL_STRING("serial line is gone", can_bus_last_event(bus)->text);
+    TEST_ASSERT_FALSE(can_bus_maintain(bus, 2));
+    TEST_ASSERT_EQUAL(CAN_BUS_UP, can_bus_state(bus));
+    TEST_ASSERT_EQUAL_STRING("serial line is back", can_bus_last_event(bus)->text);
+    TEST_ASSERT_TRUE(can_bus_send(bus, &frame));
+    hear(text, strlen("C\rS6\rO\r"));
+    can_bus_recover(bus); // nothing is wrong
+    TEST_ASSERT_TRUE(can_bus_send(bus, &frame));
+}
+
+static void test_bus_may_be_closed_at_any_stage_of_its_recovery(void) {
+    for (int stage = 0; stage < 3; stage++) {
+        open_bus((can_bus_options_t){0});
+        const int fd = can_bus_fd(bus);
+        unplug();
+        notice_that_it_is_gone();
+        plug_in();
+        if (stage > 0) {
+            TEST_ASSERT_TRUE(can_bus_maintain(bus, 1));
+        }
+        if (stage > 1) {
+            can_bus_recover(bus);
+        }
+        can_bus_close(bus);
+        bus = NULL;
+        TEST_ASSERT_TRUE(fcntl(fd, F_GETFD) == -1 || fd == adapter || fd == keeper);
+        open_bus((can_bus_options_t){0}); // no lock was left on the line
+        can_bus_close(bus);
+        bus = NULL;
+    }
+}
+
+static atomic_bool is_over;
+
+static void *recover_again_and_again(void *unused) {
+    while (!atomic_load(&is_over)) {
+        can_bus_recover(bus);
+        (void)sched_yield();
+    }
+    return unused;
+}
+
+/// The user's calls of a tick; it never waits for the other thread.
+static void use_until(can_bus_state_t state, int64_t *now_ns) {
+    const can_frame_t out = {.id = 0x10};
+    can_frame_t in;
+    while (can_bus_state(bus) != state) {
+        (void)can_bus_receive(bus, &in, NULL);
+        (void)can_bus_send(bus, &out);
+        *now_ns += INT64_C(1000000);
+        (void)can_bus_maintain(bus, *now_ns);
+        (void)sched_yield();
+    }
+}
+
+static void test_two_threads_share_the_recovery(void) {
+    pthread_t other;
+    int64_t now_ns = 1;
+    open_bus((can_bus_options_t){0});
+    atomic_store(&is_over, false);
+    TEST_ASSERT_EQUAL_INT(0, pthread_create(&other, NULL, recover_again_and_again, NULL));
+    for (uint32_t round = 1; round <= 50; round++) {
+        unplug();
+        use_until(CAN_BUS_DOWN, &now_ns);
+        plug_in();
+        use_until(CAN_BUS_UP, &now_ns);
+        TEST_ASSERT_EQUAL_UINT32(round, can_bus_counters(bus)->down);
+        tell_text("t0100\r");
+        TEST_ASSERT_EQUAL_HEX32(0x010, next_frame().id);
+    }
+    atomic_store(&is_over, true);
+    TEST_ASSERT_EQUAL_INT(0, pthread_join(other, NULL));
+    TEST_ASSERT_EQUAL_UINT32(100, can_bus_last_event(bus)->number);
+}
+
 static void assert_refused(const can_bus_options_t *options, const char *part) {
     TEST_ASSERT_NULL(can_bus_open(options, &error));
     assert_one_line(&error, part);
@@ -355,6 +464,9 @@ int main(void) {
     RUN_TEST(test_what_was_there_before_the_opening_is_dropped);
     RUN_TEST(test_full_line_drops_whole_frames);
     RUN_TEST(test_line_that_vanishes_is_found_again);
+    RUN_TEST(test_user_waits_for_nothing_while_another_thread_recovers);
+    RUN_TEST(test_bus_may_be_closed_at_any_stage_of_its_recovery);
+    RUN_TEST(test_two_threads_share_the_recovery);
     RUN_TEST(test_wrong_options_are_one_line);
     RUN_TEST(test_line_in_use_is_refused);
     RUN_TEST(test_frame_that_is_none_is_dropped);

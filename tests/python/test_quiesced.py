@@ -572,6 +572,91 @@ def test_lost_and_found_serial_line(quiesced: Quiesced, tmp_path: Path) -> None:
     os.close(master)
 
 
+WITNESS = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <termios.h>
+#include <unistd.h>
+static int line = -1;
+static void note(const char *what) {
+    char text[32];
+    const char *thread = gettid() == getpid() ? "loop" : "other";
+    const int length = snprintf(text, sizeof text, "%s %s\n", what, thread);
+    const int out = openat(AT_FDCWD, getenv("WITNESS_FILE"), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    if (write(out, text, (size_t)length) != length) abort();
+    ((int (*)(int))dlsym(RTLD_NEXT, "close"))(out);
+}
+int open64(const char *path, int flags, ...) {
+    va_list rest;
+    va_start(rest, flags);
+    const int fd = openat(AT_FDCWD, path, flags, va_arg(rest, int));
+    va_end(rest);
+    if (fd >= 0 && strcmp(path, getenv("WITNESS_LINE")) == 0) { line = fd; note("open"); }
+    return fd;
+}
+int open(const char *path, int flags, ...) {
+    va_list rest;
+    va_start(rest, flags);
+    const int mode = va_arg(rest, int);
+    va_end(rest);
+    return open64(path, flags, mode);
+}
+int close(int fd) {
+    if (fd >= 0 && fd == line) { line = -1; note("close"); }
+    return ((int (*)(int))dlsym(RTLD_NEXT, "close"))(fd);
+}
+int tcsetattr(int fd, int when, const struct termios *set) {
+    note("set");
+    int (*real)(int, int, const struct termios *) = dlsym(RTLD_NEXT, "tcsetattr");
+    return real(fd, when, set);
+}
+"""
+
+
+def preload(folder: Path, name: str, code: str) -> str:
+    """Builds a library whose functions come before those of the C library."""
+    library = folder / f"{name}.so"
+    (folder / f"{name}.c").write_text(code)
+    build = ["cc", "-shared", "-fPIC", "-O1", "-o", library, folder / f"{name}.c", "-ldl"]
+    subprocess.run(build, check=True)
+    return str(library)
+
+
+def test_the_loop_never_opens_or_closes_the_bus(quiesced: Quiesced, tmp_path: Path) -> None:
+    """An adapter that is plugged in again is the other thread's, whatever its driver takes."""
+    link, calls = tmp_path / "adapter", tmp_path / "calls"
+    link.symlink_to(quiesced.peer.line)
+    quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, str(link)))
+    environment = {
+        **os.environ,
+        "LD_PRELOAD": preload(tmp_path, "witness", WITNESS),
+        "WITNESS_LINE": str(link),
+        "WITNESS_FILE": str(calls),
+    }
+    quiesced.peer.operator = {"enable": 1}
+    quiesced.start(env=environment)
+    quiesced.peer.wait_state(RUN)
+    assert calls.read_text().split("\n") == ["open loop", "set loop", ""]  # before its first tick
+    master, slave, line = open_pty()
+    second = Peer(master, line, operator={"enable": 1})
+    link.unlink()
+    link.symlink_to(line)
+    hang_up(quiesced)
+    second.wait_state(RUN)
+    assert calls.read_text().split("\n")[2:] == ["close other", "open other", "set other", ""]
+    assert quiesced.stop() == 0
+    assert quiesced.status()["can"]["down"] == 1
+    assert quiesced.status()["can"]["tx_dropped"] > 0
+    os.close(slave)
+    os.close(master)
+
+
 def hang_up(quiesced: Quiesced) -> None:
     """Closes the pty's master side for good."""
     null = os.open("/dev/null", os.O_RDWR)
@@ -607,11 +692,9 @@ __attribute__((destructor)) static void tell(void) {
 
 def test_the_loop_allocates_nothing(quiesced: Quiesced, tmp_path: Path) -> None:
     """However long it runs, its thread has asked for memory equally often."""
-    library, counts = tmp_path / "counter.so", tmp_path / "count"
-    (tmp_path / "counter.c").write_text(COUNTER)
-    build = ["cc", "-shared", "-fPIC", "-O1", "-o", library, tmp_path / "counter.c"]
-    subprocess.run(build, check=True)
-    environment = {**os.environ, "LD_PRELOAD": str(library), "COUNTER_FILE": str(counts)}
+    counts = tmp_path / "count"
+    library = preload(tmp_path, "counter", COUNTER)
+    environment = {**os.environ, "LD_PRELOAD": library, "COUNTER_FILE": str(counts)}
     asked = []
     quiesced.peer.operator = {"enable": 1}
     for ticks in ("200", "2000"):
@@ -716,7 +799,8 @@ def test_missing_devices_are_named(quiesced: Quiesced, more: str, key: str) -> N
         ),
         (
             'output = "can"',
-            'output = "dac"\ndevice = "no"\nzero_code = 0\nfull_scale_code = 9\nfull_scale_mA = 1',
+            'output = "dac"\ndevice = "no"\nzero_code = 0\nfull_scale_code = 9'
+            "\nfull_scale_mA = 5000",
             "current.device",
         ),
         ('interface = "slcan:', 'interface = "slcan:/no/such', "can.interface"),

@@ -47,23 +47,23 @@ TEST(Config, the_example_is_right) {
 }
 
 TEST(Config, every_key_is_read) {
-    const ConfigReading reading =
-        read("[loop]\npriority = 0\ncpu = 1\nlock_memory = false\n"
-             "[can]\ninterface = \"slcan:/dev/ttyACM0\"\nfd = false\nrestart_ms = 50\n"
-             "serial_baud = 1000000\nbitrate = 500000\n"
-             "[accel]\nsource = \"adxl355\"\ndevice = \"/dev/spidev0.0\"\nclock_Hz = 1000000\n"
-             "range_g = 8\nrate_Hz = 4000\n"
-             "[current]\noutput = \"dac\"\ndevice = \"iio:device1\"\nchannel = 2\nzero_code = 10\n"
-             "full_scale_code = 4095\nfull_scale_mA = 5000\n"
-             "[gpio]\nestop_input = { line = \"ESTOP\", active_low = true, bias = \"pull-up\" }\n"
-             "enable_output = { line = \"gpiochip0:3\" }\nfault_output = { line = \"F\" }\n"
-             "enable_input = { line = \"E\", bias = \"off\" }\n"
-             "data_ready_input = { line = \"D\", bias = \"pull-down\" }\n"
-             "[operator]\nenable = \"both\"\n"
-             "[watchdog]\ndevice = \"/dev/watchdog\"\ntimeout_s = 9\n"
-             "[state]\nfolder = \"/run/q\"\nstatus_s = 2\n"
-             "[log]\nto = \"/run/q.log\"\nlevel = \"debug\"\n"
-             "[parameters]\nlaw = \"constant\"\nadapt = 2\naccel_polarity = -1\n");
+    const ConfigReading reading = read(
+        "[loop]\npriority = 0\ncpu = 1\nlock_memory = false\n"
+        "[can]\ninterface = \"slcan:/dev/ttyACM0\"\nfd = false\nrestart_ms = 50\n"
+        "serial_baud = 1000000\nbitrate = 500000\n"
+        "[accel]\nsource = \"adxl355\"\ndevice = \"/dev/spidev0.0\"\nclock_Hz = 1000000\n"
+        "range_g = 8\nrate_Hz = 4000\n"
+        "[current]\noutput = \"dac\"\ndevice = \"iio:device1\"\nchannel = 2\nzero_code = 10\n"
+        "full_scale_code = 4095\nfull_scale_mA = 5000\n"
+        "[gpio]\nestop_input = { line = \"ESTOP\", active_low = true, bias = \"pull-up\" }\n"
+        "enable_output = { line = \"gpiochip0:3\" }\nfault_output = { line = \"F\" }\n"
+        "enable_input = { line = \"E\", bias = \"off\" }\n"
+        "data_ready_input = { line = \"D\", bias = \"pull-down\" }\n"
+        "[operator]\nenable = \"both\"\n"
+        "[watchdog]\ndevice = \"/dev/watchdog\"\ntimeout_s = 9\n"
+        "[state]\nfolder = \"/run/q\"\nstatus_s = 2\n"
+        "[log]\nto = \"/run/q.log\"\nlevel = \"debug\"\n"
+        "[parameters]\nlaw = \"constant\"\nadapt = 2\naccel_polarity = -1\ntick_rate_Hz = 4000\n");
     ASSERT_TRUE(reading.problems.empty()) << reading.problems.front();
     const Config &config = reading.config;
     EXPECT_EQ(config.can->serial_baud, 1000000U);
@@ -100,6 +100,24 @@ TEST(Config, iio_and_pwm_are_read) {
     EXPECT_FALSE(reading.config.accel.use_buffer);
     EXPECT_EQ(reading.config.current.device, "pwmchip0");
     EXPECT_TRUE(reading.config.current.is_inverted);
+}
+
+AccelConfig read_accel(const std::string &accel, const std::string &more) {
+    const ConfigReading reading =
+        read("[accel]\nsource = \"adxl355\"\ndevice = \"d\"\n" + accel + kCan + kCurrent + more);
+    EXPECT_TRUE(reading.problems.empty()) << reading.problems.front();
+    return reading.config.accel;
+}
+
+TEST(Config, the_sensor_is_by_default_as_fast_as_the_ticks_that_it_starts) {
+    const std::string line = "[gpio]\ndata_ready_input = { line = \"D\" }\n";
+    for (const char *rate : {"500", "1000", "2000", "4000"}) {
+        const std::string parameters = std::string("[parameters]\ntick_rate_Hz = ") + rate + "\n";
+        EXPECT_EQ(read_accel("", line + parameters).rate_Hz, std::stoul(rate));
+    }
+    EXPECT_EQ(read_accel("", line).rate_Hz, 1000U);
+    EXPECT_EQ(read_accel("", "").rate_Hz, 2000U); // the timer starts the ticks
+    EXPECT_EQ(read_accel("rate_Hz = 500\n", "").rate_Hz, 500U);
 }
 
 struct Malformed {
@@ -141,6 +159,10 @@ const Malformed kMalformed[] = {
     {"active_low", "[gpio]\nenable_output = {line = \"a\", active_low = 0}\n",
      "q.toml:8: gpio.enable_output.active_low: expected true or false"},
     {"gpio_key", "[gpio]\nestop = {line = \"a\"}\n", "q.toml:8: gpio.estop: unknown key"},
+    {"line_twice",
+     "[gpio]\nestop_input = {line = \"a\"}\nfault_output = {line = \"b\"}\n"
+     "enable_output = {line = \"a\"}\n",
+     "q.toml:10: gpio.enable_output: \"a\" is the line of estop_input; expected another one"},
     {"enable", "[operator]\nenable = \"never\"\n", "q.toml:8: operator.enable: expected one of"},
     {"watchdog", "[watchdog]\n", "q.toml:7: watchdog.device: missing"},
     {"timeout", "[watchdog]\ndevice = \"/dev/watchdog\"\ntimeout_s = 0\n",
@@ -227,6 +249,12 @@ const Malformed kTables[] = {
     {"pwm_inverted",
      kCan + kAccel + kPwm + "chip = \"p\"\nfull_scale_mA = 1\nperiod_ns = 1000\nis_inverted = 0\n",
      "q.toml:10: current.is_inverted: expected true"},
+    {"spi_rate_of_the_ticks",
+     kCan + kSpi + "rate_Hz = 2000\n" + kCurrent + "[gpio]\ndata_ready_input = {line = \"D\"}\n",
+     "q.toml:6: accel.rate_Hz: accel.rate_Hz is 2000, tick_rate_Hz 1000; they must be the same"},
+    {"pwm_beyond_scale",
+     kCan + kAccel + kPwm + "chip = \"p\"\nperiod_ns = 1000\nfull_scale_mA = 4999\n",
+     "q.toml:9: current.full_scale_mA: current.full_scale_mA is 4999, max_current_mA 5000; it "},
     {"dac_zero", kCan + kAccel + kDac, "q.toml:5: current.zero_code: missing"},
     {"dac_scale", kCan + kAccel + kDac + "zero_code = 5\nfull_scale_code = 5\n",
      "q.toml:10: current.full_scale_code: expected another code"},
