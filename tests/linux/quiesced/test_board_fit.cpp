@@ -136,6 +136,15 @@ TEST_F(BoardFit, saved_parameters_that_do_not_fit_are_not_used) {
     EXPECT_EQ(note.rfind("saved parameters are not used: accel.rate_Hz is 1000, ", 0), 0U) << note;
 }
 
+/// A driver that takes every command.
+class WillingDriver final : public CurrentDevice {
+  public:
+    WillingDriver() {
+        handle = {[](void *, std::int32_t, bool) {}, nullptr, nullptr};
+    }
+    std::uint32_t failures() const override { return 0; }
+};
+
 struct Staged {
     const char *name;
     std::int32_t value;
@@ -152,6 +161,7 @@ TEST_F(BoardFit, apply_refuses_what_the_board_cannot_do) {
     };
     for (const Staged &row : rows) {
         const auto exchange = std::make_unique<Exchange>();
+        exchange->peripherals.current.start_with(std::make_unique<WillingDriver>());
         const Bus bus = open_bus(*config_.can, BusUse::controller);
         const auto loop =
             std::make_unique<Loop>(config_, config_.params, *exchange, bus.get(), nullptr);
