@@ -175,6 +175,8 @@ class Peer:
         rest = b""
         while True:
             data = os.read(self.master, 65536)
+            if not data:
+                return  # hung up
             *lines, rest = (rest + data).split(b"\r")
             frames = [frame for line in lines if (frame := parse(line)) is not None]
             with self._changed:
@@ -193,6 +195,13 @@ class Peer:
                 self.send("OperatorCommand", **{**self.operator, "fault_reset": int(is_pressed)})
             if self.estop:
                 self.send("EmergencyStop", code=23205)
+
+    def close(self, slave: int) -> None:
+        """Ends with its line. Else it would serve the next one whose file has the same number."""
+        os.close(slave)
+        self._thread.join(PATIENCE_S)
+        assert not self._thread.is_alive()
+        os.close(self.master)
 
 
 def accel_sample(number: int) -> tuple[int, bytes]:

@@ -27,8 +27,7 @@ def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
     under_test.write_config()
     yield under_test
     under_test.end()
-    os.close(slave)
-    os.close(master)
+    peer.close(slave)
 
 
 def start_running(quiesced: Quiesced, *arguments: str) -> None:
@@ -440,8 +439,7 @@ def test_make_safe_with_another_bus_in_the_file(quiesced: Quiesced) -> None:
     after = quiesced.peer.count()
     assert quiesced.run("--make-safe").returncode == 1  # the other bus is not there
     wait_farewell(quiesced.peer, after, 40)
-    os.close(slave)
-    os.close(master)
+    other.close(slave)
 
 
 def test_make_safe_with_parameters_of_a_reload(quiesced: Quiesced) -> None:
@@ -568,8 +566,7 @@ def test_lost_and_found_serial_line(quiesced: Quiesced, tmp_path: Path) -> None:
     assert quiesced.stop() == 0
     log = quiesced.log_text()
     assert "CAN: " in log
-    os.close(slave)
-    os.close(master)
+    second.close(slave)
 
 
 WITNESS = r"""
