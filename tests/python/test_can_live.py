@@ -370,7 +370,7 @@ def test_record_refuses_a_series_that_is_there(refused, tmp_path: Path, stale: s
     (tmp_path / stale).write_text("mine")
     for other in ("run.mf4", "run_1.mf4", "run_0001.mf4.part", "xrun_0001.mf4"):
         (tmp_path / other).write_text("of another name")
-    rotating = ["--out", "run.mf4", "--rotate-s", "600"]
+    rotating = ["--out", "run.mf4", "--rotate-s", "600", "--seconds", "1"]
     assert f"{stale} exists" in refused("can", "record", *rotating, "--bus", "virtual:x")
     assert (tmp_path / stale).read_text() == "mine"
 
