@@ -59,7 +59,7 @@ tell failures_to_make_safe "$(logged "Control process exited")"
 # A CAN interface that comes late.
 ip link del vcan0
 systemctl start quiesced
-await tries has_tried 8
+await tries has_tried 6
 ip link add vcan0 type vcan
 ip link set vcan0 up
 await late_interface is_active
