@@ -12,8 +12,8 @@ await() { # await WHAT COMMAND...: for a minute at most
     tries=0
     until "$@"; do
         tries=$((tries + 1))
-        [ "$tries" -lt 300 ] || { tell "$what" never; return; }
-        sleep 0.2
+        [ "$tries" -lt 60 ] || { tell "$what" never; return; }
+        sleep 1 # costs nothing: idle time is skipped
     done
     tell "$what" yes
 }
