@@ -46,7 +46,8 @@ def test_roots_that_are_there_need_no_root(tmp_path: Path) -> None:
 
 
 def test_folder_to_build_in_has_no_space_and_goes(tmp_path: Path) -> None:
-    code = 'source tools/lib/work.sh; work_folder; printf "%s\\n" "$WORK_FOLDER"; [ -d "$WORK_FOLDER" ]'
+    made = 'source tools/lib/work.sh; work_folder; printf "%s\\n" "$WORK_FOLDER"'
+    code = made + '; [ -d "$WORK_FOLDER" ]'
     for parent in (tmp_path, tmp_path / "two words"):
         parent.mkdir(exist_ok=True)
         result = run(
