@@ -49,7 +49,8 @@ run_ctest() {
 }
 
 run_pytest() {
-    .venv/bin/python -m pytest tests/python --durations=10
+    # A file stays with one worker: its fixtures run once.
+    .venv/bin/python -m pytest tests/python --numprocesses "$(nproc)" --dist loadfile --durations=10
 }
 
 run_pytest_package() {
