@@ -11,7 +11,7 @@ namespace quiesce {
 
 /// channel:
 ///   slcan:/dev/pts/5              serial line or pty
-///   slcan:unix:/tmp/can.sock      Unix socket that someone listens on
+///   slcan:unix:can.sock           Unix socket that someone listens on
 ///   slcan:tcp:localhost:5556      TCP port that someone listens on
 ///   socketcan:can0                interface of this machine
 /// A serial line may be followed by ,baud=N (of the line) and ,bitrate=N (of the bus; the adapter

@@ -9,13 +9,15 @@ import signal
 import subprocess
 import threading
 import tty
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import cantools
+from conftest import require
+from quiesce.can.e2e import frame_crc
 
 ROOT = Path(__file__).resolve().parents[2]
 DBC = cantools.database.load_file(ROOT / "firmware/comm/quiesce.dbc")
@@ -52,26 +54,12 @@ sensor_recover_ticks = 1
 {parameters}"""
 
 
-def crc8_step(crc: int) -> int:
-    for _ in range(8):
-        crc = (crc << 1 ^ 0x1D if crc & 0x80 else crc << 1) & 0xFF
-    return crc
-
-
-CRC8 = bytes(crc8_step(i) for i in range(256))
 MESSAGE = {message.frame_id: message for message in DBC.messages}
-
-
-def crc8_j1850(data: bytes) -> int:
-    crc = 0xFF
-    for byte in data:
-        crc = CRC8[crc ^ byte]
-    return crc ^ 0xFF
 
 
 def sealed(identifier: int, data: bytes) -> bytes:
     """The data, whose last byte becomes the CRC."""
-    return data[:-1] + bytes([crc8_j1850(bytes([identifier & 0xFF, identifier >> 8]) + data[:-1])])
+    return data[:-1] + bytes([frame_crc(identifier, data)])
 
 
 def protected(name: str, **signals: int) -> tuple[int, bytes]:
@@ -302,3 +290,18 @@ def open_pty() -> tuple[int, int, str]:
     tty.setraw(master)
     tty.setraw(slave)
     return master, slave, os.ttyname(slave)
+
+
+@contextlib.contextmanager
+def on_a_pty(folder: Path, **config: str) -> Iterator[Quiesced]:
+    """The program with its configuration written, not started; config: see write_config."""
+    program = require(BUILD / "host/linux/quiesced/quiesced")
+    master, slave, line = open_pty()
+    peer = Peer(master, line)
+    under_test = Quiesced(program, folder, peer, folder / "q.toml", folder / "state")
+    under_test.write_config(**config)
+    try:
+        yield under_test
+    finally:
+        under_test.end()
+        peer.close(slave)

@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from conftest import require
-from quiesced_peer import BUILD, PATIENCE_S, Peer, Quiesced, open_pty, protected, slcan
+from quiesced_peer import PATIENCE_S, Peer, Quiesced, on_a_pty, open_pty, protected, slcan
 
 IDLE, RUN, SAFE, FAULT = 1, 2, 3, 4
 ESTOP = 10
@@ -20,14 +19,8 @@ DONE, STORE_FAILED = 0, 5
 
 @pytest.fixture
 def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
-    program = require(BUILD / "host/linux/quiesced/quiesced")
-    master, slave, line = open_pty()
-    peer = Peer(master, line)
-    under_test = Quiesced(program, tmp_path, peer, tmp_path / "q.toml", tmp_path / "state")
-    under_test.write_config()
-    yield under_test
-    under_test.end()
-    peer.close(slave)
+    with on_a_pty(tmp_path) as under_test:
+        yield under_test
 
 
 def start_running(quiesced: Quiesced, *arguments: str) -> None:

@@ -10,8 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import require
-from quiesced_peer import BUILD, Peer, Quiesced, open_pty
+from quiesced_peer import Quiesced, on_a_pty
 
 RUN, FAULT = 2, 4
 DRIVER_FAILED = 12
@@ -80,16 +79,9 @@ PWM = '"pwm"\nchip = "pwmchip0"\nperiod_ns = 50000\nfull_scale_mA = 5000'
 
 @pytest.fixture
 def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
-    program = require(BUILD / "host/linux/quiesced/quiesced")
-    master, slave, line = open_pty()
-    under_test = Quiesced(
-        program, tmp_path, Peer(master, line), tmp_path / "q.toml", tmp_path / "state"
-    )
-    under_test.write_config(output=PWM, parameters='law = "constant"\nconstant_current_mA = 4000\n')
-    yield under_test
-    under_test.end()
-    os.close(slave)
-    os.close(master)
+    law = 'law = "constant"\nconstant_current_mA = 4000\n'
+    with on_a_pty(tmp_path, output=PWM, parameters=law) as under_test:
+        yield under_test
 
 
 @pytest.fixture
