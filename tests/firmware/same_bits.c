@@ -9,6 +9,7 @@
 #include <stddef.h>
 
 #include "test_signal.h"
+#include "word_crc.h"
 #ifdef QUIESCE_TARGET_MPS2
 #include "semihost.h"
 #else
@@ -45,23 +46,10 @@ static void put_hex(uint32_t value) {
     }
 }
 
-// CRC-32 as in zlib, four bits at a time.
-static void append(digest_t *self, uint32_t word) {
-    static const uint32_t table[16] = {
-        0x00000000, 0x1DB71064, 0x3B6E20C8, 0x26D930AC, 0x76DC4190, 0x6B6B51F4,
-        0x4DB26158, 0x5005713C, 0xEDB88320, 0xF00F9344, 0xD6D6A3E8, 0xCB61B38C,
-        0x9B64C2B0, 0x86D3D2D4, 0xA00AE278, 0xBDBDF21C,
-    };
-    self->crc ^= word;
-    for (uint32_t i = 0; i < 8; i++) {
-        self->crc = self->crc >> 4 ^ table[self->crc & 15u];
-    }
-}
-
 static void append_telemetry(digest_t *self, const quiesce_telemetry_t *telemetry) {
     const uint32_t *words = (const uint32_t *)(const void *)telemetry;
     for (uint32_t i = 0; i < sizeof *telemetry / sizeof *words; i++) {
-        append(self, words[i]);
+        self->crc = word_crc_append(self->crc, words[i]);
     }
 }
 
@@ -122,7 +110,7 @@ static lockstep_stimulus_t draw_stimulus(uint32_t *seed, uint32_t tick, uint32_t
 
 static uint32_t run_case(lockstep_t *server, uint32_t number) {
     uint32_t seed = number + 1u;
-    digest_t digest = {UINT32_MAX};
+    digest_t digest = {WORD_CRC_START};
     quiesce_params_t params;
     stretch_t stretch = {0};
     draw_params(&seed, number, &params);
@@ -173,7 +161,7 @@ static int run_file(lockstep_t *server, const char *path) {
         fprintf(stderr, "same_bits: %s: cannot be read\n", path);
         return 2;
     }
-    digest_t digest = {UINT32_MAX};
+    digest_t digest = {WORD_CRC_START};
     quiesce_params_t params;
     quiesce_params_default(&params);
     (void)lockstep_start(server, &params);

@@ -1,0 +1,109 @@
+#include "record.h"
+
+#include <stdio.h>
+
+#include "word_crc.h"
+
+// Every field by its name, in this order whatever the layout of the structure.
+#define RECORD_FIELDS(X)                                                                           \
+    X(out_current_cmd_mA, out->current_cmd_mA)                                                     \
+    X(out_driver_enable, out->driver_enable)                                                       \
+    X(tick, t->tick)                                                                               \
+    X(state, t->state)                                                                             \
+    X(fault, t->fault)                                                                             \
+    X(fault_count, t->fault_count)                                                                 \
+    X(bad_sample_count, t->bad_sample_count)                                                       \
+    X(accel_um_s2, t->accel_um_s2)                                                                 \
+    X(velocity_um_s, t->velocity_um_s)                                                             \
+    X(rms_um_s2, t->rms_um_s2)                                                                     \
+    X(freq_is_valid, t->freq_is_valid)                                                             \
+    X(freq_age_ticks, t->freq_age_ticks)                                                           \
+    X(freq_uHz, t->freq_uHz)                                                                       \
+    X(freq_amp_um_s2, t->freq_amp_um_s2)                                                           \
+    X(freq_phase_mdeg, t->freq_phase_mdeg)                                                         \
+    X(freq_sigma_uHz, t->freq_sigma_uHz)                                                           \
+    X(freq_window_ms, t->freq_window_ms)                                                           \
+    X(displacement_nm, t->displacement_nm)                                                         \
+    X(displacement_amp_nm, t->displacement_amp_nm)                                                 \
+    X(velocity_rms_um_s, t->velocity_rms_um_s)                                                     \
+    X(peak0_freq_uHz, t->peaks[0].freq_uHz)                                                        \
+    X(peak0_amp_um_s2, t->peaks[0].amp_um_s2)                                                      \
+    X(peak0_phase_mdeg, t->peaks[0].phase_mdeg)                                                    \
+    X(peak1_freq_uHz, t->peaks[1].freq_uHz)                                                        \
+    X(peak1_amp_um_s2, t->peaks[1].amp_um_s2)                                                      \
+    X(peak1_phase_mdeg, t->peaks[1].phase_mdeg)                                                    \
+    X(peak2_freq_uHz, t->peaks[2].freq_uHz)                                                        \
+    X(peak2_amp_um_s2, t->peaks[2].amp_um_s2)                                                      \
+    X(peak2_phase_mdeg, t->peaks[2].phase_mdeg)                                                    \
+    X(rules_fired, t->rules_fired)                                                                 \
+    X(current_fuzzy_mA, t->current_fuzzy_mA)                                                       \
+    X(current_law_mA, t->current_law_mA)                                                           \
+    X(current_cmd_mA, t->current_cmd_mA)                                                           \
+    X(lock_is_on, t->lock_is_on)                                                                   \
+    X(adapt_state, t->adapt_state)                                                                 \
+    X(adapt_trials, t->adapt_trials)                                                               \
+    X(adapt_gains, t->adapt_gains)                                                                 \
+    X(trim_on_mdeg, t->trim_on_mdeg)                                                               \
+    X(trim_off_mdeg, t->trim_off_mdeg)                                                             \
+    X(trim_level_q15, t->trim_level_q15)                                                           \
+    X(trim_is_whole, t->trim_is_whole)
+
+#define FIELD_NAME(name, value) #name,
+#define FIELD_WORD(name, value) (uint32_t)(value),
+
+static const char *const names[] = {RECORD_FIELDS(FIELD_NAME)};
+// A new word of telemetry is hashed, too: it gets its line above.
+_Static_assert(sizeof names / sizeof names[0] == RECORD_COLUMNS, "a field is missing or gone");
+
+void record_print_columns(void) {
+    (void)fputs("columns", stdout);
+    for (uint32_t i = 0; i < RECORD_COLUMNS; i++) {
+        printf(" %s", names[i]);
+    }
+    (void)putchar('\n');
+}
+
+void record_start(record_t *self, const char *name) {
+    *self = (record_t){.name = name};
+    for (uint32_t i = 0; i < RECORD_COLUMNS; i++) {
+        self->columns[i] = WORD_CRC_START;
+    }
+    for (uint32_t i = 0; i < RECORD_MAX_BLOCKS; i++) {
+        self->blocks[i] = WORD_CRC_START;
+    }
+}
+
+void record_tick(record_t *self, const quiesce_out_t *out) {
+    const quiesce_telemetry_t *t = &out->telemetry;
+    const uint32_t words[] = {RECORD_FIELDS(FIELD_WORD)};
+    uint32_t *block = &self->blocks[self->ticks++ / RECORD_BLOCK_TICKS];
+    for (uint32_t i = 0; i < RECORD_COLUMNS; i++) {
+        *block = word_crc_append(*block, words[i]);
+        self->columns[i] = word_crc_append(self->columns[i], words[i]);
+    }
+}
+
+void record_words(record_t *self, const uint32_t *words, uint32_t count) {
+    uint32_t *block = &self->blocks[self->ticks / RECORD_BLOCK_TICKS];
+    for (uint32_t i = 0; i < count; i++) {
+        *block = word_crc_append(*block, words[i]);
+    }
+}
+
+void record_word(record_t *self, uint32_t word) {
+    record_words(self, &word, 1);
+}
+
+static void print_words(const char *name, const char *kind, const uint32_t *words, uint32_t count) {
+    printf("%s %s", name, kind);
+    for (uint32_t i = 0; i < count; i++) {
+        printf(" %08X", (unsigned)words[i]);
+    }
+    (void)putchar('\n');
+}
+
+void record_end(const record_t *self) {
+    const uint32_t blocks = (self->ticks + RECORD_BLOCK_TICKS - 1u) / RECORD_BLOCK_TICKS;
+    print_words(self->name, "out", self->blocks, blocks > 0 ? blocks : 1u);
+    print_words(self->name, "col", self->columns, self->ticks > 0 ? RECORD_COLUMNS : 0);
+}

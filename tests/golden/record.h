@@ -1,0 +1,35 @@
+/// Hashes of what the controller puts out: CRC-32 a block of ticks, and one a column of a case.
+#ifndef RECORD_H
+#define RECORD_H
+
+#include "quiesce.h"
+
+#define RECORD_BLOCK_TICKS 1000u
+#define RECORD_MAX_BLOCKS 64u
+/// Words of quiesce_out_t: the command, the driver's enable, all telemetry.
+#define RECORD_COLUMNS (2u + sizeof(quiesce_telemetry_t) / sizeof(uint32_t))
+
+typedef struct {
+    const char *name;
+    uint32_t ticks;
+    uint32_t blocks[RECORD_MAX_BLOCKS];
+    uint32_t columns[RECORD_COLUMNS];
+} record_t;
+
+/// Prints the columns' names in their order, one line.
+void record_print_columns(void);
+
+/// name stays the caller's until record_end.
+void record_start(record_t *self, const char *name);
+
+/// Everything that one tick put out. At most RECORD_MAX_BLOCKS x RECORD_BLOCK_TICKS of them.
+void record_tick(record_t *self, const quiesce_out_t *out);
+
+/// Something beside the ticks: a verdict, what was learnt. It goes into the current block.
+void record_words(record_t *self, const uint32_t *words, uint32_t count);
+void record_word(record_t *self, uint32_t word);
+
+/// Prints the case: `NAME out WORD...`, a word a block, and `NAME col WORD...`, a word a column.
+void record_end(const record_t *self);
+
+#endif
