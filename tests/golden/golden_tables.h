@@ -4,7 +4,9 @@
 
 #include <stdint.h>
 
-#define GOLDEN_RULES 4u
+#define GOLDEN_RULES 6u
+/// The first of them fit the controller.
+#define GOLDEN_FITTING_RULES 3u
 #define GOLDEN_RULES_MAX_WORDS 325u
 #define GOLDEN_PULSES_WORDS 33u
 

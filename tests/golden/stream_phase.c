@@ -3,12 +3,13 @@
 #include "golden_tables.h"
 #include "stream.h"
 
-enum { CASES = 10, TICKS = 30000, LEARNT_MAX = 4 };
+enum { CASES = 16, TICKS = 60000, LEARNT_MAX = 4 };
 
 typedef struct {
     int32_t damped_q15; ///< what the current takes off the vibration, follows it slowly
     quiesce_adaptation_t saved[LEARNT_MAX];
     uint32_t saves;
+    uint32_t sweep; ///< 0 or 1: how fast the frequency rises
     bool is_frozen;
 } phase_case_t;
 
@@ -17,14 +18,14 @@ static phase_case_t one;
 static void draw_case(stream_t *self, uint32_t number) {
     quiesce_params_t *p = &self->params;
     p->law = QUIESCE_LAW_PHASE;
-    p->tick_rate_Hz = number % 5 == 4 ? 4000 : 1000;
+    p->tick_rate_Hz = number % 8 == 4 ? 4000 : 1000;
     p->phase_setting = (int32_t)(number % 2);
     p->phase_blend_ms = draw_between(&self->seed, 0, 600);
     p->adapt = number == 8 ? QUIESCE_ADAPT_FROZEN : QUIESCE_ADAPT_ON;
-    p->adapt_start_ms = draw_between(&self->seed, 0, 800);
-    p->adapt_settle_ms = draw_between(&self->seed, 50, 200);
-    p->adapt_measure_ms = draw_between(&self->seed, 50, 200);
-    p->adapt_rest_ms = draw_between(&self->seed, 0, 1000);
+    p->adapt_start_ms = draw_between(&self->seed, 0, 300);
+    p->adapt_settle_ms = draw_between(&self->seed, 50, 120);
+    p->adapt_measure_ms = draw_between(&self->seed, 50, 120);
+    p->adapt_rest_ms = draw_between(&self->seed, 0, 300);
     p->adapt_edge_limit_mdeg = draw_between(&self->seed, 2000, 60000);
     p->adapt_level_limit_pct = draw_between(&self->seed, 5, 90);
 }
@@ -35,6 +36,7 @@ static int32_t damped_sample(stream_t *self, phase_case_t *state) {
     const int32_t effect = draw_sine(16384, self->vibration.phase_turn[0] * 2u + best_turn) + 16384;
     const int32_t wanted_q15 = self->out.current_cmd_mA * effect / 10000;
     state->damped_q15 += (wanted_q15 - state->damped_q15) / 64;
+    self->vibration.step_turn[0] += self->vibration.step_turn[0] / 65536u * state->sweep;
     const int32_t counts = draw_sample(&self->seed, &self->vibration);
     return (int32_t)((int64_t)counts * (32768 - state->damped_q15) / 32768);
 }
@@ -67,6 +69,9 @@ static void swap_table(stream_t *self) {
 }
 
 static void operate(stream_t *self, phase_case_t *state) {
+    // Frozen until the next one at most.
+    state->is_frozen = !state->is_frozen && draw_one_in(&self->seed, 6);
+    quiesce_adaptation_freeze(&self->controller, state->is_frozen);
     switch (draw_below(&self->seed, 8)) {
     case 0:
         swap_table(self);
@@ -75,11 +80,7 @@ static void operate(stream_t *self, phase_case_t *state) {
         quiesce_adaptation_reset(&self->controller);
         break;
     case 2:
-        state->is_frozen = !state->is_frozen && draw_one_in(&self->seed, 2);
-        quiesce_adaptation_freeze(&self->controller, state->is_frozen);
-        break;
     case 3:
-    case 4:
         load(self, state);
         break;
     default:
@@ -90,7 +91,7 @@ static void operate(stream_t *self, phase_case_t *state) {
 
 void stream_phase_cases(stream_t *self) {
     for (uint32_t number = 0; number < CASES; number++) {
-        one = (phase_case_t){0};
+        one = (phase_case_t){.sweep = number % 4 == 3 ? 1 : 0};
         stream_open(self, "phase", number);
         draw_case(self, number);
         stream_start(self);
@@ -100,7 +101,7 @@ void stream_phase_cases(stream_t *self) {
                 draw_steady(&self->seed, self->params.tick_rate_Hz, &self->vibration);
                 self->vibration.left_ticks *= 2u;
             }
-            if (draw_one_in(&self->seed, 2500)) {
+            if (draw_one_in(&self->seed, 6000)) {
                 operate(self, &one);
             }
             self->in.accel_counts = damped_sample(self, &one);

@@ -31,6 +31,15 @@ static void receive(stream_t *self) {
     record_word(&self->record, (uint32_t)quiesce_rules_store_commit(&store, &self->controller));
 }
 
+// Other words where a table was, which is not in use meanwhile.
+static void rewrite(stream_t *self) {
+    static uint32_t mine[GOLDEN_RULES_MAX_WORDS];
+    const golden_table_t *table = &golden_rules[draw_below(&self->seed, GOLDEN_FITTING_RULES)];
+    (void)quiesce_rules_use(&self->controller, NULL, 0);
+    memcpy(mine, table->words, table->count * sizeof *table->words);
+    record_word(&self->record, (uint32_t)quiesce_rules_use(&self->controller, mine, table->count));
+}
+
 static void use(stream_t *self) {
     const golden_table_t *table = &golden_rules[draw_below(&self->seed, GOLDEN_RULES)];
     const uint32_t count = table->count - (draw_one_in(&self->seed, 4) ? 1u : 0u);
@@ -38,7 +47,7 @@ static void use(stream_t *self) {
 }
 
 static void operate(stream_t *self) {
-    switch (draw_below(&self->seed, 6)) {
+    switch (draw_below(&self->seed, 9)) {
     case 0:
         record_word(&self->record, (uint32_t)quiesce_rules_use(&self->controller, NULL, 0));
         break;
@@ -48,6 +57,10 @@ static void operate(stream_t *self) {
         break;
     case 3:
         quiesce_rules_store_revert(&store, &self->controller);
+        break;
+    case 4:
+    case 5:
+        rewrite(self);
         break;
     default:
         receive(self);
@@ -60,6 +73,7 @@ void stream_rules_cases(stream_t *self) {
         stream_open(self, "rules", number);
         self->params.law = number % 3 == 2 ? QUIESCE_LAW_FUZZY_SELFTUNE : QUIESCE_LAW_FUZZY;
         self->params.selftune_polarity = number < 3 ? 1 : -1;
+        self->params.selftune_upper_mHz = number < 3 ? 100000 : 12000;
         self->params.selftune_leak_ms = number < 3 ? 0 : 400;
         self->params.selftune_deadband_um_s2 = number < 3 ? 0 : 50000;
         stream_start(self);
@@ -68,6 +82,7 @@ void stream_rules_cases(stream_t *self) {
         while (self->tick < TICKS) {
             if (self->vibration.left_ticks == 0) {
                 draw_steady(&self->seed, RATE_Hz, &self->vibration);
+                self->vibration.left_ticks /= 4u;
             }
             if (draw_one_in(&self->seed, 150)) {
                 operate(self);

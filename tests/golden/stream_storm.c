@@ -2,7 +2,7 @@
 // as long as its limit, so that the controller goes round all of its states many times.
 #include "stream.h"
 
-enum { LAWS = 5, CASES = 20, TICKS = 10000, RATES = 4 };
+enum { LAWS = 5, CASES = 20, TICKS = 10000, RATES = 4, QUIET_COUNTS = 20 };
 
 typedef enum {
     SENSE_GOOD,
@@ -26,6 +26,7 @@ typedef struct {
     uint32_t reset_ticks;
     int32_t coil_mA_q8; ///< current in the coil
     int32_t off_by_mA;
+    int32_t least_noise;
     uint32_t calm; ///< how many times rarer than in the worst storm all of it is
 } storm_t;
 
@@ -42,7 +43,7 @@ static void draw_case(stream_t *self, uint32_t number) {
         p->sensor_max_age_ticks = draw_between(&self->seed, 1, 20);
         p->sensor_stuck_ticks = 12 * draw_between(&self->seed, 0, 3);
         p->sensor_recover_ticks = draw_between(&self->seed, 1, 60);
-        p->sensor_min_noise_counts = number % 3 == 0 ? 20 : 0;
+        p->sensor_min_noise_counts = number % 3 == 0 ? QUIET_COUNTS : 0;
         p->accel_polarity = number % 2 == 0 ? 1 : -1;
         p->max_current_mA = draw_between(&self->seed, 2500, 5000);
         p->safe_current_mA = number % 4 == 1 ? draw_between(&self->seed, 1, 2500) : 0;
@@ -52,6 +53,10 @@ static void draw_case(stream_t *self, uint32_t number) {
         p->current_error_mA = draw_between(&self->seed, 100, 800);
         p->current_lag_ms = draw_between(&self->seed, 0, 10);
         p->current_fault_ticks = draw_between(&self->seed, 1, 40);
+        if (number % (2 * LAWS) == 6) { // just at the limit of an open coil
+            p->current_lag_ms = 0;
+            p->constant_current_mA = 2 * p->current_error_mA;
+        }
         p->track_hold_ms = draw_between(&self->seed, 0, 1200);
     } while (!quiesce_params_check(p, NULL));
 }
@@ -65,11 +70,22 @@ static void draw_spell(stream_t *self, uint32_t *left_ticks, uint32_t one_in, ui
     }
 }
 
+// Silence of some seconds, or as much noise as just passes for a live sensor.
+static void draw_quiet(stream_t *self, storm_t *s) {
+    const bool is_new = s->quiet_ticks == 0;
+    draw_spell(self, &s->quiet_ticks, 3000, 4u * (uint32_t)self->params.tick_rate_Hz);
+    if (is_new) {
+        s->least_noise = draw_one_in(&self->seed, 2) ? QUIET_COUNTS : 0;
+    }
+}
+
 static void draw_events(stream_t *self, storm_t *s) {
     uint32_t *seed = &self->seed;
-    draw_spell(self, &s->sense_ticks, 300 * s->calm, 40);
+    if (s->quiet_ticks == 0) {
+        draw_spell(self, &s->sense_ticks, 300 * s->calm, 40);
+    }
     draw_spell(self, &s->coil_ticks, 400 * s->calm, 60);
-    draw_spell(self, &s->quiet_ticks, 6000, 3u * (uint32_t)self->params.tick_rate_Hz);
+    draw_quiet(self, s);
     draw_spell(self, &s->estop_ticks, 700 * s->calm, 30);
     draw_spell(self, &s->failed_ticks, 900 * s->calm, 30);
     draw_spell(self, &s->idle_ticks, 500 * s->calm, 80);
@@ -89,6 +105,19 @@ static void draw_events(stream_t *self, storm_t *s) {
                        : draw_one_in(seed, 2) ? error_mA
                                               : -error_mA;
     }
+}
+
+// Up and down again: each sample bends by the same amount.
+static int32_t quiet_sample(stream_t *self, const storm_t *s) {
+    return s->least_noise > 0 ? (int32_t)(self->tick % 2u) * s->least_noise
+                              : draw_between(&self->seed, 0, 3);
+}
+
+// A current within, at or beyond half the error that is allowed.
+static int32_t open_coil_mA(stream_t *self) {
+    const int32_t half_mA = self->params.current_error_mA / 2;
+    return draw_one_in(&self->seed, 2) ? half_mA - draw_between(&self->seed, 0, 1)
+                                       : draw_between(&self->seed, -30, 30);
 }
 
 static void sense(stream_t *self, const storm_t *s) {
@@ -115,7 +144,7 @@ static void sense(stream_t *self, const storm_t *s) {
         in->accel_counts = counts;
         break;
     default:
-        in->accel_counts = s->quiet_ticks > 0 ? draw_between(seed, 0, 3) : counts;
+        in->accel_counts = s->quiet_ticks > 0 ? quiet_sample(self, s) : counts;
         break;
     }
 }
@@ -127,7 +156,7 @@ static void measure(stream_t *self, storm_t *s) {
     s->coil_mA_q8 += (command_mA * 256 - s->coil_mA_q8) / (1 + lag_ticks);
     const int32_t coil_mA = s->coil_mA_q8 / 256;
     self->in.current_is_measured = s->coil != COIL_UNKNOWN;
-    self->in.current_meas_mA = s->coil == COIL_OPEN     ? draw_between(&self->seed, -30, 30)
+    self->in.current_meas_mA = s->coil == COIL_OPEN     ? open_coil_mA(self)
                                : s->coil == COIL_OFF_BY ? coil_mA + s->off_by_mA
                                                         : coil_mA;
 }
