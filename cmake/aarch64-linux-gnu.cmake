@@ -1,5 +1,5 @@
 # Cross compiler for 64-bit ARM Linux (Debian: g++-aarch64-linux-gnu). Headers and libraries beyond
-# those of C and C++ come from the Debian arm64 packages that `tools/vm_images root` unpacks; nothing
+# those of C and C++ come from the Debian arm64 packages that `tests/system/vm/build_images root` unpacks; nothing
 # is taken from this machine's own folders.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)

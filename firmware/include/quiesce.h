@@ -23,7 +23,7 @@ typedef enum {
     QUIESCE_STATE_FAULT = 4, ///< a latched fault; left only by fault_reset
 } quiesce_state_t;
 
-/// Faults: numbers are never reused. docs/faults.md has causes and reactions.
+/// Faults: numbers are never reused. docs/reference/faults.md has causes and reactions.
 typedef enum {
     QUIESCE_FAULT_NONE = 0,
     QUIESCE_FAULT_PARAMETER = 1,            ///< a parameter was refused at init (latched)

@@ -46,7 +46,7 @@ QemuOptions emulated(const LinkOptions &options) {
     if (options.image_path.empty()) {
         throw InputError(
             "an emulated target needs --image ELF; cmake --preset mps2 && cmake --build "
-            "--preset mps2 makes build/mps2/hal/quiesce_mps2_shm.elf (mps2) and "
+            "--preset mps2 makes build/mps2/targets/mps2/quiesce_mps2_shm.elf (mps2) and "
             "quiesce_mps2_uart.elf (mps2-uart)");
     }
     QemuOptions out;

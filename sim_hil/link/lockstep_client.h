@@ -1,5 +1,6 @@
-/// The bench's side of the lock-step protocol over CAN (quiesce.dbc; hal/sim/lockstep_can.h is the
-/// other side): start, parameters, one stimulus and one reply a tick.
+/// The bench's side of the lock-step protocol over CAN (quiesce.dbc;
+/// targets/lockstep/lockstep_can.h is the other side): start, parameters, one stimulus and one
+/// reply a tick.
 #ifndef QUIESCE_LOCKSTEP_CLIENT_H
 #define QUIESCE_LOCKSTEP_CLIENT_H
 

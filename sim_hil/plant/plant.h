@@ -5,8 +5,8 @@
 ///   I follows the driver's output with the coil's lag, and the coil's current with remanence
 ///
 /// Classical Runge-Kutta with a fixed step that divides the tick; time is n / rate, never
-/// accumulated. Error budget (docs/plant.md): the default longest step of 500 us keeps every
-/// reduction of the frozen plant within 0.03 point of a run at 20 us.
+/// accumulated. Error budget (docs/howto/describe-a-plant.md): the default longest step of 500 us
+/// keeps every reduction of the frozen plant within 0.03 point of a run at 20 us.
 #ifndef QUIESCE_PLANT_H
 #define QUIESCE_PLANT_H
 

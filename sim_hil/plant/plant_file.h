@@ -1,4 +1,5 @@
-/// Plant files: TOML, schema "quiesce-plant" version 1. docs/plant.md has the table of keys.
+/// Plant files: TOML, schema "quiesce-plant" version 1. docs/howto/describe-a-plant.md has the
+/// table of keys.
 #ifndef QUIESCE_PLANT_FILE_H
 #define QUIESCE_PLANT_FILE_H
 

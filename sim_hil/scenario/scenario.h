@@ -57,8 +57,8 @@ struct Scenario {
     std::optional<Transient> transient;
 };
 
-/// Reads TOML, schema "quiesce-scenario" version 1 (docs/plant.md has the table of keys). Throws
-/// InputError naming file, line, key, what is wrong and what is allowed.
+/// Reads TOML, schema "quiesce-scenario" version 1 (docs/howto/describe-a-plant.md has the table of
+/// keys). Throws InputError naming file, line, key, what is wrong and what is allowed.
 Scenario load_scenario(const std::string &file);
 
 /// Some segment shakes the base.

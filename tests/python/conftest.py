@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools/src"))
 
 Result = subprocess.CompletedProcess[str]
 
@@ -34,15 +33,19 @@ def build() -> Path:
 @pytest.fixture(scope="session")
 def image(build: Path) -> Path:
     """The image that runs in QEMU."""
-    return require(build / "mps2/hal/quiesce_mps2_shm.elf")
+    return require(build / "mps2/targets/mps2/quiesce_mps2_shm.elf")
 
 
 def run_quiesce(folder: Path, *arguments: str | Path, **env: str) -> Result:
-    """`quiesce ARGUMENTS` with `folder` as the current one."""
+    """`./tools/quiesce ARGUMENTS` with `folder` as the current one, without its build."""
+    module, words = "quiesce", list(map(str, arguments))
+    if words[:1] == ["bench"]:
+        module, words = "quiesce_benchmarks", words[1:]
+    path = os.pathsep.join(str(ROOT / name) for name in ("tools/src", "tools/benchmarks"))
     return subprocess.run(
-        [sys.executable, "-m", "quiesce", *map(str, arguments)],
+        [sys.executable, "-m", module, *words],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "tools/src"), **env},
+        env={**os.environ, "PYTHONPATH": path, **env},
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
@@ -66,7 +69,7 @@ def refused(quiesce, tmp_path: Path) -> Callable[..., str]:
         assert result.returncode == 2, result.stdout + result.stderr
         assert result.stdout == ""
         assert len(result.stderr.splitlines()) == 1, result.stderr
-        assert result.stderr.startswith("quiesce: ")
+        assert result.stderr.startswith(("quiesce: ", "benchmark: "))
         assert "Traceback" not in result.stderr
         assert sorted(tmp_path.rglob("*")) == before
         return result.stderr

@@ -40,7 +40,7 @@ def header(params: list[dict], digest: str) -> str:
 
 #define QUIESCE_PARAM_COUNT {len(params)}
 {enums}
-/// One int32_t a parameter, in the order of their indices. docs/parameters.md lists ranges.
+/// One int32_t a parameter, in the order of their indices. docs/reference/parameters.md lists ranges.
 typedef struct {{
 {fields}
 }} quiesce_params_t;
@@ -147,7 +147,7 @@ def main() -> int:
     outputs = {
         "firmware/include/quiesce_params.h": header(params, digest),
         "firmware/param/param_table.c": table(params, digest),
-        "docs/parameters.md": page(params, digest),
+        "docs/reference/parameters.md": page(params, digest),
     }
     stale = [
         name

@@ -14,12 +14,12 @@ asks_for_help() {
 # launch_build PRESET: what the bench runs, without the tests (ninja's target of a whole folder).
 launch_build() {
     case "$1" in
-    mps2) build_preset mps2 hal/all ;;
-    *) build_preset "$1" hal/all sim_hil/all ;;
+    mps2) build_preset mps2 targets/all ;;
+    *) build_preset "$1" sim_hil/all ;;
     esac
 }
 
-# launch PRESET... -- ARGUMENT...: becomes `quiesce ARGUMENT...` in the caller's folder.
+# launch PRESET... -- MODULE ARGUMENT...: becomes that Python module in the caller's folder.
 # Help needs the Python environment only.
 launch() {
     local presets=() preset
@@ -28,7 +28,7 @@ launch() {
         shift
     done
     shift
-    if (($# == 0)) || asks_for_help "$@"; then
+    if (($# == 1)) || asks_for_help "$@"; then
         "$ROOT/tools/setup" python
     else
         "$ROOT/tools/setup" run
@@ -37,5 +37,5 @@ launch() {
         done
     fi
     # -I: nothing in the caller's folder or PYTHONPATH can stand in for a module.
-    exec "$ROOT/.venv/bin/python" -I -m quiesce "$@"
+    exec "$ROOT/.venv/bin/python" -I -m "$@"
 }

@@ -2,7 +2,7 @@
 # Debian packages of the Linux controller, and the clean Debian roots that they are made against and
 # tried in. Sourced by tools/package.
 
-PACKAGING="$ROOT/linux/packaging"
+PACKAGING="$ROOT/targets/linux/packaging"
 CLEAN_ROOTS="$ROOT/build/package"
 
 # package_version: that of the newest entry of the change log.

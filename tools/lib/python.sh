@@ -39,7 +39,7 @@ python_find() {
 
 # What a complete environment was made from. Environments do not survive a move of the folder.
 python_stamp() {
-    sha256sum <"$REQUIREMENTS"
+    cat "$REQUIREMENTS" "$ROOT/tools/lib/python.sh" | sha256sum
     printf '%s\n' "$ROOT"
     "$VENV/bin/python" -V
 }
@@ -76,7 +76,7 @@ python_setup() {
     retry setup-python python_pip install --require-hashes -r "$REQUIREMENTS" ||
         fail "could not install the Python packages: $(pip_reason setup-python). Check the network and pip's settings, then run again (log: build/logs/setup-python.log)"
     site="$("$VENV/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
-    printf '%s\n' "$ROOT/tools/src" >"$site/quiesce.pth"
+    printf '%s\n' "$ROOT"/{tools/src,tools/benchmarks,tests/system/vm} >"$site/quiesce.pth"
     # Last, and in one step: an interrupted set-up has no such file and starts again.
     python_stamp >"$VENV/.complete.new"
     mv "$VENV/.complete.new" "$VENV/.complete"

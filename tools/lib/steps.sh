@@ -54,11 +54,11 @@ run_pytest() {
 }
 
 run_pytest_package() {
-    .venv/bin/python -m pytest tests/package --durations=10
+    .venv/bin/python -m pytest tests/system/package --durations=10
 }
 
 run_pytest_vm() {
-    .venv/bin/python -m pytest tests/vm --durations=5
+    .venv/bin/python -m pytest tests/system/vm --durations=5
 }
 
 run_coverage() {

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# A folder to build in for tools that take no space in a path. Sourced by tools/vm_images and
+# A folder to build in for tools that take no space in a path. Sourced by tests/system/vm/build_images and
 # tools/package.
 
 WORK_FOLDER=""

@@ -92,7 +92,7 @@ network_parameters() {
 
 template <std::size_t Elements>
 struct ViscoplasticNetwork {
-    static constexpr const char *kSource = "Quiesce (docs/damper_models.md)";
+    static constexpr const char *kSource = "Quiesce (docs/reference/damper-models.md)";
     static constexpr auto kParameters = network_parameters<Elements>();
     static constexpr int kStates = Elements;
     static constexpr bool kUsesAccel = false;

@@ -1,4 +1,5 @@
-/// Learned models in files: what the keys of [parameters] mean (docs/damper_learned.md).
+/// Learned models in files: what the keys of [parameters] mean
+/// (docs/explanation/learned-dampers.md).
 #ifndef QUIESCE_LEARNED_SECTION_H
 #define QUIESCE_LEARNED_SECTION_H
 

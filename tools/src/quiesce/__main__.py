@@ -2,7 +2,7 @@
 
 import sys
 
-from quiesce.cli import main
+from quiesce.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

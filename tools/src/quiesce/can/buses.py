@@ -5,7 +5,7 @@ import os
 from dataclasses import dataclass, replace
 from typing import Any
 
-from quiesce.errors import UsageError, one_line
+from quiesce.base.errors import UsageError, one_line
 
 EXAMPLES = (
     "socketcan:can0, slcan:/dev/ttyACM0@115200, slcan:socket://127.0.0.1:5556, "

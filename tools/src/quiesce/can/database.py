@@ -5,8 +5,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import root
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import root
 
 CYCLIC = "Cyclic"
 CYCLIC_IF_ACTIVE = "CyclicIfActive"

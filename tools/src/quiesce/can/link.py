@@ -9,8 +9,8 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
+from quiesce.base.errors import UsageError
 from quiesce.can.buses import Bus, reason_of
-from quiesce.errors import UsageError
 
 REOPEN_S = 0.5
 READ_S = 0.1

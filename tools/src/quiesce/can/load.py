@@ -11,13 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 
+from quiesce.base.table import format_table
 from quiesce.can.database import (
     CYCLIC,
     CYCLIC_IF_ACTIVE,
     Database,
     Message,
 )
-from quiesce.table import format_table
 
 DEFAULT_BITRATE = 500_000
 ERROR_FRAME_BITS = 31  # with what follows it, the paper's section 3.4

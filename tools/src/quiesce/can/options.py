@@ -4,8 +4,8 @@ import argparse
 import math
 from pathlib import Path
 
+from quiesce.base.errors import UsageError
 from quiesce.can.database import Database, load
-from quiesce.errors import UsageError
 
 
 def add_database_option(parser: argparse.ArgumentParser) -> None:

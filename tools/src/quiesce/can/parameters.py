@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-from quiesce.errors import UsageError
-from quiesce.params import expected, parse_value
-from quiesce.paths import root
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import root
+from quiesce.engine.params import expected, parse_value
 
 FILE = "firmware/param/parameters.toml"
 

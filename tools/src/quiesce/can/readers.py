@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from quiesce.base.errors import UsageError, one_line
 from quiesce.can.python_can import can
-from quiesce.errors import UsageError, one_line
 
 from can.util import CAN_FD_DLC  # isort: skip
 

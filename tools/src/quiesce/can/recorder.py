@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.can.database import Database
 from quiesce.can.link import Back, Link, Lost
 from quiesce.can.parameters import hash_of, name_of
 from quiesce.can.services import ReadAll, Requests
 from quiesce.can.traffic import Traffic
 from quiesce.can.writers import PART_SUFFIX, LogFile, MdfFile, open_log
-from quiesce.errors import BenchFailure, UsageError
 
 # For the controller's identity, sent once a second, and all its parameters.
 PREAMBLE_S = 3.0

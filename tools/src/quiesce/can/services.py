@@ -5,10 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from quiesce.base.errors import BenchFailure
 from quiesce.can.database import Database
 from quiesce.can.e2e import ALIVE_PERIOD, alive_of, frame_crc, protect
 from quiesce.can.link import Link
-from quiesce.errors import BenchFailure
 
 REQUEST = "ServiceRequest"
 REPLY = "ServiceReply"

@@ -11,9 +11,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from quiesce.base.errors import one_line
 from quiesce.can.python_can import can
 from quiesce.can.whole_file import WholeFile
-from quiesce.errors import one_line
 
 # Uncompressed bytes of a BLF container: what a power cut loses.
 BLF_CONTAINER_BYTES = 16 * 1024

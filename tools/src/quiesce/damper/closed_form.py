@@ -6,6 +6,7 @@ from time import monotonic
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, levels_of
@@ -16,7 +17,6 @@ from quiesce.damper.library import RIG, Scales
 from quiesce.damper.model_file import from_row
 from quiesce.damper.passivity import Passivity, is_proved
 from quiesce.damper.score import score
-from quiesce.errors import UsageError
 
 MODEL = "normalised_bouc_wen"
 NAME = "normalised_bouc_wen_ls"

@@ -95,7 +95,7 @@ def example_text(recipe: Recipe | None = None) -> str:
 
 def write_example(file: Path, recipe: Recipe | None = None) -> None:
     """Writes the CSV file and, beside it, the damper that it came from (FILE_truth.toml)."""
-    from quiesce.atomic import output_files
+    from quiesce.base.atomic import output_files
 
     text, truth = example_text(recipe), EXAMPLE.to_toml()
     with output_files(file.parent) as staging:

@@ -40,6 +40,6 @@ def simulator(damper: DamperModel) -> Simulate:
     if damper.is_kernel:
         one, orders, row = damper.kernel_row()
         return lambda record: library.simulate_row(one, orders, row, record)
-    from quiesce.damper.file_force import with_rig
+    from quiesce.damper.simulate import with_rig
 
     return with_rig(opened(damper), dict(damper.rig))

@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.score import Simulate
-from quiesce.errors import UsageError
 
 # Currents of the grid, and periods after which a hysteretic loop is taken as closed.
 GRID = 21

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import build_folder
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import build_folder
 
 # Around every model, 0 where absent: time constants of a rising and a falling current (s), mass
 # that moves with the force sensor (kg), time by which the force lags the motion (s), force at rest
@@ -104,7 +104,7 @@ class Model:
 @cache
 def module() -> ModuleType:
     """The compiled module; UsageError where it has not been built."""
-    files = sorted((build_folder() / "host/sim_hil").glob("quiesce_dampers*.so"))
+    files = sorted((build_folder() / "host/sim_hil/python").glob("quiesce_dampers*.so"))
     if not files:
         raise UsageError(
             "the damper library is not built; run ./tools/quiesce once, or "

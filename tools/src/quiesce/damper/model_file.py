@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from quiesce.atomic import output_files
+from quiesce.base.atomic import output_files
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
 from quiesce.damper.library import FIELD, RIG, DamperFile, Model, models
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import shown
 
 SCHEMA = "quiesce-damper"
 VERSION = 1

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.excitation import (
     Excitation,
     ramp_freq_Hz,
@@ -16,7 +17,6 @@ from quiesce.damper.excitation import (
     switched_current,
     times,
 )
-from quiesce.errors import UsageError
 
 # Part of the half stroke that is used: the ends are for mishaps.
 USED_PART = 0.8

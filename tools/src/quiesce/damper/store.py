@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.atomic import output_files
+from quiesce.base.atomic import output_files
+from quiesce.base.errors import UsageError
 from quiesce.damper.candidates import NETWORK
 from quiesce.damper.data.split import Segment
 from quiesce.damper.fit.intervals import Interval
@@ -17,7 +18,6 @@ from quiesce.damper.identify import GREY_BOX
 from quiesce.damper.model_file import read_model, write_model
 from quiesce.damper.passivity import Passivity
 from quiesce.damper.score import score
-from quiesce.errors import UsageError
 
 FOLDER = "models"
 STATE = "state.json"

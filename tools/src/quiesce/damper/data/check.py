@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.table import Table, at, clipped
-from quiesce.errors import UsageError
-from quiesce.recording import MAX_JITTER
+from quiesce.signal.recording import MAX_JITTER
 
 MIN_ROWS = 50
 GAP_PERIODS = 1.5

@@ -5,10 +5,10 @@ from types import MappingProxyType
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data import units
 from quiesce.damper.data.table import Table, at, clipped
 from quiesce.damper.data.units import Unit
-from quiesce.errors import UsageError
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.check import (
     MIN_ROWS,
     check_energy,
@@ -18,8 +19,7 @@ from quiesce.damper.data.check import (
 from quiesce.damper.data.motion import derivatives, integrated, low_passed
 from quiesce.damper.data.read import RawTest
 from quiesce.damper.data.record import Record
-from quiesce.errors import UsageError
-from quiesce.recording import MAX_JITTER
+from quiesce.signal.recording import MAX_JITTER
 
 LOW_PASS_Hz = 40.0
 # The default is lowered to this part of the sampling rate where that is low.

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
 from quiesce.damper.data.columns import NONE, ROLES, ColumnSpec, parse_spec, stated_unit
 from quiesce.damper.data.condition import LOW_PASS_Hz, Settings
 from quiesce.damper.data.read import Columns, OutputAverage
 from quiesce.damper.data.split import Split, is_number, parse_part
 from quiesce.damper.data.table import clipped
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import shown
 
 # Of a scoring file: what a mapping has no use for.
 _OF_SCORING = {"name", "file", "lagged_baseline"}

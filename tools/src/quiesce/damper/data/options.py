@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
 from quiesce.damper.data.columns import NONE, ROLES, parse_spec
 from quiesce.damper.data.condition import condition_all
 from quiesce.damper.data.mapping import Plan, plan_of_mapping, read_mapping, with_low_pass
 from quiesce.damper.data.read import Columns, OutputAverage, RawTest, read_file
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Split, part_from_text
-from quiesce.errors import UsageError
-from quiesce.paths import shown
 
 _SETTING_FLAGS = ("keep_offset", "use_velocity", "accept_values")
 

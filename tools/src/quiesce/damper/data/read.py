@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
 from quiesce.damper.data.check import MIN_ROWS, Piece, check_constant, check_rows, pieces_of
 from quiesce.damper.data.columns import Column, ColumnSpec, find_columns
 from quiesce.damper.data.table import Table, at, clipped, open_table
 from quiesce.damper.data.units import FREQUENCY, split_name
-from quiesce.errors import UsageError
-from quiesce.paths import shown
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
-from quiesce.errors import UsageError
 
 FORMS = ("time_s", "part", "rows", "current_A")
 VALIDATION_PART = 0.25

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import shown
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
 
 MAX_BYTES = 400_000_000
 # Beyond any measured value, in any unit.

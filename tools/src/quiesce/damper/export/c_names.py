@@ -4,9 +4,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.library import RIG
 from quiesce.damper.model_file import DamperModel
-from quiesce.errors import UsageError
 
 _KEYWORDS = frozenset(
     "auto break case char const continue default do double else enum extern float for goto if "

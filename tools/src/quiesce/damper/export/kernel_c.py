@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import root
 from quiesce.damper.export.c_names import (
     CSource,
     as_comment,
@@ -15,8 +17,6 @@ from quiesce.damper.export.c_names import (
 )
 from quiesce.damper.library import Model
 from quiesce.damper.model_file import DamperModel
-from quiesce.errors import UsageError
-from quiesce.paths import root
 
 _INCLUDE = re.compile(r'^#include ([<"])([^>"]+)[>"][^\n]*\n', re.MULTILINE)
 _STRUCT = re.compile(r"\bstruct\s+(\w+)[^;{]*\{")

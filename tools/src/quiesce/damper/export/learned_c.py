@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.export.c_names import (
     CSource,
     as_comment,
@@ -16,7 +17,6 @@ from quiesce.damper.export.c_names import (
     rig_values,
 )
 from quiesce.damper.model_file import DamperModel
-from quiesce.errors import UsageError
 
 TITLES = {
     "anfis": "ANFIS, product and weighted mean",

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
-from quiesce.errors import UsageError
 
 # Points in the mean cycle; even.
 POINTS = 4096

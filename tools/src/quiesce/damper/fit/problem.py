@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, records_in
 from quiesce.damper.fit.bounded import bounded_least_squares
 from quiesce.damper.fit.setting import Setting, law_matrix
 from quiesce.damper.library import RIG, Scales
-from quiesce.errors import UsageError
 
 # The rig's values: natural size, search range in it, and whether the force is linear in it.
 _RIG_LINEAR = {"inertia_kg", "offset_N", "drift_N_s"}

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.split import Segment, levels_of
 from quiesce.damper.library import RIG, Model
-from quiesce.errors import UsageError
 
 MAX_ORDER = 3
 

@@ -4,7 +4,7 @@
 from importlib import import_module
 from types import ModuleType
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 
 # Name in damper files -> module with train(segments, scales, seed, settings, progress).
 MODELS = {

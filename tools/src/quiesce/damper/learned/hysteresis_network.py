@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, is_switched, levels_of, records_in
@@ -22,7 +23,6 @@ from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silen
 from quiesce.damper.learned.network import Adam, Network, falling_rate
 from quiesce.damper.library import DamperFile, Scales
 from quiesce.damper.model_file import DamperModel
-from quiesce.errors import UsageError
 
 # Rows in which the elements forget that they started at rest are not learned from, at most.
 _SETTLING_S = 0.1

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
-from quiesce.errors import UsageError
 
 KEYS = ("current_A", "displacement_m", "velocity_m_s", "temperature_C")
 

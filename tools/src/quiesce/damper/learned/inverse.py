@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from quiesce.atomic import output_files
+from quiesce.base.atomic import output_files
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.learned.network import Network, fit
 from quiesce.damper.library import Scales
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import shown
 
 SCHEMA = "quiesce-inverse-damper"
 VERSION = 1

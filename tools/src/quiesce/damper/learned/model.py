@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
 from quiesce.damper.library import DamperFile, Scales
 from quiesce.damper.model_file import DamperModel
-from quiesce.errors import UsageError
 
 # Called with one line for every piece of work done.
 Report = Callable[[str], None]

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
-from quiesce.errors import UsageError
 
 ZERO_C_IN_K = 273.15
 

@@ -5,16 +5,16 @@ import math
 from pathlib import Path
 from typing import Any
 
-from quiesce.atomic import output_files
+from quiesce.base.atomic import output_files
+from quiesce.base.paths import shown
+from quiesce.base.table import format_table
 from quiesce.damper.compare import Comparison
 from quiesce.damper.plain import plain
 from quiesce.damper.report.page import html_table, items
 from quiesce.damper.report.plots import plot_errors, plot_loops, plot_residual, plot_time
 from quiesce.damper.report.runs import whiteness_of
 from quiesce.damper.report.tables import Table, percent, shortened, whiteness_text
-from quiesce.hil_page import CSS, image
-from quiesce.paths import shown
-from quiesce.table import format_table
+from quiesce.hil.page import CSS, image
 
 
 def score_table(found: Comparison) -> Table:

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from quiesce.atomic import output_files
+from quiesce.base.atomic import output_files
+from quiesce.base.table import format_table
 from quiesce.damper.inverse import Monotone, SteadyForces, inverse_map, why_no_closed_form
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.plain import plain
-from quiesce.plot_style import pyplot
-from quiesce.table import format_table
+from quiesce.report.plot_style import pyplot
 
 FORCES = 41
 

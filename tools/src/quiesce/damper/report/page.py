@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from quiesce.atomic import output_files
+from quiesce.base.atomic import output_files
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.split import Segment
 from quiesce.damper.fitted import Fitted
 from quiesce.damper.ranking import ranked
@@ -30,8 +31,7 @@ from quiesce.damper.report.tables import (
     winner_table,
     winners,
 )
-from quiesce.errors import UsageError
-from quiesce.hil_page import CSS, card, image, section
+from quiesce.hil.page import CSS, card, image, section
 
 PAGE = "report.html"
 NUMBERS = "report.json"

@@ -9,7 +9,7 @@ from quiesce.damper.fit.intervals import autocorrelation
 from quiesce.damper.fitted import Fitted
 from quiesce.damper.ranking import ranked
 from quiesce.damper.report.runs import Run, command_parts, one_a_level, shown_part
-from quiesce.plot_style import COLORS, pyplot, svg_of
+from quiesce.report.plot_style import COLORS, pyplot, svg_of
 
 # Rows that one curve shows: more hide each other and make files large.
 MOST_ROWS = 3000

@@ -5,13 +5,13 @@ import tomllib
 from collections.abc import Sequence
 from typing import Any
 
+from quiesce.base.table import format_table
 from quiesce.damper.data.split import Segment, levels_of
 from quiesce.damper.fit.intervals import Interval, Whiteness
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
 from quiesce.damper.plain import plain
 from quiesce.damper.ranking import best, ranked
 from quiesce.damper.score import Score, SegmentScore
-from quiesce.table import format_table
 
 Table = tuple[list[str], list[list[str]]]
 

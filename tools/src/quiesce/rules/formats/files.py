@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from quiesce.errors import UsageError
-from quiesce.paths import shown
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
 from quiesce.rules.formats.build import Options
 from quiesce.rules.formats.fcl import read_fcl
 from quiesce.rules.formats.fis import read_fis

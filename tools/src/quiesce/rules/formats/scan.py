@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 
 NAME = "name"
 NUMBER = "number"

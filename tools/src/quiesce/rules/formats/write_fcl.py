@@ -1,6 +1,6 @@
 """Writes FCL."""
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.formats.fcl import RESERVED
 from quiesce.rules.formats.scan import check_identifier, number_text
 from quiesce.rules.model import (

@@ -1,6 +1,6 @@
 """Writes FIS: Mamdani, or Sugeno with constants."""
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.formats.build import FORBIDDEN
 from quiesce.rules.formats.same import default_matters, plain_points
 from quiesce.rules.formats.scan import number_text

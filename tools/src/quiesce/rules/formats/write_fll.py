@@ -1,6 +1,6 @@
 """Writes FLL, as fuzzylite 7 and 8 read it."""
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.formats.build import FORBIDDEN
 from quiesce.rules.formats.fll import RESERVED
 from quiesce.rules.formats.scan import check_identifier, number_text

@@ -14,7 +14,7 @@ from itertools import product
 
 import numpy as np
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.integers.cells import Axis, Cell, Ramp, ceil, exact, floor, make_cells, nearest
 from quiesce.rules.integers.output_shapes import OutputShapes, layer_integers, make_shapes
 from quiesce.rules.model import AND, CENTROID, Input, Output, Rule, RuleBase

@@ -28,7 +28,7 @@ from fractions import Fraction
 from functools import partial
 from itertools import combinations, pairwise
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.integers.cells import exact, nearest
 from quiesce.rules.model import FuzzySet, Output
 

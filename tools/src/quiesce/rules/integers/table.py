@@ -9,7 +9,7 @@ import struct
 from collections.abc import Sequence
 from itertools import product
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.integers.cells import Cell, nearest
 from quiesce.rules.integers.compile import (
     EXPONENT_STEP,

@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Callable
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.optimize.scenarios import MAX_SETTLE_s, MEASURE_s, SETTLE_s
 
 MAX_VALUES = 100

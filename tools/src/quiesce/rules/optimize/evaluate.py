@@ -10,17 +10,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from quiesce.bench_exe import Bench, setting_options
-from quiesce.errors import UsageError
-from quiesce.hil_metrics import mean_current_A, reduction_pct
-from quiesce.hil_runs import TRACE_COLUMNS, Case, Run
-from quiesce.laws import CONSTANT_BEST, OPEN_LOOP, find
-from quiesce.paths import build_folder
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import build_folder
+from quiesce.engine.bench import Bench, setting_options
+from quiesce.engine.laws import CONSTANT_BEST, OPEN_LOOP, find
+from quiesce.engine.scenarios import Scenario, read_toml
+from quiesce.engine.trace import Trace, read_trace
+from quiesce.hil.metrics import mean_current_A, reduction_pct
+from quiesce.hil.runs import TRACE_COLUMNS, Case, Run
 from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.objective import Outcome, Steady
-from quiesce.scenarios import Scenario, read_toml
-from quiesce.trace import Trace, read_trace
 
 # A rule base for the controller has Hz and m/s2 in, A out; the controller uHz, um/s2 and mA.
 INPUT_LSB = (1e-6, 1e-6)

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.model import FuzzySet, Input, Output, RuleBase, Singleton
 
 Genome = tuple[int, ...]

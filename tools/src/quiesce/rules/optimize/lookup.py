@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
-from quiesce.progress import Progress
+from quiesce.base.progress import Progress
+from quiesce.base.table import format_table
 from quiesce.rules.optimize.evaluate import ClosedLoop, Place
 from quiesce.rules.optimize.objective import Objective, Outcome, Steady
-from quiesce.table import format_table
 
 
 @dataclass(frozen=True)

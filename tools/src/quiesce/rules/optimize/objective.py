@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.optimize.search import Costs
 
 PARTS = ("displacement", "acceleration", "current")

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.plot_style import COLORS, pyplot, svg_of
+from quiesce.report.plot_style import COLORS, pyplot, svg_of
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.result import Found, bound_of
 from quiesce.rules.reference import evaluate

@@ -4,7 +4,7 @@ import html
 import json
 from pathlib import Path
 
-from quiesce.hil_page import CSS, card, image
+from quiesce.hil.page import CSS, card, image
 from quiesce.rules.formats.files import write_text
 from quiesce.rules.optimize.plots import (
     plot_convergence,

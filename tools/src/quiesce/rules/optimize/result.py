@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.reference import load_reference
+from quiesce.base.table import format_table
+from quiesce.hil.published import load_reference
 from quiesce.rules.model import AND, RuleBase
 from quiesce.rules.optimize.evaluate import Place
 from quiesce.rules.optimize.lookup import Sweep, lookup_json, lookup_table
 from quiesce.rules.optimize.objective import PARTS, Objective, Outcome, Steady
 from quiesce.rules.optimize.run import History
-from quiesce.table import format_table
 
 
 @dataclass(frozen=True)

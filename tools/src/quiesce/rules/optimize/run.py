@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from quiesce.errors import UsageError
-from quiesce.paths import shown
-from quiesce.progress import Progress
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.base.progress import Progress
 from quiesce.rules.optimize.genes import Genome
 from quiesce.rules.optimize.objective import Outcome
 from quiesce.rules.optimize.search import Costs, Search

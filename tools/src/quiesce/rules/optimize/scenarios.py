@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from quiesce import scenarios
-from quiesce.bench_exe import Bench
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import root
-from quiesce.scenarios import SCHEMA, Scenario
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import root
+from quiesce.engine import scenarios
+from quiesce.engine.bench import Bench
+from quiesce.engine.scenarios import SCHEMA, Scenario
 
-DEFAULT_PLANT = "sim_hil/plants/squeeze_2012.toml"
+DEFAULT_PLANT = "sim_hil/data/plants/squeeze_2012.toml"
 SETTLE_s, MAX_SETTLE_s, MEASURE_s = 6, 600, 2
 NOISE_mg = 0.5
 

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.bench_exe import Bench
+from quiesce.engine.bench import Bench
+from quiesce.engine.scenarios import Scenario
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize import state as optimize_state
 from quiesce.rules.optimize.evaluate import ClosedLoop, bench_digest, require_controller_shape
@@ -24,7 +25,6 @@ from quiesce.rules.optimize.run import Limits, Problem, Runner, simplify
 from quiesce.rules.optimize.scenarios import steady_scenarios
 from quiesce.rules.optimize.start import FREQS_Hz, recipe_base
 from quiesce.rules.optimize.state import State
-from quiesce.scenarios import Scenario
 
 CONSTANT_STEP_mA = 250
 CHECK_SEEDS = (101, 102, 103)

@@ -9,7 +9,7 @@ is the rule base that the controller ships with.
 import math
 from collections.abc import Sequence
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.model import (
     WEIGHTED_SUM,
     Condition,

@@ -14,8 +14,8 @@ from dataclasses import astuple, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from quiesce.errors import UsageError, one_line
-from quiesce.paths import shown
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
 from quiesce.rules.optimize.genes import Genome
 from quiesce.rules.optimize.objective import Outcome, Steady
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.errors import UsageError
+from quiesce.base.errors import UsageError
 from quiesce.rules.model import Input, RuleBase
 from quiesce.rules.reference import evaluate
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.plot_style import COLORS, pyplot
+from quiesce.report.plot_style import COLORS, pyplot
 from quiesce.rules.model import RuleBase
 from quiesce.rules.views.compare import OutputDifference, differences
 from quiesce.rules.views.plots import DIFFERENCE_MAP, SURFACE_MAP, color_range, hatch

@@ -3,7 +3,7 @@
 import html
 from collections.abc import Sequence
 
-from quiesce.hil_page import CSS, image, section
+from quiesce.hil.page import CSS, image, section
 
 
 def picture(title: str, note: str, svg: str) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.plot_style import COLORS, pyplot, svg_of
+from quiesce.report.plot_style import COLORS, pyplot, svg_of
 from quiesce.rules.model import FuzzySet, Input, Output, RuleBase, Singleton
 from quiesce.rules.reference import membership
 from quiesce.rules.views.surface import (

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from quiesce.base.table import format_table
 from quiesce.rules.model import AND, Output, Rule, RuleBase, Singleton
 from quiesce.rules.views.visits import Fired, Visits
-from quiesce.table import format_table
 
 
 def plural(count: int, word: str) -> str:

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from quiesce.errors import UsageError
-from quiesce.paths import shown
-from quiesce.recording import read_columns
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.engine.trace import Trace, read_trace
 from quiesce.rules.model import RuleBase
 from quiesce.rules.reference import evaluate
 from quiesce.rules.views.surface import input_index
-from quiesce.trace import Trace, read_trace
+from quiesce.signal.recording import read_columns
 
 # What the controller's own rule base reads, in this order: telemetry, and its scale to Hz, m/s2.
 TELEMETRY = (("freq_uHz", 1e-6), ("rms_um_s2", 1e-6))

@@ -1,0 +1,122 @@
+/// The configuration of the controller program: one TOML file (docs/reference/quiesced.md lists its
+/// keys).
+#ifndef QUIESCED_CONFIG_H
+#define QUIESCED_CONFIG_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware.h"
+
+namespace quiesced {
+
+struct LoopConfig {
+    int priority = 80; ///< SCHED_FIFO, 0: normal scheduling
+    int cpu = -1;      ///< -1: any
+    bool lock_memory = true;
+};
+
+struct CanConfig {
+    std::string interface; ///< "can0", or "slcan:/dev/ttyACM0"
+    bool use_fd = false;
+    std::uint32_t restart_ms = 100;
+    std::uint32_t serial_baud = 0; ///< 0: leave it as it is
+    std::uint32_t bitrate = 0;     ///< SLCAN only; 0: do not set it
+
+    bool is_serial() const { return interface.rfind("slcan:", 0) == 0; }
+};
+
+enum class AccelSource { can, iio, adxl355 };
+
+struct AccelConfig {
+    AccelSource source = AccelSource::can;
+    std::string device;
+    bool use_buffer = true;
+    std::string trigger; ///< "": leave it as it is
+    std::uint32_t clock_Hz = 5'000'000;
+    std::uint32_t range_g = 2;
+    std::uint32_t rate_Hz = 0; ///< adxl355; where it is not given, read_config chooses it
+};
+
+enum class CurrentOutput { can, pwm, dac };
+
+struct CurrentConfig {
+    CurrentOutput output = CurrentOutput::can;
+    std::string device; ///< pwm: the chip
+    std::uint32_t channel = 0;
+    std::int32_t full_scale_mA = 0;
+    std::uint32_t period_ns = 0;
+    bool is_inverted = false;
+    std::int32_t zero_code = 0;
+    std::int32_t full_scale_code = 0;
+};
+
+struct LineConfig {
+    std::string line;
+    bool is_active_low = false;
+    int bias = 0; ///< of gpio_spec_t
+
+    gpio_spec_t spec() const;
+};
+
+struct GpioConfig {
+    std::optional<LineConfig> enable_output;
+    std::optional<LineConfig> fault_output;
+    std::optional<LineConfig> estop_input;
+    std::optional<LineConfig> enable_input;
+    std::optional<LineConfig> data_ready_input;
+};
+
+struct WatchdogConfig {
+    std::string device;
+    int timeout_s = 5;
+};
+
+struct StateConfig {
+    std::string folder = "/var/lib/quiesced";
+    std::uint32_t status_s = 5; ///< pause between two writings of the status file
+};
+
+enum class LogLevel { error, warning, info, debug };
+
+struct LogConfig {
+    std::string to = "journal"; ///< "journal", "stderr" or a file's absolute path
+    LogLevel level = LogLevel::info;
+};
+
+struct Config {
+    std::string file;
+    LoopConfig loop;
+    std::optional<CanConfig> can;
+    AccelConfig accel;
+    CurrentConfig current;
+    GpioConfig gpio;
+    node_enable_t enable_from = NODE_ENABLE_BOARD;
+    std::optional<WatchdogConfig> watchdog;
+    StateConfig state;
+    LogConfig log;
+    quiesce_params_t params{}; ///< defaults, and what [parameters] says
+};
+
+/// What a mode needs of the file: the lock-step server has no peripherals.
+enum class Needs { peripherals, bus_only };
+
+/// A file as far as it could be read, and every line that says what is wrong with it.
+struct ConfigReading {
+    Config config;
+    bool is_toml = false; ///< else nothing could be read
+    std::vector<std::string> problems;
+};
+
+/// Never throws for what a file may contain.
+ConfigReading read_config(const std::string &file, Needs needs);
+
+/// The same, for programs that cannot go on with a wrong one. Throws InputError: the first line,
+/// and how many more there are.
+Config require_config(const std::string &file, Needs needs);
+
+} // namespace quiesced
+
+#endif

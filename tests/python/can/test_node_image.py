@@ -1,0 +1,243 @@
+"""The free-running controller image on its UART, driven with python-can as a user would.
+
+Nothing waits for a time: every demand frame of the image is answered with a sample, and each step
+goes on when the bus shows what it waits for.
+"""
+
+import re
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import can
+import pytest
+from can_protection import encode, frame_crc, is_protected, load_database
+from conftest import require
+
+DATABASE = load_database()
+DEADLINE_S = 60.0
+SAMPLE_EVERY_DEMANDS = 4
+OPERATOR_EVERY_DEMANDS = 50
+ASK_AGAIN_AFTER_DEMANDS = 500  # a reply may be lost where this machine reads too slowly
+# A constant current that the demand shows; a sensor on a busy machine is late now and then.
+PARAMETERS = {
+    "law": 1,
+    "constant_current_mA": 1234,
+    "sensor_max_age_ticks": 1000,
+    "sensor_recover_ticks": 1,
+}
+CONTROLLER = {m.frame_id for m in DATABASE.messages if "Controller" in m.senders}
+
+
+class Rig:
+    """Sensor node and operator around the controller on a bus."""
+
+    def __init__(self, bus: can.BusABC) -> None:
+        self.bus = bus
+        self.alive: dict[str, int] = {}
+        self.demands = 0
+        self.seen: dict[str, dict] = {}
+        self.pages: dict[int, dict] = {}
+        self.last_alive: dict[int, int] = {}
+        self.enable = 0
+        self.is_acknowledging = False
+        self.is_stopping = False
+        self.noise = 1
+
+    def send(self, name: str, **values: int | str) -> None:
+        message = DATABASE.get_message_by_name(name)
+        alive = self.alive.get(name, 0)
+        self.alive[name] = alive + 1
+        data = encode(message, alive, **values)
+        self.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=False))
+
+    def send_sample(self) -> None:
+        self.noise = self.noise * 1664525 + 1013904223 & 0xFFFFFFFF
+        self.send("AccelSample", accel_counts=(self.noise >> 16) - 32768)
+
+    def on_demand(self) -> None:
+        self.demands += 1
+        if self.demands % SAMPLE_EVERY_DEMANDS == 0:
+            self.send_sample()
+        if self.demands % OPERATOR_EVERY_DEMANDS == 1:
+            # Pressed and released in turn: a press counts only after a release that was heard.
+            is_pressed = self.is_acknowledging and self.alive.get("OperatorCommand", 0) % 2
+            self.send("OperatorCommand", enable=self.enable, fault_reset=int(is_pressed))
+            if self.is_stopping:
+                self.send("EmergencyStop", code="STOP")
+
+    def take(self, frame: can.Message) -> str:
+        """Checks and keeps a frame; returns its name."""
+        assert frame.arbitration_id in CONTROLLER and not frame.is_extended_id
+        message = DATABASE.get_message_by_frame_id(frame.arbitration_id)
+        assert len(frame.data) == message.length, message.name
+        if is_protected(message):
+            assert frame.data[-1] == frame_crc(frame.arbitration_id, bytes(frame.data))
+        values = message.decode(bytes(frame.data))
+        self.seen[message.name] = values
+        if message.name == "FaultFreeze":
+            self.pages[values["page"]] = values
+        if message.name == "CurrentDemand":
+            self.on_demand()
+        return message.name
+
+    def until(self, what: str, holds: Callable[[str], bool]) -> None:
+        """Runs the bus until holds(name of the frame that has come)."""
+        silent = 0
+        for _ in range(2_000_000):
+            frame = self.bus.recv(timeout=1.0)
+            if frame is None:
+                silent += 1
+                assert silent < DEADLINE_S, f"silence while waiting for {what}"
+                continue
+            silent = 0
+            if holds(self.take(frame)):
+                return
+        pytest.fail(f"never saw {what}: {self.seen}")
+
+    def until_state(self, state: str) -> None:
+        self.until(state, lambda name: name == "Status" and self.seen[name]["state"] == state)
+
+    def ask(self, operation: str, index: int = 0, value: int = 0) -> dict:
+        """The reply; asked again until there is one. Each operation may be done twice."""
+        request = {"operation": operation, "param_index": index, "param_value": value}
+        asked: dict[int, int] = {}  # alive counter: demands when it was sent
+
+        def ask_once() -> None:
+            asked[self.alive.get("ServiceRequest", 0) % 16] = self.demands
+            self.send("ServiceRequest", **request)
+
+        def is_answered(name: str) -> bool:
+            if name == "ServiceReply":
+                reply = self.seen[name]
+                return reply["alive"] in asked and reply["result"] != "BUSY"
+            if self.demands - max(asked.values()) > ASK_AGAIN_AFTER_DEMANDS:
+                ask_once()
+            return False
+
+        ask_once()
+        self.until(f"reply to {operation}", is_answered)
+        return self.seen["ServiceReply"]
+
+    def has_freeze_frame(self, fault: str) -> bool:
+        """All pages are here, of one freeze frame, and it is of that fault."""
+        numbers = {page["freeze_number"] for page in self.pages.values()}
+        is_whole = len(self.pages) == 6 and len(numbers) == 1
+        return is_whole and self.pages[0]["freeze_fault"] == fault
+
+
+@pytest.fixture
+def rig(build: Path) -> Iterator[Rig]:
+    image = require(build / "mps2/targets/mps2/quiesce_mps2_node.elf")
+    # An instruction takes 32 ns of the board's time: a machine under load loses no tick.
+    qemu = subprocess.Popen(
+        ["qemu-system-arm", "-M", "mps2-an386", "-display", "none", "-monitor", "none"]
+        + ["-icount", "shift=5,sleep=off", "-serial", "pty", "-kernel", str(image)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    try:
+        line = qemu.stdout.readline()
+        found = re.search(r"redirected to (\S+)", line)
+        assert found, line
+        with can.Bus(
+            interface="slcan", channel=found[1], bitrate=500_000, sleep_after_open=0
+        ) as bus:
+            yield Rig(bus)
+    finally:
+        qemu.kill()
+        qemu.wait()
+        qemu.stdout.close()
+
+
+def param_index(name: str) -> int:
+    header = (Path(__file__).resolve().parents[3] / "firmware/include/quiesce_params.h").read_text()
+    fields = re.findall(r"^    int32_t (\w+); ///<", header, re.MULTILINE)
+    return fields.index(name)
+
+
+def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
+    # Everything that is sent by itself.
+    cyclic = {
+        m.name
+        for m in DATABASE.messages
+        if m.frame_id in CONTROLLER
+        and m.dbc.attributes["GenMsgSendType"].value == 0
+        and m.cycle_time
+    }
+    assert len(cyclic) == 10
+    rig.until("all cyclic messages", lambda _: cyclic <= rig.seen.keys())
+    assert rig.seen["Identification"]["interface_version"] == 1
+
+    # Parameters: another law, seen in the demand.
+    for name, value in PARAMETERS.items():
+        assert rig.ask("STAGE", param_index(name), value)["result"] == "DONE", name
+    before = rig.seen["Identification"]["param_hash"]
+    assert rig.ask("APPLY")["result"] == "DONE"
+    assert rig.ask("READ", param_index("constant_current_mA"))["param_value"] == 1234
+    rig.until("another hash", lambda _: rig.seen["Identification"]["param_hash"] != before)
+    assert rig.ask("SAVE")["result"] == "STORE_FAILED"  # the image has nowhere to
+
+    # The operator lets it run.
+    rig.enable = 1
+    rig.until("1234 mA", lambda _: rig.seen["CurrentDemand"]["current_cmd_mA"] == 1234)
+    assert rig.seen["CurrentDemand"]["state"] == "RUN"
+
+    # Raw samples are the ones that were sent.
+    assert rig.ask("RAW_STREAM", value=1)["result"] == "DONE"
+    rig.until("a raw sample", lambda name: name == "RawSample" and rig.seen[name]["accel_is_fresh"])
+    assert -32768 <= rig.seen["RawSample"]["accel_counts"] <= 32767
+
+    # Emergency stop: latched, the output stage off, its freeze frame complete.
+    rig.is_stopping = True
+    rig.until("ESTOP", lambda _: rig.seen["Status"]["fault"] == "ESTOP")
+    rig.until("a demand", lambda name: name == "CurrentDemand")
+    assert rig.seen["CurrentDemand"]["driver_is_enabled"] == 0
+    assert rig.seen["CurrentDemand"]["state"] == "FAULT"
+    rig.until("all pages", lambda _: rig.has_freeze_frame("ESTOP"))
+    assert rig.pages[0]["freeze_state"] == "RUN"
+    assert rig.pages[4]["freeze_current_cmd_mA"] == 1234
+
+    # Released, then acknowledged.
+    rig.is_stopping = False
+    rig.until("release", lambda _: not rig.seen["Status"]["is_estop"])
+    assert rig.seen["Status"]["state"] == "FAULT"
+    rig.is_acknowledging = True
+    rig.until("1234 mA again", lambda _: rig.seen["CurrentDemand"]["current_cmd_mA"] == 1234)
+    rig.until_state("RUN")
+    assert {DATABASE.get_message_by_frame_id(i).name for i in CONTROLLER} == rig.seen.keys()
+
+
+def test_image_ignores_and_counts_what_is_damaged(rig: Rig) -> None:
+    message = DATABASE.get_message_by_name("OperatorCommand")
+    rig.until("the first report", lambda name: name == "CanHealth")
+    assert rig.seen["CanHealth"]["rejected_crc"] == rig.seen["CanHealth"]["rejected_shape"] == 0
+
+    def send(data: bytes, **kind: bool) -> None:
+        kind = {"is_extended_id": False, **kind}
+        rig.bus.send(can.Message(arbitration_id=message.frame_id, data=data, **kind))
+
+    for i in range(40):
+        good = encode(message, i, enable=1)
+        send(good[:-1] + bytes([good[-1] ^ (i + 1)]))
+    for i in range(10):
+        good = encode(message, i, enable=1)
+        send(good[:1])
+        send(good + good)
+        send(good, is_extended_id=True)
+        send(b"", is_remote_frame=True)
+        rig.bus.serialPortOrig.write(b"t05\r\xff\x00\x80T\rt0502ZZ00\r" + b"t" * 300 + b"\r")
+
+    def is_counted(name: str) -> bool:
+        assert not rig.seen.get("Status", {}).get("is_enabled")
+        health = rig.seen["CanHealth"]
+        return name == "CanHealth" and (health["rejected_crc"], health["rejected_shape"]) == (
+            40,
+            40,
+        )
+
+    rig.until("40 wrong CRCs and 40 wrong shapes", is_counted)
+    rig.enable = 1
+    rig.until("enabled", lambda _: rig.seen["Status"]["is_enabled"])

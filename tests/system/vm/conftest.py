@@ -1,0 +1,45 @@
+"""The virtual machine's boots, one a session each; tests/system/vm/build_images has made what they need.
+
+QUIESCE_BUILD names another folder with the builds.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+
+from quiesce.base.errors import BenchFailure, UsageError
+from quiesce_vm import boots
+
+
+def told(run, *arguments):
+    """What the boot brings back; a boot that fails is told in one line."""
+    try:
+        return run(*arguments)
+    except (UsageError, BenchFailure) as error:
+        line = str(error)
+    pytest.fail(line, pytrace=False)
+
+
+@pytest.fixture(scope="session")
+def vm() -> Iterator[boots.Vm]:
+    parts = told(boots.Parts.built)
+    with boots.opened(parts) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def bus(vm: boots.Vm) -> boots.BusRun:
+    return told(boots.run_bus, vm)
+
+
+@pytest.fixture(scope="session")
+def timing(vm: boots.Vm) -> boots.TimingRun:
+    return told(boots.run_timing, vm)
+
+
+@pytest.fixture(scope="session")
+def faults(vm: boots.Vm) -> boots.FaultRun:
+    return told(boots.run_faults, vm)

@@ -1,0 +1,55 @@
+"""QEMU itself: it never outlives its user, and what goes wrong is told in one line."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from quiesce.base.errors import BenchFailure
+from quiesce_vm.boots import Vm
+from quiesce_vm.results import results_of
+
+ROOT = Path(__file__).resolve().parents[3]
+USER = """
+import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from quiesce_vm.machine import Boot, Machine
+with Machine(Boot(Path(sys.argv[2]), Path(sys.argv[3]), "timing.sh", True)) as machine:
+    print(machine.process_id, flush=True)
+    machine.wait_end()
+"""
+
+
+def test_emulator_dies_with_its_user(vm: Vm) -> None:
+    paths = (ROOT / "tools/src", vm.parts.vmlinuz, vm.initramfs)
+    command = [sys.executable, "-c", USER, *map(str, paths)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as user:
+        assert user.stdout is not None
+        emulator = os.pidfd_open(int(user.stdout.readline()))
+        user.send_signal(signal.SIGKILL)
+    ready, _, _ = select.select([emulator], [], [], 60)
+    os.close(emulator)
+    assert ready, "QEMU is still there"
+
+
+def test_silent_guest_is_told_in_one_line(vm: Vm) -> None:
+    with vm.boot("timing.sh", is_deterministic=True) as machine:
+        with pytest.raises(BenchFailure) as failure:
+            machine.wait_line("NO SUCH LINE", timeout_s=0.01)
+        assert "said nothing of the kind" in str(failure.value)
+        assert "end of its console" in str(failure.value)
+        with pytest.raises(BenchFailure, match="the guest hangs"):
+            machine.wait_end(timeout_s=0.01)
+
+
+def test_failing_script_is_told_with_its_last_words(vm: Vm) -> None:
+    with vm.boot("no_such_script.sh", is_deterministic=True) as machine:
+        with pytest.raises(BenchFailure, match="the guest ended, without a line 'READY'"):
+            machine.wait_line("READY")
+        with pytest.raises(BenchFailure, match="script ended with 2"):
+            results_of(machine.wait_end())
+        assert "no_such_script.sh" in machine.tail()

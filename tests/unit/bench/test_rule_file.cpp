@@ -1,0 +1,243 @@
+/// --rules: rule tables from files, and what a user reads where one is not good.
+#include "rule_file.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "bench_call.h"
+#include "crc32.h"
+#include "input_error.h"
+
+extern "C" {
+#include "plant_rules.h"
+}
+
+namespace {
+
+using quiesce::bench;
+using quiesce::InputError;
+using quiesce::Outcome;
+using Words = std::vector<std::uint32_t>;
+
+// Places in a table's header (firmware/fuzzy/fuzzy_table.h).
+constexpr std::size_t kMagic = 0, kCrc = 1, kSize = 2, kShape = 3, kAxis = 4, kRules = 8,
+                      kOutput = 9, kOrigin = 14;
+constexpr std::uint32_t kRuleWords = 4, kOutputOrigin = 2;
+
+Words shipped() {
+    return Words(std::begin(plant_rules_table), std::end(plant_rules_table));
+}
+
+Words with_crc(Words words) {
+    quiesce::Crc32 crc;
+    crc.append(words.data() + kSize, words.size() - kSize);
+    words[kCrc] = crc.value();
+    return words;
+}
+
+Words raised(std::uint32_t by_mA) {
+    Words words = shipped();
+    words[kOrigin] += by_mA;
+    words[words[kOutput] + kOutputOrigin] += by_mA;
+    return with_crc(words);
+}
+
+// A good table of one input: every rule asks twice for what it asked of the first.
+Words of_one_input() {
+    Words words = shipped();
+    words[kShape] = (words[kShape] & 0x00FFFF00u) | 1u;
+    const std::uint32_t offset = words[kRules] & 0xFFFFu;
+    for (std::uint32_t i = 0; i < words[kRules] >> 16; ++i) {
+        std::uint32_t &conditions = words[offset + kRuleWords * i + 1];
+        conditions = (conditions & 0xFFu) * 0x0101u;
+    }
+    return with_crc(words);
+}
+
+std::string hex(const Words &words) {
+    std::string text;
+    char line[16];
+    for (const std::uint32_t word : words) {
+        std::snprintf(line, sizeof line, "%08X\n", static_cast<unsigned>(word));
+        text += line;
+    }
+    return text;
+}
+
+/// A text file that goes with the object.
+class TextFile {
+  public:
+    explicit TextFile(const std::string &text)
+        : name_((std::filesystem::temp_directory_path() /
+                 ("quiesce_rules_" + std::to_string(::getpid())))
+                    .string()) {
+        std::ofstream(name_, std::ios::binary) << text;
+    }
+    ~TextFile() { std::filesystem::remove(name_); }
+    TextFile(const TextFile &) = delete;
+    TextFile &operator=(const TextFile &) = delete;
+
+    const std::string &name() const { return name_; }
+
+  private:
+    std::string name_;
+};
+
+std::string message_of(const std::string &file) {
+    try {
+        quiesce::load_rules(file);
+    } catch (const InputError &error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(RuleFile, good_words_are_read_in_any_writing) {
+    const Words words = shipped();
+    EXPECT_EQ(quiesce::load_rules(TextFile(hex(words)).name()), words);
+    std::string text = " \r\n\t";
+    char word[16];
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        std::snprintf(word, sizeof word, i % 2 == 0 ? "%x" : "0x%X",
+                      static_cast<unsigned>(words[i]));
+        text += word + std::string(i % 3 == 0 ? "\r\n" : "  ");
+    }
+    EXPECT_EQ(quiesce::load_rules(TextFile(text).name()), words);
+}
+
+struct Damage {
+    const char *name;
+    std::function<std::string()> text;
+    const char *message;
+};
+
+void PrintTo(const Damage &damage, std::ostream *out) {
+    *out << damage.name;
+}
+
+std::string changed(std::size_t place, std::uint32_t value) {
+    Words words = shipped();
+    words[place] = value;
+    return hex(place == kCrc || place == kSize ? words : with_crc(words));
+}
+
+std::string without_last_word() {
+    Words words = shipped();
+    words.pop_back();
+    return hex(words);
+}
+
+const Damage kDamages[] = {
+    {"empty", [] { return std::string(); }, "holds no words of a rule table"},
+    {"blank", [] { return std::string("\n \t\n"); }, "holds no words of a rule table"},
+    {"not_hex", [] { return std::string("FUNCTION_BLOCK x"); },
+     "word 1: 'FUNCTION_BLOCK' is no 32-bit hexadecimal number"},
+    {"trailing_letter",
+     [] {
+         return hex({1, 2}) + "0000002Ag\n";
+     },
+     "word 3: '0000002Ag'"},
+    {"trailing_text", [] { return hex(shipped()) + "end\n"; }, "'end' is no 32-bit hex"},
+    {"too_many_digits", [] { return std::string("1FFFFFFFF"); }, "word 1: '1FFFFFFFF'"},
+    {"far_too_many_digits", [] { return std::string(5000, 'F'); }, "'FFFFFFFFFFFFFFFFFFFF' is"},
+    {"negative", [] { return std::string("-1"); }, "word 1: '-1'"},
+    {"decimal_point", [] { return std::string("1.5"); }, "word 1: '1.5'"},
+    {"zero_byte", [] { return hex({1}) + std::string(3, '\0'); }, "word 2: "},
+    {"one_word", [] { return hex({shipped()[kMagic]}); }, "it is shorter than it says"},
+    {"cut", without_last_word, "it is shorter than it says, or too long"},
+    {"size", [] { return changed(kSize, 70000); }, "it is shorter than it says, or too long"},
+    {"magic", [] { return changed(kMagic, 0x12345678); }, "it is not a rule table"},
+    {"crc", [] { return changed(kCrc, 0); }, "its checksum is wrong: it is damaged"},
+    {"shape", [] { return changed(kShape, 0); }, "its numbers of inputs, outputs or rules"},
+    {"cell", [] { return changed(kAxis, 0); }, "a membership is out of range"},
+    {"rule", [] { return changed(kRules, 16u << 16); }, "a rule names what is not there"},
+    {"output", [] { return changed(kOrigin, 1); }, "a term is out of range"},
+    {"fit", [] { return hex(of_one_input()); }, "have two inputs, frequency in uHz"},
+};
+
+class DamagedRuleFile : public testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedRuleFile, is_refused_with_file_and_reason) {
+    const TextFile file(GetParam().text());
+    const std::string message = message_of(file.name());
+    EXPECT_EQ(message.rfind(file.name(), 0), 0u) << message;
+    EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
+}
+
+TEST_P(DamagedRuleFile, ends_a_run_with_2_and_one_line) {
+    const TextFile file(GetParam().text());
+    const Outcome outcome = bench("run --scenario sim_hil/data/scenarios/sine_5Hz.toml --law fuzzy "
+                                  "--rules " +
+                                  file.name());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.output.rfind("quiesce_bench: ", 0), 0u) << outcome.output;
+    EXPECT_EQ(outcome.output.find('\n'), outcome.output.size() - 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(GetParam().message), std::string::npos) << outcome.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(RuleFile, DamagedRuleFile, testing::ValuesIn(kDamages),
+                         [](const auto &test) { return std::string(test.param.name); });
+
+TEST(RuleFile, missing_file_and_folder_are_told) {
+    EXPECT_EQ(message_of("no/such/file"), "no/such/file: cannot be read");
+    EXPECT_NE(message_of(std::filesystem::temp_directory_path().string()), "accepted");
+}
+
+TEST(RuleFile, only_the_host_takes_a_table) {
+    const TextFile file(hex(shipped()));
+    for (const char *target : {"mps2", "mps2-uart"}) {
+        const Outcome outcome =
+            bench("run --scenario sim_hil/data/scenarios/sine_5Hz.toml --law fuzzy "
+                  "--image none.elf --target " +
+                  std::string(target) + " --rules " + file.name());
+        EXPECT_EQ(outcome.exit_code, 2);
+        EXPECT_EQ(outcome.output,
+                  "quiesce_bench: --rules: only the host target takes a rule table\n");
+    }
+}
+
+nlohmann::json fuzzy_run(const std::string &options) {
+    const Outcome outcome =
+        bench("run --scenario sim_hil/data/scenarios/sine_5Hz.toml --law fuzzy " + options);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return nlohmann::json::parse(outcome.output);
+}
+
+TEST(RuleFile, the_table_is_what_the_controller_runs) {
+    const nlohmann::json plain = fuzzy_run("");
+    const TextFile same(hex(shipped()));
+    EXPECT_EQ(fuzzy_run("--rules " + same.name())["telemetry_crc32"], plain["telemetry_crc32"]);
+    const TextFile more(hex(raised(1500)));
+    const nlohmann::json out = fuzzy_run("--rules " + more.name());
+    EXPECT_NEAR(plain["mean_current_A"].get<double>(), 0.0, 0.01);
+    EXPECT_NEAR(out["mean_current_A"].get<double>(), 1.5, 0.01);
+}
+
+TEST(UseRules, refuses_with_the_reason_alone) {
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    const auto controller = std::make_unique<quiesce_t>();
+    ASSERT_TRUE(quiesce_init(controller.get(), &params));
+    Words words = shipped();
+    EXPECT_NO_THROW(quiesce::use_rules(*controller, words));
+    words[kCrc]++;
+    try {
+        quiesce::use_rules(*controller, words);
+        FAIL() << "accepted";
+    } catch (const InputError &error) {
+        EXPECT_STREQ(error.what(), "the controller refuses the rule table: its checksum is wrong: "
+                                   "it is damaged");
+    }
+}
+
+} // namespace

@@ -1,0 +1,32 @@
+# The parts of the program, and its lock-step server against the simulated one.
+if(CMAKE_CROSSCOMPILING)
+  return()
+endif()
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+add_executable(
+  test_quiesced
+  quiesced/test_board_fit.cpp
+  quiesced/test_config.cpp
+  quiesced/test_edge_rate.cpp
+  quiesced/test_fault.cpp
+  quiesced/test_handover.cpp
+  quiesced/test_log.cpp
+  quiesced/test_make_safe.cpp
+  quiesced/test_notify.cpp
+  quiesced/test_options.cpp
+  quiesced/test_state.cpp
+  quiesced/test_tick_source.cpp)
+target_link_libraries(test_quiesced PRIVATE can_make quiesced_core quiesce_warnings GTest::gtest_main)
+target_include_directories(test_quiesced PRIVATE quiesced)
+target_compile_definitions(
+  test_quiesced PRIVATE QUIESCED_EXAMPLE="${CMAKE_SOURCE_DIR}/targets/linux/packaging/quiesced.toml")
+gtest_discover_tests(test_quiesced TEST_PREFIX quiesced. DISCOVERY_MODE PRE_TEST)
+
+add_executable(test_quiesced_lockstep quiesced/test_lockstep.cpp)
+target_link_libraries(test_quiesced_lockstep PRIVATE lockstep_can quiesce_warnings GTest::gtest_main)
+add_dependencies(test_quiesced_lockstep quiesced)
+target_compile_definitions(test_quiesced_lockstep
+                           PRIVATE QUIESCED_PROGRAM="$<TARGET_FILE:quiesced>")
+gtest_discover_tests(test_quiesced_lockstep TEST_PREFIX quiesced. DISCOVERY_MODE PRE_TEST)

@@ -1,0 +1,74 @@
+"""`./tools/benchmark NAME`: measured figures beside their goals. One module a benchmark."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from quiesce.base.atomic import output_files
+from quiesce.base.command import Parser, exit_code_of
+from quiesce.base.paths import build_folder, shown
+
+from quiesce_benchmarks.can import bench as bench_can
+from quiesce_benchmarks.control import bench as bench_control
+from quiesce_benchmarks.damper import bench as bench_identify
+from quiesce_benchmarks.fuzzy import bench as bench_fuzzy
+from quiesce_benchmarks.signal import bench as bench_signal
+from quiesce_benchmarks.sweep import bench as bench_sweep
+
+# Each has NAME, HELP, DESCRIPTION, add_options(parser) and measure(args, folder) -> Report, which
+# writes its plots into the folder. UsageError for bad input, before anything is measured.
+BENCHMARKS = (bench_signal, bench_fuzzy, bench_control, bench_sweep, bench_identify, bench_can)
+
+EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,
+unit, goal, better (lower or higher) and ok. The output folder receives it as NAME.json, too.
+Exit codes with --check: 1 a figure misses its goal, 3 a goal could not be judged because its data
+or tool is absent.
+"""
+
+
+def make_parser() -> argparse.ArgumentParser:
+    parser = Parser(
+        prog="benchmark",
+        description="Measure, and compare with the goals. Progress and errors go to stderr.",
+        allow_abbrev=False,
+    )
+    names = parser.add_subparsers(metavar="NAME", required=True)
+    for bench in BENCHMARKS:
+        one = names.add_parser(
+            bench.NAME,
+            help=bench.HELP,
+            description=bench.DESCRIPTION,
+            epilog=EXIT_CODES,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        one.add_argument("--json", action="store_true", help="print one JSON object")
+        one.add_argument("--check", action="store_true", help="fail where a goal is missed")
+        one.add_argument("--quick", action="store_true", help="fewer trials, the same figures")
+        one.add_argument(
+            "--out", type=Path, metavar="DIR", help=f"folder to write to (build/bench/{bench.NAME})"
+        )
+        bench.add_options(one)
+        one.set_defaults(bench=bench)
+    return parser
+
+
+def run(args: argparse.Namespace) -> int:
+    out = args.out or build_folder() / "bench" / args.bench.NAME
+    with output_files(out) as staging:
+        report = args.bench.measure(args, staging)
+        text = json.dumps(report.json_object(), indent=1)
+        (staging / f"{args.bench.NAME}.json").write_text(text + "\n", encoding="utf-8")
+        written = sorted(file.name for file in staging.iterdir())
+    if args.json:
+        print(text)
+    else:
+        print(report.text())
+        print(f"\nwritten    {', '.join(shown(out / name) for name in written)}")
+    return report.exit_code(args.check)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Runs one benchmark and returns its exit code; every failure is one line on stderr."""
+    words = sys.argv[1:] if arguments is None else arguments
+    return exit_code_of("benchmark", lambda: run(make_parser().parse_args(words)))

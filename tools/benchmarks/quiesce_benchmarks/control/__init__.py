@@ -1,0 +1,1 @@
+"""Benchmark of control laws against the best attainable."""

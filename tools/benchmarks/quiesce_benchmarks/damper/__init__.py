@@ -1,0 +1,1 @@
+"""Benchmark of damper models and their identification."""

@@ -1,0 +1,1 @@
+"""The actions of `quiesce can`, one module each."""

@@ -1,0 +1,273 @@
+"""`quiesce hil`: the published scenarios in closed loop, on the host and on another target."""
+
+import argparse
+import dataclasses
+import json
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+from quiesce.base.atomic import output_files
+from quiesce.base.errors import EXIT_FAILED, UsageError
+from quiesce.base.paths import build_folder, shown
+from quiesce.engine import laws, scenarios
+from quiesce.engine.bench import Bench, target_options
+from quiesce.engine.linux_target import linux_channel
+from quiesce.hil.metrics import Result, differing_cases, make_rows, metrics_json
+from quiesce.hil.page import make_page
+from quiesce.hil.published import load_reference
+from quiesce.hil.rule_surface import rule_surface
+from quiesce.hil.runs import (
+    ConstantSearch,
+    Plan,
+    Run,
+    Runner,
+    compare_traces,
+    measure_speed,
+    measure_uart,
+)
+from quiesce.hil.table import compared_text, comparison_table, summary, target_name
+
+STEADY = ("sine_5Hz", "sine_10Hz", "sine_15Hz", "sine_20Hz")
+STEP = "step_10_20Hz"
+ON_TARGET = ("sine_5Hz", STEP)
+QUICK = ("sine_5Hz", STEP)
+SPEED_LAW = "fuzzy"
+TARGETS = {"all": ["host", "mps2"], "linux": ["host", "linux"]}
+TRACE_LAW = "fuzzy"
+TRACE_SEEDS = 5
+QUICK_TRACE_SEEDS = 2
+UART_EXCHANGES = 3000
+TELEMETRY_EVERY = 100
+
+EPILOG = f"""examples:
+  quiesce hil                                  everything: table, report, metrics
+  quiesce hil --quick                          5 Hz and the step, two seeds, no UART: under a minute
+  quiesce hil --scenario step_10_20Hz --law fuzzy --law fuzzy_selftune_printed
+  quiesce hil --scenario my_scenario.toml --target host
+  quiesce hil --target host --json | python3 -m json.tool
+  quiesce hil --target linux --quick           the Linux controller quiesced, started here
+  quiesce hil --target linux --can slcan:tcp:localhost:5556      ... in a virtual machine
+  quiesce hil --target linux --can slcan:/dev/ttyACM0,bitrate=500000   ... behind an adapter
+  quiesce hil --target linux --can socketcan:can0 --telemetry-every 1
+
+scenarios: {", ".join((*STEADY, STEP))} (and any .toml file)
+laws:      {", ".join(laws.names())}
+
+Without --scenario, 5 Hz and the step run on the image, too. Open loop always runs: reductions are
+against it. Written to build/report/hil: index.html, metrics.json, details.json. Exit code 1 where
+the target does not answer bit for bit like the host.
+
+--target linux runs the same scenarios as the image and the host beside it, and drives quiesced
+--lockstep, tick by tick, over CAN. Command, state and fault of every tick are compared, all words
+of telemetry every 100 ticks or as --telemetry-every says. Channels: slcan:DEVICE[,baud=N]
+[,bitrate=N] (serial line, pty, adapter), slcan:unix:PATH, slcan:tcp:HOST:PORT, socketcan:INTERFACE.
+"""
+
+
+def noise_mg(text: str) -> float:
+    value = float(text)
+    if not 0.0 <= value <= 1e4:
+        raise ValueError
+    return value
+
+
+def seed(text: str) -> int:
+    value = int(text)
+    if not 0 <= value < 2**62:
+        raise ValueError
+    return value
+
+
+def ticks(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= 65535:
+        raise ValueError
+    return value
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    parser = commands.add_parser(
+        "hil",
+        description="Run the controller in closed loop with the simulated structure, on this\n"
+        "machine and as the cross-compiled image in QEMU; print published against ours\n"
+        "against the best attainable, and write a report.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    repeatable: dict[str, Any] = {"action": "append", "default": []}
+    parser.add_argument(
+        "--scenario", metavar="NAME", help="name or .toml file, repeatable (all)", **repeatable
+    )
+    parser.add_argument("--law", metavar="NAME", help="law, repeatable (all)", **repeatable)
+    parser.add_argument(
+        "--target", choices=["host", "mps2", "linux", "all"], default="all",
+        help="this machine, the image in QEMU, the Linux controller over CAN, or all of the first "
+        "two (%(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--can", metavar="CHANNEL", help="what leads to quiesced --lockstep (one started here)"
+    )
+    parser.add_argument(
+        "--telemetry-every", type=ticks, metavar="N",
+        help=f"ticks between two bursts of all telemetry over CAN ({TELEMETRY_EVERY})",
+    )  # fmt: skip
+    parser.add_argument(
+        "--set", metavar="NAME=VALUE", help="parameter for every law, repeatable", **repeatable
+    )
+    parser.add_argument("--seed", type=seed, metavar="N", help="of the sensor noise (scenario's)")
+    parser.add_argument(
+        "--noise-mg", type=noise_mg, metavar="X", help="sensor noise, RMS (scenario's: 0.5)"
+    )
+    parser.add_argument("--quick", action="store_true", help="a shorter run, see above")
+    parser.add_argument("--json", action="store_true", help="print metrics.json, not the table")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder of the report (build/report/hil)"
+    )
+    parser.set_defaults(run=run)
+
+
+def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
+    chosen = [laws.find(name) for name in dict.fromkeys(args.law)] or list(laws.LAWS)
+    if all(law.name != laws.OPEN_LOOP for law in chosen):
+        chosen.insert(0, laws.find(laws.OPEN_LOOP))
+    default = QUICK if args.quick else (*STEADY, STEP)
+    if args.target in ("mps2", "linux"):
+        default = ON_TARGET
+    names = list(dict.fromkeys(args.scenario)) or list(default)
+    loaded = [scenarios.load(bench, name) for name in names]
+    options = [] if args.seed is None else ["--seed", str(args.seed)]
+    options += [] if args.noise_mg is None else ["--noise-mg", str(args.noise_mg)]
+    return Plan(
+        scenarios=loaded,
+        target_scenarios=[s.name for s in loaded] if args.scenario else ON_TARGET,
+        laws=chosen,
+        targets=TARGETS.get(args.target, [args.target]),
+        is_quick=args.quick,
+        settings=args.set,
+        options=options,
+        telemetry_every=telemetry_every(args),
+    )
+
+
+def telemetry_every(args: argparse.Namespace) -> int:
+    if args.target != "linux":
+        return 1
+    return args.telemetry_every or TELEMETRY_EVERY
+
+
+def say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run]) -> Result:
+    """What must run alone, after the closed-loop runs; then everything put together."""
+    reference = load_reference()
+    rows, beside = make_rows(runs, reference)
+    equal = uart = None
+    if plan.checked_target:
+        first_seed = 1 if args.seed is None else args.seed
+        count = QUICK_TRACE_SEEDS if plan.is_quick else TRACE_SEEDS
+        name = target_name(plan.checked_target)
+        words = compared_text(plan.telemetry_every)
+        say(f"comparing {words}, {name} against host, {count} seeds")
+        equal = compare_traces(
+            bench,
+            scenarios.load(bench, scenarios.TRACE_EQUALITY),
+            laws.find(TRACE_LAW),
+            range(first_seed, first_seed + count),
+            plan.options_of(plan.checked_target),
+        )
+        equal["telemetry_every"] = plan.telemetry_every
+    say("measuring speed, nothing else running")
+    step, law = scenarios.load(bench, STEP), laws.find(SPEED_LAW)
+    speed = measure_speed(bench, step, law, plan)
+    if "mps2" in plan.targets and not plan.is_quick:
+        say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
+        uart = measure_uart(bench, UART_EXCHANGES)
+    return Result(rows, beside, reference.published, equal, differing_cases(runs), speed, uart)
+
+
+def details_json(result: Result, searches: list[ConstantSearch], runs: list[Run]) -> dict[str, Any]:
+    """What metrics.json has no place for."""
+    return {
+        "constant_search": [
+            {
+                "scenario": search.scenario.name,
+                "current_mA": search.current_mA,
+                "amp_um": [figures["amp_um"] for figures in search.figures],
+                "accel_rms_mm_s2": [figures["accel_rms_mm_s2"] for figures in search.figures],
+                "rms_disp_um": [figures["rms_disp_um"] for figures in search.figures],
+                "best_mA": search.best_mA,
+            }
+            for search in searches
+        ],
+        "trace_equal": result.trace_equal,
+        "telemetry_differs": result.differing,
+        "uart": result.uart,
+        "runs": [{**run.figures, "law": run.case.law.name} for run in runs],
+    }
+
+
+def write_json(file: Path, content: dict[str, Any]) -> None:
+    file.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def rerun_command(args: argparse.Namespace) -> str:
+    words = ["./tools/hil"]
+    for option in ("scenario", "law", "set"):
+        words += [word for value in getattr(args, option) for word in (f"--{option}", value)]
+    if args.target != "all":
+        words += ["--target", args.target]
+    if args.can is not None:
+        words += ["--can", args.can]
+    if args.telemetry_every is not None:
+        words += ["--telemetry-every", str(args.telemetry_every)]
+    if args.seed is not None:
+        words += ["--seed", str(args.seed)]
+    if args.noise_mg is not None:
+        words += ["--noise-mg", f"{args.noise_mg:g}"]
+    return shlex.join(words + (["--quick"] if args.quick else []))
+
+
+def check_target(args: argparse.Namespace) -> None:
+    """Refuses what does not go together, and what cannot run here, before anything runs."""
+    if args.target != "linux":
+        for option in ("can", "telemetry_every"):
+            if getattr(args, option) is not None:
+                raise UsageError(f"--{option.replace('_', '-')} goes with --target linux only")
+    for target in {"host": [], "linux": [], "mps2": ["mps2", "mps2-uart"]}.get(
+        args.target, ["mps2"]
+    ):
+        target_options(target)
+
+
+def run(args: argparse.Namespace) -> int:
+    bench = Bench()
+    check_target(args)
+    plan = make_plan(args, bench)
+    if args.target != "linux":
+        return run_plan(args, bench, plan)
+    with linux_channel(args.can) as channel:
+        return run_plan(args, bench, dataclasses.replace(plan, can=channel))
+
+
+def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
+    runner = Runner(bench, plan)
+    out = args.out or build_folder() / "report/hil"
+    # Opened before the work, so that a folder that cannot be written is known at once.
+    with output_files(out) as staging:
+        runs, searches = runner.run_all()
+        result = measure(args, bench, runner.plan, runs)
+        say("drawing the report")
+        page = make_page(result, runs, searches, rule_surface(bench), rerun_command(args))
+        (staging / "index.html").write_text(page, encoding="utf-8")
+        write_json(staging / "metrics.json", metrics_json(result))
+        write_json(staging / "details.json", details_json(result, searches, runs))
+    if args.json:
+        print(json.dumps(metrics_json(result), indent=1))
+    else:
+        print(f"\n{comparison_table(result)}\n\n{summary(result)}\n")
+        print(f"report: {shown(out / 'index.html')}\nmetrics: {shown(out / 'metrics.json')}")
+    return 0 if result.is_equal else EXIT_FAILED

@@ -1,0 +1,1 @@
+"""`quiesce identify` and its actions, one module each."""

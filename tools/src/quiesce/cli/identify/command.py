@@ -1,0 +1,311 @@
+"""`quiesce identify`: damper models from a test rig's recordings, and what one does with them."""
+
+import argparse
+import json
+import math
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
+from quiesce.base.paths import build_folder, shown
+from quiesce.cli.identify import compare, example, export, inverse
+from quiesce.cli.identify import plan as cli_plan
+from quiesce.damper.data.options import add_data_options
+
+NAME = "identify"
+# Each has NAME, HELP, add_options(parser) and run(args).
+ACTIONS: tuple[ModuleType, ...] = (cli_plan, example, compare, inverse, export)
+
+EPILOG = """also:
+{actions}
+  ('quiesce identify ACTION --help' has the options of one)
+
+examples:
+  quiesce identify example --out example.csv
+  quiesce identify example.csv --model quick
+  quiesce identify rig.csv --model all --train time_s=0,6 --test time_s=6,12
+  quiesce identify low.csv high.csv --current-a 0,1 --model kwok_tanh,viscoplastic_2
+  quiesce identify rig.csv --fix n=2 --bound 'rho_1_m=1000:5000' --model normalised_bouc_wen
+
+Writes report.html, report.json and models/NAME.toml for every model; plants read such a file
+([damper] file = "..."), so do 'tune' and the actions above. damper.toml is the best passive one.
+--model takes names, 'quick' (static models and small networks), 'parametric', or 'all'.
+Errors are ||F - F_model|| / ||F|| with the model running free; the ranking goes by validation
+inside the training part. Ctrl-C keeps the best so far; --resume goes on from there.
+"""
+
+QUICK = ("kwok_tanh", "zhang_tanh", "normalised_bouc_wen", "viscoplastic_1", "viscoplastic_2")
+
+
+def words_of(arguments: Sequence[str]) -> list[str]:
+    """`identify ACTION ...` as the one word that the parser knows."""
+    words = list(arguments)
+    names = [action.NAME for action in ACTIONS]
+    if len(words) >= 2 and words[0] == NAME and words[1] in names:
+        return [f"{NAME}-{words[1]}", *words[2:]]
+    return words
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    listed = "\n".join(f"  quiesce identify {one.NAME:9s} {one.HELP}" for one in ACTIONS)
+    parser = commands.add_parser(
+        NAME,
+        description="Fit damper models to recordings of motion, force and current; rank them.",
+        epilog=EPILOG.format(actions=listed),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("files", type=Path, nargs="*", metavar="DATA.csv")
+    add_fit_options(parser.add_argument_group("what to fit"))
+    add_data_options(parser.add_argument_group("data"))
+    parser.set_defaults(run=run)
+    for action in ACTIONS:
+        one = commands.add_parser(
+            f"{NAME}-{action.NAME}", prog=f"quiesce identify {action.NAME}", description=action.HELP
+        )
+        action.add_options(one)
+        one.set_defaults(run=action.run)
+
+
+def add_fit_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--model", default="quick", metavar="NAMES",
+        help="model names with commas, or quick, parametric, all (quick); 'list' prints them",
+    )  # fmt: skip
+    group.add_argument("--out", type=Path, metavar="DIR", help="(build/identify/NAME)")
+    group.add_argument(
+        "--fix", action="append", default=[], metavar="NAME=VALUE",
+        help="hold a parameter (SI), e.g. n=2 or skew_s=0; repeatable",
+    )  # fmt: skip
+    group.add_argument(
+        "--bound", action="append", default=[], metavar="NAME=LOW:HIGH",
+        help="bounds of a parameter (SI); repeatable",
+    )  # fmt: skip
+    group.add_argument(
+        "--rig", metavar="NAMES",
+        help="what around the damper is fitted, with commas, or none: rise_s, fall_s (coil lag), "
+        "inertia_kg, skew_s, offset_N, drift_N_s (chosen by the data)",
+    )  # fmt: skip
+    group.add_argument(
+        "--current-order", type=int, choices=(0, 1, 2), default=2,
+        help="highest power of the current in a parameter (%(default)s)",
+    )  # fmt: skip
+    group.add_argument(
+        "--method", choices=("default", "ga", "de", "ls"), default="default",
+        help="default: variable projection, differential evolution, least squares; ga: the binary "
+        "genetic algorithm of the squeeze-mode paper; de: the thesis' differential evolution; ls: "
+        "Bouc-Wen by least squares from three sines a current",
+    )  # fmt: skip
+    group.add_argument(
+        "--time-limit", type=float, default=300.0, metavar="s", help="for each model (%(default)g)"
+    )
+    group.add_argument("--effort", choices=("quick", "full"), default="full", help="(full)")
+    group.add_argument("--seed", type=int, default=1, help="(%(default)s)")
+    group.add_argument(
+        "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="threads (%(default)s)"
+    )
+    group.add_argument("--resume", action="store_true", help="keep what DIR holds already")
+    group.add_argument("--json", action="store_true", help="print the report as one JSON object")
+
+
+def names_of(text: str) -> list[str]:
+    """UsageError, with the names that there are, for one that is not."""
+    from quiesce.damper.candidates import parametric_candidates
+    from quiesce.damper.identify import all_names
+
+    groups = {
+        "quick": list(QUICK),
+        "parametric": list(parametric_candidates()),
+        "all": all_names(),
+    }
+    names: list[str] = []
+    for word in text.split(","):
+        names += groups.get(word, [word])
+    known = all_names()
+    for name in names:
+        if name not in known:
+            raise UsageError(f"no model '{name}'; there are {', '.join([*groups, *known])}")
+    return list(dict.fromkeys(names))
+
+
+def numbers_of(option: str, words: Sequence[str], count: int) -> dict[str, Any]:
+    """NAME=A or NAME=A:B."""
+    out: dict[str, Any] = {}
+    for word in words:
+        name, _, text = word.partition("=")
+        try:
+            values = [float(part) for part in text.split(":")]
+        except ValueError:
+            values = []
+        if not name or len(values) != count or not all(map(math.isfinite, values)):
+            shape = "NAME=VALUE" if count == 1 else "NAME=LOW:HIGH"
+            raise UsageError(f"{option} '{word}': write {shape}, numbers in SI units")
+        out[name] = values[0] if count == 1 else (values[0], values[1])
+    return out
+
+
+def choice_of(args: argparse.Namespace) -> Any:
+    from quiesce.damper.candidates import Choice
+    from quiesce.damper.library import RIG, models
+
+    fixed = numbers_of("--fix", args.fix, 1)
+    bounds = numbers_of("--bound", args.bound, 2)
+    known = {one.name for each in models().values() for one in each.parameters} | set(RIG)
+    for option, names in (("--fix", fixed), ("--bound", bounds)):
+        for name in names:
+            if name not in known:
+                raise UsageError(
+                    f"{option} {name}: no model has such a parameter; see --model list"
+                )
+    rig = None
+    if args.rig is not None:
+        rig = tuple(word for word in args.rig.split(",") if word and word != "none")
+        for name in rig:
+            if name not in RIG[:-1]:  # the last, a reference, follows from the data
+                raise UsageError(f"--rig {name}: expected some of {', '.join(RIG[:-1])}, or none")
+    return Choice(fixed, bounds, rig, args.current_order + 1, args.method)
+
+
+def print_models() -> None:
+    from quiesce.damper.identify import all_names
+    from quiesce.damper.library import models
+
+    for name, one in models().items():
+        print(f"{name}: {one.title} ({one.source})")
+        for parameter in one.parameters:
+            print(f"    {parameter.name:14s} {parameter.unit:10s} {parameter.text}")
+    print("others: " + ", ".join(name for name in all_names() if name not in models()))
+
+
+def check_numbers(args: argparse.Namespace) -> None:
+    if not args.time_limit > 0.0:
+        raise UsageError("--time-limit has to be above 0")
+    if args.seed < 0:
+        raise UsageError("--seed has to be 0 or more")
+    if not args.files:
+        raise UsageError("no recording: name a CSV file, or try 'quiesce identify example'")
+    if args.jobs < 1:
+        raise UsageError("--jobs has to be 1 or more")
+
+
+def run(args: argparse.Namespace) -> int:
+    from quiesce.damper.data.options import records_of
+    from quiesce.damper.data.split import split_records
+    from quiesce.damper.identify import Plan
+    from quiesce.damper.store import Store, stamp_of
+
+    if args.model == "list":
+        print_models()
+        return 0
+    check_numbers(args)
+    names, choice = names_of(args.model), choice_of(args)
+    data = records_of(args)
+    train, test = split_records(data.records, data.split)
+    out = args.out or build_folder() / NAME / args.files[0].stem
+    stamp = stamp_of(train, test, (choice, args.seed, args.effort, args.time_limit))
+    store = Store(out, stamp, names)
+    done = store.finished(names, train, test) if args.resume else []
+    plan = Plan(
+        names,
+        choice,
+        args.seed,
+        args.time_limit,
+        args.effort == "quick",
+        args.jobs,
+        {"data": [file.name for file in args.files], "command": "quiesce identify"},
+    )
+    if args.method == "ls":
+        fitted, was_stopped = [by_least_squares(train, test, plan, store)], False
+    else:
+        fitted, was_stopped = fit_all(train, test, plan, done, store)
+    return report(args, out, fitted, train, test, data.notes, was_stopped)
+
+
+def by_least_squares(train: Any, test: Any, plan: Any, store: Any) -> Any:
+    from quiesce.damper.closed_form import closed_form
+
+    fitted = closed_form(train, test, plan)
+    store.keep(fitted)
+    return fitted
+
+
+def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[list[Any], bool]:
+    """Models as they come, each kept at once. Ctrl-C: the best so far of those under way."""
+    import threading
+
+    from quiesce.base.progress import Progress
+    from quiesce.damper.identify import identify
+
+    progress = Progress(len(plan.names) - len(done))
+    results: list[Any] = []
+    failure: list[BaseException] = []
+
+    def told(one: Any) -> None:
+        store.keep(one)
+        note = "" if one.is_complete else ", not to its end"
+        progress.done(f"{one.name}: validation {100 * one.validation_error:.2f} %{note}")
+
+    def say(text: str) -> None:
+        print(f"      {text}", file=sys.stderr, flush=True)
+
+    def work() -> None:
+        try:
+            results.extend(identify(train, test, plan, done, told, say))
+        except BaseException as error:  # handed on to the main thread
+            failure.append(error)
+        finally:
+            finished.set()
+
+    finished = threading.Event()
+    threading.Thread(target=work).start()
+    was_stopped = False
+    # Not join: one that Ctrl-C interrupts may take the thread for ended.
+    while not finished.is_set():
+        try:
+            finished.wait(0.2)
+        except KeyboardInterrupt:
+            if was_stopped:  # what is finished is in the folder already
+                os._exit(EXIT_INTERRUPTED)
+            print("quiesce: ending with the best so far", file=sys.stderr, flush=True)
+            was_stopped = True
+            plan.stop.set()
+    if failure:
+        raise failure[0]
+    return results, was_stopped
+
+
+def report(
+    args: argparse.Namespace,
+    out: Path,
+    fitted: Sequence[Any],
+    train: Any,
+    test: Any,
+    notes: Sequence[str],
+    was_stopped: bool,
+) -> int:
+    from quiesce.damper.model_file import write_model
+    from quiesce.damper.ranking import best, ranked
+    from quiesce.damper.report.page import write_report
+    from quiesce.damper.report.runs import runs_of, shown_part, whiteness_of
+    from quiesce.damper.report.tables import json_report, text_report
+
+    if not fitted:
+        print("quiesce: no model was finished; nothing was written", file=sys.stderr)
+        return EXIT_INTERRUPTED
+    white = whiteness_of(shown_part(runs_of(ranked(fitted)[0].simulate, train, test)))
+    context = {"title": args.files[0].stem, "command": "quiesce " + " ".join(sys.argv[1:])}
+    write_report(out, fitted, train, test, notes, context)
+    passive = best(fitted).get("passive")
+    if passive is not None:
+        write_model(out / "damper.toml", passive.damper)
+    if args.json:
+        print(json.dumps(json_report(fitted, train, test, notes, context, white)))
+    else:
+        print(text_report(fitted, train, test, notes, white))
+        written = ["report.html", "report.json", "models/"]
+        written += ["damper.toml"] if passive is not None else []
+        print(f"\nwritten    {', '.join(shown(out / name) for name in written)}")
+    return EXIT_INTERRUPTED if was_stopped else 0

@@ -1,0 +1,81 @@
+"""`quiesce identify inverse MODEL.toml`: can the current be found from the force, and the map."""
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.cli.identify.help import fill, number
+
+NAME = "inverse"
+HELP = "the current for a wanted force: check, plot and map"
+EPILOG = """A control law wants a force; the inverse gives the current. That needs a force that
+rises with the current: the check says up to which current it does, at several velocities in
+mid-stroke of a sine that has settled. --out writes inverse.csv (velocity, force, current,
+feasible), forces.csv and inverse.svg. Currents saturate where the force is not feasible.
+
+examples:
+  quiesce identify inverse damper.toml --max-current-A 2 --out build/inverse
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    fill(parser, EPILOG)
+    parser.add_argument("model", type=Path, metavar="MODEL.toml", help="damper file")
+    parser.add_argument(
+        "--max-current-A", type=number(1e-6, 1e3, "a current in A"), metavar="A",
+        help="largest current (max_current_A of the file's [valid])",
+    )  # fmt: skip
+    parser.add_argument(
+        "--max-speed-m-s", type=number(1e-6, 1e3, "a speed in m/s"), metavar="m/s",
+        help="largest speed (that of the file)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--amplitude-mm", type=number(1e-3, 1e4, "a length in mm"), metavar="mm",
+        help="of the sines (half the file's stroke)",
+    )  # fmt: skip
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write map and plot there")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(args: argparse.Namespace) -> int:
+    from quiesce.damper.inverse import default_velocities, monotone_range
+    from quiesce.damper.report.inverse_text import numbers_of, text_of, write_map
+    from quiesce.damper.simulate import simulator_of_file
+
+    if not args.model.is_file():
+        raise UsageError(f"{shown(args.model)}: no such file; name a damper file (TOML)")
+    damper, simulate = simulator_of_file(args.model)
+    if args.max_speed_m_s:
+        damper = replace(damper, speed_m_s=args.max_speed_m_s)
+    if args.amplitude_mm:
+        damper = replace(damper, stroke_m=2e-3 * args.amplitude_mm)
+    most_A = args.max_current_A or stated_current(damper)
+    velocities = default_velocities(damper)
+    found = monotone_range(damper, most_A, velocities, None if damper.is_kernel else simulate)
+    check_finite(damper, found)
+    if args.out:
+        write_map(args.out, damper, found)
+    print(json.dumps(numbers_of(damper, found), indent=1) if args.json else text_of(damper, found))
+    if args.out and not args.json:
+        print(f"\nwritten: {shown(args.out)}/inverse.csv, forces.csv, inverse.svg")
+    return 0
+
+
+def stated_current(damper: Any) -> float:
+    limits = [damper.valid.get(key) for key in ("max_current_A", "current_A")]
+    for limit in limits:
+        values = limit if isinstance(limit, list) else [limit]
+        if all(isinstance(value, int | float) for value in values) and values and max(values) > 0.0:
+            return float(max(values))
+    raise UsageError(f"{damper.name}: the file states no largest current; --max-current-A A does")
+
+
+def check_finite(damper: Any, found: Any) -> None:
+    if not np.isfinite(found.forces.force_N).all():
+        raise UsageError(f"{damper.name}: its force is not finite; a lower --max-speed-m-s may do")

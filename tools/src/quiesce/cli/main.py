@@ -1,0 +1,84 @@
+"""The command line `quiesce`: one module a command, imported only when it is the one to run."""
+
+import argparse
+import sys
+from importlib import import_module
+from types import ModuleType
+
+from quiesce import __version__
+from quiesce.base.command import Parser, exit_code_of
+
+# Name, module, what the list says. A module has add_parser(subparsers), which sets `run`, and may
+# have words_of(arguments): what the parser gets in their place.
+COMMANDS = (
+    ("hil", "hil", "the published scenarios in closed loop; table and report"),
+    ("replay", "replay", "a recorded acceleration through the firmware"),
+    ("record", "record", "the simulated accelerometer's signal as a CSV file"),
+    ("plant", "plant", "plant files"),
+    ("params", "params", "parameters of the controller: unit, range, default"),
+    ("chain", "chain", "magnitude and phase of the conditioning"),
+    ("rules", "rules.command", "fuzzy rule files"),
+    ("sweep", "sweep", "excitation and current steps to record, and the plant from a recording"),
+    (
+        "identify",
+        "identify.command",
+        "damper models from a test rig's recordings; plan, compare, inverse, export",
+    ),
+    ("tune", "tune", "the phase law's pulses for a plant, by optimal control, with report"),
+    ("can", "can.command", "CAN bus: monitor, record, decode, parameters, emergency stop"),
+)
+
+EPILOG = """examples:
+  quiesce hil                                   the published scenarios, table and report
+  quiesce replay FILE.csv --column acc --unit g a recorded acceleration through the firmware
+  quiesce plant check my_plant.toml             is my own plant file right?
+  quiesce params                                every parameter of the controller
+  quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
+  quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
+  quiesce identify FILE.csv --model all         damper models from a test rig's recording
+  quiesce tune my_plant.toml                    pulses of current for my own plant
+  quiesce can monitor --bus socketcan:can0      state, fault and currents, live
+
+Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,
+2 bad input or a missing tool (one line says which and what to do), 130 interrupted.
+'quiesce COMMAND --help' has the options of one command. Benchmarks: ./tools/benchmark --help.
+"""
+
+
+def module_of(name: str) -> ModuleType | None:
+    return next((import_module(f"quiesce.cli.{m}") for one, m, _ in COMMANDS if one == name), None)
+
+
+def make_parser(wanted: str, module: ModuleType | None) -> argparse.ArgumentParser:
+    """With all options of the wanted command, and the others' names."""
+    parser = Parser(
+        prog="quiesce",
+        description="Vibration control with magnetorheological dampers: run the controller\n"
+        "against a simulated structure, on this machine and as a Cortex-M image, or over a\n"
+        "recording.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"quiesce {__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    for name, _, text in COMMANDS:
+        if module is not None and name == wanted:
+            module.add_parser(commands)
+        else:
+            commands.add_parser(name, help=text)
+    return parser
+
+
+def run(arguments: list[str]) -> int:
+    wanted = arguments[0] if arguments else ""
+    module = module_of(wanted)
+    words_of = getattr(module, "words_of", list)
+    args = make_parser(wanted, module).parse_args(words_of(arguments))
+    return args.run(args)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Runs one command and returns its exit code; every failure is one line on stderr."""
+    words = sys.argv[1:] if arguments is None else arguments
+    return exit_code_of("quiesce", lambda: run(words))

@@ -1,0 +1,1 @@
+"""The actions of `quiesce rules`, one module each."""

@@ -1,0 +1,91 @@
+"""Options that say in which integers a rule base is compiled: shared by compile and check."""
+
+import argparse
+from pathlib import Path
+
+from quiesce.base.errors import UsageError
+from quiesce.rules.formats.files import read_rules
+from quiesce.rules.integers.compile import Q15, Q16, CompiledBase, compile_base
+from quiesce.rules.model import RuleBase
+
+# The controller's own: frequency in uHz, RMS acceleration in um/s2, current in mA, from files in
+# Hz, m/s2 and A.
+CONTROLLER_INPUTS = (1e-6, 1e-6)
+CONTROLLER_OUTPUTS = (1e-3,)
+
+FORMATS_HELP = """integers:
+  Without --lsb an input is q15, 0..32768 over its universe, and an output q16, 0..65536. With
+  --lsb NAME=X they count X of the variable's own unit from 0. --controller takes what the firmware
+  has: uHz, um/s2 and mA, from a file in Hz, m/s2 and A.
+"""
+
+
+def add_file_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", type=Path, help="rule file (.fcl, .fll, .fis)")
+    parser.add_argument(
+        "--lsb",
+        action="append",
+        default=[],
+        metavar="NAME=X",
+        help="what one count of a variable is",
+    )
+    parser.add_argument(
+        "--controller", action="store_true", help="the integers of the controller: uHz, um/s2, mA"
+    )
+    parser.add_argument(
+        "--default", action="append", default=[], metavar="NAME=X",
+        help="output where no rule fires, if the file does not say",
+    )  # fmt: skip
+    parser.add_argument(
+        "--approximate", type=int, metavar="N", help="smooth sets as chains of N straight segments"
+    )
+
+
+def compiled_from(args: argparse.Namespace) -> CompiledBase:
+    base = read_rules(args.file, args.approximate)
+    if args.controller:
+        if args.lsb:
+            raise UsageError("--controller and --lsb exclude each other")
+        require_controller(base)
+        inputs: list[float | str] = list(CONTROLLER_INPUTS)
+        outputs: list[float | str] = list(CONTROLLER_OUTPUTS)
+    else:
+        named = assignments("--lsb", args.lsb, base)
+        inputs = [named.get(variable.name, Q15) for variable in base.inputs]
+        outputs = [named.get(variable.name, Q16) for variable in base.outputs]
+    return compile_base(base, inputs, outputs, defaults(args, base))
+
+
+def require_controller(base: RuleBase) -> None:
+    if len(base.inputs) != 2 or len(base.outputs) != 1:
+        raise UsageError(
+            f"--controller: its rules have two inputs, frequency and RMS acceleration, and one "
+            f"output, current; {base.name} has {len(base.inputs)} and {len(base.outputs)}"
+        )
+
+
+def defaults(args: argparse.Namespace, base: RuleBase) -> dict[str, float]:
+    named = assignments("--default", args.default, base)
+    for output in base.outputs:
+        if output.name in named and output.default is not None:
+            raise UsageError(f"--default {output.name}: the file says {output.default:g}")
+    wrong = set(named) - {output.name for output in base.outputs}
+    if wrong:
+        raise UsageError(f"--default {sorted(wrong)[0]}: not an output of {base.name}")
+    return named
+
+
+def assignments(option: str, texts: list[str], base: RuleBase) -> dict[str, float]:
+    known = [variable.name for variable in (*base.inputs, *base.outputs)]
+    found: dict[str, float] = {}
+    for text in texts:
+        name, sign, number = text.partition("=")
+        if not sign or name not in known:
+            raise UsageError(f"{option} {text}: NAME=NUMBER, NAME one of {', '.join(known)}")
+        if name in found:
+            raise UsageError(f"{option} {name}: given twice")
+        try:
+            found[name] = float(number)
+        except ValueError:
+            raise UsageError(f"{option} {text}: {number!r} is not a number") from None
+    return found

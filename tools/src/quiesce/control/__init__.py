@@ -1,1 +1,0 @@
-"""Control laws: bounds, tables, the plant behind them, and how it is identified."""

@@ -1,0 +1,1 @@
+"""Doors to compiled code: the bench, its traces, the parameters, the scenarios."""

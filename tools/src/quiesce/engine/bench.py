@@ -1,0 +1,113 @@
+"""Finds and calls the compiled bench, `quiesce_bench`, and the images that it drives in QEMU."""
+
+import json
+import shutil
+import signal
+import subprocess
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from quiesce.base.errors import EXIT_BAD_INPUT, BenchFailure, UsageError, one_line
+from quiesce.base.paths import build_folder, shown
+
+QEMU = "qemu-system-arm"
+IMAGES = {"mps2": "quiesce_mps2_shm.elf", "mps2-uart": "quiesce_mps2_uart.elf"}
+ECHO_IMAGE = "uart_echo.elf"
+
+
+def require_file(path: Path, what: str) -> Path:
+    if not path.is_file():
+        raise UsageError(f"{what} {shown(path)} is not built; run ./tools/hil first")
+    return path
+
+
+def image(target: str) -> Path:
+    """The image that runs on an emulated target."""
+    return require_file(build_folder() / "mps2/targets/mps2" / IMAGES[target], "the image")
+
+
+def echo_image() -> Path:
+    return require_file(build_folder() / "mps2/targets/mps2" / ECHO_IMAGE, "the image")
+
+
+def require_emulator() -> None:
+    if shutil.which(QEMU) is None:
+        raise UsageError(
+            f"{QEMU} is not installed (Debian: apt-get install {QEMU}); "
+            "install it, or use --target host"
+        )
+
+
+def target_options(target: str, linux: Sequence[str] = ()) -> list[str]:
+    """Options of the bench for a target. UsageError where it cannot run here.
+
+    linux: further ones for that target, its channel.
+    """
+    if target == "host":
+        return ["--target", "host"]
+    if target == "linux":
+        return ["--target", "linux", *linux]
+    require_emulator()
+    return ["--target", target, "--image", str(image(target))]
+
+
+class Bench:
+    """The executable. Calls may come from several threads; stop() ends those under way."""
+
+    def __init__(self) -> None:
+        self._exe = require_file(build_folder() / "host/sim_hil/quiesce_bench", "the bench")
+        self._lock = threading.Lock()
+        self._running: set[subprocess.Popen[str]] = set()
+
+    def call(self, command: str, *options: str) -> str:
+        """Runs one command and returns what it printed.
+
+        UsageError with the bench's own line where it refuses its input, BenchFailure where it
+        dies.
+        """
+        process = subprocess.Popen(
+            [str(self._exe), command, *options],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        with self._lock:
+            self._running.add(process)
+        try:
+            out, err = process.communicate()
+        finally:
+            with self._lock:
+                self._running.discard(process)
+        if process.returncode == EXIT_BAD_INPUT:
+            raise UsageError(one_line(err).removeprefix("quiesce_bench: "))
+        if process.returncode != 0:
+            raise BenchFailure(
+                f"quiesce_bench {command} ended with {ending(process.returncode)}: "
+                f"{one_line(err) or 'it said nothing'}"
+            )
+        return out
+
+    def json(self, command: str, *options: str) -> Any:
+        return json.loads(self.call(command, *options))
+
+    def has_command(self, command: str) -> bool:
+        return any(line.split()[:1] == [command] for line in self.call("--help").splitlines())
+
+    def stop(self) -> None:
+        """Ends every call under way."""
+        with self._lock:
+            for process in self._running:
+                process.terminate()
+
+
+def ending(returncode: int) -> str:
+    if returncode < 0:
+        return f"signal {signal.Signals(-returncode).name}"
+    return f"exit code {returncode}"
+
+
+def setting_options(settings: Sequence[str]) -> list[str]:
+    return [word for setting in settings for word in ("--set", setting)]

@@ -1,0 +1,67 @@
+"""Scenario files: found by name or path. The bench validates what is in them."""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import scenario_folder, shown
+from quiesce.engine.bench import Bench
+
+SCHEMA = "quiesce-scenario"
+TRACE_EQUALITY = "trace_equality"
+
+
+@dataclass(frozen=True)
+class Scenario:
+    name: str
+    file: Path
+    plant_file: Path
+    windows_s: tuple[tuple[float, float], ...]  # where the steady state is judged
+    transient_s: float | None  # start of the step's transient
+
+    @property
+    def is_step(self) -> bool:
+        return self.transient_s is not None
+
+
+def read_toml(file: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"{shown(file)}: {error.strerror}; name a scenario file")
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{shown(file)}: not a TOML file: {one_line(error)}")
+
+
+def names() -> list[str]:
+    """Scenarios that ship with the project."""
+    files = sorted(scenario_folder().glob("*.toml"))
+    return [f.stem for f in files if read_toml(f).get("schema") == SCHEMA]
+
+
+def find_file(name: str) -> Path:
+    """A path, or the name of a scenario that ships with the project."""
+    if name.endswith(".toml") or "/" in name:
+        return Path(name)
+    file = scenario_folder() / f"{name}.toml"
+    if name not in names():
+        raise UsageError(
+            f"no scenario '{name}'; there are: {', '.join(names())}, or name a .toml file"
+        )
+    return file
+
+
+def load(bench: Bench, name: str) -> Scenario:
+    """UsageError, in the bench's words, where the scenario or its plant is not valid."""
+    file = find_file(name)
+    data = read_toml(file)
+    bench.call("scenario-check", str(file))
+    return Scenario(
+        name=data["name"],
+        file=file,
+        plant_file=(file.parent / data["plant"]).resolve(),
+        windows_s=tuple((w["start_s"], w["end_s"]) for w in data.get("window", [])),
+        transient_s=data.get("transient", {}).get("start_s"),
+    )

@@ -1,0 +1,1 @@
+"""The published scenarios in closed loop: runs, metrics, table, page."""

@@ -1,0 +1,1 @@
+"""Plants as Python sees them: the C library, files, variants."""

@@ -1,0 +1,83 @@
+"""Plants that differ from a plant file in a few ways, written as plant files of their own."""
+
+import copy
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
+from quiesce.plant.damper import scale_force, with_own_damper
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What to change; the defaults change nothing."""
+
+    rise_s: float | None = None  # of the coil
+    fall_s: float | None = None  # None: as rise_s where that is given
+    force: float = 1.0  # factor of the damper's force
+    freq: float = 1.0  # factor of all natural frequencies, damping ratios kept
+    drive_V: float | None = None
+
+    @property
+    def name(self) -> str:
+        """Short and usable in a file name: lag5ms_force1_drive0.1V_freq1, what changed only."""
+        parts = []
+        if self.rise_s is not None:
+            parts.append(f"lag{1e3 * self.rise_s:g}ms")
+        if self.fall_s is not None:
+            parts.append(f"fall{1e3 * self.fall_s:g}ms")
+        if self.force != 1.0:
+            parts.append(f"force{self.force:g}")
+        if self.drive_V is not None:
+            parts.append(f"drive{self.drive_V:g}V")
+        if self.freq != 1.0:
+            parts.append(f"freq{self.freq:g}")
+        return "_".join(parts) or "nominal"
+
+
+def read_plant_data(file: Path) -> dict[str, Any]:
+    """The file's TOML, with its damper file's contents in place of its name; the plant library
+    checks what is in it."""
+    try:
+        return with_own_damper(tomllib.loads(file.read_text(encoding="utf-8")), file.parent)
+    except OSError as error:
+        raise UsageError(f"{shown(file)}: {error.strerror}; name a plant file")
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{shown(file)}: not a TOML file: {one_line(error)}")
+
+
+def changed(data: dict[str, Any], variant: Variant) -> dict[str, Any]:
+    """A copy of a valid plant's data with the variant's changes."""
+    out = copy.deepcopy(data)
+    if variant.force != 1.0:
+        scale_force(out["damper"], variant.force)
+    _scale_frequencies(out["structure"], variant.freq)
+    if variant.rise_s is not None:
+        out["coil"] = {**out["coil"], "rise_s": variant.rise_s, "fall_s": variant.rise_s}
+    if variant.fall_s is not None:
+        out["coil"]["fall_s"] = variant.fall_s
+    if variant.drive_V is not None:
+        out["shaker"]["drive_V"] = variant.drive_V
+    if variant.name != "nominal":
+        out["name"] = f"{data['name']} {variant.name}"
+    return out
+
+
+def write_variant(plant: Path, variant: Variant, file: Path) -> None:
+    file.write_text(tomli_w.dumps(changed(read_plant_data(plant), variant)), encoding="utf-8")
+
+
+def _scale_frequencies(structure: dict[str, Any], factor: float) -> None:
+    """All natural frequencies times factor, with the same damping ratios and shapes."""
+    if factor == 1.0:
+        return
+    for mode in structure.get("mode", []):
+        mode["freq_Hz"] *= factor
+    for key, power in (("stiffness_N_m", 2), ("damping_N_s_m", 1)):
+        if key in structure:
+            structure[key] = [[value * factor**power for value in row] for row in structure[key]]

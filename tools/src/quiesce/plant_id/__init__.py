@@ -1,0 +1,1 @@
+"""A structure from a recorded sweep."""

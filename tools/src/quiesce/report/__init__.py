@@ -1,0 +1,1 @@
+"""The only furniture of pages and plots."""

@@ -1,0 +1,1 @@
+"""The table engine and the straight-line C, called from Python."""

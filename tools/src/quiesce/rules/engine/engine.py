@@ -1,0 +1,64 @@
+"""Both engines of the firmware over numpy arrays: its own C, built for this machine."""
+
+import ctypes
+from collections.abc import Sequence
+
+import numpy as np
+
+from quiesce.base.errors import UsageError
+from quiesce.rules.engine.native_build import NATIVE, build, firmware_sources
+from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.emit import straight_line_c
+
+TABLE = "table"
+STRAIGHT = "straight"
+FUNCTION = "quiesce_rules_straight"
+
+
+class Engine:
+    """kind: TABLE, or STRAIGHT where the base has a straight-line form (NotStraight else)."""
+
+    def __init__(self, compiled: CompiledBase, kind: str = TABLE) -> None:
+        self._compiled = compiled
+        texts = {"straight.c": straight_source(compiled)} if kind == STRAIGHT else {}
+        library = build([*firmware_sources(), NATIVE / "many.c"], texts, ())
+        self._library = ctypes.CDLL(str(library))
+        self._function = getattr(self._library, FUNCTION) if kind == STRAIGHT else None
+        self._table = np.array(compiled.words, dtype=np.uint32)
+        verdict = self._library.fuzzy_table_check(pointer(self._table), len(self._table))
+        if verdict != 0:
+            raise UsageError(f"the firmware refuses the table of this rule base, reason {verdict}")
+
+    def evaluate(self, inputs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """inputs: int32 of one length n each. Returns int32 [outputs, n] and the uint32 mask [n]
+        of outputs that have their default."""
+        points = np.ascontiguousarray(np.stack([np.asarray(x, np.int32).ravel() for x in inputs]))
+        count = points.shape[1]
+        out = np.empty((len(self._compiled.outputs), count), dtype=np.int32)
+        defaults = np.empty(count, dtype=np.uint32)
+        arrays = (pointer(points), pointer(out), pointer(defaults))
+        if self._function is None:
+            self._library.many_table(pointer(self._table), count, *arrays)
+        else:
+            shape = (points.shape[0], out.shape[0])
+            self._library.many_function(self._function, *shape, count, *arrays)
+        return out, defaults
+
+    def fired(self, inputs: Sequence[np.ndarray]) -> np.ndarray:
+        """uint64 [n]: bit i is rule i, for the first 64 rules."""
+        points = np.ascontiguousarray(np.stack([np.asarray(x, np.int32).ravel() for x in inputs]))
+        fired = np.empty(points.shape[1], dtype=np.uint64)
+        self._library.many_fired(
+            pointer(self._table), points.shape[1], pointer(points), pointer(fired)
+        )
+        return fired
+
+
+def straight_source(compiled: CompiledBase) -> str:
+    """FUNCTION, complete for a compiler."""
+    declaration = f"uint32_t {FUNCTION}(const int32_t *input, int32_t *output);"
+    return f'#include "fuzzy_math.h"\n{declaration}\n{straight_line_c(compiled, FUNCTION)}'
+
+
+def pointer(array: np.ndarray) -> ctypes.c_void_p:
+    return array.ctypes.data_as(ctypes.c_void_p)

@@ -1,0 +1,1 @@
+"""Recordings through the sensing chain, and what the chain does to a tone."""

@@ -1,0 +1,1 @@
+"""Tunes the pulses of the phase law to a plant."""

@@ -1,0 +1,183 @@
+"""The report of `quiesce tune`: tables as text, and one HTML page that needs nothing beside it."""
+
+import html
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from quiesce.base.table import format_table
+from quiesce.hil.page import CSS, card, image, section
+from quiesce.tune.cycle import Cycle
+from quiesce.tune.law import Row, setting_words
+from quiesce.tune.phase_table import SETTINGS
+from quiesce.tune.robust import Cell
+
+Table = tuple[list[str], list[list[str]]]
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """All that a report tells."""
+
+    name: str
+    plant: str
+    command: str
+    first_Hz: float
+    rows: list[Row]
+    cells: list[Cell]
+    cycles: list[Cycle]
+    parameters: dict[str, int | str]
+    identification: str | None  # its report, where the plant was identified
+
+
+def pair(found: dict[str, float] | None) -> str:
+    if found is None:
+        return "-"
+    return f"{found['amp_red_pct']:.1f} / {found['accel_red_pct']:.1f}"
+
+
+def point_table(rows: Sequence[Row]) -> Table:
+    head = ["Hz", "bound", "accel>=0", "best constant", "A"]
+    head += [column for name in SETTINGS for column in (name, "mean A")]
+    out = []
+    for row in rows:
+        if not row.bounds:
+            continue
+        best = max(row.constants, key=lambda one: one["amp_red_pct"])
+        cells = [f"{row.freq_Hz:g}", f"{row.bounds['amp']['amp_red_pct']:.1f}"]
+        cells += [f"{row.bounds['no_worse']['amp_red_pct']:.1f}", pair(best)]
+        cells.append(f"{best['current_A']:.2f}")
+        for name in SETTINGS:
+            found = row.settings[name]
+            cells += [pair(found), f"{found['mean_current_A']:.2f}" if found else "-"]
+        out.append(cells)
+    return head, out
+
+
+def cell_table(cells: Sequence[Cell]) -> Table:
+    head = ["plant", "Hz", "bound", "best constant"]
+    head += [f"{name}, table" for name in SETTINGS]
+    if any(cell.adapted for cell in cells):
+        head += [f"{name}, adapting" for name in SETTINGS]
+    return head, [cell_row(cell) for cell in cells]
+
+
+def cell_row(cell: Cell) -> list[str]:
+    row = [cell.variant.name, f"{cell.freq_Hz:g}", f"{cell.bound['amp_red_pct']:.1f}"]
+    row.append(pair(cell.constant))
+    row += [pair(cell.table[name]) for name in SETTINGS]
+    return row + [pair(cell.adapted[name]) for name in SETTINGS if cell.adapted]
+
+
+def worst_share(cells: Sequence[Cell], is_adapted: bool) -> float | None:
+    """Least share of a plant's own displacement bound; None where nothing is known."""
+    shares = []
+    for cell in cells:
+        found = (cell.adapted if is_adapted else cell.table).get("displacement")
+        if found and cell.bound["amp_red_pct"] > 0.1:
+            shares.append(found["amp_red_pct"] / cell.bound["amp_red_pct"])
+    return min(shares, default=None)
+
+
+def least_fraction(rows: Sequence[Row], setting: str, bound: str) -> tuple[float, float] | None:
+    """Least share of a bound's displacement over the table's points, and its frequency."""
+    shares = [
+        (found["amp_red_pct"] / row.bounds[bound]["amp_red_pct"], row.freq_Hz)
+        for row in rows
+        if row.bounds and (found := row.settings[setting])
+        and row.bounds[bound]["amp_red_pct"] > 0.1
+    ]  # fmt: skip
+    return min(shares, default=None)
+
+
+def text(tuned: Tuned) -> str:
+    parts = [
+        "reductions against 0 A, %: displacement / RMS acceleration, steady state",
+        format_table(*point_table(tuned.rows), left=()),
+    ]
+    if tuned.cells:
+        head, rows = cell_table(tuned.cells)
+        parts += ["", "plants that it was not tuned for, nothing retuned"]
+        parts.append(format_table(head, rows, left=(0,)))
+    parts += ["", f"set:       {setting_words(tuned.parameters)}"]
+    return "\n".join(parts)
+
+
+def html_table(table: Table) -> str:
+    head, rows = table
+
+    def line(cells: list[str], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(c)}</{tag}>" for c in cells) + "</tr>"
+
+    body = "".join(line(row, "td") for row in rows)
+    return f'<div class="wide"><table>{line(head, "th")}{body}</table></div>'
+
+
+def cards(tuned: Tuned) -> str:
+    out = []
+    for setting, bound in zip(SETTINGS, ("amp", "no_worse"), strict=True):
+        if least := least_fraction(tuned.rows, setting, bound):
+            limit = "" if bound == "amp" else " with acceleration no worse than at 0 A"
+            what = f"of the displacement bound{limit}, {setting}, least ({least[1]:g} Hz)"
+            out.append(card(f"{least[0]:.3f}", what))
+    for is_adapted, what in ((False, "the table alone"), (True, "adapting, after 120 s")):
+        if (share := worst_share(tuned.cells, is_adapted)) is not None:
+            out.append(card(f"{share:.2f}", f"of their bound on the other plants: {what}"))
+    unlock_A = 1e-3 * float(tuned.parameters["unlock_current_mA"])
+    out.append(card(f"{unlock_A:g} A", "best constant current, while nothing is locked on to"))
+    return f'<div class="cards">{"".join(out)}</div>'
+
+
+def spring_words(cycles: Sequence[Cycle]) -> str:
+    told = [
+        f"{one.freq_Hz:g} Hz: {one.stiffness_N_m:+.1f} N/m and {one.damping_N_s_m:.2f} N s/m"
+        for one in cycles
+    ]
+    return "; ".join(told)
+
+
+WHY = """A damper's force opposes the motion; the current only says how strongly. <b>Below
+resonance</b> the structure moves like its spring, so more stiffness helps. Current flows while the
+structure moves away from rest and is released at the peak: the force resists the way out, as a
+spring does, and does not push back on the way in; a spring that gives nothing back. <b>Above
+resonance</b> it moves like its mass, so more mass helps. Current flows on the way back to rest and
+is released on the way out: the force opposes the return, as inertia does. Shaded: current flows.
+The command comes earlier than the current by the coil's lag. Dotted: the displacement without
+current. Last row: the force over the displacement; its slope is what acts like a spring or,
+falling, like a mass. Fundamental of the force over that of the displacement: """
+
+
+def make_page(tuned: Tuned, pictures: dict[str, Any]) -> str:
+    sections = [
+        ("Reduction over frequency", "Steady state of the table, without adaptation, at its points "
+         "and half-way between them.", "reductions"),
+        ("The pulses", "Current over the phase of the displacement: 0 is a peak on either side, "
+         "90 the way through rest.", "pulses"),
+        ("Why the pulses are where they are", WHY + spring_words(tuned.cycles) + ".", "cycles"),
+        ("Displacement against acceleration", "Up and to the right is better. Any current: the "
+         "best periodic current for several limits of the acceleration.", "fronts"),
+        ("Plants that the table was not made for", "Nothing retuned. Dashed: that plant's own "
+         "bound; dotted: 0.9 of it.", "robustness"),
+    ]  # fmt: skip
+    drawn = [
+        section(title, note, image(pictures.get(name, ""), title)) for title, note, name in sections
+    ]
+    known = tuned.identification
+    return f"""<!doctype html>
+<html lang="en"><head><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Quiesce: {html.escape(tuned.name)} tuned</title><style>{CSS}</style></head><body><main>
+<h1>Phase law for {html.escape(tuned.name)}</h1>
+<p class="lead">Plant: <code>{html.escape(tuned.plant)}</code>. First mode
+{tuned.first_Hz:.3g} Hz. Reductions are against 0 A with the same excitation; negative is worse
+than doing nothing. Bounds are the best found, not a proof.</p>
+{cards(tuned)}
+<h2>What to set</h2><pre>{html.escape(setting_words(tuned.parameters))}</pre>
+{f"<h2>How sure the plant is</h2><pre>{html.escape(known)}</pre>" if known else ""}
+{"".join(drawn)}
+<h2>At each frequency</h2>
+<p>Reductions in %, displacement / RMS acceleration.</p>{html_table(point_table(tuned.rows))}
+{f"<h2>On other plants</h2>{html_table(cell_table(tuned.cells))}" if tuned.cells else ""}
+<h2>Run it again</h2><pre>{html.escape(tuned.command)}</pre>
+</main></body></html>
+"""
