@@ -135,7 +135,9 @@ static void sense(stream_t *self, const storm_t *s) {
         in->accel_counts = side * (full_scale - draw_between(seed, 0, 7) / 7);
         break;
     case SENSE_BEYOND:
-        in->accel_counts = side * (full_scale + draw_between(seed, 0, 3));
+        // One count below the negative end is still the end.
+        in->accel_counts =
+            draw_one_in(seed, 2) ? -full_scale - 1 : side * (full_scale + draw_between(seed, 0, 3));
         break;
     case SENSE_STUCK: // keeps what it was
         break;
