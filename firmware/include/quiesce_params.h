@@ -43,7 +43,7 @@ enum {
     QUIESCE_ADAPT_FROZEN = 2,
 };
 
-/// One int32_t a parameter, in the order of their indices. docs/reference/parameters.md lists ranges.
+/// One int32_t a parameter, in the order of their indices; ranges: docs/reference/parameters.md.
 typedef struct {
     int32_t tick_rate_Hz; ///< Hz: Control ticks a second.
     int32_t accel_scale_nm_s2; ///< nm/s2 per count: Acceleration of one ADC count (24 bit over +-49.4 g by default).

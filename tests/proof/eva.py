@@ -14,13 +14,12 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools/src"))
-
-from quiesce.rules.formats.files import read_rules  # noqa: E402
-from quiesce.rules.integers.compile import CompiledBase, compile_base  # noqa: E402
-from quiesce.rules.integers.emit import straight_line_c  # noqa: E402
+from quiesce.rules.formats.files import read_rules
+from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.emit import straight_line_c
 from quiesce_benchmarks.fuzzy.reference import VARIANTS, compiled
+
+ROOT = Path(__file__).resolve().parents[2]
 
 BOXES = 16  # of a universe; 64 take a minute a function and come within 1/20 of the range
 MARGIN = 1.25  # of the range, that Eva must prove with these boxes

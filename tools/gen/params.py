@@ -40,7 +40,7 @@ def header(params: list[dict], digest: str) -> str:
 
 #define QUIESCE_PARAM_COUNT {len(params)}
 {enums}
-/// One int32_t a parameter, in the order of their indices. docs/reference/parameters.md lists ranges.
+/// One int32_t a parameter, in the order of their indices; ranges: docs/reference/parameters.md.
 typedef struct {{
 {fields}
 }} quiesce_params_t;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Write the pulses that a rig ships as C: firmware/plants/RIG/pulses.phase.toml into its generated/.
+"""Write the pulses that a rig ships as C: firmware/plants/RIG/pulses.phase.toml into its
+generated/.
 
 Deterministic. `--check` writes nothing and exits 1 where a committed file differs.
 """
@@ -9,10 +10,9 @@ import hashlib
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools/src"))
+from quiesce.tune.phase_table import law_words, read_law
 
-from quiesce.tune.phase_table import law_words, read_law  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PLANTS = "firmware/plants"
 NAME = "plant_pulses"  # the same for every rig: QUIESCE_PLANT chooses the folder

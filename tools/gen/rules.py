@@ -10,12 +10,11 @@ import hashlib
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools/src"))
+from quiesce.rules.formats.files import read_rules
+from quiesce.rules.integers.c_files import header_c, source_c
+from quiesce.rules.integers.compile import compile_base
 
-from quiesce.rules.formats.files import read_rules  # noqa: E402
-from quiesce.rules.integers.c_files import header_c, source_c  # noqa: E402
-from quiesce.rules.integers.compile import compile_base  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PLANTS = "firmware/plants"
 NAME = "plant_rules"  # the same for every rig: QUIESCE_PLANT chooses the folder

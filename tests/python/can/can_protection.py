@@ -1,5 +1,5 @@
-"""Protection of CAN messages, written again from the description in docs/reference/can-messages.md: bit by bit, and
-from the DBC alone."""
+"""Protection of CAN messages, written again from the description in
+docs/reference/can-messages.md: bit by bit, and from the DBC alone."""
 
 from pathlib import Path
 

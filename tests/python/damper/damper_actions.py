@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-ROOT = Path(__file__).resolve().parents[3]
 from quiesce.base.command import Parser
 from quiesce.base.errors import UsageError
-from quiesce.damper.data.record import Record  # noqa: E402
-from quiesce.damper.model_file import DamperModel  # noqa: E402
+from quiesce.damper.data.record import Record
+from quiesce.damper.model_file import DamperModel
 
 
 def act(action: ModuleType, *arguments: str | Path) -> int:

@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 from quiesce.base.errors import UsageError
-from quiesce.damper.data.record import Record  # noqa: E402
-from quiesce.damper.fit.least_squares_bouc_wen import (  # noqa: E402
+from quiesce.damper.data.record import Record
+from quiesce.damper.fit.least_squares_bouc_wen import (
     BoucWenFit,
     Sines,
     fit,

@@ -1,15 +1,11 @@
-"""The virtual machine's boots, one a session each; tests/system/vm/build_images has made what they need.
+"""The virtual machine's boots, one a session each; build_images has made what they need.
 
 QUIESCE_BUILD names another folder with the builds.
 """
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).resolve().parents[3]
-
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce_vm import boots
 

@@ -1,4 +1,4 @@
-"""Third boot: faults, each waited for by what it causes; docs/reference/quiesced.md has the reactions."""
+"""Third boot: faults, each waited for by what it causes; reactions: docs/reference/quiesced.md."""
 
 import re
 

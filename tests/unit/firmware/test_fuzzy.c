@@ -1,6 +1,6 @@
 #include "fuzzy.h"
-#include "rule_cases.h"
 #include "plant_rules.h"
+#include "rule_cases.h"
 #include "unity.h"
 
 #include <stddef.h>

@@ -4,8 +4,8 @@
 
 #include "crc32.h"
 #include "fuzzy.h"
-#include "rule_cases.h"
 #include "plant_rules.h"
+#include "rule_cases.h"
 #include "unity.h"
 
 void setUp(void) {}

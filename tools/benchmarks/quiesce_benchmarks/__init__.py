@@ -1,1 +1,1 @@
-"""Measured figures beside their goals: `./tools/benchmark NAME`. Nothing in quiesce imports this."""
+"""Measured figures beside their goals (`./tools/benchmark NAME`); quiesce imports none of it."""

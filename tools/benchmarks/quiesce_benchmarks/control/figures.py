@@ -1,7 +1,8 @@
 """The figures of `quiesce bench control`, with their goals.
 
 All with 0.5 mg noise and the plant's own ADC, driver and coil; reductions are against 0 A, by the
-definitions of docs/howto/describe-a-plant.md. Unless said otherwise the law adapts from a cold start.
+definitions of docs/howto/describe-a-plant.md. Unless said otherwise the law adapts from a cold
+start.
 
 amp_red, accel_red     displacement setting, last 2 s of 8 s of a sine: the pulses that were tuned
                        for this plant (the adaptation begins after 10 s)

@@ -15,8 +15,8 @@ from quiesce_benchmarks.report import Figure, Report
 
 NAME = "identify"
 HELP = "damper models: measured dampers held out, synthetic truth, speed"
-DESCRIPTION = """Measured dampers by the rules of tools/benchmarks/dampers/scoring.toml: the better of two
-static baselines, and our models, chosen by validation inside the training part and scored on
+DESCRIPTION = """Measured dampers by the rules of tools/benchmarks/dampers/scoring.toml: the better
+of two static baselines, and our models, chosen by validation inside the training part and scored on
 held-out rows. One parameter set over five currents. Synthetic truth: are parameters and intervals
 right? Speed of the batched evaluator against scipy's integrator and against ourselves, one by one,
 and of a whole fit against scipy's differential evolution."""

@@ -1,4 +1,5 @@
-"""Measured dampers, held out: baselines and our models, by tools/benchmarks/dampers/scoring.toml."""
+"""Measured dampers, held out: baselines and our models, by
+tools/benchmarks/dampers/scoring.toml."""
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence

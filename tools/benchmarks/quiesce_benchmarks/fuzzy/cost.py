@@ -1,8 +1,9 @@
 """Instructions of the fuzzy engines on the emulated Cortex-M4, beside libfuzzylite's.
 
-Exact counts, no cycles: every evaluation is bracketed in its image (tools/benchmarks/mps2/main_fuzzy_cost.c,
-tools/benchmarks/mps2/fuzzylite) and counted by the emulator's plugin. The engines' inputs are a dense grid,
-every border of a cell and values beyond the universe; the peer's are spread evenly, at random.
+Exact counts, no cycles: every evaluation is bracketed in its image
+(tools/benchmarks/mps2/main_fuzzy_cost.c, tools/benchmarks/mps2/fuzzylite) and counted by the
+emulator's plugin. The engines' inputs are a dense grid, every border of a cell and values beyond
+the universe; the peer's are spread evenly, at random.
 """
 
 from collections.abc import Sequence

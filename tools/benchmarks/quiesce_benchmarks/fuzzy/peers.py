@@ -1,7 +1,7 @@
 """Peers of the fuzzy engine, each a program of its own: libfuzzylite, pyfuzzylite, scikit-fuzzy.
 
-tools/benchmarks/fetch_peers fetches and builds them when one is first wanted. pyfuzzylite and libfuzzylite are
-GPL: they are run, never imported or linked by the package.
+tools/benchmarks/fetch_peers fetches and builds them when one is first wanted. pyfuzzylite and
+libfuzzylite are GPL: they are run, never imported or linked by the package.
 """
 
 import json

@@ -1,4 +1,5 @@
-"""The reference controller of the fuzzy benchmark (tools/benchmarks/rules) in all forms that are measured.
+"""The reference controller of the fuzzy benchmark (tools/benchmarks/rules) in all forms that are
+measured.
 
 Frequency and RMS acceleration of a vibration to a current: four sets each, sixteen rules. Its
 singletons are averaged in both ways that peers know, sum over rules and maximum per term.

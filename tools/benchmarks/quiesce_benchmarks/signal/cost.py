@@ -2,8 +2,8 @@
 
 Exact instruction counts, no cycles: every call of the chain's step is bracketed in its image
 (tools/benchmarks/mps2/main_signal_cost.c) and counted by the emulator's plugin. The peer
-(tools/benchmarks/mps2/main_cmsis_cost.c) does the same work as one batch of 1024 points in one tick: real FFT,
-magnitudes of its bins, RMS; in q15 and in q31.
+(tools/benchmarks/mps2/main_cmsis_cost.c) does the same work as one batch of 1024 points in one
+tick: real FFT, magnitudes of its bins, RMS; in q15 and in q31.
 """
 
 from collections.abc import Callable

@@ -13,8 +13,8 @@ EPILOG = """examples:
   quiesce params selftune           those with 'selftune' in their name
   quiesce params --json
 
-Set one on any command that runs the controller: --set NAME=VALUE. docs/reference/parameters.md explains
-each.
+Set one on any command that runs the controller: --set NAME=VALUE. docs/reference/parameters.md
+explains each.
 """
 
 

@@ -253,7 +253,8 @@ paper's printed table has the sign that makes 5 Hz worse on this plant.</p>
 ./tools/hil --help</pre>
 <p>The same figures for a script: <code>metrics.json</code> beside this page;
 <code>details.json</code> has the search over constant currents and the UART rate. Scenarios:
-<code>sim_hil/data/scenarios/</code>, the plant: <code>sim_hil/data/plants/squeeze_2012.toml</code>, published
-figures and bound with their sources: <code>sim_hil/data/scenarios/reference_squeeze.toml</code>.</p>
+<code>sim_hil/data/scenarios/</code>, the plant:
+<code>sim_hil/data/plants/squeeze_2012.toml</code>, published figures and bound with their sources:
+<code>sim_hil/data/scenarios/reference_squeeze.toml</code>.</p>
 </main></body></html>
 """

@@ -37,8 +37,8 @@ EPILOG = """examples:
   quiesce can set law=phase --save --bus slcan:socket://127.0.0.1:5556
   quiesce can stop --bus socketcan:can0
 
-The messages are those of firmware/comm/quiesce.dbc; docs/howto/use-can-tools.md has an example of each.
-'quiesce can ACTION --help' has the options of one.
+The messages are those of firmware/comm/quiesce.dbc; docs/howto/use-can-tools.md has an example of
+each. 'quiesce can ACTION --help' has the options of one.
 """
 
 

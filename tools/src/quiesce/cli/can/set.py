@@ -95,7 +95,8 @@ def why_refused(reply: Any, operation: str) -> str:
     if reply.result in ("OUT_OF_RANGE", "CONTRADICTION") and reply.param_index < len(known):
         is_alone = reply.result == "OUT_OF_RANGE"
         why = "is out of its range" if is_alone else "contradicts another parameter"
-        return f"{name} {why}; it is {expected(known[reply.param_index])} (docs/reference/parameters.md)"
+        allowed = expected(known[reply.param_index])
+        return f"{name} {why}; it is {allowed} (docs/reference/parameters.md)"
     return f"{operation} of {name}: {reply.result}"
 
 

@@ -24,7 +24,7 @@ All compile as C11 without a library, heap or floating point: cc -c *.c
 
 examples:
   quiesce rules compile tools/benchmarks/rules/reference_singleton.fcl --out build/rules/reference
-  quiesce rules compile firmware/plants/squeeze_2012/rules.fcl --controller --out build/rules/squeeze
+  quiesce rules compile firmware/plants/squeeze_2012/rules.fcl --controller --out build/squeeze
   quiesce rules compile fan.fis --lsb temperature=0.01 --lsb speed=1 --name fan --out fan
 """
 
