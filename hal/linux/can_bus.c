@@ -1,11 +1,9 @@
 #include "can_bus.h"
 
-#include "can_backend.h"
+#include "can_backends.h"
+#include "can_common.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #define SERIAL_PREFIX "slcan:"
 
@@ -50,13 +48,13 @@ bool can_bus_receive(can_bus_t *bus, can_frame_t *frame, int64_t *time_ns) {
         !bus->backend->receive(bus, frame, time_ns != NULL ? time_ns : &ignored_ns)) {
         return false;
     }
-    can_bus_count(&bus->counters.received, 1);
+    can_common_count(&bus->counters.received, 1);
     return true;
 }
 
 bool can_bus_send(can_bus_t *bus, const can_frame_t *frame) {
     const bool is_sent = bus->fd >= 0 && bus->backend->send(bus, frame);
-    can_bus_count(is_sent ? &bus->counters.sent : &bus->counters.tx_dropped, 1);
+    can_common_count(is_sent ? &bus->counters.sent : &bus->counters.tx_dropped, 1);
     return is_sent;
 }
 
@@ -101,13 +99,6 @@ bool can_bus_maintain(can_bus_t *bus, int64_t now_ns) {
     return true;
 }
 
-static void close_file(int *fd) {
-    if (*fd >= 0) {
-        (void)close(*fd);
-    }
-    *fd = -1;
-}
-
 void can_bus_recover(can_bus_t *bus) {
     can_recovery_t *const recovery = &bus->recovery;
     int expected = CAN_RECOVERY_ASKED;
@@ -115,7 +106,7 @@ void can_bus_recover(can_bus_t *bus) {
                                                  memory_order_acquire, memory_order_relaxed)) {
         return;
     }
-    close_file(&recovery->gone_fd);
+    can_common_close(&recovery->gone_fd);
     bus->backend->recover(bus);
     atomic_store_explicit(&recovery->stage, CAN_RECOVERY_DONE, memory_order_release);
 }
@@ -141,52 +132,4 @@ const can_bus_event_t *can_bus_last_event(const can_bus_t *bus) {
 
 int can_bus_fd(const can_bus_t *bus) {
     return bus->fd;
-}
-
-void can_bus_init(can_bus_t *bus, const can_backend_t *backend) {
-    *bus = (can_bus_t){
-        .backend = backend,
-        .fd = -1,
-        .gone_fd = -1,
-        .state = CAN_BUS_DOWN,
-        .recovery = {.fd = -1, .gone_fd = -1},
-    };
-}
-
-void can_bus_close_files(can_bus_t *bus) {
-    close_file(&bus->fd);
-    close_file(&bus->gone_fd);
-    close_file(&bus->recovery.fd);
-    close_file(&bus->recovery.gone_fd);
-}
-
-void can_bus_count(uint32_t *counter, uint32_t by) {
-    *counter = by > UINT32_MAX - *counter ? UINT32_MAX : *counter + by;
-}
-
-void can_bus_note(can_bus_t *bus, const char *format, ...) {
-    char text[sizeof bus->event.text];
-    va_list arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (strcmp(text, bus->event.text) != 0) {
-        memcpy(bus->event.text, text, sizeof text);
-        can_bus_count(&bus->event.number, 1);
-    }
-}
-
-void can_bus_went_down(can_bus_t *bus, const char *why) {
-    if (bus->state != CAN_BUS_DOWN) {
-        can_bus_count(&bus->counters.down, 1);
-        bus->state = CAN_BUS_DOWN;
-        bus->retry_ns = 0;
-    }
-    can_bus_note(bus, "%s", why);
-}
-
-void can_bus_vanished(can_bus_t *bus, const char *why) {
-    can_bus_went_down(bus, why);
-    bus->gone_fd = bus->fd;
-    bus->fd = -1;
 }

@@ -1,5 +1,6 @@
 // SLCAN over a serial line: the adapter, a board's UART, or a pty.
-#include "can_backend.h"
+#include "can_backends.h"
+#include "can_common.h"
 #include "slcan.h"
 #include "tick_linux.h"
 
@@ -144,7 +145,7 @@ static void begin(can_serial_t *self) {
 }
 
 static void vanish(can_serial_t *self) {
-    can_bus_vanished(&self->bus, "serial line is gone");
+    can_common_vanished(&self->bus, "serial line is gone");
 }
 
 /// Fills the buffer. Returns false where nothing has arrived.
@@ -173,7 +174,7 @@ static bool decode(can_serial_t *self, can_frame_t *frame) {
     while (!is_found && self->read_at < self->read_end) {
         const uint8_t byte = self->read[self->read_at++];
         if (byte == BELL) { // ends a line as CR does
-            can_bus_count(&self->bus.counters.error_frames, 1);
+            can_common_count(&self->bus.counters.error_frames, 1);
         }
         can_frame_t decoded;
         if (slcan_decode(&self->decoder, byte == BELL ? (uint8_t)'\r' : byte, &decoded) &&
@@ -182,8 +183,8 @@ static bool decode(can_serial_t *self, can_frame_t *frame) {
             is_found = true;
         }
     }
-    can_bus_count(&self->bus.counters.malformed,
-                  self->decoder.malformed_count - self->malformed_seen);
+    can_common_count(&self->bus.counters.malformed,
+                     self->decoder.malformed_count - self->malformed_seen);
     self->malformed_seen = self->decoder.malformed_count;
     return is_found;
 }
@@ -242,16 +243,16 @@ static void recover(can_bus_t *bus) {
 static void adopt(can_bus_t *bus) {
     if (bus->recovery.is_new) {
         begin((can_serial_t *)bus);
-        can_bus_note(bus, "serial line is back");
+        can_common_note(bus, "serial line is back");
     }
 }
 
 static void close_serial(can_bus_t *bus) {
     can_serial_t *const self = (can_serial_t *)bus;
     if (bus->fd >= 0 && self->commands[0] != '\0' && write(bus->fd, "C\r", 2) != 2) {
-        can_bus_count(&bus->counters.tx_dropped, 1);
+        can_common_count(&bus->counters.tx_dropped, 1);
     }
-    can_bus_close_files(bus);
+    can_common_close_files(bus);
     free(self);
 }
 
@@ -317,7 +318,7 @@ can_bus_t *can_serial_open(const can_bus_options_t *options, linux_error_t *erro
         (void)linux_fail(error, "out of memory");
         return NULL;
     }
-    can_bus_init(&self->bus, &backend);
+    can_common_init(&self->bus, &backend);
     if (!set_up(self, options, error)) {
         free(self);
         return NULL;

@@ -1,5 +1,6 @@
 // SocketCAN: Documentation/networking/can.rst.
-#include "can_backend.h"
+#include "can_backends.h"
+#include "can_common.h"
 #include "can_error.h"
 #include "can_restart.h"
 #include "tick_linux.h"
@@ -103,11 +104,11 @@ static int open_socket(can_socket_t *self, int *socket_fd) {
 static void take_errno(can_socket_t *self, int number) {
     switch (number) {
     case ENETDOWN:
-        can_bus_went_down(&self->bus, "interface is down");
+        can_common_went_down(&self->bus, "interface is down");
         break;
     case ENODEV:
     case ENXIO:
-        can_bus_vanished(&self->bus, "interface is gone");
+        can_common_vanished(&self->bus, "interface is gone");
         break;
     default: // nothing to read, or no room to send: counted by the caller
         break;
@@ -117,17 +118,17 @@ static void take_errno(can_socket_t *self, int number) {
 static void take_error_frame(can_socket_t *self, const struct canfd_frame *frame) {
     can_bus_t *const bus = &self->bus;
     const can_bus_state_t before = bus->state;
-    can_bus_count(&bus->counters.error_frames, 1);
+    can_common_count(&bus->counters.error_frames, 1);
     bus->state = can_error_state(before, frame->can_id, frame->data[CONTROLLER_BYTE]);
     if (bus->state == before) {
         return;
     }
     if (bus->state == CAN_BUS_OFF) {
-        can_bus_count(&bus->counters.bus_off, 1);
+        can_common_count(&bus->counters.bus_off, 1);
         bus->retry_ns = tick_linux_now_ns() + bus->restart_ns;
-        can_bus_note(bus, "bus-off");
+        can_common_note(bus, "bus-off");
     } else {
-        can_bus_note(bus, bus->state == CAN_BUS_PASSIVE ? "error passive" : "error active");
+        can_common_note(bus, bus->state == CAN_BUS_PASSIVE ? "error passive" : "error active");
     }
 }
 
@@ -143,7 +144,7 @@ static int64_t take_control(can_socket_t *self, struct msghdr *message) {
         } else if (item->cmsg_level == SOL_SOCKET && item->cmsg_type == SO_RXQ_OVFL) {
             uint32_t drops;
             memcpy(&drops, CMSG_DATA(item), sizeof drops);
-            can_bus_count(&self->bus.counters.rx_dropped, drops - self->kernel_drops);
+            can_common_count(&self->bus.counters.rx_dropped, drops - self->kernel_drops);
             self->kernel_drops = drops;
         }
     }
@@ -201,7 +202,7 @@ static bool receive(can_bus_t *bus, can_frame_t *frame, int64_t *time_ns) {
         } else if (convert(&wire, bytes, frame)) {
             return true;
         } else {
-            can_bus_count(&bus->counters.malformed, 1);
+            can_common_count(&bus->counters.malformed, 1);
         }
     }
     return false;
@@ -232,26 +233,26 @@ static bool send_frame(can_bus_t *bus, const can_frame_t *frame) {
 /// is up. Where it has said so meanwhile, the answer is no news.
 static void adopt_answer(can_bus_t *bus) {
     const int answer = bus->recovery.answer;
-    can_bus_count(&bus->counters.restarts, 1);
+    can_common_count(&bus->counters.restarts, 1);
     if (bus->state != CAN_BUS_OFF) {
         return;
     }
     switch (answer) {
     case 0:
-        can_bus_note(bus, "bus-off: restart asked for");
+        can_common_note(bus, "bus-off: restart asked for");
         break;
     case EBUSY:
         bus->state = CAN_BUS_UP;
-        can_bus_note(bus, "no longer bus-off");
+        can_common_note(bus, "no longer bus-off");
         break;
     case EINVAL:
-        can_bus_note(bus, "bus-off: the driver restarts by itself (restart-ms is set)");
+        can_common_note(bus, "bus-off: the driver restarts by itself (restart-ms is set)");
         break;
     case EPERM:
-        can_bus_note(bus, "bus-off: no right to restart (needs CAP_NET_ADMIN)");
+        can_common_note(bus, "bus-off: no right to restart (needs CAP_NET_ADMIN)");
         break;
     default:
-        can_bus_note(bus, "bus-off: restart refused: %s", strerror(answer));
+        can_common_note(bus, "bus-off: restart refused: %s", strerror(answer));
         break;
     }
 }
@@ -288,20 +289,20 @@ static void adopt(can_bus_t *bus) {
         return;
     }
     if (bus->fd < 0 || bus->recovery.is_new) {
-        can_bus_note(bus, "interface is gone");
+        can_common_note(bus, "interface is gone");
     }
     if (bus->recovery.is_new) {
         self->kernel_drops = 0;
     }
     if (bus->recovery.is_up) {
         bus->state = CAN_BUS_UP;
-        can_bus_note(bus, "interface is up");
+        can_common_note(bus, "interface is up");
     }
 }
 
 static void close_socket(can_bus_t *bus) {
     can_socket_t *const self = (can_socket_t *)bus;
-    can_bus_close_files(bus);
+    can_common_close_files(bus);
     if (self->route_fd >= 0) {
         (void)close(self->route_fd);
     }
@@ -366,7 +367,7 @@ can_bus_t *can_socket_open(const can_bus_options_t *options, linux_error_t *erro
         (void)linux_fail(error, "out of memory");
         return NULL;
     }
-    can_bus_init(&self->bus, &backend);
+    can_common_init(&self->bus, &backend);
     memcpy(self->name, options->interface, strlen(options->interface));
     self->use_fd = options->use_fd;
     self->bus.restart_ns = (int64_t)restart_ms * 1000000;

@@ -1,8 +1,9 @@
 /// What the two kinds of CAN bus have in common. A backend's own state begins with a can_bus_t.
-#ifndef CAN_BACKEND_H
-#define CAN_BACKEND_H
+#ifndef CAN_COMMON_H
+#define CAN_COMMON_H
 
-#include "can_bus.h"
+#include "can_frame.h"
+#include "can_types.h"
 
 #include <stdatomic.h>
 
@@ -52,26 +53,25 @@ struct can_bus {
     can_recovery_t recovery;
 };
 
-/// Each returns NULL and says why. The options were checked by can_bus_open.
-can_bus_t *can_socket_open(const can_bus_options_t *options, linux_error_t *error);
-can_bus_t *can_serial_open(const can_bus_options_t *options, linux_error_t *error);
-
 /// A bus without a file descriptor.
-void can_bus_init(can_bus_t *bus, const can_backend_t *backend);
+void can_common_init(can_bus_t *bus, const can_backend_t *backend);
+
+/// Closes a file where there is one; it is none from then on.
+void can_common_close(int *fd);
 
 /// Closes what is still open of it, whoever had it last.
-void can_bus_close_files(can_bus_t *bus);
+void can_common_close_files(can_bus_t *bus);
 
 /// Adds to a counter, which stops at its greatest value.
-void can_bus_count(uint32_t *counter, uint32_t by);
+void can_common_count(uint32_t *counter, uint32_t by);
 
 /// Notes what happened, unless that is what happened last.
-__attribute__((format(printf, 2, 3))) void can_bus_note(can_bus_t *bus, const char *format, ...);
+__attribute__((format(printf, 2, 3))) void can_common_note(can_bus_t *bus, const char *format, ...);
 
 /// The bus went down: counted and noted where it was not so before.
-void can_bus_went_down(can_bus_t *bus, const char *why);
+void can_common_went_down(can_bus_t *bus, const char *why);
 
 /// It is gone: its file descriptor is not used any more.
-void can_bus_vanished(can_bus_t *bus, const char *why);
+void can_common_vanished(can_bus_t *bus, const char *why);
 
 #endif
