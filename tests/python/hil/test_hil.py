@@ -104,7 +104,7 @@ def test_quick_run_succeeds_with_table_and_progress(quick) -> None:
 def test_quick_run_writes_its_files_only(quick) -> None:
     _, folder = quick
     assert sorted(p.name for p in folder.iterdir()) == [
-        "details.json", "index.html", "metrics.json",
+        "details.json", "index.html", "metrics.json", "picture.svg", "table.txt",
     ]  # fmt: skip
     assert [p.name for p in folder.parent.iterdir()] == ["report"]
 

@@ -16,6 +16,7 @@ from quiesce.engine.bench import Bench, target_options
 from quiesce.engine.linux_target import linux_channel
 from quiesce.hil.metrics import Result, differing_cases, make_rows, metrics_json
 from quiesce.hil.page import make_page
+from quiesce.hil.picture import plot_picture
 from quiesce.hil.published import load_reference
 from quiesce.hil.rule_surface import rule_surface
 from quiesce.hil.runs import (
@@ -56,8 +57,8 @@ scenarios: {", ".join((*STEADY, STEP))} (and any .toml file)
 laws:      {", ".join(laws.names())}
 
 Without --scenario, 5 Hz and the step run on the image, too. Open loop always runs: reductions are
-against it. Written to build/report/hil: index.html, metrics.json, details.json. Exit code 1 where
-the target does not answer bit for bit like the host.
+against it. Written to build/report/hil: index.html, metrics.json, details.json, table.txt and
+picture.svg. Exit code 1 where the target does not answer bit for bit like the host.
 
 --target linux runs the same scenarios as the image and the host beside it, and drives quiesced
 --lockstep, tick by tick, over CAN. Command, state and fault of every tick are compared, all words
@@ -265,9 +266,12 @@ def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
         (staging / "index.html").write_text(page, encoding="utf-8")
         write_json(staging / "metrics.json", metrics_json(result))
         write_json(staging / "details.json", details_json(result, searches, runs))
+        table = f"{comparison_table(result)}\n\n{summary(result)}\n"
+        (staging / "table.txt").write_text(table, encoding="utf-8")
+        (staging / "picture.svg").write_text(plot_picture(runs), encoding="utf-8")
     if args.json:
         print(json.dumps(metrics_json(result), indent=1))
     else:
-        print(f"\n{comparison_table(result)}\n\n{summary(result)}\n")
+        print(f"\n{table}")
         print(f"report: {shown(out / 'index.html')}\nmetrics: {shown(out / 'metrics.json')}")
     return 0 if result.is_equal else EXIT_FAILED
