@@ -1,0 +1,1 @@
+"""Figures about the project itself: its pages, its folders, its waiting times."""
