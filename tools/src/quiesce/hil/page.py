@@ -1,6 +1,5 @@
 """The report of `quiesce hil`: one HTML page that needs nothing beside itself."""
 
-import base64
 import html
 from collections.abc import Sequence
 
@@ -26,35 +25,7 @@ from quiesce.hil.table import (
     published_text,
     target_name,
 )
-
-CSS = """
-:root { color-scheme: light; }
-* { box-sizing: border-box; }
-body { font: 15px/1.5 system-ui, "Segoe UI", Roboto, sans-serif; color: #1f2933; margin: 0;
-       background: #f4f6f8; }
-main { max-width: 1180px; margin: 0 auto; padding: 28px 24px 60px; background: #fff; }
-h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 19px; margin: 40px 0 8px; }
-p { max-width: 76ch; margin: 8px 0; } .lead { color: #52606d; }
-.cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(190px, 1fr)); gap: 12px;
-         margin: 22px 0; }
-.card { border: 1px solid #d9dfe5; border-radius: 8px; padding: 12px 14px; }
-.card b { display: block; font-size: 22px; line-height: 1.2; }
-.card.bad { border-color: #c0392b; background: #fdf1ef; }
-.card span { color: #52606d; font-size: 13px; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 12.5px; font-variant-numeric: tabular-nums;
-        width: 100%; }
-th, td { padding: 3px 5px; text-align: right; white-space: nowrap; }
-th { font-weight: 600; color: #52606d; border-bottom: 1px solid #b8c2cc; vertical-align: bottom; }
-th.group { text-align: center; border-bottom: 1px solid #d9dfe5; }
-td:first-child, th:first-child, td.left { text-align: left; }
-tr.head td { background: #eef2f5; font-weight: 600; padding-top: 6px; }
-td.ours { font-weight: 650; } td.diff { color: #7b8794; }
-td.sep, th.sep { border-left: 1px solid #d9dfe5; }
-img { display: block; width: 100%; height: auto; margin: 10px 0; }
-pre { background: #f4f6f8; border: 1px solid #e1e6ea; border-radius: 6px; padding: 10px 12px;
-      overflow-x: auto; font-size: 13px; }
-"""
+from quiesce.report.html import card, cards, document, image, section
 
 
 def text(value: float | None, digits: int = 1) -> str:
@@ -71,20 +42,7 @@ def in_symbols(heading: str) -> str:
     return heading.replace(" um", " µm").replace("mm/s2", "mm/s²")
 
 
-def image(svg: str, alt: str) -> str:
-    if not svg:
-        return ""
-    data = base64.b64encode(svg.encode()).decode()
-    return f'<img alt="{html.escape(alt)}" src="data:image/svg+xml;base64,{data}">'
-
-
-def card(figure: str, caption: str, is_bad: bool = False) -> str:
-    kind = "card bad" if is_bad else "card"
-    text = f"<b>{html.escape(figure)}</b><span>{html.escape(caption)}</span>"
-    return f'<div class="{kind}">{text}</div>'
-
-
-def cards(result: Result) -> str:
+def result_cards(result: Result) -> str:
     parts = []
     equal = result.trace_equal
     if equal:
@@ -117,7 +75,7 @@ def cards(result: Result) -> str:
                 f"{result.uart['realtime_factor']:.2f} × real time",
             )
         )
-    return f'<div class="cards">{"".join(parts)}</div>'
+    return cards(parts)
 
 
 def table_row(row: Row, beside: Beside) -> str:
@@ -165,10 +123,6 @@ def table(result: Result) -> str:
         body += [table_row(r, b) for r, b in members if r.law != laws.OPEN_LOOP]
     rows = f"<thead>{head}</thead><tbody>{''.join(body)}</tbody>"
     return f'<div class="wide"><table>{rows}</table></div>'
-
-
-def section(title: str, note: str, picture: str) -> str:
-    return f"<h2>{html.escape(title)}</h2><p>{note}</p>{picture}" if picture else ""
 
 
 def figures(
@@ -226,16 +180,14 @@ def make_page(
 ) -> str:
     first = result.rows[0]
     counts = "\n".join(instruction_lines(result))
-    return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Quiesce: closed loop, published against ours</title><style>{CSS}</style></head><body><main>
-<h1>Closed loop: published, ours, best attainable</h1>
+    return document(
+        "closed loop, published against ours",
+        f"""<h1>Closed loop: published, ours, best attainable</h1>
 <p class="lead">The controller's firmware against the simulated structure, in lock-step, one
 acceleration sample and one current command each control tick. Reductions are against 0 A with the
 same excitation; negative is worse than doing nothing. Sensor noise {first.noise_mg:g} mg, drive
 {first.drive_V:g} V, seed {first.seed}.</p>
-{cards(result)}
+{result_cards(result)}
 <h2>Comparison</h2>
 {table(result)}
 <p><b>Published</b>: measured by the paper on the real structure. <b>Simulated</b>: an independent
@@ -255,6 +207,5 @@ paper's printed table has the sign that makes 5 Hz worse on this plant.</p>
 <code>details.json</code> has the search over constant currents and the UART rate. Scenarios:
 <code>sim_hil/data/scenarios/</code>, the plant:
 <code>sim_hil/data/plants/squeeze_2012.toml</code>, published figures and bound with their sources:
-<code>sim_hil/data/scenarios/reference_squeeze.toml</code>.</p>
-</main></body></html>
-"""
+<code>sim_hil/data/scenarios/reference_squeeze.toml</code>.</p>""",
+    )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from quiesce.base.table import format_table
-from quiesce.hil.page import CSS, card, image, section
+from quiesce.report.html import card, cards, document, html_table, image, section
 from quiesce.tune.cycle import Cycle
 from quiesce.tune.law import Row, setting_words
 from quiesce.tune.phase_table import SETTINGS
@@ -103,17 +103,7 @@ def text(tuned: Tuned) -> str:
     return "\n".join(parts)
 
 
-def html_table(table: Table) -> str:
-    head, rows = table
-
-    def line(cells: list[str], tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{html.escape(c)}</{tag}>" for c in cells) + "</tr>"
-
-    body = "".join(line(row, "td") for row in rows)
-    return f'<div class="wide"><table>{line(head, "th")}{body}</table></div>'
-
-
-def cards(tuned: Tuned) -> str:
+def share_cards(tuned: Tuned) -> str:
     out = []
     for setting, bound in zip(SETTINGS, ("amp", "no_worse"), strict=True):
         if least := least_fraction(tuned.rows, setting, bound):
@@ -125,7 +115,7 @@ def cards(tuned: Tuned) -> str:
             out.append(card(f"{share:.2f}", f"of their bound on the other plants: {what}"))
     unlock_A = 1e-3 * float(tuned.parameters["unlock_current_mA"])
     out.append(card(f"{unlock_A:g} A", "best constant current, while nothing is locked on to"))
-    return f'<div class="cards">{"".join(out)}</div>'
+    return cards(out)
 
 
 def spring_words(cycles: Sequence[Cycle]) -> str:
@@ -163,21 +153,18 @@ def make_page(tuned: Tuned, pictures: dict[str, Any]) -> str:
         section(title, note, image(pictures.get(name, ""), title)) for title, note, name in sections
     ]
     known = tuned.identification
-    return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Quiesce: {html.escape(tuned.name)} tuned</title><style>{CSS}</style></head><body><main>
-<h1>Phase law for {html.escape(tuned.name)}</h1>
+    return document(
+        f"{tuned.name} tuned",
+        f"""<h1>Phase law for {html.escape(tuned.name)}</h1>
 <p class="lead">Plant: <code>{html.escape(tuned.plant)}</code>. First mode
 {tuned.first_Hz:.3g} Hz. Reductions are against 0 A with the same excitation; negative is worse
 than doing nothing. Bounds are the best found, not a proof.</p>
-{cards(tuned)}
+{share_cards(tuned)}
 <h2>What to set</h2><pre>{html.escape(setting_words(tuned.parameters))}</pre>
 {f"<h2>How sure the plant is</h2><pre>{html.escape(known)}</pre>" if known else ""}
 {"".join(drawn)}
 <h2>At each frequency</h2>
 <p>Reductions in %, displacement / RMS acceleration.</p>{html_table(point_table(tuned.rows))}
 {f"<h2>On other plants</h2>{html_table(cell_table(tuned.cells))}" if tuned.cells else ""}
-<h2>Run it again</h2><pre>{html.escape(tuned.command)}</pre>
-</main></body></html>
-"""
+<h2>Run it again</h2><pre>{html.escape(tuned.command)}</pre>""",
+    )

@@ -12,6 +12,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.errors import EXIT_FAILED
 from quiesce.base.paths import build_folder, shown
 from quiesce.cli.rules.show import add_reading_options, read_with_notes, slice_of
+from quiesce.report.html import preformatted
 from quiesce.rules.analysis.findings import number
 from quiesce.rules.model import RuleBase
 from quiesce.rules.views.compare import (
@@ -21,7 +22,7 @@ from quiesce.rules.views.compare import (
     matched,
 )
 from quiesce.rules.views.diff_plots import plot_difference
-from quiesce.rules.views.page import make_page, picture, preformatted
+from quiesce.rules.views.page import make_page, picture
 from quiesce.rules.views.plots import file_name, save
 from quiesce.rules.views.structure import structural_differences
 from quiesce.rules.views.surface import Slice

@@ -13,9 +13,10 @@ from quiesce.base.paths import build_folder, shown
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.trace import read_trace
+from quiesce.report.html import preformatted
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.model import RuleBase
-from quiesce.rules.views.page import make_page, picture, preformatted
+from quiesce.rules.views.page import make_page, picture
 from quiesce.rules.views.plots import file_name, plot_memberships, plot_output, save
 from quiesce.rules.views.rule_text import fired_text, rules_text, summary, visits_text
 from quiesce.rules.views.surface import Slice, make_slice

@@ -10,11 +10,10 @@ from quiesce.base.paths import shown
 from quiesce.base.table import format_table
 from quiesce.damper.compare import Comparison
 from quiesce.damper.plain import plain
-from quiesce.damper.report.page import html_table, items
 from quiesce.damper.report.plots import plot_errors, plot_loops, plot_residual, plot_time
 from quiesce.damper.report.runs import whiteness_of
 from quiesce.damper.report.tables import Table, percent, shortened, whiteness_text
-from quiesce.hil.page import CSS, image
+from quiesce.report.html import document, html_table, image, items
 
 
 def score_table(found: Comparison) -> Table:
@@ -94,18 +93,15 @@ def write_page(folder: Path, file: Path, found: Comparison, notes: list[str]) ->
             ]
         )
     title = html.escape(found.damper.name)
-    page = f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Quiesce: {title} against new data</title><style>{CSS}</style></head><body><main>
-<h1>{title} against new data</h1>
+    page = document(
+        f"{found.damper.name} against new data",
+        f"""<h1>{title} against new data</h1>
 <p class="lead">{html.escape(found.damper.model)} from <code>{html.escape(shown(file))}</code>,
 running free. Error of all rows {percent(found.score.error)} %.</p>
-{html_table(score_table(found), (0,))}
+{html_table(score_table(found))}
 {items(found.warnings)}{items(hint_lines(found))}
 {drawn}
-<h2>Data</h2>{items(notes)}
-</main></body></html>
-"""
+<h2>Data</h2>{items(notes)}""",
+    )
     with output_files(folder) as staging:
         (staging / "compare.html").write_text(page, encoding="utf-8")

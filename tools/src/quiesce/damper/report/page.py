@@ -20,7 +20,6 @@ from quiesce.damper.report.plots import (
 )
 from quiesce.damper.report.runs import Run, runs_of, shown_part, whiteness_of
 from quiesce.damper.report.tables import (
-    Table,
     data_lines,
     json_report,
     parameter_table,
@@ -31,7 +30,8 @@ from quiesce.damper.report.tables import (
     winner_table,
     winners,
 )
-from quiesce.hil.page import CSS, card, image, section
+
+from quiesce.report.html import card, cards, document, html_table, image, items, section
 
 PAGE = "report.html"
 NUMBERS = "report.json"
@@ -65,32 +65,13 @@ def write_report(
         (staging / NUMBERS).write_text(json.dumps(numbers, indent=1) + "\n", encoding="utf-8")
 
 
-def html_table(table: Table, left: Sequence[int] = (0,)) -> str:
-    head, rows = table
-
-    def line(cells: Sequence[str], tag: str) -> str:
-        marks = ['style="text-align:left"' if k in left else "" for k in range(len(cells))]
-        body = (
-            f"<{tag} {mark}>{html.escape(cell)}</{tag}>"
-            for cell, mark in zip(cells, marks, strict=True)
-        )
-        return f"<tr>{''.join(body)}</tr>"
-
-    body = "".join(line(row, "td") for row in rows)
-    return f'<div class="wide"><table>{line(head, "th")}{body}</table></div>'
-
-
-def items(lines: Sequence[str]) -> str:
-    return f"<ul>{''.join(f'<li>{html.escape(line)}</li>' for line in lines)}</ul>" if lines else ""
-
-
-def cards(fitted: Sequence[Fitted]) -> str:
+def winner_cards(fitted: Sequence[Fitted]) -> str:
     found = [
         card(f"{percent(one.test.error if one.test else one.validation_error)} %",
              f"{'held-out' if one.test else 'validation'} error, {what}: {one.name}")
         for what, one in winners(fitted).items()
     ]  # fmt: skip
-    return f'<div class="cards">{"".join(found)}</div>'
+    return cards(found)
 
 
 def model_section(one: Fitted, runs: Sequence[Run]) -> str:
@@ -141,12 +122,10 @@ def make_page(
     title = html.escape(str(context.get("title", "damper")))
     command = str(context.get("command", ""))
     files = [str(one) for one in context.get("files", [])]
-    return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Quiesce: {title} identified</title><style>{CSS}</style></head><body><main>
-<h1>Damper models for {title}</h1>
-{cards(fitted)}
+    return document(
+        f"{context.get('title', 'damper')} identified",
+        f"""<h1>Damper models for {title}</h1>
+{winner_cards(fitted)}
 <h2>Ranking</h2>{RULES}
 {html_table(ranking_table(fitted), (1, 2, 7, 9))}
 {html_table(winner_table(fitted), (0, 1))}
@@ -155,6 +134,5 @@ def make_page(
 <h2>Data</h2>{items([*data, *notes])}
 {"".join(sections)}
 {f"<h2>Files</h2>{items(files)}" if files else ""}
-{f"<h2>Run it again</h2><pre>{html.escape(command)}</pre>" if command else ""}
-</main></body></html>
-"""
+{f"<h2>Run it again</h2><pre>{html.escape(command)}</pre>" if command else ""}""",
+    )

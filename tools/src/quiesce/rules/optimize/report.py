@@ -1,10 +1,9 @@
 """The files of a search's report: Markdown, one self-contained HTML page, JSON, rule files."""
 
-import html
 import json
 from pathlib import Path
 
-from quiesce.hil.page import CSS, card, image
+from quiesce.report.html import card, cards, preformatted
 from quiesce.rules.formats.files import write_text
 from quiesce.rules.optimize.plots import (
     plot_convergence,
@@ -13,6 +12,7 @@ from quiesce.rules.optimize.plots import (
     plot_surfaces,
 )
 from quiesce.rules.optimize.result import Found, result_json, text_sections
+from quiesce.rules.views.page import make_page, picture
 
 LEAD = (
     "Rule bases tried in closed loop: the controller's firmware against the simulated structure. A "
@@ -38,7 +38,7 @@ def markdown(found: Found) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def cards(found: Found) -> str:
+def cost_cards(found: Found) -> str:
     cost = found.objective.cost
     shown = (
         (f"{cost(found.start_outcome):.2f}", "cost of the start"),
@@ -46,7 +46,7 @@ def cards(found: Found) -> str:
         (f"{cost(found.constant_outcome):.2f}", "cost of the best constant currents"),
         (f"{found.evaluations:,}", "rule bases tried"),
     )
-    return f'<div class="cards">{"".join(card(*pair) for pair in shown)}</div>'
+    return cards([card(*pair) for pair in shown])
 
 
 def page(found: Found) -> str:
@@ -56,25 +56,12 @@ def page(found: Found) -> str:
         ("Convergence", plot_convergence(found)),
         ("Pareto front", plot_front(found)),
     )
-    figures = "".join(f"<h2>{title}</h2>{image(svg, title)}" for title, svg in pictures if svg)
-    tables = "".join(
-        f"<h2>{html.escape(title)}</h2><pre>{html.escape(text)}</pre>"
-        for title, text in text_sections(found)
+    drawn = [picture(title, "", svg) for title, svg in pictures]
+    tables = [preformatted(title, text) for title, text in text_sections(found)]
+    again = preformatted("Run it again", found.command)
+    return make_page(
+        f"Rule search: {found.best.name}", LEAD, [cost_cards(found), *drawn, *tables, again]
     )
-    title = html.escape(f"Rule search: {found.best.name}")
-    return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Quiesce: {title}</title><style>{CSS}</style></head><body><main>
-<h1>{title}</h1>
-<p class="lead">{html.escape(LEAD)}</p>
-{cards(found)}
-{figures}
-{tables}
-<h2>Run it again</h2>
-<pre>{html.escape(found.command)}</pre>
-</main></body></html>
-"""
 
 
 def write_report(found: Found, folder: Path) -> None:
