@@ -17,8 +17,10 @@ from pathlib import Path
 import numpy as np
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.integers.c_files import table_c
-from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import straight_line_c, why_not_straight
+from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase
 from quiesce.rules.proof.explained import explained_errors
 from quiesce.rules.reference import Reference, evaluate
@@ -151,8 +153,9 @@ def case_c(case: Case) -> tuple[str, str]:
     ends = [range_of(compiled, index) for index in range(len(compiled.outputs))]
     low, high = zip(*ends, strict=True)
     straight = name if is_straight else "NULL"
+    size = len(table_words(compiled))
     entry = (
-        f'    {{"{case.name}", {name}_table, {len(compiled.words)}u, {straight}, {name}_points,\n'
+        f'    {{"{case.name}", {name}_table, {size}u, {straight}, {name}_points,\n'
         f"     {len(lines)}u, {braced(low)}, {braced(high)}, {defaults}u}},"
     )
     return text, entry

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from quiesce.rules.formats.files import read_rules
-from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import straight_line_c
 from quiesce_benchmarks.fuzzy.reference import VARIANTS, compiled
 

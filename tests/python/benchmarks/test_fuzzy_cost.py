@@ -7,6 +7,7 @@ from conftest import require
 from quiesce.base.errors import UsageError
 from quiesce.engine.bench import Bench
 from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.table import table_words
 from quiesce_benchmarks.fuzzy import cost as fuzzy_cost
 from quiesce_benchmarks.fuzzy.cost import EngineCost, PeerCost
 from quiesce_benchmarks.fuzzy.random import random_base
@@ -38,7 +39,7 @@ def test_both_engines_agree_on_the_target_and_repeat_exactly(bench, image, varia
     assert 1 < cost.mean_instr <= cost.worst_instr
     assert cost.median_instr <= cost.worst_instr
     assert cost.code_bytes > 100 and cost.stack_bytes < 4096
-    assert (cost.table_bytes == 4 * len(compiled(variant).words)) == (kind == "table")
+    assert (cost.table_bytes == 4 * len(table_words(compiled(variant)))) == (kind == "table")
     assert fuzzy_cost.measure_engine(bench, image, variant, kind, STEPS) == cost
 
 
@@ -60,7 +61,7 @@ def test_table_that_is_given_is_evaluated(bench: Bench, image: Path) -> None:
 
 
 def test_damaged_table_is_refused(bench: Bench, image: Path) -> None:
-    words = list(compile_base(random_base(1, 12).base).words)
+    words = list(table_words(compile_base(random_base(1, 12).base)))
     words[20] ^= 1
     with pytest.raises(UsageError, match="refused"):
         count(bench, image, len(VARIANTS), 0, 10, 32768, 32768, len(words), *words)

@@ -16,8 +16,10 @@ from quiesce.base.errors import UsageError
 from quiesce.rules.engine.engine import STRAIGHT, TABLE, Engine
 from quiesce.rules.integers.c_files import header_c, source_c
 from quiesce.rules.integers.cells import Cell, exact_membership
-from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import NotStraight, straight_line_c, why_not_straight
+from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import (
     CENTROID,
     WEIGHTED_MAX,
@@ -219,7 +221,7 @@ def singleton_base(values: tuple[float, ...], low: float, high: float) -> RuleBa
 
 def message_of(base: RuleBase, inputs="q15", outputs="q16") -> str:
     with pytest.raises(UsageError) as caught:
-        _ = compile_base(base, inputs, outputs).words
+        _ = table_words(compile_base(base, inputs, outputs))
     text = str(caught.value)
     assert "\n" not in text and text
     return text
@@ -242,7 +244,7 @@ def test_universe_of_an_input_fits_int32_and_holds_counts() -> None:
     base = singleton_base((0.0, 1.0), 0.0, 1.0)
     assert "input x: its universe does not fit int32" in message_of(base, inputs=[1e-10])
     assert "input x: its universe holds no two counts of 3" in message_of(base, inputs=[3])
-    assert compile_base(base, [2.0 / INT32_MAX]).words
+    assert table_words(compile_base(base, [2.0 / INT32_MAX]))
 
 
 def test_universe_of_an_output_has_2_to_the_24_counts_at_most() -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from quiesce.rules.formats.files import write_text
 from quiesce.rules.integers.emit import straight_line_c
+from quiesce.rules.integers.table import table_words
 from quiesce_benchmarks.fuzzy.reference import (
     CENTROID,
     SUM,
@@ -52,7 +53,7 @@ def header() -> str:
 
 def source(variant: Variant) -> str:
     base = compiled(variant)
-    words = base.words
+    words = table_words(base)
     rows = "\n".join(
         "    " + " ".join(f"0x{word:08X}u," for word in words[i : i + 6])
         for i in range(0, len(words), 6)

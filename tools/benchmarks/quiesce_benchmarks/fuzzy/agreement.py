@@ -9,7 +9,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from quiesce.rules.engine.engine import STRAIGHT, TABLE, Engine
-from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM, Output, RuleBase
 from quiesce.rules.reference import evaluate, membership, term_strengths
 

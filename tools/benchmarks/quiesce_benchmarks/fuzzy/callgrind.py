@@ -17,6 +17,7 @@ from quiesce.rules.engine.engine import STRAIGHT, TABLE
 from quiesce.rules.engine.native_build import build, firmware_sources
 from quiesce.rules.formats.files import write_text
 from quiesce.rules.integers.emit import straight_line_c
+from quiesce.rules.integers.table import table_words
 
 from quiesce_benchmarks.fuzzy.peers import COUNT, FUZZYLITE, built_peer
 from quiesce_benchmarks.fuzzy.reference import (
@@ -84,7 +85,7 @@ def mean_instr(command: Sequence[str | Path]) -> float:
 def engine_library(variant: Variant) -> Path:
     """Exports count_straight and count_table."""
     made = compiled(variant)
-    words = ", ".join(f"{word}u" for word in made.words)
+    words = ", ".join(f"{word}u" for word in table_words(made))
     declared = "".join(
         f"uint32_t count_{kind}(const int32_t *input, int32_t *output);\n"
         for kind in (STRAIGHT, TABLE)

@@ -14,7 +14,8 @@ from typing import Any
 from quiesce.base.errors import BenchFailure
 from quiesce.engine.bench import Bench, require_emulator
 from quiesce.rules.engine.engine import STRAIGHT, TABLE
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
+from quiesce.rules.integers.table import table_words
 
 from quiesce_benchmarks.fuzzy.reference import FORMATS, VARIANTS, Variant, compiled
 from quiesce_benchmarks.images import built_image
@@ -108,7 +109,7 @@ def code_bytes(image: Path, sources: Sequence[str] = ()) -> int:
 def measure_table(bench: Bench, image: Path, base: CompiledBase, evaluations: int) -> TableCost:
     """Any base whose inputs are q15."""
     universe = int(base.input_integer(0, base.base.inputs[0].maximum))
-    words = base.words
+    words = table_words(base)
     order = (len(VARIANTS), 0, evaluations, universe, universe, len(words), *words)
     found = count(bench, image, *order)
     printed = found["printed"]

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.model import Input, RuleBase
 from quiesce.rules.reference import evaluate
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 from quiesce.base.paths import root
 from quiesce.rules.formats.files import read_rules
-from quiesce.rules.integers.compile import CompiledBase, compile_base
+from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.model import WEIGHTED_MAX, WEIGHTED_SUM, RuleBase
 
 SUM, MAX, CENTROID = "sum", "max", "centroid"

@@ -13,8 +13,9 @@ from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, compiled_f
 from quiesce.rules.analysis.analyse import analyse
 from quiesce.rules.analysis.findings import ERROR, Finding
 from quiesce.rules.integers.bound import error_bounds
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import why_not_straight
+from quiesce.rules.integers.table import table_words
 from quiesce.rules.proof.walk import MAX_WALKED_POINTS, OutputWalk, Walk, walk
 from quiesce.rules.proof.walk_model import grid_points
 
@@ -134,7 +135,7 @@ def text(
     )
     reason = why_not_straight(compiled)
     lines.append(
-        f"engines    table, {4 * len(compiled.words)} bytes; straight-line C "
+        f"engines    table, {4 * len(table_words(compiled))} bytes; straight-line C "
         + (f"has no form: {reason}" if reason else agreement(walked))
     )
     for index, output in enumerate(walked.outputs):
@@ -194,7 +195,7 @@ def report(
         "points": walked.points,
         "is_complete": walked.is_complete,
         "engines_differ": walked.engines_differ,
-        "table_bytes": 4 * len(compiled.words),
+        "table_bytes": 4 * len(table_words(compiled)),
         "membership_bits": compiled.bits,
         "not_straight": why_not_straight(compiled),
         "outputs": outputs,

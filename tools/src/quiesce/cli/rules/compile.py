@@ -11,8 +11,9 @@ from quiesce.base.paths import root, shown
 from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, compiled_from
 from quiesce.rules.engine.native_build import FIRMWARE_SOURCES
 from quiesce.rules.integers.c_files import header_c, source_c, units_text
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import why_not_straight
+from quiesce.rules.integers.table import table_words
 
 EPILOG = f"""{FORMATS_HELP}
 written, into --out:
@@ -91,7 +92,7 @@ def made_files(compiled: CompiledBase, name: str) -> dict[str, str]:
     return {
         f"{name}.h": header_c(compiled, name, banner),
         f"{name}.c": source_c(compiled, name, banner),
-        f"{name}.words": "".join(f"0x{word:08x}\n" for word in compiled.words),
+        f"{name}.words": "".join(f"0x{word:08x}\n" for word in table_words(compiled)),
         **engine,
     }
 
@@ -99,7 +100,7 @@ def made_files(compiled: CompiledBase, name: str) -> dict[str, str]:
 def summary(compiled: CompiledBase, name: str) -> list[str]:
     reason = why_not_straight(compiled)
     straight = f"{name}(), the same bits" if not reason else f"none: {reason}"
-    size = f"{4 * len(compiled.words)} bytes; memberships in {compiled.bits} bits"
+    size = f"{4 * len(table_words(compiled))} bytes; memberships in {compiled.bits} bits"
     return [
         *(
             f"{line.split(' ', 1)[0]:<10} {line.split(' ', 1)[1].strip()}"

@@ -5,7 +5,8 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.rules.formats.files import read_rules
-from quiesce.rules.integers.compile import Q15, Q16, CompiledBase, compile_base
+from quiesce.rules.integers.compile import Q15, Q16, compile_base
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.model import RuleBase
 
 # The controller's own: frequency in uHz, RMS acceleration in um/s2, current in mA, from files in

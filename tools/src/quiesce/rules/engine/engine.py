@@ -7,8 +7,9 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.rules.engine.native_build import NATIVE, build, firmware_sources
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import straight_line_c
+from quiesce.rules.integers.table import table_words
 
 TABLE = "table"
 STRAIGHT = "straight"
@@ -24,7 +25,7 @@ class Engine:
         library = build([*firmware_sources(), NATIVE / "many.c"], texts, ())
         self._library = ctypes.CDLL(str(library))
         self._function = getattr(self._library, FUNCTION) if kind == STRAIGHT else None
-        self._table = np.array(compiled.words, dtype=np.uint32)
+        self._table = np.array(table_words(compiled), dtype=np.uint32)
         verdict = self._library.fuzzy_table_check(pointer(self._table), len(self._table))
         if verdict != 0:
             raise UsageError(f"the firmware refuses the table of this rule base, reason {verdict}")

@@ -10,13 +10,8 @@ from fractions import Fraction
 from itertools import product
 
 from quiesce.rules.integers.cells import Cell
-from quiesce.rules.integers.compile import (
-    MEMBERSHIP_ERROR,
-    WEIGHT_ONE,
-    CompiledBase,
-    IntegerRule,
-    singleton_error,
-)
+from quiesce.rules.integers.compile import MEMBERSHIP_ERROR, singleton_error
+from quiesce.rules.integers.compiled import WEIGHT_ONE, CompiledBase, IntegerRule
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 
 PRODUCT_ERROR = Fraction(1)  # at most, of the bits that fuzzy_strength() drops

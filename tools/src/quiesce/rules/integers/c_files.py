@@ -1,14 +1,15 @@
 """A compiled base as C: its table, its straight-line function, a header for both."""
 
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import straight_line_c, why_not_straight
+from quiesce.rules.integers.table import table_words
 
 WORDS_A_LINE = 6
 
 
 def table_c(compiled: CompiledBase, name: str) -> str:
     """`const uint32_t NAME_table[]`: words of a fuzzy_table_t."""
-    words = [f"0x{word:08X}u," for word in compiled.words]
+    words = [f"0x{word:08X}u," for word in table_words(compiled)]
     lines = [
         "    " + " ".join(words[start : start + WORDS_A_LINE])
         for start in range(0, len(words), WORDS_A_LINE)
@@ -46,7 +47,7 @@ def header_c(compiled: CompiledBase, name: str, banner: str) -> str:
         f"#ifndef {guard}\n#define {guard}\n\n#include <stdint.h>\n\n"
         '#ifdef __cplusplus\nextern "C" {\n#endif\n\n'
         "/// For fuzzy_evaluate(): the words of a fuzzy_table_t.\n"
-        f"extern const uint32_t {name}_table[{len(compiled.words)}];\n{straight}\n"
+        f"extern const uint32_t {name}_table[{len(table_words(compiled))}];\n{straight}\n"
         "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
     )
 

@@ -12,11 +12,8 @@ from math import prod
 from quiesce.rules.integers.affine import Affine, Order, constant, maximum, minimum
 from quiesce.rules.integers.c_writer import INDENT, CWriter, int_text
 from quiesce.rules.integers.cells import Cell, Ramp
-from quiesce.rules.integers.compile import (
-    CompiledBase,
-    IntegerRule,
-    is_complementary,
-)
+from quiesce.rules.integers.compile import is_complementary
+from quiesce.rules.integers.compiled import CompiledBase, IntegerRule
 from quiesce.rules.integers.emit_output import OutputWriter
 
 MAX_OVERLAP = 2  # sets of an input that overlap

@@ -6,7 +6,7 @@ from typing import TypeVar
 from quiesce.rules.integers.affine import Affine, Order, constant, maximum, minimum
 from quiesce.rules.integers.c_writer import CWriter, int_text
 from quiesce.rules.integers.cells import nearest
-from quiesce.rules.integers.compile import CompiledBase, IntegerRule
+from quiesce.rules.integers.compiled import CompiledBase, IntegerRule
 from quiesce.rules.integers.output_shapes import LayerIntegers, Shape, layer_integers
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX
 

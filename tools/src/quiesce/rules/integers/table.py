@@ -11,7 +11,7 @@ from itertools import product
 
 from quiesce.base.errors import UsageError
 from quiesce.rules.integers.cells import Cell, nearest
-from quiesce.rules.integers.compile import (
+from quiesce.rules.integers.compiled import (
     EXPONENT_STEP,
     CompiledBase,
     IntegerOutput,

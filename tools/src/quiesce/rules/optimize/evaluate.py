@@ -19,6 +19,7 @@ from quiesce.engine.trace import Trace, read_trace
 from quiesce.hil.metrics import mean_current_A, reduction_pct
 from quiesce.hil.runs import TRACE_COLUMNS, Case, Run
 from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.objective import Outcome, Steady
 
@@ -91,7 +92,7 @@ class ClosedLoop:
         return ClosedLoop(self._bench, self._scenarios, self._settings, options)
 
     def of_rules(self, base: RuleBase) -> Outcome:
-        words = compile_base(base, inputs=list(INPUT_LSB), outputs=list(OUTPUT_LSB)).words
+        words = table_words(compile_base(base, inputs=list(INPUT_LSB), outputs=list(OUTPUT_LSB)))
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
             file = Path(folder) / "rules"
             file.write_text("".join(f"0x{word:08x}\n" for word in words), encoding="ascii")

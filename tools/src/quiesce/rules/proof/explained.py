@@ -9,7 +9,8 @@ To first order, with strengths s off by at most e (bound.py):
 import numpy as np
 
 from quiesce.rules.integers.bound import strength_error
-from quiesce.rules.integers.compile import CompiledBase, singleton_error
+from quiesce.rules.integers.compile import singleton_error
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.output_shapes import OutputShapes, Shape
 from quiesce.rules.model import CENTROID, WEIGHTED_SUM
 from quiesce.rules.reference import Reference, centroid, term_strengths

@@ -16,7 +16,7 @@ from typing import Any
 
 from quiesce.base.errors import BenchFailure, one_line
 from quiesce.rules.engine.native_build import NATIVE, build, firmware_sources
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.proof.walk_model import grid_points, integer_range, model_text
 
 MAX_WALKED_POINTS = 1 << 32

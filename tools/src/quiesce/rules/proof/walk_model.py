@@ -5,9 +5,9 @@ from fractions import Fraction
 
 from quiesce.rules.engine.engine import FUNCTION, straight_source
 from quiesce.rules.integers.cells import INT32_MAX, INT32_MIN, Axis, ceil, floor
-from quiesce.rules.integers.compile import CompiledBase
+from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import why_not_straight
-from quiesce.rules.integers.table import METHOD
+from quiesce.rules.integers.table import METHOD, table_words
 from quiesce.rules.model import CENTROID, OR, FuzzySet, Input, Output
 
 SAMPLED_POINTS = 1 << 22  # of all inputs together, where not every integer is visited
@@ -47,7 +47,7 @@ def model_text(compiled: CompiledBase) -> str:
         f"#define MODEL_OUTPUTS {len(compiled.base.outputs)}",
         f"#define MODEL_RULES {len(compiled.base.rules)}",
     ]
-    words = ", ".join(f"0x{word:08x}u" for word in compiled.words)
+    words = ", ".join(f"0x{word:08x}u" for word in table_words(compiled))
     lines.append(f"static const uint32_t model_words[] = {{{words}}};")
     lines.append(
         "static inline const fuzzy_table_t *model_table(void) "
