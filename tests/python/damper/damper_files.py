@@ -5,8 +5,9 @@ import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
 from quiesce.damper.data.options import Conditioned, add_data_options, records_of
+
+ROOT = Path(__file__).resolve().parents[3]
 
 HEAD = ("t_s", "x_mm", "force_n", "current_a")
 RATE_Hz = 200.0

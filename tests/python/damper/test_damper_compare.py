@@ -14,11 +14,10 @@ from quiesce.damper.compare import Comparison, compare
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import whole
 from quiesce.damper.example import EXAMPLE, write_example
-from quiesce.damper.fitted import simulator
 from quiesce.damper.library import DamperFile
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.report.runs import cycle_energies_J, runs_of
-from quiesce.damper.simulate import simulator_of_file, with_rig
+from quiesce.damper.simulate import simulator, simulator_of_file, with_rig
 
 pytestmark = pytest.mark.usefixtures("build")
 

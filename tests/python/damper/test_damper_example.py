@@ -11,9 +11,8 @@ from quiesce.base.errors import UsageError
 from quiesce.cli.identify import example
 from quiesce.damper.data.split import whole
 from quiesce.damper.example import EXAMPLE, Recipe, example_columns, example_text, write_example
-from quiesce.damper.fitted import simulator
 from quiesce.damper.score import score
-from quiesce.damper.simulate import simulator_of_file
+from quiesce.damper.simulate import simulator, simulator_of_file
 
 pytestmark = pytest.mark.usefixtures("build")
 

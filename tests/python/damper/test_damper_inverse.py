@@ -12,7 +12,6 @@ from quiesce.base.errors import UsageError
 from quiesce.cli.identify import inverse as cli_inverse
 from quiesce.damper.data.record import Record
 from quiesce.damper.example import EXAMPLE
-from quiesce.damper.fitted import simulator
 from quiesce.damper.inverse import (
     ClosedForm,
     InverseByInterpolation,
@@ -25,6 +24,7 @@ from quiesce.damper.inverse import (
     why_no_closed_form,
 )
 from quiesce.damper.model_file import DamperModel, read_model
+from quiesce.damper.simulate import simulator
 
 pytestmark = pytest.mark.usefixtures("build")
 

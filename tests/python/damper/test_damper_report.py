@@ -14,7 +14,7 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, whole
 from quiesce.damper.example import EXAMPLE
 from quiesce.damper.fit.intervals import Interval
-from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted, simulator
+from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.passivity import Passivity
 from quiesce.damper.plain import plain
@@ -36,6 +36,7 @@ from quiesce.damper.report.tables import (
     winners,
 )
 from quiesce.damper.score import score
+from quiesce.damper.simulate import simulator
 
 pytestmark = pytest.mark.usefixtures("build")
 INTERVALS = [
@@ -111,7 +112,7 @@ def test_ranking_says_what_was_cut_short(models) -> None:
 
 
 def test_text_has_data_ranking_parameters_and_residual(models, segments) -> None:
-    white = whiteness_of(shown_part(runs_of(models[1].simulate, *segments)))
+    white = whiteness_of(shown_part(runs_of(simulator(models[1].damper), *segments)))
     text = text_report(models, *segments, ["force as in the file"], white)
     for expected in (
         "- force as in the file", "3 test(s), 6000 rows, 12 s, 0, 0.5, 1 A", "held out: 1 test(s)",

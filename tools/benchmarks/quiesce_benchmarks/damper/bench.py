@@ -63,7 +63,7 @@ def collect(
 
 
 def real_part(args: argparse.Namespace, folder: Path) -> tuple[list[Figure], list[str], list[str]]:
-    from quiesce.cli.identify.command import names_of
+    from quiesce.damper.candidates import names_of
 
     from quiesce_benchmarks.damper import real
 

@@ -17,7 +17,7 @@ from quiesce.damper.data.split import Segment, whole
 from quiesce.damper.fit.grown import grown_fit
 from quiesce.damper.fit.problem import Problem
 from quiesce.damper.fit.small import fit_small
-from quiesce.damper.identify import simulate_values
+from quiesce.damper.fit_model import simulate_values
 from quiesce.damper.score import Simulate, score
 
 from quiesce_benchmarks.report import Figure

@@ -11,10 +11,12 @@ from quiesce.base.paths import measurements, root
 from quiesce.base.table import format_table
 from quiesce.damper.data.options import records_of_set
 from quiesce.damper.data.split import Segment, split_records
+from quiesce.damper.fit_model import simulate_values
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
-from quiesce.damper.identify import Plan, identify, simulate_values
+from quiesce.damper.identify import identify
 from quiesce.damper.ranking import best, ranked
 from quiesce.damper.score import Score, score
+from quiesce.damper.task import Plan
 
 from quiesce_benchmarks.damper.baselines import fit_baseline
 from quiesce_benchmarks.report import Figure

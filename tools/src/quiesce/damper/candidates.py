@@ -8,11 +8,15 @@ effective current of the field law; each starts from the fit of the one with an 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from quiesce.base.errors import UsageError
 from quiesce.damper.data.split import Segment, is_switched, levels_of
 from quiesce.damper.fit.setting import Setting, nodes_of
+from quiesce.damper.learned import MODELS
 from quiesce.damper.library import RIG, model, models
 
 NETWORK = "viscoplastic_"
+GREY_BOX = "grey_box"
+QUICK = ("kwok_tanh", "zhang_tanh", "normalised_bouc_wen", "viscoplastic_1", "viscoplastic_2")
 MOST_PASSIVE = 3
 MOST_ELEMENTS = 4
 # Ginder's exponent of particles in a field below saturation: with few levels the data do not tell.
@@ -56,6 +60,28 @@ def parametric_candidates() -> dict[str, Candidate]:
     """By name: every kernel, networks in the order in which they grow."""
     published = [Candidate(name, name) for name in models() if not name.startswith(NETWORK)]
     return {one.name: one for one in [*published, *network_candidates()]}
+
+
+def all_names() -> list[str]:
+    return [*parametric_candidates(), *MODELS, GREY_BOX]
+
+
+def names_of(text: str) -> list[str]:
+    """Of names and groups with commas. UsageError, with the names that there are, for one that is
+    not."""
+    groups = {
+        "quick": list(QUICK),
+        "parametric": list(parametric_candidates()),
+        "all": all_names(),
+    }
+    names: list[str] = []
+    for word in text.split(","):
+        names += groups.get(word, [word])
+    known = all_names()
+    for name in names:
+        if name not in known:
+            raise UsageError(f"no model '{name}'; there are {', '.join([*groups, *known])}")
+    return list(dict.fromkeys(names))
 
 
 def rig_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice) -> tuple[str, ...]:

@@ -11,12 +11,14 @@ from quiesce.damper import library
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, levels_of
 from quiesce.damper.fit.least_squares_bouc_wen import BoucWenFit, Sines, fit, fit_currents
-from quiesce.damper.fitted import PARAMETRIC, Fitted, simulator
-from quiesce.damper.identify import MARGIN, Plan, valid_of
+from quiesce.damper.fitted import PARAMETRIC, Fitted
+from quiesce.damper.judge import MARGIN, valid_of
 from quiesce.damper.library import RIG, Scales
 from quiesce.damper.model_file import from_row
 from quiesce.damper.passivity import Passivity, is_proved
 from quiesce.damper.score import score
+from quiesce.damper.simulate import simulator
+from quiesce.damper.task import Plan
 
 MODEL = "normalised_bouc_wen"
 NAME = "normalised_bouc_wen_ls"

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from quiesce.damper.data.record import Record
-from quiesce.damper.fitted import simulator
 from quiesce.damper.model_file import DamperModel
+from quiesce.damper.simulate import simulator
 
 # The truth. Coefficients against the current in A, ascending.
 EXAMPLE = DamperModel(

@@ -2,11 +2,10 @@
 
 from dataclasses import dataclass, field
 
-from quiesce.damper import library
 from quiesce.damper.fit.intervals import Interval
-from quiesce.damper.model_file import DamperModel, opened
+from quiesce.damper.model_file import DamperModel
 from quiesce.damper.passivity import Passivity
-from quiesce.damper.score import Score, Simulate
+from quiesce.damper.score import Score
 
 PARAMETRIC = "parametric"
 BLACK_BOX = "black box"
@@ -29,17 +28,3 @@ class Fitted:
     intervals: list[Interval] = field(default_factory=list)  # parametric only
     test: Score | None = None
     notes: list[str] = field(default_factory=list)
-
-    @property
-    def simulate(self) -> Simulate:
-        return simulator(self.damper)
-
-
-def simulator(damper: DamperModel) -> Simulate:
-    """The force in N of a damper model along a record, with its rig: lag, mass, skew, offset."""
-    if damper.is_kernel:
-        one, orders, row = damper.kernel_row()
-        return lambda record: library.simulate_row(one, orders, row, record)
-    from quiesce.damper.simulate import with_rig
-
-    return with_rig(opened(damper), dict(damper.rig))

@@ -6,9 +6,8 @@ import numpy as np
 
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
-from quiesce.damper.fitted import simulator
 from quiesce.damper.library import DamperFile
-from quiesce.damper.model_file import DamperModel, read_model
+from quiesce.damper.model_file import DamperModel, opened, read_model
 from quiesce.damper.score import Simulate
 
 
@@ -19,6 +18,14 @@ def simulator_of_file(file: Path) -> tuple[DamperModel, Simulate]:
         return damper, simulator(damper)
     # The file itself: keys that only its own model knows stay as they are.
     return damper, with_rig(DamperFile(file), dict(damper.rig))
+
+
+def simulator(damper: DamperModel) -> Simulate:
+    """The force in N of a damper model along a record, with its rig: lag, mass, skew, offset."""
+    if damper.is_kernel:
+        one, orders, row = damper.kernel_row()
+        return lambda record: library.simulate_row(one, orders, row, record)
+    return with_rig(opened(damper), dict(damper.rig))
 
 
 def with_rig(model: DamperFile, rig: dict[str, float]) -> Simulate:

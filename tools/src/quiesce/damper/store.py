@@ -10,14 +10,14 @@ import numpy as np
 
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
-from quiesce.damper.candidates import NETWORK
+from quiesce.damper.candidates import GREY_BOX, NETWORK
 from quiesce.damper.data.split import Segment
 from quiesce.damper.fit.intervals import Interval
-from quiesce.damper.fitted import Fitted, simulator
-from quiesce.damper.identify import GREY_BOX
+from quiesce.damper.fitted import Fitted
 from quiesce.damper.model_file import read_model, write_model
 from quiesce.damper.passivity import Passivity
 from quiesce.damper.score import score
+from quiesce.damper.simulate import simulator
 
 FOLDER = "models"
 STATE = "state.json"

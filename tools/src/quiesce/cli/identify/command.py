@@ -38,8 +38,6 @@ Errors are ||F - F_model|| / ||F|| with the model running free; the ranking goes
 inside the training part. Ctrl-C keeps the best so far; --resume goes on from there.
 """
 
-QUICK = ("kwok_tanh", "zhang_tanh", "normalised_bouc_wen", "viscoplastic_1", "viscoplastic_2")
-
 
 def words_of(arguments: Sequence[str]) -> list[str]:
     """`identify ACTION ...` as the one word that the parser knows."""
@@ -111,26 +109,6 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--json", action="store_true", help="print the report as one JSON object")
 
 
-def names_of(text: str) -> list[str]:
-    """UsageError, with the names that there are, for one that is not."""
-    from quiesce.damper.candidates import parametric_candidates
-    from quiesce.damper.identify import all_names
-
-    groups = {
-        "quick": list(QUICK),
-        "parametric": list(parametric_candidates()),
-        "all": all_names(),
-    }
-    names: list[str] = []
-    for word in text.split(","):
-        names += groups.get(word, [word])
-    known = all_names()
-    for name in names:
-        if name not in known:
-            raise UsageError(f"no model '{name}'; there are {', '.join([*groups, *known])}")
-    return list(dict.fromkeys(names))
-
-
 def numbers_of(option: str, words: Sequence[str], count: int) -> dict[str, Any]:
     """NAME=A or NAME=A:B."""
     out: dict[str, Any] = {}
@@ -170,7 +148,7 @@ def choice_of(args: argparse.Namespace) -> Any:
 
 
 def print_models() -> None:
-    from quiesce.damper.identify import all_names
+    from quiesce.damper.candidates import all_names
     from quiesce.damper.library import models
 
     for name, one in models().items():
@@ -192,10 +170,11 @@ def check_numbers(args: argparse.Namespace) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.damper.candidates import names_of
     from quiesce.damper.data.options import records_of
     from quiesce.damper.data.split import split_records
-    from quiesce.damper.identify import Plan
     from quiesce.damper.store import Store, stamp_of
+    from quiesce.damper.task import Plan
 
     if args.model == "list":
         print_models()
@@ -291,11 +270,12 @@ def report(
     from quiesce.damper.report.page import write_report
     from quiesce.damper.report.runs import runs_of, shown_part, whiteness_of
     from quiesce.damper.report.tables import json_report, text_report
+    from quiesce.damper.simulate import simulator
 
     if not fitted:
         print("quiesce: no model was finished; nothing was written", file=sys.stderr)
         return EXIT_INTERRUPTED
-    white = whiteness_of(shown_part(runs_of(ranked(fitted)[0].simulate, train, test)))
+    white = whiteness_of(shown_part(runs_of(simulator(ranked(fitted)[0].damper), train, test)))
     context = {"title": args.files[0].stem, "command": "quiesce " + " ".join(sys.argv[1:])}
     write_report(out, fitted, train, test, notes, context)
     passive = best(fitted).get("passive")

@@ -30,7 +30,7 @@ from quiesce.damper.report.tables import (
     winner_table,
     winners,
 )
-
+from quiesce.damper.simulate import simulator
 from quiesce.report.html import card, cards, document, html_table, image, items, section
 
 PAGE = "report.html"
@@ -53,7 +53,7 @@ def write_report(
     if not fitted:
         raise UsageError("no model was fitted, so there is nothing to report")
     shown = {id(one): one for one in winners(fitted).values()}.values()
-    runs = {id(one): runs_of(one.simulate, train, test) for one in shown}
+    runs = {id(one): runs_of(simulator(one.damper), train, test) for one in shown}
     white = whiteness_of(shown_part(runs[id(ranked(fitted)[0])]))
     numbers = json_report(fitted, train, test, notes, context, white)
     sections = [model_section(one, runs[id(one)]) for one in shown]
