@@ -5,14 +5,13 @@ and makes writes fail on demand: this machine has no PWM.
 """
 
 import os
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from quiesced_peer import Quiesced, on_a_pty
+from quiesced_steps import FAULT, RUN, preload
 
-RUN, FAULT = 2, 4
 DRIVER_FAILED = 12
 
 SHIM = r"""
@@ -90,10 +89,8 @@ def environment(tmp_path: Path) -> dict[str, str]:
     channel.mkdir(parents=True)
     for name, text in (("../npwm", "1"), ("period", "0"), ("duty_cycle", "0"), ("enable", "0")):
         (channel / name).write_text(f"{text}\n")
-    source, library = tmp_path / "shim.c", tmp_path / "shim.so"
-    source.write_text(SHIM)
-    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", library, source], check=True)
-    return {**os.environ, "LD_PRELOAD": str(library), "PWM_FOLDER": str(tmp_path)}
+    library = preload(tmp_path, "shim", SHIM)
+    return {**os.environ, "LD_PRELOAD": library, "PWM_FOLDER": str(tmp_path)}
 
 
 def first_number(file: Path) -> int:

@@ -1,0 +1,232 @@
+"""The controller program remembers its faults, and `--make-safe` turns off what it left on."""
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from quiesced_peer import Peer, Quiesced, on_a_pty, open_pty
+from quiesced_steps import ESTOP, FAULT, RUN, in_a_row, killed, start_running, wait_farewell
+
+
+@pytest.fixture
+def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
+    with on_a_pty(tmp_path) as under_test:
+        yield under_test
+
+
+def latch_estop(quiesced: Quiesced, kept: int = 1) -> None:
+    """An emergency stop that is over, recorded and not acknowledged."""
+    start_running(quiesced)
+    quiesced.peer.estop = True
+    quiesced.peer.wait_state(FAULT)
+    quiesced.peer.estop = False
+    quiesced.wait_log("fault ESTOP is kept", kept)
+
+
+def stays_off(quiesced: Quiesced, after: int) -> None:
+    """The driver was off in each tick of a second, and still is."""
+    seen = quiesced.peer.count()
+    quiesced.peer.wait("CurrentDemand", in_a_row(500, FAULT), seen)
+    demands = [f.signals for f in quiesced.peer.frames[after:] if f.name == "CurrentDemand"]
+    assert {s["driver_is_enabled"] for s in demands} == {0}
+    assert {s["state"] for s in demands} == {FAULT}
+
+
+def test_latched_fault_outlives_a_kill(quiesced: Quiesced) -> None:
+    latch_estop(quiesced)
+    quiesced.signal(signal.SIGKILL)
+    quiesced.wait()
+    assert quiesced.run("--make-safe").returncode == 0
+    peer = quiesced.peer
+    for how in (signal.SIGTERM, signal.SIGKILL):
+        after = peer.count()
+        quiesced.start()
+        stays_off(quiesced, after)
+        assert peer.wait("Status", after=after).signals["fault"] == ESTOP
+        quiesced.signal(signal.SIGUSR1)
+        quiesced.signal(how)
+        quiesced.wait()
+    after = peer.count()
+    quiesced.start()
+    peer.acknowledges = True
+    peer.wait_state(RUN, after)
+    quiesced.wait_log("fault ESTOP of an earlier run is acknowledged")
+    quiesced.wait_log("the kept fault is forgotten")
+    assert quiesced.stop() == 0
+    assert quiesced.status()["kept_fault"] == "NONE"
+    peer.acknowledges = False
+    after = peer.count()
+    quiesced.start()
+    peer.wait_state(RUN, after)
+    assert quiesced.stop() == 0
+    assert quiesced.log_text().count("is not acknowledged yet: safe current, driver off") == 3
+
+
+def test_status_says_which_fault_is_kept(quiesced: Quiesced) -> None:
+    quiesced.write_config("current_check = 'on'\n")
+    quiesced.start()  # it may be in FAULT before it is enabled
+    quiesced.wait_log("fault CURRENT_LOST is kept")
+    assert quiesced.stop() == 0
+    after = quiesced.peer.count()
+    quiesced.start()
+    stays_off(quiesced, after)
+    assert quiesced.stop() == 0
+    status = quiesced.status()
+    assert (status["fault"], status["kept_fault"]) == ("ESTOP", "CURRENT_LOST")
+    assert "fault CURRENT_LOST of 2" in quiesced.log_text()
+    assert "note: fault CURRENT_LOST of 2" in quiesced.run("--check").stdout
+
+
+def test_fault_is_cleared_without_a_bus(quiesced: Quiesced) -> None:
+    latch_estop(quiesced)
+    refused = quiesced.run("--clear-fault")
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "acknowledge over CAN, or stop it first" in refused.stderr
+    assert quiesced.stop() == 0
+    cleared = quiesced.run("--clear-fault")
+    assert (cleared.returncode, cleared.stderr) == (0, "")
+    assert cleared.stdout.startswith("forgotten: fault ESTOP of 2")
+    assert quiesced.run("--clear-fault").stdout == "no fault is kept\n"
+    after = quiesced.peer.count()
+    quiesced.start()
+    quiesced.peer.wait_state(RUN, after)
+    assert quiesced.stop() == 0
+
+
+@pytest.mark.parametrize("record", [b"", b"damaged", b"\xff" * 48])
+def test_damaged_fault_record_counts_as_a_fault(quiesced: Quiesced, record: bytes) -> None:
+    quiesced.state.mkdir()
+    (quiesced.state / "fault.bin").write_bytes(record)
+    quiesced.peer.operator = {"enable": 1}
+    after = quiesced.peer.count()
+    quiesced.start()
+    stays_off(quiesced, after)
+    assert "a fault is not acknowledged yet, its record cannot be read: " in quiesced.log_text()
+    after = quiesced.peer.count()
+    quiesced.peer.acknowledges = True
+    quiesced.peer.wait_state(RUN, after)
+    quiesced.wait_log("the kept fault is forgotten")
+    assert not (quiesced.state / "fault.bin").exists()
+    assert quiesced.stop() == 0
+
+
+def test_full_disk_for_the_fault(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    (quiesced.state / "fault.bin.new").mkdir()
+    quiesced.peer.estop = True
+    quiesced.wait_log("latched fault: not written: ")
+    (quiesced.state / "fault.bin.new").rmdir()
+    quiesced.wait_log("latched fault: written again")
+    quiesced.wait_log("fault ESTOP is kept")
+    assert quiesced.stop() == 0
+    assert quiesced.log_text().count("latched fault: not written: ") == 1
+
+
+def test_make_safe_after_a_kill(quiesced: Quiesced) -> None:
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    quiesced.signal(signal.SIGKILL)
+    assert quiesced.wait() == -signal.SIGKILL
+    after = quiesced.peer.count()
+    result = quiesced.run("--make-safe")
+    assert (result.returncode, result.stderr) == (0, "")
+    off = quiesced.peer.wait("CurrentDemand", lambda s: s["driver_is_enabled"] == 0, after)
+    assert off.signals["current_cmd_mA"] == 40
+    # The lock is free again: it restarts.
+    after = quiesced.peer.count()
+    quiesced.start()
+    quiesced.peer.wait_state(RUN, after)
+    assert quiesced.stop() == 0
+
+
+def test_make_safe_does_what_it_can(quiesced: Quiesced) -> None:
+    lines = '[gpio]\nenable_output = { line = "gpiochip999:0" }\nwrong = 1\n'
+    quiesced.write_config(more=lines)
+    result = quiesced.run("--make-safe")
+    assert result.returncode == 1
+    assert "gpio.wrong: unknown key" in result.stderr
+    assert "gpio.enable_output: " in result.stderr
+    quiesced.peer.wait("CurrentDemand", lambda s: s["driver_is_enabled"] == 0)
+
+
+@pytest.mark.parametrize("damage", ["[can\n", None])
+def test_make_safe_with_a_file_that_cannot_be_read(quiesced: Quiesced, damage: str | None) -> None:
+    """What ran is made safe; systemd says where the state is."""
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    after = killed(quiesced)
+    if damage is None:
+        quiesced.config.unlink()
+    else:
+        quiesced.config.write_text(damage)
+    result = quiesced.run("--make-safe", env={**os.environ, "STATE_DIRECTORY": str(quiesced.state)})
+    assert result.returncode == 0, result.stderr
+    assert result.stderr.startswith(f"quiesced: {quiesced.config}")
+    assert result.stderr.count("\n") == 1
+    wait_farewell(quiesced.peer, after, 40)
+
+
+def test_make_safe_with_another_bus_in_the_file(quiesced: Quiesced) -> None:
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    after = killed(quiesced)
+    master, slave, line = open_pty()
+    other = Peer(master, line)
+    quiesced.write_config("safe_current_mA = 50\n")
+    quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, line))
+    assert quiesced.run("--make-safe").returncode == 0
+    wait_farewell(quiesced.peer, after, 40)
+    wait_farewell(other, 0, 50)
+
+    # What never ran does not replace what did.
+    quiesced.config.write_text(quiesced.config.read_text().replace(line, "/no/such"))
+    assert quiesced.run("--ticks", "10").returncode == 2
+    after = quiesced.peer.count()
+    assert quiesced.run("--make-safe").returncode == 1  # the other bus is not there
+    wait_farewell(quiesced.peer, after, 40)
+    other.close(slave)
+
+
+def test_make_safe_with_parameters_of_a_reload(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    quiesced.write_config("safe_current_mA = 40\n")
+    quiesced.signal(signal.SIGHUP)
+    quiesced.wait_log("restarted with new parameters")
+    quiesced.peer.wait_state(RUN, quiesced.peer.count())
+    quiesced.wait_log("parameters for --make-safe are kept")
+    quiesced.write_config("safe_current_mA = 60\n")  # nobody has read it
+    after = killed(quiesced)
+    assert quiesced.run("--make-safe").returncode == 0
+    wait_farewell(quiesced.peer, after, 40)
+
+
+@pytest.mark.parametrize("damage", [b"", b"damaged"])
+def test_make_safe_with_damaged_kept_files(quiesced: Quiesced, damage: bytes) -> None:
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    after = killed(quiesced)
+    (quiesced.state / "running.bin").write_bytes(damage)
+    assert quiesced.run("--make-safe").returncode == 0
+    wait_farewell(quiesced.peer, after, 40)
+    (quiesced.state / "running.toml").write_bytes(damage)
+    after = quiesced.peer.count()
+    result = quiesced.run("--make-safe")
+    assert result.returncode == 1
+    assert f"{quiesced.state}/running.toml:" in result.stderr
+    wait_farewell(quiesced.peer, after, 40)
+
+
+def test_full_disk_for_the_kept_configuration(quiesced: Quiesced) -> None:
+    """It runs; what an earlier run has kept is not taken for this one's."""
+    start_running(quiesced)
+    assert quiesced.stop() == 0
+    (quiesced.state / "running.toml.new").mkdir()
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    quiesced.wait_log("--make-safe will have to use")
+    after = killed(quiesced)
+    assert not (quiesced.state / "running.toml").exists()
+    assert quiesced.run("--make-safe").returncode == 0
+    wait_farewell(quiesced.peer, after, 40)

@@ -1,0 +1,167 @@
+"""The controller program on a machine that fails it: full disks, closed files, a lost adapter."""
+
+import os
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from quiesced_peer import Peer, Quiesced, on_a_pty, open_pty
+from quiesced_steps import RUN, hang_up, preload, start_running
+
+
+@pytest.fixture
+def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
+    with on_a_pty(tmp_path) as under_test:
+        yield under_test
+
+
+def test_full_disk_for_the_log(quiesced: Quiesced) -> None:
+    quiesced.write_config(to='"/dev/full"')
+    start_running(quiesced)
+    peer = quiesced.peer
+    peer.wait("Identification", after=peer.count())
+    assert quiesced.stop() == 0
+    log = quiesced.log_text()
+    assert log.count("log file /dev/full: No space left on device") == 1
+    assert len(log.splitlines()) == 1
+
+
+def test_full_disk_for_the_state(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    peer = quiesced.peer
+    # What a full disk does to each write, without a disk of our own.
+    (quiesced.state / "state.json.new").mkdir()
+    quiesced.signal(signal.SIGUSR1)
+    quiesced.wait_log("status file: not written: ")
+    after = peer.count()
+    peer.wait("Status", lambda s: s["state"] == RUN, after)
+    (quiesced.state / "state.json.new").rmdir()
+    quiesced.signal(signal.SIGUSR1)
+    quiesced.wait_log("status file: written again")
+    assert quiesced.stop() == 0
+
+
+def test_closed_standard_files(quiesced: Quiesced) -> None:
+    quiesced.peer.operator = {"enable": 1}
+    quiesced.process = subprocess.Popen(
+        ["/bin/sh", "-c", 'exec "$0" --config "$1" <&- >&- 2>&-', quiesced.program, quiesced.config]
+    )
+    quiesced.peer.wait_state(RUN)
+    assert quiesced.stop() == 0
+    assert quiesced.status()["can"]["malformed"] == 0
+
+
+def test_stderr_that_nobody_reads(quiesced: Quiesced) -> None:
+    reader, writer = os.pipe()
+    start = {"stderr": writer}
+    quiesced.peer.operator = {"enable": 1}
+    os.set_blocking(writer, False)
+    filled = 0
+    try:
+        while True:
+            filled += os.write(writer, b"x" * 4096)
+    except BlockingIOError:
+        os.set_blocking(writer, True)
+    quiesced.start(**start)
+    os.close(writer)
+    quiesced.peer.wait_state(RUN)
+    assert quiesced.stop() == 0
+    os.close(reader)
+    assert filled > 0
+
+
+def test_lost_and_found_serial_line(quiesced: Quiesced, tmp_path: Path) -> None:
+    """The adapter is unplugged and plugged in again."""
+    link = tmp_path / "adapter"
+    link.symlink_to(quiesced.peer.line)
+    quiesced.write_config()
+    quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, str(link)))
+    start_running(quiesced)
+    master, slave, line = open_pty()
+    second = Peer(master, line, operator={"enable": 1})
+    link.unlink()
+    link.symlink_to(line)
+    hang_up(quiesced)
+    second.wait_state(RUN)
+    assert quiesced.stop() == 0
+    log = quiesced.log_text()
+    assert "CAN: " in log
+    second.close(slave)
+
+
+WITNESS = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <termios.h>
+#include <unistd.h>
+static int line = -1;
+static void note(const char *what) {
+    char text[32];
+    const char *thread = gettid() == getpid() ? "loop" : "other";
+    const int length = snprintf(text, sizeof text, "%s %s\n", what, thread);
+    const int out = openat(AT_FDCWD, getenv("WITNESS_FILE"), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    if (write(out, text, (size_t)length) != length) abort();
+    ((int (*)(int))dlsym(RTLD_NEXT, "close"))(out);
+}
+int open64(const char *path, int flags, ...) {
+    va_list rest;
+    va_start(rest, flags);
+    const int fd = openat(AT_FDCWD, path, flags, va_arg(rest, int));
+    va_end(rest);
+    if (fd >= 0 && strcmp(path, getenv("WITNESS_LINE")) == 0) { line = fd; note("open"); }
+    return fd;
+}
+int open(const char *path, int flags, ...) {
+    va_list rest;
+    va_start(rest, flags);
+    const int mode = va_arg(rest, int);
+    va_end(rest);
+    return open64(path, flags, mode);
+}
+int close(int fd) {
+    if (fd >= 0 && fd == line) { line = -1; note("close"); }
+    return ((int (*)(int))dlsym(RTLD_NEXT, "close"))(fd);
+}
+int tcsetattr(int fd, int when, const struct termios *set) {
+    note("set");
+    int (*real)(int, int, const struct termios *) = dlsym(RTLD_NEXT, "tcsetattr");
+    return real(fd, when, set);
+}
+"""
+
+
+def test_the_loop_never_opens_or_closes_the_bus(quiesced: Quiesced, tmp_path: Path) -> None:
+    """An adapter that is plugged in again is the other thread's, whatever its driver takes."""
+    link, calls = tmp_path / "adapter", tmp_path / "calls"
+    link.symlink_to(quiesced.peer.line)
+    quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, str(link)))
+    environment = {
+        **os.environ,
+        "LD_PRELOAD": preload(tmp_path, "witness", WITNESS),
+        "WITNESS_LINE": str(link),
+        "WITNESS_FILE": str(calls),
+    }
+    quiesced.peer.operator = {"enable": 1}
+    quiesced.start(env=environment)
+    quiesced.peer.wait_state(RUN)
+    assert calls.read_text().split("\n") == ["open loop", "set loop", ""]  # before its first tick
+    master, slave, line = open_pty()
+    second = Peer(master, line, operator={"enable": 1})
+    link.unlink()
+    link.symlink_to(line)
+    hang_up(quiesced)
+    second.wait_state(RUN)
+    assert calls.read_text().split("\n")[2:] == ["close other", "open other", "set other", ""]
+    assert quiesced.stop() == 0
+    assert quiesced.status()["can"]["down"] == 1
+    assert quiesced.status()["can"]["tx_dropped"] > 0
+    os.close(slave)
+    os.close(master)
