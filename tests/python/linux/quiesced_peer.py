@@ -54,6 +54,8 @@ sensor_recover_ticks = 1
 {parameters}"""
 
 
+MARK = b"mark"  # a line that is no frame
+
 MESSAGE = {message.frame_id: message for message in DBC.messages}
 
 
@@ -106,6 +108,7 @@ class Peer:
         self._changed = threading.Condition()
         self._alive: dict[str, int] = {}
         self._demands = 0
+        self._marks = 0
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
 
@@ -127,6 +130,17 @@ class Peer:
 
     def count(self) -> int:
         with self._changed:
+            return len(self.frames)
+
+    def catch_up(self) -> int:
+        """Number of frames when all has been read that is on the line by now. Where the program has
+        ended, its last frames may still be under way."""
+        wanted = self._marks + 1
+        line = os.open(self.line, os.O_WRONLY | os.O_NOCTTY)
+        os.write(line, b"\r" + MARK + b"\r")
+        os.close(line)
+        with self._changed:
+            assert self._changed.wait_for(lambda: self._marks == wanted, PATIENCE_S)
             return len(self.frames)
 
     def wait(
@@ -169,6 +183,7 @@ class Peer:
             frames = [frame for line in lines if (frame := parse(line)) is not None]
             with self._changed:
                 self.frames += frames
+                self._marks += lines.count(MARK)
                 self._changed.notify_all()
             for _ in filter(lambda frame: frame.identifier == DEMAND_ID, frames):
                 self._serve()

@@ -41,7 +41,7 @@ def test_latched_fault_outlives_a_kill(quiesced: Quiesced) -> None:
     assert quiesced.run("--make-safe").returncode == 0
     peer = quiesced.peer
     for how in (signal.SIGTERM, signal.SIGKILL):
-        after = peer.count()
+        after = peer.catch_up()
         quiesced.start()
         stays_off(quiesced, after)
         assert peer.wait("Status", after=after).signals["fault"] == ESTOP
@@ -69,7 +69,7 @@ def test_status_says_which_fault_is_kept(quiesced: Quiesced) -> None:
     quiesced.start()  # it may be in FAULT before it is enabled
     quiesced.wait_log("fault CURRENT_LOST is kept")
     assert quiesced.stop() == 0
-    after = quiesced.peer.count()
+    after = quiesced.peer.catch_up()
     quiesced.start()
     stays_off(quiesced, after)
     assert quiesced.stop() == 0
