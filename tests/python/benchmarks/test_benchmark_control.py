@@ -13,8 +13,7 @@ from quiesce.engine.bench import Bench
 from quiesce.optimum import store
 from quiesce.plant.variant import Variant
 from quiesce_benchmarks.cli import main
-from quiesce_benchmarks.control import bench as bench_control
-from quiesce_benchmarks.control import broadband, robust, safety
+from quiesce_benchmarks.control import benchmark, broadband, robust, safety
 from quiesce_benchmarks.control.cost import Counted, added_worst_instr
 from quiesce_benchmarks.control.measures import (
     band_bound_pct,
@@ -332,9 +331,9 @@ def test_sweep_is_judged_by_its_worst_frequency() -> None:
 
 @pytest.fixture
 def bench(build: Path, tmp_path: Path, monkeypatch, capsys):
-    """`quiesce bench control` on a tiny size: exit code and what it printed."""
+    """`./tools/benchmark control` on a tiny size: exit code and what it printed."""
     monkeypatch.setenv("QUIESCE_BUILD", str(build))
-    monkeypatch.setattr(bench_control, "QUICK", TINY)
+    monkeypatch.setattr(benchmark, "QUICK", TINY)
     monkeypatch.chdir(tmp_path)
 
     def run(*options: str) -> tuple[int, str]:

@@ -14,7 +14,7 @@ from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.model import CENTROID, METHODS, WEIGHTED_MAX, RuleBase, trapezoid, triangle
 from quiesce.rules.reference import evaluate, input_memberships
 from quiesce_benchmarks.cli import main
-from quiesce_benchmarks.fuzzy import bench as bench_fuzzy
+from quiesce_benchmarks.fuzzy import benchmark
 from quiesce_benchmarks.fuzzy.agreement import (
     SAMPLING,
     SUMMED,
@@ -28,7 +28,7 @@ from quiesce_benchmarks.fuzzy.agreement import (
     sampled_centroid,
     summed,
 )
-from quiesce_benchmarks.fuzzy.bench import Size
+from quiesce_benchmarks.fuzzy.benchmark import Size
 from quiesce_benchmarks.fuzzy.cost import EngineCost, PeerCost, worst_instr
 from quiesce_benchmarks.fuzzy.grid import Grid, GridResult
 from quiesce_benchmarks.fuzzy.peers import built_peer, description, skfuzzy_holds
@@ -258,7 +258,7 @@ def grid_of(singleton_A: float, centroid_A: float, sampled_A: float | None) -> G
 
 
 def accuracy(*values: float | None) -> dict[str, tuple]:
-    figures = bench_fuzzy.accuracy_figures(grid_of(*values))
+    figures = benchmark.accuracy_figures(grid_of(*values))
     return {one.name: (one.value, one.is_ok) for one in figures}
 
 
@@ -286,20 +286,23 @@ def test_costs_take_the_worst_of_both_aggregations() -> None:
         for kind in ("table", "straight")
     ]
     peers = [PeerCost(n, 1000, 900 + n, 800, 700.0 + n, 500000, 1400) for n in (0, 100, 200)]
-    costs = bench_fuzzy.Costs(engines, peers)
-    found = {one.name: (one.value, one.is_ok) for one in bench_fuzzy.cost_figures(costs)}
+    costs = benchmark.Costs(engines, peers)
+    found = {one.name: (one.value, one.is_ok) for one in benchmark.cost_figures(costs)}
     assert found["compiled_singleton_worst_instr"] == (45, True)
     assert found["compiled_singleton_physical_worst_instr"] == (55, True)
     assert found["runtime_singleton_worst_instr"] == (55, True)
     assert found["compiled_centroid_worst_instr"] == (120, True)
     assert found["peer_fuzzylite_singleton_instr"] == (700.0, None)
     assert found["peer_fuzzylite_centroid_instr"] == (800.0, None)
-    assert bench_fuzzy.ratios(costs)["centroid_200"] == pytest.approx(900 / 120)
+    assert benchmark.ratios(costs)["centroid_200"] == pytest.approx(900 / 120)
     assert worst_instr([], "table", [SUM]) is None
 
 
 def test_figures_without_measurement_are_not_met_goals() -> None:
-    figures = [*bench_fuzzy.cost_figures(bench_fuzzy.Costs()), *bench_fuzzy.random_figures(None)]
+    figures = [
+        *benchmark.cost_figures(benchmark.Costs()),
+        *benchmark.random_figures(None),
+    ]
     assert all(one.value is None for one in figures)
     assert Report("fuzzy", figures, {}).exit_code(is_checked=True) == EXIT_ABSENT
 
@@ -325,9 +328,9 @@ def test_two_aggregations_differ_by_what_was_published() -> None:
 
 @pytest.fixture
 def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture):
-    """`quiesce bench fuzzy` on a tiny budget, where nothing is built and no peer can be had."""
+    """`./tools/benchmark fuzzy` on a tiny budget, where nothing is built and no peer can be had."""
     monkeypatch.setenv("QUIESCE_BUILD", str(tmp_path / "build"))
-    monkeypatch.setattr(bench_fuzzy, "QUICK", TINY)
+    monkeypatch.setattr(benchmark, "QUICK", TINY)
     monkeypatch.chdir(tmp_path)
 
     def run(*options: str) -> tuple[int, str]:

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from quiesce.signal.replay import sensor_counts
 from quiesce_benchmarks.cli import main
-from quiesce_benchmarks.signal import bench as bench_signal
-from quiesce_benchmarks.signal import recorded, response, truth
+from quiesce_benchmarks.signal import benchmark, recorded, response, truth
 from quiesce_benchmarks.signal.accuracy import Readings, neighbour_Hz, reading_tick, wrapped_deg
 from quiesce_benchmarks.signal.bounds import sine_bound
 from quiesce_benchmarks.signal.offline import dominant_Hz, trailing_Hz
@@ -317,9 +316,9 @@ def test_missing_samples_and_chosen_ticks_reach_the_firmware(rig: Rig) -> None:
 def bench(
     build: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ):
-    """`quiesce bench signal` on a tiny budget: exit code and what it printed."""
+    """`./tools/benchmark signal` on a tiny budget: exit code and what it printed."""
     monkeypatch.setenv("QUIESCE_BUILD", str(build))
-    monkeypatch.setattr(bench_signal, "QUICK", TINY)
+    monkeypatch.setattr(benchmark, "QUICK", TINY)
     monkeypatch.chdir(tmp_path)
 
     def run(*options: str) -> tuple[int, str]:

@@ -9,16 +9,23 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import Parser, exit_code_of
 from quiesce.base.paths import build_folder, shown
 
-from quiesce_benchmarks.can import bench as bench_can
-from quiesce_benchmarks.control import bench as bench_control
-from quiesce_benchmarks.damper import bench as bench_identify
-from quiesce_benchmarks.fuzzy import bench as bench_fuzzy
-from quiesce_benchmarks.signal import bench as bench_signal
-from quiesce_benchmarks.sweep import bench as bench_sweep
+from quiesce_benchmarks.can import benchmark as can_benchmark
+from quiesce_benchmarks.control import benchmark as control_benchmark
+from quiesce_benchmarks.damper import benchmark as damper_benchmark
+from quiesce_benchmarks.fuzzy import benchmark as fuzzy_benchmark
+from quiesce_benchmarks.signal import benchmark as signal_benchmark
+from quiesce_benchmarks.sweep import benchmark as sweep_benchmark
 
 # Each has NAME, HELP, DESCRIPTION, add_options(parser) and measure(args, folder) -> Report, which
 # writes its plots into the folder. UsageError for bad input, before anything is measured.
-BENCHMARKS = (bench_signal, bench_fuzzy, bench_control, bench_sweep, bench_identify, bench_can)
+BENCHMARKS = (
+    signal_benchmark,
+    fuzzy_benchmark,
+    control_benchmark,
+    sweep_benchmark,
+    damper_benchmark,
+    can_benchmark,
+)
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,
 unit, goal, better (lower or higher) and ok. The output folder receives it as NAME.json, too.
@@ -34,11 +41,11 @@ def make_parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     names = parser.add_subparsers(metavar="NAME", required=True)
-    for bench in BENCHMARKS:
+    for benchmark in BENCHMARKS:
         one = names.add_parser(
-            bench.NAME,
-            help=bench.HELP,
-            description=bench.DESCRIPTION,
+            benchmark.NAME,
+            help=benchmark.HELP,
+            description=benchmark.DESCRIPTION,
             epilog=EXIT_CODES,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
@@ -46,19 +53,19 @@ def make_parser() -> argparse.ArgumentParser:
         one.add_argument("--check", action="store_true", help="fail where a goal is missed")
         one.add_argument("--quick", action="store_true", help="fewer trials, the same figures")
         one.add_argument(
-            "--out", type=Path, metavar="DIR", help=f"folder to write to (build/bench/{bench.NAME})"
+            "--out", type=Path, metavar="DIR", help=f"(build/benchmark/{benchmark.NAME})"
         )
-        bench.add_options(one)
-        one.set_defaults(bench=bench)
+        benchmark.add_options(one)
+        one.set_defaults(benchmark=benchmark)
     return parser
 
 
 def run(args: argparse.Namespace) -> int:
-    out = args.out or build_folder() / "bench" / args.bench.NAME
+    out = args.out or build_folder() / "benchmark" / args.benchmark.NAME
     with output_files(out) as staging:
-        report = args.bench.measure(args, staging)
+        report = args.benchmark.measure(args, staging)
         text = json.dumps(report.json_object(), indent=1)
-        (staging / f"{args.bench.NAME}.json").write_text(text + "\n", encoding="utf-8")
+        (staging / f"{args.benchmark.NAME}.json").write_text(text + "\n", encoding="utf-8")
         written = sorted(file.name for file in staging.iterdir())
     if args.json:
         print(text)

@@ -1,4 +1,4 @@
-"""What every `quiesce bench NAME` reports: figures with goals, and what could not be measured."""
+"""What every `./tools/benchmark NAME` reports: figures with goals, what could not be measured."""
 
 import math
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Report:
-    bench: str
+    name: str  # of the benchmark
     figures: Sequence[Figure]
     context: dict[str, Any]  # what it was measured on; values of JSON
     tables: Sequence[str] = ()  # for people, below the figures
@@ -43,7 +43,7 @@ class Report:
 
     def json_object(self) -> dict[str, Any]:
         return {
-            "bench": self.bench,
+            "bench": self.name,
             "figures": [
                 {
                     "name": figure.name,

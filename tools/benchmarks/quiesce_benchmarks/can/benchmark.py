@@ -1,4 +1,4 @@
-"""`quiesce bench can`: bus load and response times from the DBC, the rest in a virtual machine."""
+"""`./tools/benchmark can`: bus load, response times from the DBC, the rest in a virtual machine."""
 
 import argparse
 import os

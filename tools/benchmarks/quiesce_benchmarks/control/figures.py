@@ -1,4 +1,4 @@
-"""The figures of `quiesce bench control`, with their goals.
+"""The figures of `./tools/benchmark control`, with their goals.
 
 All with 0.5 mg noise and the plant's own ADC, driver and coil; reductions are against 0 A, by the
 definitions of docs/howto/describe-a-plant.md. Unless said otherwise the law adapts from a cold

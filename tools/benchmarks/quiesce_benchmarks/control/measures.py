@@ -1,4 +1,4 @@
-"""What `quiesce bench control` derives from figures and traces. Pure; times in s."""
+"""What `./tools/benchmark control` derives from figures and traces. Pure; times in s."""
 
 from collections.abc import Sequence
 

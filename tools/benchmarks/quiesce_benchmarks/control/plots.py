@@ -1,4 +1,4 @@
-"""The plots of `quiesce bench control`."""
+"""The plots of `./tools/benchmark control`."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Closed-loop runs for `quiesce bench control`: which controller, which plant, what came out.
+"""Closed-loop runs for `./tools/benchmark control`: which controller, which plant, what came out.
 
 Every run is made once, however many parts of the bench ask for it.
 """

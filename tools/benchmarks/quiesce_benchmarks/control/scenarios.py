@@ -1,4 +1,4 @@
-"""The excitations under which `quiesce bench control` judges a law: scenarios as data.
+"""The excitations under which `./tools/benchmark control` judges a law: scenarios as data.
 
 Times are in s, frequencies in Hz, drives in V; `seed` of a random force is part of the excitation,
 that of the sensor's noise is given when a scenario runs.

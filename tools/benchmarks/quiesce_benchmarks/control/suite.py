@@ -1,4 +1,4 @@
-"""Everything that `quiesce bench control` runs: the pieces of work, their size, their results."""
+"""Everything that `./tools/benchmark control` runs: pieces of work, their size, their results."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

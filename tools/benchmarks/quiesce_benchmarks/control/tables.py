@@ -1,4 +1,4 @@
-"""The tables that `quiesce bench control` prints below its figures."""
+"""The tables that `./tools/benchmark control` prints below its figures."""
 
 from collections.abc import Sequence
 from statistics import median

@@ -1,4 +1,4 @@
-"""Plants other than the one in the file: what `quiesce bench control` varies."""
+"""Plants other than the one in the file: what `./tools/benchmark control` varies."""
 
 import math
 import tempfile

@@ -1,4 +1,4 @@
-"""`quiesce bench identify`: damper models on measured dampers, on synthetic truth, and speed."""
+"""`./tools/benchmark identify`: damper models on measured dampers, synthetic truth, speed."""
 
 import argparse
 import json

@@ -23,7 +23,7 @@ from quiesce_benchmarks.report import Figure
 
 RULES = "tools/benchmarks/dampers/scoring.toml"
 
-# What `quiesce bench identify` fits to every set; --models all adds every other one.
+# What `./tools/benchmark identify` fits to every set; --models all adds every other one.
 MODELS = (
     "normalised_bouc_wen",
     "viscoplastic_1",

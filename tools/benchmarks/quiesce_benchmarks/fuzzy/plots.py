@@ -1,4 +1,4 @@
-"""The plots of `quiesce bench fuzzy`."""
+"""The plots of `./tools/benchmark fuzzy`."""
 
 from collections.abc import Sequence
 from pathlib import Path

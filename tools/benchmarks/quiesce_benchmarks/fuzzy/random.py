@@ -1,4 +1,4 @@
-"""Random rule bases: what `quiesce bench fuzzy` and the tests feed to every engine and peer.
+"""Random rule bases: what `./tools/benchmark fuzzy` and the tests feed to every engine and peer.
 
 A base is a function of (seed, number) alone. Its kind, layout of the input sets, style of the rules
 and method of the outputs, is drawn so that every combination occurs; about two in five are of the

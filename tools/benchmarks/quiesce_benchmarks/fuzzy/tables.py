@@ -1,4 +1,4 @@
-"""The tables of `quiesce bench fuzzy` for the terminal."""
+"""The tables of `./tools/benchmark fuzzy` for the terminal."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""`quiesce bench signal`: what the sensing chain knows about the vibration, against theory."""
+"""`./tools/benchmark signal`: what the sensing chain knows about the vibration, against theory."""
 
 import argparse
 import sys

@@ -103,7 +103,7 @@ class SignalCost:
         return self.ticks[0]
 
     def figures(self) -> list[Figure]:
-        """The figures of `quiesce bench signal`, in the order of its table."""
+        """The figures of `./tools/benchmark signal`, in the order of its table."""
         mine = self.default
         peaks = {peer.number_format: peer.peak_instr for peer in self.peers}
         return [

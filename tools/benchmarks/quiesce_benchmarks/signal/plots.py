@@ -1,4 +1,4 @@
-"""The plots of `quiesce bench signal`."""
+"""The plots of `./tools/benchmark signal`."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Everything that `quiesce bench signal` runs: the pieces of work, their budget, their results."""
+"""Everything that `./tools/benchmark signal` runs: pieces of work, their budget, their results."""
 
 from dataclasses import dataclass
 from functools import partial

@@ -1,4 +1,4 @@
-"""The tables that `quiesce bench signal` prints below its figures, from its context."""
+"""The tables that `./tools/benchmark signal` prints below its figures, from its context."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""`quiesce bench sweep`: plants with known truth, recorded in simulation and identified."""
+"""`./tools/benchmark sweep`: plants with known truth, recorded in simulation and identified."""
 
 import argparse
 import math
