@@ -13,7 +13,7 @@ from quiesce.base.paths import root
 from quiesce.optimum.periodic import Drive, solve
 from quiesce.plant.library import Plant
 from quiesce.plant.variant import Variant, changed, read_plant_data
-from quiesce.plant_id.identify import Identified, identify
+from quiesce.plant_id.find import FoundPlant, find_plant
 from quiesce.plant_id.plant_file import modal_shapes
 from quiesce.plant_id.simulate import record
 from quiesce.plant_id.sweep import SweepPlan, timeline, write_csv
@@ -105,7 +105,7 @@ class Compared:
     """Identified against true. Percentages are relative, points are of reductions in %."""
 
     case: Case
-    found: Identified
+    found: FoundPlant
     freq_pct: float  # worst of the modes
     damping_pct: float  # of mode 1; NaN where it is not comparable
     force_pct: float  # at full current, as it acts on mode 1; NaN likewise
@@ -172,7 +172,7 @@ def compare(case: Case, folder: Path, seed: int) -> Compared:
     recording = folder / "recording.csv"
     write_csv(recording, line, record(true, line, seed))
     base = root() / PLANTS / f"{case.plant}.toml"
-    found = identify(
+    found = find_plant(
         recording,
         folder / "identified",
         base,
@@ -182,7 +182,7 @@ def compare(case: Case, folder: Path, seed: int) -> Compared:
     return judged(case, true_file, found)
 
 
-def judged(case: Case, true_file: Path, found: Identified) -> Compared:
+def judged(case: Case, true_file: Path, found: FoundPlant) -> Compared:
     true, plant = Plant(true_file), Plant(found.plant_file)
     pairs = list(zip(plant.modes, true.modes, strict=False))
     if len(plant.modes) != len(true.modes):

@@ -55,7 +55,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="CSV file to write; with --identify a folder (build/sweep/...)",
     )
     add_plan_options(parser.add_argument_group("what to record"))
-    add_identify_options(parser.add_argument_group("with --identify"))
+    add_find_options(parser.add_argument_group("with --identify"))
     parser.set_defaults(run=run)
 
 
@@ -98,7 +98,7 @@ def add_plan_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--seed", type=int, default=1, help="of the simulated noise (%(default)d)")
 
 
-def add_identify_options(group: argparse._ArgumentGroup) -> None:
+def add_find_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--base-plant",
         type=Path,
@@ -206,14 +206,14 @@ def write_plan(args: argparse.Namespace) -> int:
     return 0
 
 
-def run_identify(args: argparse.Namespace) -> int:
+def run_find(args: argparse.Namespace) -> int:
     # Imported late: scipy is slow, and no other command needs it.
-    from quiesce.plant_id.identify import identify
+    from quiesce.plant_id.find import find_plant
 
     if args.modal_mass <= 0.0:
         raise UsageError("--modal-mass: expected more than 0 kg")
     out = args.out or build_folder() / "sweep" / args.identify.stem
-    found = identify(
+    found = find_plant(
         args.identify,
         out,
         args.base_plant,
@@ -227,4 +227,4 @@ def run_identify(args: argparse.Namespace) -> int:
 
 
 def run(args: argparse.Namespace) -> int:
-    return run_identify(args) if args.identify else write_plan(args)
+    return run_find(args) if args.identify else write_plan(args)

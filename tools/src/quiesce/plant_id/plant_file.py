@@ -171,7 +171,7 @@ def plant_table(
     drive_V: float,
     angle_rad: float = COARSE_rad,
 ) -> dict[str, Any]:
-    """A plant file as nested tables. values: by parameter name, see identify_fit."""
+    """A plant file as nested tables. values: by parameter name, see fit.py."""
     count = sum(1 for key in values if key.endswith("_freq_Hz"))
     modes = modal_shapes(base, values, count)
     at_sensor_1 = modes[0]["at_sensor"]

@@ -1,4 +1,4 @@
-"""The excitation and the current steps to record, from which `identify` finds a plant.
+"""The excitation and the current steps to record, from which find.py finds a plant.
 
 One sweep without current, then dwells at fixed frequencies with current steps. Every part starts
 and ends at rest, so that each can be simulated from zero and nothing leaks from one to the next.

@@ -17,7 +17,7 @@ from quiesce.engine.params import effective_params
 from quiesce.optimum.store import plant_hash
 from quiesce.plant.library import Plant
 from quiesce.plant.variant import read_plant_data
-from quiesce.plant_id.identify import PLANT_NAME, identify
+from quiesce.plant_id.find import PLANT_NAME, find_plant
 from quiesce.report.plot_style import svg_of
 from quiesce.tune import plots
 from quiesce.tune.cycle import Cycle, cycles
@@ -123,7 +123,7 @@ def found_plant(order: Order) -> tuple[Path, str | None]:
     folder = (order.out or default_folder(source, "")) / IDENTIFIED
     fingerprint = source.fingerprint()
     if order.is_fresh or not was_identified(folder, fingerprint):
-        identify(
+        find_plant(
             source.recording, folder, source.base_plant, source.modal_mass_kg,
             source.is_damper_at_sensor, source.mode_count,
         )  # fmt: skip

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from quiesce.cli.main import main
-from test_identify_command import write_example
+from test_damper_identify import write_example
 
 
 def test_forces_of_test_rows_change_nothing_but_the_test_error(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""A plant from a recording: `identify` reads, fits, judges, and writes plant file and report."""
+"""A plant from a recording: it is read, fitted, judged; plant file and report."""
 
 import json
 import sys
@@ -22,7 +22,7 @@ PLANT_NAME = "plant.toml"
 
 
 @dataclass(frozen=True)
-class Identified:
+class FoundPlant:
     """plant_file: what the recording says, in the schema of plant files."""
 
     plant_file: Path
@@ -76,7 +76,7 @@ def carried_over(base: Base) -> dict[str, float]:
     }
 
 
-def identify(
+def find_plant(
     recording_file: Path,
     out: Path,
     base_file: Path | None = None,
@@ -84,7 +84,7 @@ def identify(
     is_damper_at_sensor: bool = True,
     mode_count: int | None = None,
     tell: Callable[[str], None] = say,
-) -> Identified:
+) -> FoundPlant:
     """Writes plant.toml, report.txt, identify.json and plots into `out`.
 
     base_file: a plant file for what no recording can tell (sensor, driver, damper model and
@@ -114,4 +114,4 @@ def identify(
         plot_sweep(staging / "sweep.png", sweep, modes_of(fit.values, base))
         if recording.dwells:
             plot_dwells(staging / "dwells.png", dwell, fit)
-    return Identified(out / PLANT_NAME, out / "report.txt", fit, base, recording, warnings, text)
+    return FoundPlant(out / PLANT_NAME, out / "report.txt", fit, base, recording, warnings, text)

@@ -10,7 +10,7 @@ import pytest
 from conftest import ROOT
 from quiesce.plant.library import Plant
 from quiesce.plant.variant import Variant, read_plant_data
-from quiesce.plant_id.identify import Identified, identify
+from quiesce.plant_id.find import FoundPlant, find_plant
 from quiesce.plant_id.modes import instantaneous_freq_Hz
 from quiesce.plant_id.recording import fit_sine, read_sweep_recording
 from quiesce.plant_id.simulate import record
@@ -41,17 +41,17 @@ def recorded(file: Path, plan: SweepPlan, plant: Path = NOMINAL, seed: int = 1) 
 
 
 @pytest.fixture(scope="module")
-def nominal(build, tmp_path_factory) -> Identified:
+def nominal(build, tmp_path_factory) -> FoundPlant:
     folder = tmp_path_factory.mktemp("nominal")
-    return identify(recorded(folder / "recording.csv", SHORT), folder / "out", tell=quiet)
+    return find_plant(recorded(folder / "recording.csv", SHORT), folder / "out", tell=quiet)
 
 
-def z_score(found: Identified, name: str, true: float) -> float:
+def z_score(found: FoundPlant, name: str, true: float) -> float:
     """Distance from the truth in standard errors."""
     return math.log(found.fit.values[name] / true) / found.fit.error(name)
 
 
-def test_modes_come_back(nominal: Identified) -> None:
+def test_modes_come_back(nominal: FoundPlant) -> None:
     true = Plant(NOMINAL).modes
     modes = Plant(nominal.plant_file).modes
     assert len(modes) == 2
@@ -61,7 +61,7 @@ def test_modes_come_back(nominal: Identified) -> None:
     assert nominal.fit.misfit == pytest.approx(1.0, abs=0.05)
 
 
-def test_truth_is_within_the_reported_errors(nominal: Identified) -> None:
+def test_truth_is_within_the_reported_errors(nominal: FoundPlant) -> None:
     truth = {
         "mode1_freq_Hz": 11.5,
         "mode1_residue_m_s2_V": 0.1727 * 4.4086 * 2.96,
@@ -79,12 +79,12 @@ def test_truth_is_within_the_reported_errors(nominal: Identified) -> None:
     assert nominal.fit.error("rise_s") < 0.05
 
 
-def test_reductions_agree_with_the_true_plant(nominal: Identified) -> None:
+def test_reductions_agree_with_the_true_plant(nominal: FoundPlant) -> None:
     errors = reduction_errors(Plant(NOMINAL), Plant(nominal.plant_file))
     assert max(errors.values()) < 0.5, errors
 
 
-def test_report_tells_values_intervals_and_assumptions(nominal: Identified) -> None:
+def test_report_tells_values_intervals_and_assumptions(nominal: FoundPlant) -> None:
     text = nominal.report_file.read_text()
     for words in ("95 % interval", "modal mass", "tied:", "gap_m", "force_scale"):
         assert words in text
@@ -95,7 +95,7 @@ def test_report_tells_values_intervals_and_assumptions(nominal: Identified) -> N
         assert (nominal.report_file.parent / name).stat().st_size > 10000
 
 
-def test_plant_check_accepts_the_plant(nominal: Identified, quiesce) -> None:
+def test_plant_check_accepts_the_plant(nominal: FoundPlant, quiesce) -> None:
     result = quiesce("plant", "check", nominal.plant_file)
     assert result.returncode == 0, result.stderr
     assert "is valid" in result.stdout
@@ -111,8 +111,8 @@ def test_another_plant_comes_back_with_the_first_as_base(build, tmp_path: Path) 
     assert found.worst_points < 1.0, found.points
 
 
-def test_modal_mass_scales_forces_and_nothing_else(nominal: Identified, tmp_path: Path) -> None:
-    heavy = identify(nominal.recording.file, tmp_path / "out", modal_mass_kg=4.0, tell=quiet)
+def test_modal_mass_scales_forces_and_nothing_else(nominal: FoundPlant, tmp_path: Path) -> None:
+    heavy = find_plant(nominal.recording.file, tmp_path / "out", modal_mass_kg=4.0, tell=quiet)
     light, found = Plant(nominal.plant_file), Plant(heavy.plant_file)
     assert found.modes[0].at_sensor == pytest.approx(0.5)
     assert found.force_N_V(10.0) == pytest.approx(4.0 * light.force_N_V(10.0), rel=1e-3)
@@ -130,7 +130,7 @@ def test_without_current_steps_the_damper_is_the_base_plants(build, tmp_path: Pa
     text = file.read_text().splitlines()
     rows = [",".join([*row.split(",")[:2], "0", row.split(",")[3]]) for row in text[1:]]
     file.write_text("\n".join([text[0], *rows]) + "\n")
-    found = identify(file, tmp_path / "out", tell=quiet)
+    found = find_plant(file, tmp_path / "out", tell=quiet)
     assert any("no current steps" in warning for warning in found.warnings)
     assert any("none were measured" in warning for warning in found.warnings)
     tables = [read_plant_data(file) for file in (NOMINAL, found.plant_file)]
