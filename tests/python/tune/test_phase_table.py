@@ -13,9 +13,9 @@ from quiesce.tune.phase_table import (
     Point,
     interpolated,
     law_bytes,
+    law_text,
     law_words,
     read_law,
-    write_law,
 )
 
 LAW_FILE = ROOT / "firmware/plants/squeeze_2012/pulses.phase.toml"
@@ -26,7 +26,7 @@ LAW = PhaseLaw("small", "by hand", 5000, {name: POINTS for name in SETTINGS})
 @pytest.fixture
 def law_file(tmp_path):
     file = tmp_path / "small.phase.toml"
-    write_law(LAW, file)
+    file.write_text(law_text(LAW), encoding="utf-8")
     return file
 
 

@@ -34,10 +34,6 @@ CONSTANT_FROM_Hz = 10.0
 FUZZY = Control("fuzzy")
 
 
-def constant_name(current_A: float) -> str:
-    return f"constant {current_A:g} A"
-
-
 @dataclass(frozen=True)
 class Point:
     """One frequency on the plant as it is. Keys of `adapted` and `shipped` are the settings."""

@@ -19,7 +19,6 @@ from quiesce.can.database import (
     Message,
 )
 
-DEFAULT_BITRATE = 500_000
 ERROR_FRAME_BITS = 31  # with what follows it, the paper's section 3.4
 RAW = "RawSample"
 SENSOR = "AccelSample"

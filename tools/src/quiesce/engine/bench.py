@@ -93,9 +93,6 @@ class Bench:
     def json(self, command: str, *options: str) -> Any:
         return json.loads(self.call(command, *options))
 
-    def has_command(self, command: str) -> bool:
-        return any(line.split()[:1] == [command] for line in self.call("--help").splitlines())
-
     def stop(self) -> None:
         """Ends every call under way."""
         with self._lock:

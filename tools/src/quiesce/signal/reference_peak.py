@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 WINDOW_s = 2.0
-LAG_s = WINDOW_s / 2.0
 PAD = 8
 BAND_Hz = (1.0, 50.0)
 _CHUNK = 2048

@@ -199,10 +199,6 @@ def _point_text(point: Point) -> str:
     )
 
 
-def write_law(law: PhaseLaw, file: Path) -> None:
-    file.write_text(law_text(law), encoding="utf-8")
-
-
 def law_words(law: PhaseLaw) -> list[int]:
     """What the firmware loads."""
     tables = [law.settings[name] for name in SETTINGS]
