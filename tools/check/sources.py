@@ -1,5 +1,5 @@
 """Print, each ended by a NUL, the files of a compile_commands.json whose path in the project
-matches a pattern: what xargs -0 feeds to clang-tidy."""
+matches a pattern: what xargs -0 feeds to clang-tidy. Where files are named, only these."""
 
 import json
 import re
@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 
-def main(commands: str, pattern: str) -> int:
+def main(commands: str, pattern: str, *named: str) -> int:
     root = Path.cwd()
     files = {Path(entry["file"]) for entry in json.loads(Path(commands).read_text())}
     inside = sorted(str(f.relative_to(root)) for f in files if f.is_relative_to(root))
@@ -15,7 +15,7 @@ def main(commands: str, pattern: str) -> int:
     if not chosen:
         print(f"{commands}: no file matches {pattern}", file=sys.stderr)
         return 1
-    sys.stdout.write("".join(name + "\0" for name in chosen))
+    sys.stdout.write("".join(name + "\0" for name in chosen if not named or name in named))
     return 0
 
 

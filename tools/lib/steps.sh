@@ -1,76 +1,162 @@
 # shellcheck shell=bash
 # Runs the steps of ./tools/test, keeps their results, prints them. Sourced by tools/test.
+# shellcheck source=tools/lib/stamps.sh
+source "$ROOT/tools/lib/stamps.sh"
 
+# MODE: run (each step), resume (those that have not passed on these inputs), list (none).
+MODE=run
 PASSED=()
+KEPT=()
 FAILED=()
+ABSENT=()
 SUMMARIES=()
+RECORDS=() # one line a step: name|result|seconds|CPU seconds|closing line or reason
+ALIVE_EVERY_S=60
 
-# summary_of LOG: the closing line of ctest or pytest, in the runner's own words.
+# summary_of LOG: the closing line of ctest, pytest or a benchmark, in the runner's own words.
 summary_of() {
-    grep -E '^[0-9]+% tests passed|^=+ .*(passed|failed|error).* =+$' "$1" | tail -n 1 || true
+    grep -E '^[0-9]+% tests passed|^=+ .*(passed|failed|error).* =+$|^figures: ' "$1" 2>/dev/null |
+        tail -n 1 || true
+}
+
+record() {
+    RECORDS+=("$1|$2|$3|$4|$5")
+}
+
+# wants STEP: false where it need not run: listed only, or passed on these very inputs.
+wants() {
+    if [ "$MODE" = list ]; then
+        list_step "$1"
+        return 1
+    fi
+    [ "$MODE" = resume ] && has_passed "$1" || return 0
+    local line
+    line="$(stamp_field "$1" 4)"
+    KEPT+=("$1")
+    [ -z "$line" ] || SUMMARIES+=("$line")
+    record "$1" kept "$(stamp_field "$1" 2)" "$(stamp_field "$1" 3)" "$line"
+    printf 'kept  %-20s       passed before on these inputs\n' "$1"
+    return 1
+}
+
+# say_alive NAME: a line a minute until its standard input ends.
+say_alive() {
+    local start_s=$SECONDS status
+    while true; do
+        status=0
+        read -r -t "$ALIVE_EVERY_S" _ || status=$?
+        ((status > 128)) || return 0
+        say "...   $1 $((SECONDS - start_s)) s"
+    done
 }
 
 # step NAME COMMAND...: output goes to build/logs/test-NAME.log; its end is shown on failure.
 step() {
-    local name="$1" start_s=$SECONDS summary status=0
+    local name="$1" start_s=$SECONDS log="$LOG_DIR/test-$1.log" hash cpu alive status=0
+    local TIMEFORMAT='%0U+%0S'
     shift
-    run_logged "test-$name" "$@" || status=$?
-    summary="$(summary_of "$LOG_DIR/test-$name.log")"
-    [ -z "$summary" ] || SUMMARIES+=("$summary")
-    if ((status == 0)); then
-        PASSED+=("$name")
-        printf 'ok    %-15s %4d s\n' "$name" $((SECONDS - start_s))
-    else
-        FAILED+=("$name")
-        tail -n 60 "$LOG_DIR/test-$name.log"
-        printf 'FAIL  %-15s %4d s  (build/logs/test-%s.log)\n' "$name" $((SECONDS - start_s)) "$name"
-    fi
+    hash="$(inputs_hash "$name")"
+    exec {alive}> >(say_alive "$name")
+    # In the foreground: a command in the background would not see Ctrl-C.
+    cpu="$({ time run_logged "test-$name" "$@"; } 2>&1 {alive}>&-)" || status=$?
+    exec {alive}>&-
+    ((status == 0)) || tail -n 60 "$log"
+    step_done "$name" "$status" "$hash" $((SECONDS - start_s)) $((cpu)) "$(summary_of "$log")" \
+        "test-$name"
     return "$status"
 }
 
-# build PRESET: a step of its own, once.
-build() {
-    [[ " ${PASSED[*]} " != *" build-$1 "* ]] || return 0
-    [[ " ${FAILED[*]} " != *" build-$1 "* ]] || return 1
-    local start_s=$SECONDS
-    # In a subshell: build_preset ends its script on failure.
-    if (build_preset "$1"); then
-        PASSED+=("build-$1")
-        printf 'ok    %-15s %4d s\n' "build-$1" $((SECONDS - start_s))
+# step_done NAME STATUS HASH SECONDS CPU_S LINE LOG: a step without a hash is run every time.
+step_done() {
+    local word=ok result=passed where=""
+    rm -f "$ROOT/build/tested/$1"
+    [ -z "$6" ] || SUMMARIES+=("$6")
+    if (($2 == 0)); then
+        PASSED+=("$1")
+        [ -z "$3" ] || stamp_write "$1" "${@:3:4}"
     else
-        FAILED+=("build-$1")
-        printf 'FAIL  %-15s %4d s  (build/logs/build-%s.log)\n' "build-$1" $((SECONDS - start_s)) "$1"
-        return 1
+        FAILED+=("$1")
+        word=FAIL result=FAILED where="  (build/logs/$7.log)"
     fi
+    record "$1" "$result" "$4" "$5" "$6"
+    printf '%-5s %-20s %4d s %5d s of CPU%s\n' "$word" "$1" "$4" "$5" "$where"
 }
 
-run_ctest() {
-    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error
+# absent NAME REASON: a step that this machine cannot run. Said, and never counted as passed.
+absent() {
+    ABSENT+=("$1")
+    record "$1" absent 0 0 "$2"
+    printf 'none  %-20s %s\n' "$1" "$2"
 }
 
-run_pytest() {
-    # A file stays with one worker: its fixtures run once.
-    .venv/bin/python -m pytest tests/python --numprocesses "$(nproc)" --dist loadfile --durations=10
+# build PRESET [TARGET...]: a step of its own, once.
+build() {
+    local name="build-$1${2:+-${2//\//_}}" start_s=$SECONDS cpu alive status=0 TIMEFORMAT='%0U+%0S'
+    [[ " ${PASSED[*]} " != *" $name "* ]] || return 0
+    [[ " ${FAILED[*]} " != *" $name "* ]] || return 1
+    exec {alive}> >(say_alive "$name")
+    # In a subshell: build_preset ends its script on failure. What it says goes on to stderr.
+    { cpu="$({ time (build_preset "$@" 2>&3); } 2>&1 {alive}>&-)"; } 3>&2 || status=$?
+    exec {alive}>&-
+    step_done "$name" "$status" "" $((SECONDS - start_s)) $((cpu)) "" "build-$1"
+    return "$status"
 }
 
-run_pytest_package() {
-    .venv/bin/python -m pytest tests/system/package --durations=10
+# list_step STEP: its name, and those of its tests where they can be told.
+list_step() {
+    printf '%s\n' "$1"
+    case "$1" in
+    pytest) list_pytest "$1" tests/python -m "not slow" ;;
+    pytest-slow) list_pytest "$1" tests/python -m slow ;;
+    pytest-package) list_pytest "$1" tests/system/package ;;
+    pytest-vm) list_pytest "$1" tests/system/vm ;;
+    ctest-*)
+        if [ -f "build/${1#ctest-}/CTestTestfile.cmake" ]; then
+            ctest --preset "${1#ctest-}" -N | sed -n -E "s/^ *Test +#[0-9]+: /$1 /p"
+        else
+            say "$1: its tests can be named once build/${1#ctest-} is there"
+        fi
+        ;;
+    esac
 }
 
-run_pytest_vm() {
-    .venv/bin/python -m pytest tests/system/vm --durations=5
-}
-
-run_coverage() {
-    .venv/bin/python -m gcovr --root . --object-directory build/coverage --filter firmware/ \
-        --exclude firmware/comm/generated/ --print-summary --fail-under-line 98
+list_pytest() {
+    .venv/bin/python -m pytest "${@:2}" --collect-only -q | grep '::' | sed "s/^/$1 /"
 }
 
 # report: every step, then the runners' own closing lines; false iff a step failed.
 report() {
     echo
     ((${#FAILED[@]} == 0)) || printf 'failed: %s\n' "${FAILED[*]}"
-    printf 'steps: %d passed, %d failed\n' "${#PASSED[@]}" "${#FAILED[@]}"
+    ((${#ABSENT[@]} == 0)) || printf 'not run here: %s\n' "${ABSENT[*]}"
+    printf 'steps: %d passed, %d failed' "${#PASSED[@]}" "${#FAILED[@]}"
+    ((${#KEPT[@]} == 0)) && echo || printf ', %d kept\n' "${#KEPT[@]}"
     ((${#SUMMARIES[@]} == 0)) || printf '%s\n' "${SUMMARIES[@]}"
     ((${#FAILED[@]} == 0))
+}
+
+# write_summary: what `all` did, for the repository.
+write_summary() {
+    local entry name result wall_s cpu_s line total_s=0 changed=""
+    git diff --quiet HEAD -- . ":!$TEST_SUMMARY" 2>/dev/null || changed=", with changes of its files"
+    {
+        echo "# What ./tools/test all last ran"
+        echo
+        echo "Written by \`./tools/test all\`; a step that is kept passed before on the same inputs."
+        echo
+        echo "- commit $(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)$changed"
+        echo "- files $(files_hash . | cut -c1-16) (their hash, without this one)"
+        echo "- $(date -u +%Y-%m-%d), $(nproc) processors, $(uname -m)"
+        echo
+        echo "| step | result | time | CPU time | |"
+        echo "|---|---|---|---|---|"
+        for entry in "${RECORDS[@]}"; do
+            IFS='|' read -r name result wall_s cpu_s line <<<"$entry"
+            line="$(sed -E 's/^=+ //; s/ =+$//' <<<"$line")"
+            echo "| $name | $result | $wall_s s | $cpu_s s | $line |"
+            total_s=$((total_s + wall_s))
+        done
+        echo
+        echo "All steps together: $((total_s / 60)) minutes."
+    } >"$ROOT/$TEST_SUMMARY"
 }

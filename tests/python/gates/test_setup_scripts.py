@@ -5,69 +5,12 @@ only the commands that it puts on their PATH. Nothing here reaches the network.
 """
 
 import fcntl
-import json
-import os
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).resolve().parents[3]
-SCRIPTS = ("bench_images", "bench_peers", "hil", "quiesce", "setup", "test")
-COMMON = (
-    "awk bash cat chmod cp cut dirname env flock grep mkdir mktemp mv nproc readlink rm "
-    "sha256sum tail tar touch"
-).split()
-ALL_INSTALLED = 'shift 2; for p in "$@"; do echo "installed $p"; done'
-
-
-class Clone:
-    """A copy of the scripts and the commands that they can see."""
-
-    def __init__(self, folder: Path) -> None:
-        self.root = folder / "a clone"
-        self.bin = folder / "bin"
-        self.bin.mkdir()
-        shutil.copytree(ROOT / "tools/lib", self.root / "tools/lib")
-        for name in (*SCRIPTS, "packages.txt", "requirements.txt"):
-            shutil.copy(ROOT / "tools" / name, self.root / "tools" / name)
-        for name in COMMON:
-            (self.bin / name).symlink_to(shutil.which(name))
-        self.fake("id", "echo 1000")
-        self.fake("sleep", "exit 0")
-        self.fake("dpkg-query", ALL_INSTALLED)
-
-    def fake(self, name: str, script: str) -> Path:
-        """A command that notes its arguments in NAME.calls and then does what `script` says."""
-        path = self.bin / name
-        calls = self.bin / f"{name}.calls"
-        path.write_text(f'#!/bin/bash\necho "$*" >>"{calls}"\n{script}\n')
-        path.chmod(0o755)
-        return path
-
-    def calls(self, name: str) -> list[str]:
-        path = self.bin / f"{name}.calls"
-        return path.read_text().splitlines() if path.exists() else []
-
-    def run(self, *command: str, **env: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            command,
-            cwd=self.root,
-            env={"PATH": str(self.bin), **env},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=60,
-        )
-
-    def script(self, name: str, *arguments: str, **env: str) -> subprocess.CompletedProcess[str]:
-        return self.run(str(self.root / "tools" / name), *arguments, **env)
-
-    def function(self, libraries: str, code: str, **env: str) -> subprocess.CompletedProcess[str]:
-        """Runs `code` with some of tools/lib sourced."""
-        sources = "; ".join(f"source tools/lib/{name}.sh" for name in libraries.split())
-        return self.run("bash", "-c", f"PROGRAM=here; {sources}; {code}", **env)
+from script_clone import ALL_INSTALLED, ROOT, SCRIPTS, Clone
 
 
 @pytest.fixture
@@ -91,10 +34,11 @@ def assert_one_line(result: subprocess.CompletedProcess[str], *words: str) -> No
     [
         ("setup", ["everything"], ["everything", "run, test, all or python"]),
         ("setup", ["run", "test"], ["one argument"]),
-        ("bench_images", ["cmsis_cost", "all"], ["all", "signal_cost"]),
-        ("bench_peers", ["python", "matlab"], ["matlab", "fuzzylite"]),
+        ("benchmarks/build_images", ["cmsis_cost", "all"], ["all", "signal_cost"]),
+        ("benchmarks/fetch_peers", ["python", "matlab"], ["matlab", "fuzzylite"]),
         ("test", ["--fast"], ["--fast", "--help"]),
         ("test", ["--only", "units"], ["units", "sanitize"]),
+        ("test", ["edit", "--list"], ["--list", "--help"]),
         ("test", ["--only"], ["--only", "sanitize"]),
     ],
 )
@@ -103,7 +47,7 @@ def test_unknown_argument_is_refused(clone: Clone, name, arguments, words) -> No
     assert not (clone.root / "build").exists()
 
 
-@pytest.mark.parametrize("name", ["bench_images", "bench_peers", "setup", "test"])
+@pytest.mark.parametrize("name", [*SCRIPTS[:2], "setup", "test"])
 def test_help_needs_nothing_installed(clone: Clone, name) -> None:
     result = clone.script(name, "--help")
     assert result.returncode == 0
@@ -308,7 +252,7 @@ def test_interrupted_cmsis_set_up_starts_again(clone: Clone) -> None:
     assert clone.function("common cmsis", check).stdout == f"complete\n{checksum}"
 
 
-# Two at once, results
+# Two at once
 
 
 def test_second_set_up_waits_for_the_first(clone: Clone) -> None:
@@ -325,110 +269,3 @@ def test_second_set_up_waits_for_the_first(clone: Clone) -> None:
         assert process.poll() is None
     assert "3.11 or newer" in process.communicate(timeout=30)[1]
     assert process.returncode == 2
-
-
-def test_failed_step_fails_the_run_and_shows_its_log(clone: Clone) -> None:
-    code = "step good echo fine; step bad bash -c 'echo broken; exit 3' || true; report"
-    result = clone.function("common steps", code)
-    assert result.returncode == 1
-    assert "broken\n" in result.stdout
-    assert "steps: 1 passed, 1 failed" in result.stdout
-
-
-def test_closing_lines_of_the_runners_come_last(clone: Clone) -> None:
-    ctest = "100% tests passed, 0 tests failed out of 7"
-    pytest_line = "====== 5 passed in 0.10s ======"
-    code = f"step a echo '{ctest}'; step b echo '{pytest_line}'; report"
-    result = clone.function("common steps", code)
-    assert result.returncode == 0
-    assert result.stdout.splitlines()[-2:] == [ctest, pytest_line]
-
-
-# Gates: each one fails on what it is there for
-
-
-@pytest.fixture
-def tree(clone: Clone) -> Clone:
-    """A tree with one clean C file, all gates, and every command of this machine."""
-    shutil.copytree(ROOT / "tools/check", clone.root / "tools/check")
-    for name in (".clang-format", ".clang-tidy", "ruff.toml"):
-        shutil.copy(ROOT / name, clone.root)
-    for (
-        folder
-    ) in "tools/benchmarks/mps2 firmware hal/mps2 linux sim_hil tests tools/gen .ci".split():
-        (clone.root / folder).mkdir(parents=True)
-    clean = "int clean(int a);\n\nint clean(int a) {\n    return a + 1;\n}\n"
-    for name in (
-        "tools/benchmarks/mps2/clean.c",
-        "firmware/clean.c",
-        "hal/mps2/clean.c",
-        "sim_hil/clean.cpp",
-    ):
-        (clone.root / name).write_text(clean)
-    (clone.root / ".venv").symlink_to(ROOT / ".venv")
-    return clone
-
-
-def gate(tree: Clone, name: str) -> subprocess.CompletedProcess[str]:
-    return tree.script(f"check/{name}", PATH=os.environ["PATH"])
-
-
-def test_format_gate(tree: Clone) -> None:
-    assert gate(tree, "format").returncode == 0
-    (tree.root / "sim_hil/bad.cpp").write_text("int  bad( ) {return 1;}\n")
-    assert gate(tree, "format").returncode != 0
-
-
-def test_cppcheck_gate(tree: Clone) -> None:
-    assert gate(tree, "cppcheck").returncode == 0
-    (tree.root / "firmware/bad.c").write_text(
-        "int bad(void);\nint bad(void) { int a[2] = {1, 2}; return a[2]; }\n"
-    )
-    assert gate(tree, "cppcheck").returncode != 0
-
-
-def test_scripts_gate(tree: Clone) -> None:
-    assert gate(tree, "scripts").returncode == 0
-    (tree.root / "tools/bad").write_text("#!/bin/bash\nrm $1/*\n")
-    assert gate(tree, "scripts").returncode != 0
-
-
-def test_ruff_gate(tree: Clone) -> None:
-    assert gate(tree, "ruff").returncode == 0
-    (tree.root / "tests/bad.py").write_text("import os\n")
-    assert gate(tree, "ruff").returncode != 0
-
-
-def test_generated_gate(tree: Clone) -> None:
-    (tree.root / "tools/gen/a.py").write_text("import sys\nsys.exit(sys.argv[1:] != ['--check'])\n")
-    assert gate(tree, "generated").returncode == 0
-    (tree.root / "tools/gen/b.py").write_text("raise SystemExit(1)\n")
-    assert gate(tree, "generated").returncode != 0
-
-
-def compile_commands(tree: Clone, build: str, *names: str) -> None:
-    folder = tree.root / "build" / build
-    folder.mkdir(parents=True, exist_ok=True)
-    directory = str(tree.root)
-    entries = [
-        {"directory": directory, "file": f"{directory}/{name}", "arguments": ["cc", "-c", name]}
-        for name in names
-    ]
-    (folder / "compile_commands.json").write_text(json.dumps(entries))
-
-
-def test_tidy_gate(tree: Clone) -> None:
-    compile_commands(tree, "host", "firmware/clean.c", "sim_hil/clean.cpp")
-    compile_commands(tree, "mps2", "hal/mps2/clean.c")
-    assert gate(tree, "tidy").returncode == 0
-    lines = "".join(f"    a += a / {n};\n" for n in range(1, 62))
-    (tree.root / "firmware/clean.c").write_text(f"int f(int a) {{\n{lines}    return a;\n}}\n")
-    result = gate(tree, "tidy")
-    assert result.returncode != 0
-    assert "readability-function-size" in result.stdout
-
-
-def test_tidy_gate_refuses_to_check_nothing(tree: Clone) -> None:
-    compile_commands(tree, "host", "sim_hil/clean.cpp")
-    compile_commands(tree, "mps2", "hal/mps2/clean.c")
-    assert gate(tree, "tidy").returncode != 0

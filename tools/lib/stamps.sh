@@ -1,0 +1,64 @@
+# shellcheck shell=bash
+# What a step of ./tools/test read when it last passed, so that `all` goes on where it stopped.
+# build/tested/STEP: the hash of its inputs, seconds, CPU seconds, its runner's closing line.
+# Sourced by tools/test.
+
+# In no test's inputs: what `all` itself writes.
+TEST_SUMMARY="tests/summary.md"
+
+# inputs_of STEP: the paths that it reads, more rather than fewer. Programs on this machine are built
+# from `code`.
+inputs_of() {
+    local code="CMakeLists.txt CMakePresets.json cmake firmware hal targets sim_hil tests/CMakeLists.txt
+        tests/build_images tests/unit tests/golden tests/system/vm/guest tools/benchmarks"
+    case "$1" in
+    ctest-*) echo "$code" ;;
+    cppcheck) echo "$code tools/check" ;;
+    tidy) echo "$code tools/check .clang-tidy" ;;
+    format) echo "$code examples tests tools/check .clang-format" ;;
+    scripts) echo ".ci tools tests" ;;
+    ruff) echo "ruff.toml tools tests examples" ;;
+    pytest-slow | bench-*) echo "$code pytest.ini tests/python tools" ;;
+    pytest-vm) echo "$code pytest.ini tests/system/vm tools" ;;
+    proofs) echo "tests/proof tools/check tools/src tools/benchmarks" ;;
+    *) echo . ;;
+    esac
+}
+
+# files_hash PATH...: of these files here, committed or not.
+files_hash() {
+    (cd "$ROOT" && git ls-files -z --cached --others --exclude-standard -- "$@" ":!$TEST_SUMMARY" |
+        sort -zu | xargs -0 sha256sum) 2>&1 | sha256sum | cut -c1-64
+}
+
+# inputs_hash STEP: of its files, of what all steps are run by, and of this machine's own part.
+# Nothing outside of a git tree: there nobody can tell what a step reads.
+inputs_hash() {
+    local paths
+    git -C "$ROOT" rev-parse --git-dir >/dev/null 2>&1 || return 0
+    read -r -d '' -a paths < <(inputs_of "$1") || true
+    {
+        uname -m
+        gcc --version | head -n 1
+        cat "$ROOT/.venv/.complete"
+        files_hash "${paths[@]}" tools/lib tools/test tools/setup tools/packages.txt
+    } 2>&1 | sha256sum | cut -c1-64
+}
+
+# stamp_write STEP HASH SECONDS CPU_S LINE
+stamp_write() {
+    mkdir -p "$ROOT/build/tested"
+    printf '%s\n' "${@:2}" >"$ROOT/build/tested/$1"
+}
+
+# stamp_field STEP NUMBER: 1 hash, 2 seconds, 3 CPU seconds, 4 closing line.
+stamp_field() {
+    sed -n "$2p" "$ROOT/build/tested/$1" 2>/dev/null || true
+}
+
+# has_passed STEP: with these very inputs.
+has_passed() {
+    local before
+    before="$(stamp_field "$1" 1)"
+    [ -n "$before" ] && [ "$before" = "$(inputs_hash "$1")" ]
+}
