@@ -312,7 +312,7 @@ def test_base_that_the_integers_cannot_hold_is_told_not_counted(monkeypatch) -> 
     no_area = (triangle("t", 2.5, 2.5, 2.5),) * 5
     empty = replace(base, outputs=(replace(base.outputs[0], terms=no_area),))
     random = replace(random_base(1, 0), base=empty)
-    monkeypatch.setattr("quiesce.fuzzy_suite.random_base", lambda seed, number: random)
+    monkeypatch.setattr("quiesce_benchmarks.fuzzy.suite.random_base", lambda seed, number: random)
     assert "area" in str(judge_base(0, 1, TINY.random))
 
 
