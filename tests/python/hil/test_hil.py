@@ -109,6 +109,15 @@ def test_quick_run_writes_its_files_only(quick) -> None:
     assert [p.name for p in folder.parent.iterdir()] == ["report"]
 
 
+def test_picture_and_table_are_what_was_shown(quick) -> None:
+    result, folder = quick
+    assert (folder / "table.txt").read_text() in result.stdout
+    svg = (folder / "picture.svg").read_text()
+    for text in ("without control", "phase, balanced", "time after the step (s)"):
+        assert f">{text}</text>" in svg
+    assert len(svg) < 60_000
+
+
 def test_metrics_have_the_agreed_shape(metrics) -> None:
     assert list(metrics) == ["runs", "published", "trace_equal", "realtime_factor"]
     for run in metrics["runs"]:
