@@ -11,16 +11,14 @@ from pathlib import Path
 
 from conftest import ROOT
 
-SOURCES = ("app", "base", "comm", "fuzzy", "guard", "law", "param", "sense", "src")
-INCLUDES = ("include", *SOURCES, "comm/generated", "fuzzy/generated", "law/generated")
-
 
 def build_peer(folder: Path) -> Path:
     """Compiles can_peer.c with the whole firmware."""
     firmware = ROOT / "firmware"
-    files = [file for name in SOURCES for file in sorted((firmware / name).rglob("*.c"))]
+    files = sorted(firmware.rglob("*.c"))
     files += [ROOT / "hal/sim/hal_sim.c", Path(__file__).with_name("can_peer.c")]
-    folders = [firmware / name for name in INCLUDES] + [ROOT / "hal/include", ROOT / "hal/sim"]
+    folders = sorted({header.parent for header in firmware.rglob("*.h")})
+    folders += [ROOT / "hal/include", ROOT / "hal/sim"]
     exe = folder / "can_peer"
     options = ["-std=gnu11", "-O1", *(f"-I{one}" for one in folders), "-o", str(exe)]
     subprocess.run(["gcc", *options, *map(str, files), "-lm"], check=True)
