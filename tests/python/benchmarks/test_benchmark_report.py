@@ -15,6 +15,8 @@ def report(*figures: Figure) -> Report:
 MET = Figure("met", 1.0, "s", 2.0, "lower")
 MISSED = Figure("missed", 1.0, "%", 2.0, "higher")
 ABSENT = Figure("absent", None, "1", 2.0, "lower")
+SLOW = Figure("slow", 9.0, "s", 2.0, "lower", is_gated=False)
+UNTIMED = Figure("untimed", None, "s", 2.0, "lower", is_gated=False)
 REPORTED = Figure("reported", 5.0, "1", None, "lower")
 REPORTED_ABSENT = Figure("reported_absent", None, "1", None, "lower")
 
@@ -43,6 +45,7 @@ def test_goal_is_met_on_its_better_side(value, goal, better, is_ok) -> None:
         ([MET, MISSED], 1),
         ([MET, ABSENT], 3),
         ([ABSENT, MISSED], 1),
+        ([MET, SLOW, UNTIMED], 0),
     ],
 )
 def test_check_fails_on_a_missed_goal_before_an_absent_one(figures, code) -> None:
@@ -57,6 +60,8 @@ def test_json_has_the_convention_s_keys() -> None:
         ["name", "value", "unit", "goal", "better", "ok"]
     ] * 3
     assert [figure["ok"] for figure in made["figures"]] == [True, None, None]
+    slow = report(SLOW).json_object()["figures"][0]
+    assert slow["ok"] is False and slow["gated"] is False
     assert made["context"] == {"trials": 3, "absent": ["file: not here"]}
 
 

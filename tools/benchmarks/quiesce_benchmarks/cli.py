@@ -13,6 +13,7 @@ from quiesce_benchmarks.can import benchmark as can_benchmark
 from quiesce_benchmarks.control import benchmark as control_benchmark
 from quiesce_benchmarks.damper import benchmark as damper_benchmark
 from quiesce_benchmarks.fuzzy import benchmark as fuzzy_benchmark
+from quiesce_benchmarks.house import benchmark as house_benchmark
 from quiesce_benchmarks.signal import benchmark as signal_benchmark
 from quiesce_benchmarks.sweep import benchmark as sweep_benchmark
 
@@ -25,6 +26,7 @@ BENCHMARKS = (
     sweep_benchmark,
     damper_benchmark,
     can_benchmark,
+    house_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,
