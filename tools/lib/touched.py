@@ -43,6 +43,7 @@ PYTHON_TESTS = {
 SCRIPT_TESTS = tuple(
     f"gates/test_{name}.py" for name in ("setup_scripts", "gates", "tiers", "touched")
 )
+PAGE_TESTS = ("docs/test_pages.py", "docs/test_results.py")
 GENERATED = re.compile(r"(generated/|\.(toml|dbc|fcl)$|/gen/.*\.py$)")
 SOURCE = re.compile(r"\.(c|h|cpp|hpp)$")
 TIDY = re.compile(r"^(firmware|hal|targets|sim_hil)/(?!.*generated/).*\.(c|cpp)$")
@@ -94,18 +95,22 @@ def units(paths: list[str]) -> list[str]:
 
 
 def python_tests(path: str) -> list[str]:
-    """Tests of a Python file: itself, or those of its package."""
+    """Tests of a Python file: itself, or those of its package. Tests of a page or an example."""
     if re.match(r"tests/python/.*/?test_\w+\.py$", path):
         return [path]
     parts = path.split("/")
     if path.startswith("tools/src/quiesce/") and len(parts) > 4:
         names: Iterable[str] = PYTHON_TESTS.get(parts[3], (parts[3],))
     elif path.startswith("tools/benchmarks/quiesce_benchmarks/"):
-        names = ("benchmarks",)
+        names = PAGE_TESTS if "/house/" in path else ("benchmarks",)
     elif path.startswith(("tools/lib/", "tools/check/", "tools/test", ".ci/")):
         names = SCRIPT_TESTS
     elif path.startswith("tests/python/") and len(parts) > 3 and path.endswith(".py"):
         names = (parts[2],)
+    elif path.startswith(("docs/", "README.md")):
+        names = PAGE_TESTS
+    elif path.startswith("examples/"):
+        names = ("docs",)
     else:
         return []
     return [f"tests/python/{name}" for name in names if (ROOT / "tests/python" / name).exists()]

@@ -39,6 +39,7 @@ def test_a_block_of_the_firmware_brings_the_tests_that_see_it() -> None:
         ("tools/src/quiesce/cli/words.py", "pytest tests/python/gates/test_bad_input.py"),
         ("tests/python/can/test_can_e2e.py", "pytest tests/python/can/test_can_e2e.py"),
         ("tools/benchmarks/quiesce_benchmarks/report.py", "pytest tests/python/benchmarks"),
+        ("examples/first_loop/first_loop.c", "pytest tests/python/docs"),
         ("tools/test", "script tools/test"),
         ("tools/test", "pytest tests/python/gates/test_setup_scripts.py"),
         ("firmware/param/parameters.toml", "generated"),
@@ -48,8 +49,9 @@ def test_a_file_brings(file: str, expected: str) -> None:
     assert expected in touched("edit", file)
 
 
-def test_pages_bring_nothing() -> None:
-    assert touched("edit", "docs/index.md", "README.md") == []
+def test_pages_bring_the_tests_of_pages() -> None:
+    tests = [f"pytest tests/python/docs/test_{name}.py" for name in ("pages", "results")]
+    assert touched("edit", "docs/index.md", "README.md") == tests
 
 
 def test_a_test_of_the_firmware_brings_itself() -> None:
