@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from conftest import run_quiesce
+from conftest import ROOT, run_quiesce
 from quiesce.engine import laws
 from quiesce.hil.metrics import differing_cases
 from quiesce.hil.published import Published, load_reference
@@ -116,6 +116,22 @@ def test_picture_and_table_are_what_was_shown(quick) -> None:
     for text in ("without control", "phase, balanced", "time after the step (s)"):
         assert f">{text}</text>" in svg
     assert len(svg) < 60_000
+
+
+def test_committed_results_are_those_of_this_firmware(metrics) -> None:
+    """What pages show (docs/results/hil.json). Instructions may lag behind by 2 %."""
+    keys = ("scenario", "freq_hz", "law", "target")
+    committed = {
+        tuple(row[key] for key in keys): row
+        for row in json.loads((ROOT / "docs/results/hil.json").read_text())["runs"]
+    }
+    for run in metrics["runs"]:
+        row = committed[tuple(run[key] for key in keys)]
+        for key in ("amp_reduction_pct", "accel_rms_reduction_pct", "mean_current_A"):
+            assert run[key] == pytest.approx(row[key], abs=0.005), (row, key)
+        if run["instr_worst"] is not None:
+            for key in ("instr_median", "instr_worst"):
+                assert run[key] == pytest.approx(row[key], rel=0.02), (row, key)
 
 
 def test_metrics_have_the_agreed_shape(metrics) -> None:
