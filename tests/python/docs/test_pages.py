@@ -68,6 +68,12 @@ def test_paths_of_the_project_exist(page: Path) -> None:
     assert list(missing_paths(page.read_text())) == []
 
 
+@pytest.mark.parametrize("page", pages(ROOT), ids=lambda page: str(page.relative_to(ROOT)))
+def test_no_line_of_prose_begins_with_a_mark(page: Path) -> None:
+    """There Markdown would end the paragraph and take the line for HTML."""
+    assert re.findall(r"^ *<!--= (?!table ).*$", page.read_text(), re.MULTILINE) == []
+
+
 def test_the_index_has_every_page() -> None:
     index = ROOT / "docs/index.md"
     listed = {(index.parent / link).resolve() for link in LINK.findall(index.read_text())}
