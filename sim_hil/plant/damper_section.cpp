@@ -93,9 +93,9 @@ MotionLimits read_limits(TomlTable &section) {
 }
 
 std::shared_ptr<const Damper> read_learned(const LearnedModel &model, TomlTable &section) {
-    const MotionLimits limits = read_limits(section);
+    const LearnedContext context{read_limits(section), read_damper_model};
     TomlTable keys = section.table("parameters");
-    std::shared_ptr<const Damper> damper = model.read(keys, limits);
+    std::shared_ptr<const Damper> damper = model.read(keys, context);
     keys.reject_unknown_keys();
     return damper;
 }

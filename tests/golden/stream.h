@@ -31,11 +31,4 @@ void stream_step(stream_t *self);
 /// Prints what was recorded.
 void stream_close(stream_t *self);
 
-/// The cases, a group each.
-void stream_random_cases(stream_t *self); ///< random vibrations and parameters, all laws
-void stream_table_cases(stream_t *self);  ///< parameter table, refusals, the rules on a grid
-void stream_rules_cases(stream_t *self);  ///< rule tables are swapped
-void stream_phase_cases(stream_t *self);  ///< law phase learns; pulse tables are swapped
-void stream_storm_cases(stream_t *self);  ///< faults and an operator
-
 #endif

@@ -1,7 +1,7 @@
 // Law phase learns on a vibration that its current damps; what it has learnt is saved, loaded,
 // forgotten and frozen, and its pulse table is swapped.
 #include "golden_tables.h"
-#include "stream.h"
+#include "stream_cases.h"
 
 enum { CASES = 16, TICKS = 60000, LEARNT_MAX = 4 };
 

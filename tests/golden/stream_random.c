@@ -1,5 +1,5 @@
 // Random vibrations, all laws at all rates: with the default parameters, then with random ones.
-#include "stream.h"
+#include "stream_cases.h"
 
 enum { LAWS = 5, RATES = 4, CASES = 3 * LAWS * RATES, TICKS = 8000, SETTINGS = 6 };
 

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "golden_tables.h"
-#include "stream.h"
+#include "stream_cases.h"
 
 enum { CASES = 6, TICKS = 8000, RATE_Hz = 1000, PART_WORDS = 40 };
 

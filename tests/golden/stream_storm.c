@@ -1,6 +1,6 @@
 // A storm of faults under an operator's hands: every cause, alone and on top of others, for about
 // as long as its limit, so that the controller goes round all of its states many times.
-#include "stream.h"
+#include "stream_cases.h"
 
 enum { LAWS = 5, CASES = 20, TICKS = 10000, RATES = 4, QUIET_COUNTS = 20 };
 

@@ -1,33 +1,6 @@
 // Prints hashes of what the controller puts out on random streams, through its public header alone,
 // so that it can be compiled against any commit's. ./tools/golden compares them with golden.txt.
-#include "stream.h"
-
-#include <stdio.h>
-
-void stream_open(stream_t *self, const char *prefix, uint32_t number) {
-    *self = (stream_t){.seed = number};
-    for (const char *c = prefix; *c != '\0'; c++) {
-        self->seed = self->seed * 31u + (uint8_t)*c;
-    }
-    (void)snprintf(self->name, sizeof self->name, "streams/%s_%02u", prefix, (unsigned)number);
-    quiesce_params_default(&self->params);
-    record_start(&self->record, self->name);
-}
-
-void stream_start(stream_t *self) {
-    record_word(&self->record, quiesce_init(&self->controller, &self->params) ? 1u : 0u);
-}
-
-void stream_step(stream_t *self) {
-    self->in.tick++;
-    self->tick++;
-    quiesce_step(&self->controller, &self->in, &self->out);
-    record_tick(&self->record, &self->out);
-}
-
-void stream_close(stream_t *self) {
-    record_end(&self->record);
-}
+#include "stream_cases.h"
 
 int main(void) {
     static stream_t stream;

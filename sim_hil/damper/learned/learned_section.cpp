@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "anfis.h"
-#include "damper_section.h"
 #include "hysteresis_network.h"
 #include "learned_keys.h"
 #include "neuro_fuzzy_stf.h"
@@ -74,11 +73,11 @@ void refuse_temperature(TomlTable &keys) {
     }
 }
 
-std::shared_ptr<const Damper> read_sampled(TomlTable &keys, const MotionLimits &limits,
+std::shared_ptr<const Damper> read_sampled(TomlTable &keys, const LearnedContext &context,
                                            bool is_recurrent) {
     SampledNetworkParams params{};
     refuse_temperature(keys);
-    params.stroke_m = limits.stroke_m;
+    params.stroke_m = context.limits.stroke_m;
     params.sample_time_s = keys.number("sample_time_s", {1e-6, 10.0, "s"});
     params.force_scale_N = read_force_scale_N(keys);
     params.lags = rising_integers(keys, "lags", 0, kMostLag);
@@ -91,7 +90,7 @@ std::shared_ptr<const Damper> read_sampled(TomlTable &keys, const MotionLimits &
     return std::make_shared<SampledNetwork>(std::move(box), std::move(params), std::move(network));
 }
 
-std::shared_ptr<const Damper> read_anfis(TomlTable &keys, const MotionLimits &limits) {
+std::shared_ptr<const Damper> read_anfis(TomlTable &keys, const LearnedContext &context) {
     std::vector<GaussianSet> sets;
     InputBox box =
         read_inputs(keys, [&sets](TomlTable &input) { sets.push_back(read_gaussians(input)); });
@@ -103,11 +102,11 @@ std::shared_ptr<const Damper> read_anfis(TomlTable &keys, const MotionLimits &li
         }
     }
     std::vector<double> consequents_N = keys.numbers("consequents_N", rules);
-    return std::make_shared<Anfis>(std::move(box), limits.stroke_m, std::move(sets),
+    return std::make_shared<Anfis>(std::move(box), context.limits.stroke_m, std::move(sets),
                                    std::move(consequents_N));
 }
 
-std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys, const MotionLimits &limits) {
+std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys, const LearnedContext &context) {
     InputBox box = read_inputs(keys);
     std::vector<FuzzyCluster> clusters;
     for (TomlTable &table : keys.tables("rule")) {
@@ -117,13 +116,13 @@ std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys, const MotionLimits 
         keys.fail("rule", "missing; expected tables [[...rule]] with centre, width, gain_N and "
                           "offset_N");
     }
-    return std::make_shared<TsFuzzy>(std::move(box), limits.stroke_m, std::move(clusters));
+    return std::make_shared<TsFuzzy>(std::move(box), context.limits.stroke_m, std::move(clusters));
 }
 
-std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys, const MotionLimits &limits) {
+std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys, const LearnedContext &context) {
     StfParams params{};
     params.force_scale_N = read_force_scale_N(keys);
-    params.stroke_m = limits.stroke_m;
+    params.stroke_m = context.limits.stroke_m;
     params.disp_scale_m = keys.number("disp_scale_m", {1e-9, 100.0, "m"});
     params.velocity_scale_m_s = keys.number("velocity_scale_m_s", {1e-9, 1000.0, "m/s"});
     params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
@@ -138,22 +137,23 @@ std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys, const Motion
 }
 
 std::shared_ptr<const Damper> read_feed_forward_network(TomlTable &keys,
-                                                        const MotionLimits &limits) {
+                                                        const LearnedContext &context) {
     if (keys.has("lags")) {
-        return read_sampled(keys, limits, false);
+        return read_sampled(keys, context, false);
     }
     const double force_scale_N = read_force_scale_N(keys);
     InputBox box = read_inputs(keys);
     Network network = read_network(keys, box.count(), 1);
-    return std::make_shared<StaticNetwork>(std::move(box), limits.stroke_m, std::move(network),
-                                           force_scale_N);
+    return std::make_shared<StaticNetwork>(std::move(box), context.limits.stroke_m,
+                                           std::move(network), force_scale_N);
 }
 
-std::shared_ptr<const Damper> read_recurrent_network(TomlTable &keys, const MotionLimits &limits) {
-    return read_sampled(keys, limits, true);
+std::shared_ptr<const Damper> read_recurrent_network(TomlTable &keys,
+                                                     const LearnedContext &context) {
+    return read_sampled(keys, context, true);
 }
 
-std::shared_ptr<const Damper> read_support_vector(TomlTable &keys, const MotionLimits &limits) {
+std::shared_ptr<const Damper> read_support_vector(TomlTable &keys, const LearnedContext &context) {
     SupportVectorParams params{};
     params.force_scale_N = read_force_scale_N(keys);
     params.gamma = keys.number("gamma", {1e-9, 1e9, "-"});
@@ -162,16 +162,17 @@ std::shared_ptr<const Damper> read_support_vector(TomlTable &keys, const MotionL
     InputBox box = read_inputs(keys);
     params.support_vectors =
         keys.numbers("support_vectors", params.coefficients.size() * box.count());
-    return std::make_shared<SupportVector>(std::move(box), limits.stroke_m, std::move(params));
+    return std::make_shared<SupportVector>(std::move(box), context.limits.stroke_m,
+                                           std::move(params));
 }
 
 /// Null where there is none.
-std::shared_ptr<const Damper> read_base(TomlTable &keys) {
+std::shared_ptr<const Damper> read_base(TomlTable &keys, ReadDamper read_damper) {
     std::optional<TomlTable> section = keys.optional_table("base");
     if (!section) {
         return nullptr;
     }
-    std::shared_ptr<const Damper> base = read_damper_model(*section);
+    std::shared_ptr<const Damper> base = read_damper(*section);
     section->reject_unknown_keys();
     if (base->is_sampled()) {
         keys.fail("base", "a model with a sample time of its own cannot be a base");
@@ -179,10 +180,11 @@ std::shared_ptr<const Damper> read_base(TomlTable &keys) {
     return base;
 }
 
-std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys, const MotionLimits &limits) {
+std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys,
+                                                      const LearnedContext &context) {
     HysteresisNetworkParams params{};
-    params.stroke_m = limits.stroke_m;
-    params.speed_m_s = limits.speed_m_s;
+    params.stroke_m = context.limits.stroke_m;
+    params.speed_m_s = context.limits.speed_m_s;
     params.force_scale_N = read_force_scale_N(keys);
     params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
     params.field_exponent = keys.number("field_exponent", {0.1, 10.0, "-"}, 1.0);
@@ -196,7 +198,7 @@ std::shared_ptr<const Damper> read_hysteresis_network(TomlTable &keys, const Mot
     params.elastic_times_s = optional_positive_numbers(keys, "elastic_times_s");
     params.chain_times_s = optional_positive_numbers(keys, "chain_times_s");
     params.stop_reaches_m = optional_positive_numbers(keys, "stop_reaches_m");
-    params.base = read_base(keys);
+    params.base = read_base(keys, context.read_damper);
     const std::size_t features = feature_count(params);
     params.means = keys.numbers("feature_means", features);
     params.scales = positive_numbers(keys, "feature_scales", features);

@@ -17,10 +17,19 @@ struct MotionLimits {
     double speed_m_s;
 };
 
+/// Any damper, by the `model` and keys of a table: what a learned model may stand on.
+using ReadDamper = std::shared_ptr<const Damper> (*)(TomlTable &section);
+
+/// What a model is told beside its keys.
+struct LearnedContext {
+    MotionLimits limits;
+    ReadDamper read_damper;
+};
+
 struct LearnedModel {
     const char *name;
     /// keys: [parameters]. Throws InputError naming the key that is wrong.
-    std::shared_ptr<const Damper> (*read)(TomlTable &keys, const MotionLimits &limits);
+    std::shared_ptr<const Damper> (*read)(TomlTable &keys, const LearnedContext &context);
 };
 
 /// Sorted by name.
