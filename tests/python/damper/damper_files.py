@@ -5,7 +5,8 @@ import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from quiesce.damper.data.options import Conditioned, add_data_options, records_of
+from quiesce.cli.identify.data_options import add_data_options, records_of
+from quiesce.damper.data.records import Conditioned
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -19,10 +19,11 @@ from damper_files import (
     text_of,
 )
 from quiesce.base.errors import UsageError
+from quiesce.cli.identify.data_options import add_data_options
 from quiesce.damper.data.condition import odd_samples
 from quiesce.damper.data.motion import derivatives, free_end_filter, integrated, low_passed
-from quiesce.damper.data.options import Conditioned, add_data_options, records_of_set
 from quiesce.damper.data.record import Record
+from quiesce.damper.data.records import Conditioned, records_of_set
 from quiesce.damper.data.split import (
     Segment,
     Split,

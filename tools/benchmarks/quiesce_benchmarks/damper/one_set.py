@@ -37,7 +37,7 @@ HEADINGS = {
 
 def records_of_test(folder: Path) -> list[Record]:
     """The five records, by rising current."""
-    from quiesce.damper.data.options import records_of_set
+    from quiesce.damper.data.records import records_of_set
 
     from quiesce_benchmarks.damper.real import rules
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from quiesce.base.paths import measurements, root
 from quiesce.base.table import format_table
-from quiesce.damper.data.options import records_of_set
+from quiesce.damper.data.records import records_of_set
 from quiesce.damper.data.split import Segment, split_records
 from quiesce.damper.fit_model import simulate_values
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted

@@ -33,6 +33,11 @@ def measurements(kind: str) -> Path:
     return root().parent / "shared/data" / kind
 
 
+def default_plant() -> Path:
+    """The rig that ships: the one place of the package that names it."""
+    return root() / "sim_hil/data/plants/squeeze_2012.toml"
+
+
 def scenario_folder() -> Path:
     return root() / "sim_hil/data/scenarios"
 

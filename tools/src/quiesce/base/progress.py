@@ -5,6 +5,11 @@ import threading
 import time
 
 
+def say(text: str) -> None:
+    """A sentence of progress."""
+    print(text, file=sys.stderr, flush=True)
+
+
 class Progress:
     """Plain lines without control characters, the same on a terminal and in a log."""
 

@@ -3,6 +3,7 @@
 import html
 from collections.abc import Sequence
 
+from quiesce.base.paths import default_plant, root
 from quiesce.engine import laws
 from quiesce.hil.metrics import Beside, Result, Row
 from quiesce.hil.plots import (
@@ -206,6 +207,6 @@ paper's printed table has the sign that makes 5 Hz worse on this plant.</p>
 <p>The same figures for a script: <code>metrics.json</code> beside this page;
 <code>details.json</code> has the search over constant currents and the UART rate. Scenarios:
 <code>sim_hil/data/scenarios/</code>, the plant:
-<code>sim_hil/data/plants/squeeze_2012.toml</code>, published figures and bound with their sources:
+<code>{default_plant().relative_to(root())}</code>, published figures and bound with their sources:
 <code>sim_hil/data/scenarios/reference_squeeze.toml</code>.</p>""",
     )

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import root, shown
+from quiesce.base.paths import default_plant, shown
 from quiesce.base.progress import Progress
 from quiesce.optimum.bound import INTERVALS, STARTS, bound
 from quiesce.optimum.constant import best_constant
@@ -195,9 +195,7 @@ def robust_cases(plant: Path) -> list[Case]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=Path, metavar="OUT.json")
-    parser.add_argument(
-        "--plant", type=Path, default=root() / "sim_hil/data/plants/squeeze_2012.toml"
-    )
+    parser.add_argument("--plant", type=Path, default=default_plant())
     parser.add_argument("--robustness", action="store_true", help="54 plants at 4 frequencies")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     args = parser.parse_args()

@@ -1,13 +1,13 @@
 """A plant from a recording: it is read, fitted, judged; plant file and report."""
 
 import json
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
-from quiesce.base.paths import root
+from quiesce.base.paths import default_plant
+from quiesce.base.progress import say
 from quiesce.plant.library import Plant
 from quiesce.plant_id.fit import DwellModel, Fit, best_damper, fit_all, modes_of, start_values
 from quiesce.plant_id.modes import SweepModel, find_modes
@@ -17,7 +17,6 @@ from quiesce.plant_id.recording import SweepRecording, has_steps, read_sweep_rec
 from quiesce.plant_id.report import fit_warnings, head_lines, key_notes, rows, text_report
 from quiesce.plant_id.simulate import GRAVITY_m_s2
 
-DEFAULT_BASE = "sim_hil/data/plants/squeeze_2012.toml"
 PLANT_NAME = "plant.toml"
 
 
@@ -32,10 +31,6 @@ class FoundPlant:
     recording: SweepRecording
     warnings: list[str]
     text: str
-
-
-def say(message: str) -> None:
-    print(message, file=sys.stderr, flush=True)
 
 
 def fitted(
@@ -91,7 +86,7 @@ def find_plant(
     geometry). mode_count: modes in the swept band, found where None. UsageError
     for a recording that cannot be used; nothing is written then.
     """
-    base_file = base_file or root() / DEFAULT_BASE
+    base_file = base_file or default_plant()
     Plant(base_file)
     recording = read_sweep_recording(recording_file)
     largest_A = float(recording.current_A.max())

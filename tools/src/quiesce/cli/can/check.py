@@ -8,9 +8,9 @@ from typing import Any
 
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.table import format_table
-from quiesce.can.buses import add_bus_options, bus_of
 from quiesce.can.database import CYCLIC
-from quiesce.can.options import check_seconds
+from quiesce.cli.can.bus_options import add_bus_options, bus_of
+from quiesce.cli.can.options import check_seconds
 
 EPILOG = """examples:
   quiesce can check --bus socketcan:can0

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import EXIT_FAILED, UsageError
-from quiesce.can.options import add_database_option, add_only_option, database_of, ids_of
+from quiesce.cli.can.options import add_database_option, add_only_option, database_of, ids_of
 
 EPILOG = """examples:
   quiesce can decode drive.asc

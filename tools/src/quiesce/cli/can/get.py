@@ -5,7 +5,7 @@ import json
 
 from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
-from quiesce.can.buses import add_bus_options, bus_of
+from quiesce.cli.can.bus_options import add_bus_options, bus_of
 from quiesce.engine.params import allowed, default
 
 EPILOG = """examples:

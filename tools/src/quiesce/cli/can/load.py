@@ -6,7 +6,7 @@ from typing import Any
 
 from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
-from quiesce.can.options import add_database_option, database_of
+from quiesce.cli.can.options import add_database_option, database_of
 
 EPILOG = """examples:
   quiesce can load

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import EXIT_FAILED, UsageError
-from quiesce.can.buses import add_bus_options, bus_of
 from quiesce.can.database import FIRST_LOCKSTEP_ID
-from quiesce.can.options import add_database_option, add_only_option, database_of, ids_of
+from quiesce.cli.can.bus_options import add_bus_options, bus_of
+from quiesce.cli.can.options import add_database_option, add_only_option, database_of, ids_of
 
 EPILOG = """examples:
   quiesce can replay run.blf --bus udp_multicast:239.74.163.2

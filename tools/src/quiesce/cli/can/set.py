@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from quiesce.base.errors import BenchFailure
-from quiesce.can.buses import add_bus_options, bus_of
+from quiesce.cli.can.bus_options import add_bus_options, bus_of
 
 EPILOG = """examples:
   quiesce can set law=phase --bus socketcan:can0

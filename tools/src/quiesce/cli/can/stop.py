@@ -6,8 +6,8 @@ import time
 from typing import Any
 
 from quiesce.base.errors import EXIT_FAILED, UsageError
-from quiesce.can.buses import add_bus_options, bus_of
-from quiesce.can.options import check_seconds
+from quiesce.cli.can.bus_options import add_bus_options, bus_of
+from quiesce.cli.can.options import check_seconds
 
 EPILOG = """examples:
   quiesce can stop --bus socketcan:can0

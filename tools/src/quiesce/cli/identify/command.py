@@ -14,7 +14,7 @@ from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import build_folder, shown
 from quiesce.cli.identify import compare, example, export, inverse
 from quiesce.cli.identify import plan as cli_plan
-from quiesce.damper.data.options import add_data_options
+from quiesce.cli.identify.data_options import add_data_options
 
 NAME = "identify"
 # Each has NAME, HELP, add_options(parser) and run(args).
@@ -170,8 +170,8 @@ def check_numbers(args: argparse.Namespace) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.cli.identify.data_options import records_of
     from quiesce.damper.candidates import names_of
-    from quiesce.damper.data.options import records_of
     from quiesce.damper.data.split import split_records
     from quiesce.damper.store import Store, stamp_of
     from quiesce.damper.task import Plan

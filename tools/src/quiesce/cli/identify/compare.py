@@ -6,8 +6,8 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.cli.identify.data_options import add_data_options
 from quiesce.cli.identify.help import fill
-from quiesce.damper.data.options import add_data_options
 
 NAME = "compare"
 HELP = "score a model file on new data"
@@ -31,8 +31,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.cli.identify.data_options import records_of
     from quiesce.damper.compare import compare
-    from quiesce.damper.data.options import records_of
     from quiesce.damper.data.split import split_records
     from quiesce.damper.report.comparison import numbers_of, text_of, write_page
     from quiesce.damper.report.runs import runs_of

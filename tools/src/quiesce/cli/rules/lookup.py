@@ -8,11 +8,11 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz, whole
 from quiesce.cli.rules.optimize import stopping_pool
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
 from quiesce.rules.formats.files import write_text
-from quiesce.rules.optimize.arguments import add_settle, drives_V, freqs_Hz, whole
 from quiesce.rules.optimize.evaluate import ClosedLoop, driver_max_A
 from quiesce.rules.optimize.lookup import Sweep, lookup_json, lookup_table, sweep
 from quiesce.rules.optimize.result import rule_table, set_lines

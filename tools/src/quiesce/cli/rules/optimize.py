@@ -12,13 +12,14 @@ from pathlib import Path
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import build_folder, shown
+from quiesce.base.progress import say
+from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz, whole
 from quiesce.engine import scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
 from quiesce.engine.scenarios import Scenario
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.optimize import state as optimize_state
-from quiesce.rules.optimize.arguments import add_settle, drives_V, freqs_Hz, whole
 from quiesce.rules.optimize.evaluate import driver_max_A, require_bench_option
 from quiesce.rules.optimize.ga import SELECTIONS
 from quiesce.rules.optimize.genes import RULES, SETS, TUNABLE
@@ -28,7 +29,7 @@ from quiesce.rules.optimize.report import headline, write_report
 from quiesce.rules.optimize.result import Found, result_json, text_sections
 from quiesce.rules.optimize.run import Limits
 from quiesce.rules.optimize.scenarios import plant_file, steady_scenarios
-from quiesce.rules.optimize.session import Session, Task, say, start_from_recipe
+from quiesce.rules.optimize.session import Session, Task, start_from_recipe
 from quiesce.rules.optimize.state import FILE_NAME, unfinished
 
 STEADY = ("sine_5Hz", "sine_10Hz", "sine_15Hz", "sine_20Hz")

@@ -4,18 +4,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from quiesce.base.errors import UsageError, one_line
-from quiesce.base.paths import root
+from quiesce.base.paths import default_plant
 from quiesce.engine import scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.scenarios import SCHEMA, Scenario
 
-DEFAULT_PLANT = "sim_hil/data/plants/squeeze_2012.toml"
 SETTLE_s, MAX_SETTLE_s, MEASURE_s = 6, 600, 2
 NOISE_mg = 0.5
 
 
 def plant_file(name: str | None) -> Path:
-    return Path(name).resolve() if name else root() / DEFAULT_PLANT
+    return Path(name).resolve() if name else default_plant()
 
 
 def toml_text(text: object) -> str:

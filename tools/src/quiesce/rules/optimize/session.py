@@ -1,7 +1,6 @@
 """One search from its options to its result: what `quiesce rules optimize` does."""
 
 import hashlib
-import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -10,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.progress import say
 from quiesce.engine.bench import Bench
 from quiesce.engine.scenarios import Scenario
 from quiesce.rules.model import RuleBase
@@ -47,10 +47,6 @@ class Task:
     limits: Limits
     params: Sequence[str]  # NAME=VALUE, for every run
     command: str
-
-
-def say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
 
 
 def start_from_recipe(
