@@ -1,5 +1,6 @@
 """The rules of the sources hold, and the checker would notice if they did not."""
 
+import importlib.util
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ from house.c_rules import call_graph
 from house.c_sources import Tree
 from house.circles import circles_of
 from house.python_sources import Package
-from house.rooms import stale_rooms, unknown_rooms
+from house.rooms import stale_rooms, table, unknown_rooms
 
 # Where a violation is planted, its line, and what the checker must say.
 PLANTED_IN_C = [
@@ -177,6 +178,17 @@ def test_checker_catches_a_folder_that_no_question_leads_to(tmp_path, folder) ->
 def test_every_listed_folder_is_there(tmp_path) -> None:
     assert list(stale_rooms(ROOT)) == []
     assert "rooms.toml lists firmware/base, which is not there" in stale_rooms(tmp_path)
+
+
+def test_page_shows_the_table_of_rooms(monkeypatch) -> None:
+    path = ROOT / "tests/gen/rooms.py"
+    spec = importlib.util.spec_from_file_location("rooms_page", path)
+    page = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(page)
+    shown = page.PAGE.read_text()
+    assert page.filled(shown) == shown
+    monkeypatch.setitem(table()["python"], "hil", ["cli"])
+    assert "| `hil` | `cli` |" in page.filled(shown)
 
 
 def test_checker_ignores_comments_and_strings(tree) -> None:

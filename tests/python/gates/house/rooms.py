@@ -20,7 +20,8 @@ def table() -> dict:
 
 @cache
 def listed_folders() -> tuple[str, ...]:
-    return tuple(folder for folders in table()["questions"].values() for folder in folders)
+    groups = [*table()["questions"], table()["beside"]]
+    return tuple(folder for group in groups for folder in group["folders"])
 
 
 def is_made(name: str) -> bool:
@@ -52,7 +53,7 @@ def unknown_rooms(root: Path) -> Iterator[str]:
 
 def stale_rooms(root: Path) -> Iterator[str]:
     """What the table lists and the tree does not have."""
-    optional = ("examples", "docs/tutorial")
+    optional = ("docs/tutorial", "firmware/app", "hal/sim")
     for folder in listed_folders():
         if folder not in optional and not (root / folder).is_dir():
             yield f"rooms.toml lists {folder}, which is not there"
