@@ -1,13 +1,14 @@
 """The virtual machine's boots, one a session each; build_images has made what they need.
 
-QUIESCE_BUILD names another folder with the builds.
+QUIESCE_BUILD names another folder with the builds; QUIESCE_VM_CPU_SHARE=0.25 holds the emulator to
+a quarter of a core.
 """
 
 from collections.abc import Iterator
 
 import pytest
 from quiesce.base.errors import BenchFailure, UsageError
-from quiesce_vm import boots
+from quiesce_vm import boots, cpu_share
 
 
 def told(run, *arguments):
@@ -19,8 +20,14 @@ def told(run, *arguments):
     pytest.fail(line, pytrace=False)
 
 
+def pytest_terminal_summary(terminalreporter) -> None:
+    if cpu_share.total.wall_s:
+        terminalreporter.write_line(cpu_share.total.line())
+
+
 @pytest.fixture(scope="session")
 def vm() -> Iterator[boots.Vm]:
+    told(cpu_share.wanted)
     parts = told(boots.Parts.built)
     with boots.opened(parts) as opened:
         yield opened

@@ -17,8 +17,7 @@ ARM64_PACKAGES+=(busybox-static can-utils gpiod rt-tests libnuma1
     iproute2 libbpf1 libelf1 libmnl0 libbsd0 libcap2 libmd0 zlib1g)
 VM_FLAVOUR=rt-arm64
 VM_KERNEL_PARTS=('./boot/vmlinuz-*' './lib/modules/*/kernel/net/can/*'
-    './lib/modules/*/kernel/drivers/net/can/*' './lib/modules/*/kernel/drivers/virtio/*'
-    './lib/modules/*/kernel/drivers/char/*' './lib/modules/*/kernel/drivers/watchdog/*'
+    './lib/modules/*/kernel/drivers/net/can/*' './lib/modules/*/kernel/drivers/watchdog/*'
     './lib/modules/*/kernel/fs/configfs/*')
 
 # gpio-sim is in no Debian kernel: it is built from Debian's own sources (GPL-2.0), out of tree. The

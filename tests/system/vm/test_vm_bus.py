@@ -1,6 +1,8 @@
 """First boot: the guest's slcan0 leads to the host. Lock-step against the host's controller, frames
 in bulk, and the controller at work with the host as sensor node and operator."""
 
+import re
+
 from quiesce.can.database import load
 from quiesce_vm.boots import ECHOES, BusRun
 from quiesce_vm.measure import frames_lost
@@ -58,3 +60,10 @@ def test_emergency_stop_from_outside_reaches_bus_and_lines(bus: BusRun) -> None:
 def test_controller_leaves_in_order(bus: BusRun) -> None:
     assert bus.results["bus"]["code"] == 0
     assert "libgpiod 1.6" in bus.results["bus"]["said"]
+
+
+def test_host_speed_costs_neither_tick_nor_frame(bus: BusRun) -> None:
+    """The guest's time stands still while its line is full: nothing is late or shed in it."""
+    assert re.search(r"\b[1-9]\d* ticks, 0 lost\b", bus.results["bus"]["said"])
+    for counts in bus.results["after_control"]["link"][0]["stats64"].values():
+        assert counts["dropped"] == counts["errors"] == 0

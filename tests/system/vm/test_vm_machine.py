@@ -16,16 +16,17 @@ ROOT = Path(__file__).resolve().parents[3]
 USER = """
 import sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[1])
+sys.path += sys.argv[3:]
 from quiesce_vm.machine import Boot, Machine
-with Machine(Boot(Path(sys.argv[2]), Path(sys.argv[3]), "timing.sh", True)) as machine:
+with Machine(Boot(Path(sys.argv[1]), Path(sys.argv[2]), "timing.sh")) as machine:
     print(machine.process_id, flush=True)
     machine.wait_end()
 """
 
 
 def test_emulator_dies_with_its_user(vm: Vm) -> None:
-    paths = (ROOT / "tools/src", vm.parts.vmlinuz, vm.initramfs)
+    folders = (ROOT / "tools/src", ROOT / "tests/system/vm")
+    paths = (vm.parts.vmlinuz, vm.initramfs, *folders)
     command = [sys.executable, "-c", USER, *map(str, paths)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as user:
         assert user.stdout is not None
@@ -37,7 +38,7 @@ def test_emulator_dies_with_its_user(vm: Vm) -> None:
 
 
 def test_silent_guest_is_told_in_one_line(vm: Vm) -> None:
-    with vm.boot("timing.sh", is_deterministic=True) as machine:
+    with vm.boot("timing.sh") as machine:
         with pytest.raises(BenchFailure) as failure:
             machine.wait_line("NO SUCH LINE", timeout_s=0.01)
         assert "said nothing of the kind" in str(failure.value)
@@ -47,7 +48,7 @@ def test_silent_guest_is_told_in_one_line(vm: Vm) -> None:
 
 
 def test_failing_script_is_told_with_its_last_words(vm: Vm) -> None:
-    with vm.boot("no_such_script.sh", is_deterministic=True) as machine:
+    with vm.boot("no_such_script.sh") as machine:
         with pytest.raises(BenchFailure, match="the guest ended, without a line 'READY'"):
             machine.wait_line("READY")
         with pytest.raises(BenchFailure, match="script ended with 2"):

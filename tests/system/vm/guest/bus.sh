@@ -13,7 +13,7 @@ until_host_says() {
     candump -n 1 slcan0,7F0:7FF >/dev/null
 }
 
-slcand -o -c -s6 /dev/hvc0 slcan0
+slcand -o -c -s6 /dev/ttyAMA0 slcan0
 await test -d /sys/class/net/slcan0
 iproute2 link set slcan0 txqueuelen 1000 up
 config /run/bus.toml 's/vcan0/slcan0/' 's/"ENABLE"/"gpiochip0:1"/' 's/"FAULT"/"gpiochip0:2"/' \
@@ -35,7 +35,7 @@ link before_echo
 vm_echo slcan0 256 "$ECHOES" || exit 1
 link after_echo
 
-# The controller at work, at half its default rate: the emulated serial line is slow.
+# The controller at work, at half its default rate.
 start /run/bus.toml
 until_host_says
 stop

@@ -18,7 +18,8 @@ from quiesce.base.paths import build_folder, root
 from quiesce.engine.bench import require_file
 
 from quiesce_vm.initramfs import Parts, build
-from quiesce_vm.machine import TIMEOUT_S, Boot, Machine
+from quiesce_vm.limits import HANG_S
+from quiesce_vm.machine import Boot, Machine
 from quiesce_vm.peer import END_ID, Peer
 from quiesce_vm.qmp import Qtest
 from quiesce_vm.results import results_of
@@ -40,11 +41,10 @@ class Vm:
     def __init__(self, parts: Parts, folder: Path) -> None:
         self.parts = parts
         self.initramfs = build(parts, folder / "initramfs.cpio")
+        self.serial_line = folder / "line"
 
-    def boot(self, script: str, *, is_deterministic: bool, has_serial_can: bool = False) -> Machine:
-        return Machine(
-            Boot(self.parts.vmlinuz, self.initramfs, script, is_deterministic, has_serial_can)
-        )
+    def boot(self, script: str, serial_line: Path | None = None) -> Machine:
+        return Machine(Boot(self.parts.vmlinuz, self.initramfs, script, serial_line))
 
 
 @contextmanager
@@ -79,12 +79,11 @@ class BusRun:
 
 
 def run_bus(vm: Vm) -> BusRun:
-    with vm.boot("bus.sh", is_deterministic=False, has_serial_can=True) as machine:
-        port = machine.serial_port()
+    with vm.boot("bus.sh", vm.serial_line) as machine:
         gpio = machine.gpio()  # sees changes from now on
         machine.wait_line("LOCKSTEP-READY")
-        lockstep = compare(port)
-        peer = Peer(port)
+        lockstep = compare(vm.serial_line)
+        peer = Peer(vm.serial_line)
         try:
             return _drive(machine, gpio, peer, lockstep)
         except BenchFailure as error:
@@ -93,14 +92,17 @@ def run_bus(vm: Vm) -> BusRun:
             peer.close()
 
 
-def compare(port: int) -> dict[str, Any]:
+def compare(line: Path) -> dict[str, Any]:
     """The bench's lock-step comparison of the guest's controller with the host's."""
     bench = require_file(build_folder() / "host/sim_hil/quiesce_bench", "the bench")
     command = [str(bench), "compare", "--seeds", str(LOCKSTEP_SEED)]
     command += ["--scenario", str(root() / "tests/system/vm/lockstep.toml"), "--law", "phase"]
-    command += ["--target", "linux", "--can", f"slcan:tcp:127.0.0.1:{port}"]
+    command += ["--target", "linux", "--can", f"slcan:unix:{line}"]
     command += ["--telemetry-every", "10"]
-    result = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S)
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
+    except subprocess.TimeoutExpired:
+        raise BenchFailure(f"quiesce_bench compare: not done after {HANG_S:.0f} s")
     if result.returncode != 0:
         raise BenchFailure(f"quiesce_bench compare: {one_line(result.stderr)}")
     return json.loads(result.stdout)
@@ -116,6 +118,7 @@ def _drive(machine: Machine, gpio: Qtest, peer: Peer, lockstep: dict[str, Any]) 
     estop = _press(gpio, peer)
     peer.until(lambda: not peer.missing(), "every message of the controller")
     peer.send(END_ID)
+    peer.listen_to_the_end()
     lines = machine.wait_end()
     return BusRun(
         results=results_of(lines),
@@ -185,7 +188,7 @@ class TimingRun:
 
 
 def run_timing(vm: Vm) -> TimingRun:
-    with vm.boot("timing.sh", is_deterministic=True) as machine:
+    with vm.boot("timing.sh") as machine:
         lines = machine.wait_end()
         try:
             results = results_of(lines)
@@ -204,7 +207,7 @@ class FaultRun:
 
 
 def run_faults(vm: Vm) -> FaultRun:
-    with vm.boot("faults.sh", is_deterministic=True) as machine:
+    with vm.boot("faults.sh") as machine:
         qmp = machine.qmp  # before the end: it tells how the machine stopped
         lines = machine.wait_end()
         try:

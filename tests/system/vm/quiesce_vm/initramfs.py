@@ -13,7 +13,7 @@ from quiesce_vm.libraries import closure
 ELF_AARCH64 = b"\xb7\x00"
 MODULES = [
     *("can", "can_raw", "can_dev", "vcan", "slcan", "configfs"),
-    *("virtio_pci", "virtio_console", "gpio_sim"),
+    "gpio_sim",
 ]
 LATER_MODULES = ["softdog"]  # a script loads them when it wants them
 # Unit tests that want a kernel with CAN and gpio-sim.

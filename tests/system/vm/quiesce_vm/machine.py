@@ -2,7 +2,6 @@
 
 import ctypes
 import os
-import re
 import signal
 import socket
 import subprocess
@@ -13,26 +12,23 @@ from typing import Self
 
 from quiesce.base.errors import BenchFailure, UsageError
 
+from quiesce_vm import cpu_share
+from quiesce_vm.limits import HANG_S
 from quiesce_vm.qmp import Qmp, Qtest
 
 EMULATOR = "qemu-system-aarch64"
 TAIL_LINES = 15
-# Wall time only bounds a hung guest: no result depends on it.
-TIMEOUT_S = 300.0
 _PR_SET_PDEATHSIG = 1
 
 
 @dataclass(frozen=True)
 class Boot:
-    """What to boot, and how its time runs."""
+    """What to boot."""
 
     kernel: Path
     initramfs: Path
     script: str  # in the guest's /vm
-    # Virtual time that follows the instructions, 2 ns each, and skips idleness: the same run each
-    # time. Without: the host's time.
-    is_deterministic: bool
-    has_serial_can: bool = False  # a virtio console that the guest makes slcan0 from
+    serial_line: Path | None = None  # Unix socket that the guest's ttyAMA0 leads to
     arguments: list[str] = field(default_factory=list)
 
 
@@ -44,12 +40,16 @@ class Machine:
         self._grown = threading.Condition()
         self._is_over = False
         self._qmp: Qmp | None = None
+        share = cpu_share.wanted()
         ours, theirs = [], []
         for _ in range(2):
             pair = socket.socketpair()
             ours.append(pair[0])
             theirs.append(pair[1])
         self._process = _start(_command(boot, *(end.fileno() for end in theirs)), theirs)
+        self._holder: cpu_share.Holder | None = None
+        if share is not None:
+            self._holder = cpu_share.Holder(self._process.pid, share, cpu_share.total)
         for end in theirs:
             end.close()
         self._qmp_socket, self._qtest_socket = ours
@@ -76,16 +76,7 @@ class Machine:
         """The machine's GPIO chip (PL061), from outside."""
         return Qtest(self._qtest_socket, self.qmp.device("pl061"))
 
-    def serial_port(self) -> int:
-        """TCP port, at 127.0.0.1, of the guest's virtio console."""
-        for chardev in self.qmp.execute("query-chardev"):
-            if chardev["label"] == "serial":
-                match = re.search(r"127\.0\.0\.1:(\d+)", chardev["filename"])
-                if match:
-                    return int(match[1])
-        raise BenchFailure("QEMU does not tell the port of the guest's serial line")
-
-    def wait_line(self, start: str, timeout_s: float = TIMEOUT_S) -> str:
+    def wait_line(self, start: str, timeout_s: float = HANG_S) -> str:
         """First console line that starts so, past or to come. BenchFailure where there is none."""
 
         def found() -> str | None:
@@ -100,7 +91,7 @@ class Machine:
             raise BenchFailure(f"the guest {why}, without a line {start!r}; {self.tail()}")
         return line
 
-    def wait_end(self, timeout_s: float = TIMEOUT_S) -> list[str]:
+    def wait_end(self, timeout_s: float = HANG_S) -> list[str]:
         """All console lines, after the guest has switched itself off."""
         with self._grown:
             if not self._grown.wait_for(lambda: self._is_over, timeout_s):
@@ -115,6 +106,8 @@ class Machine:
         return "end of its console: " + (" | ".join(lines) if lines else "(it printed nothing)")
 
     def close(self) -> None:
+        if self._holder is not None:
+            self._holder.release()
         self._process.kill()
         self._process.wait()
         self._reader.join()
@@ -160,7 +153,11 @@ def _command(boot: Boot, qmp_fd: int, qtest_fd: int) -> list[str]:
     # KVM is never asked for: where it cannot run this guest it does not say so, it hangs.
     command = [EMULATOR, "-M", "virt", "-cpu", "cortex-a53", "-smp", "1", "-m", "256"]
     command += ["-accel", "tcg", "-display", "none", "-monitor", "none", "-no-reboot"]
-    command += ["-nodefaults", "-nic", "none", "-serial", "stdio"]
+    # Virtual time that follows the instructions, 2 ns each, and skips idleness: how fast this
+    # machine is, and what else it does, does not show in it.
+    command += ["-icount", "shift=1,sleep=off", "-seed", "1"]
+    command += ["-rtc", "clock=vm,base=2026-01-01T00:00:00"]
+    command += ["-nodefaults", "-nic", "none", *_serial(boot)]
     command += ["-chardev", f"socket,id=qmp,fd={qmp_fd}", "-mon", "chardev=qmp,mode=control"]
     command += [
         "-chardev",
@@ -172,13 +169,15 @@ def _command(boot: Boot, qmp_fd: int, qtest_fd: int) -> list[str]:
     ]
     command += ["-kernel", str(boot.kernel), "-initrd", str(boot.initramfs)]
     # loglevel: a kernel message never tears a line of ours apart; a panic is still told.
-    kernel = f"console=ttyAMA0 loglevel=1 panic=-1 vm={boot.script}"
-    if boot.is_deterministic:
-        command += ["-icount", "shift=1,sleep=off", "-seed", "1"]
-        command += ["-rtc", "clock=vm,base=2026-01-01T00:00:00"]
-        kernel += " nokaslr"
-    if boot.has_serial_can:
-        command += ["-device", "virtio-serial-pci"]
-        command += ["-chardev", "socket,id=serial,host=127.0.0.1,port=0,server=on,wait=off"]
-        command += ["-device", "virtconsole,chardev=serial"]
+    console = "ttyAMA0" if boot.serial_line is None else "ttyS0"
+    kernel = f"console={console} loglevel=1 panic=-1 nokaslr vm={boot.script}"
     return [*command, "-append", kernel, *boot.arguments]
+
+
+def _serial(boot: Boot) -> list[str]:
+    """The console; where the board's own UART is wanted for CAN, on a UART of PCI."""
+    if boot.serial_line is None:
+        return ["-serial", "stdio"]
+    line = f"socket,id=line,path={boot.serial_line},server=on,wait=off"
+    options = ["-chardev", line, "-serial", "chardev:line"]
+    return [*options, "-chardev", "stdio,id=console", "-device", "pci-serial,chardev=console"]

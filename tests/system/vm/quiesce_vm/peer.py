@@ -2,33 +2,31 @@
 decodes everything with the shipped DBC. Paced by the controller's own frames, never by a clock."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import BenchFailure
 from quiesce.can.database import Database, load
 from quiesce.can.e2e import ALIVE_PERIOD, JUMPED, OK, alive_of, protect
-from quiesce.can.link import close_line
 from quiesce.can.traffic import Traffic
+
+from quiesce_vm.limits import HANG_S
+from quiesce_vm.serial_line import SerialLine
 
 END_ID = 0x7F0  # ends a step of the guest's script
 ECHO_ID = 0x100  # comes back under the next id
 CREDIT = 8  # frames under way at the most
-SILENCE_S = 60.0
 COMMAND_EVERY = 10  # demand frames
 ATTEMPTS, ATTEMPT_FRAMES = 5, 1000  # of a request; demand frames until it is repeated
 MOST_FRAMES = 50_000  # of the controller, until a condition must have come true
 
 
 class Peer:
-    """port: where the guest's serial line listens at 127.0.0.1."""
+    """path: the Unix socket of the guest's serial line."""
 
-    def __init__(self, port: int) -> None:
-        from quiesce.can.python_can import can
-        from quiesce.can.slcan import SlcanBus
-
-        self._frame_class = can.Message
-        self._bus: Any = SlcanBus(f"socket://127.0.0.1:{port}")
+    def __init__(self, path: Path) -> None:
         self.database: Database = load()
+        self._line = SerialLine(path)
         self.traffic = Traffic(self.database)
         self.refused: list[str] = []  # frames that the DBC cannot explain
         self.freeze: dict[int, dict[str, Any]] = {}  # pages of the freeze frame, as they came last
@@ -37,18 +35,20 @@ class Peer:
         self.demands = 0  # demand frames that came
 
     def close(self) -> None:
-        try:
-            self._bus.shutdown()
-        except Exception:  # it says goodbye first, and the machine may be gone
-            close_line(self._bus)
+        self._line.close()
 
     @property
     def malformed(self) -> int:
         """Lines that were no frames."""
-        return int(self._bus.malformed)
+        return self._line.malformed
 
     def send(self, frame_id: int, data: bytes = b"") -> None:
-        self._bus.send(self._frame_class(arbitration_id=frame_id, data=data, is_extended_id=False))
+        self._line.send(frame_id, data)
+
+    def listen_to_the_end(self) -> None:
+        """Takes what still comes: a guest whose line is full stands still."""
+        while self._line.receive(HANG_S) is not None:
+            pass
 
     def send_message(self, name: str, **signals: int) -> int:
         """Encodes and protects a message. Returns its alive counter."""
@@ -68,7 +68,7 @@ class Peer:
             while sent < min(frames, number + CREDIT):
                 self.send(ECHO_ID, sent.to_bytes(4, "little") + b"\x5a\xa5\x00\xff")
                 sent += 1
-            frame = self._bus.recv(SILENCE_S)
+            frame = self._line.receive(HANG_S)
             if frame is None:
                 return wrong + frames - number
             expected = number.to_bytes(4, "little") + b"\x5a\xa5\x00\xff"
@@ -85,9 +85,9 @@ class Peer:
 
     def step(self) -> Any:
         """Takes one frame, answers it as its parts demand, returns it."""
-        frame = self._bus.recv(SILENCE_S)
+        frame = self._line.receive(HANG_S)
         if frame is None:
-            raise BenchFailure(f"the guest's bus is silent for {SILENCE_S:.0f} s; {self.seen()}")
+            raise BenchFailure(f"the guest's bus is silent for {HANG_S:.0f} s; {self.seen()}")
         verdict = self.traffic.take(frame)
         if verdict in (OK, JUMPED):
             self._decode(frame)

@@ -12,7 +12,7 @@ from typing import Any
 
 from quiesce.base.errors import BenchFailure
 
-TIMEOUT_S = 60.0
+from quiesce_vm.limits import HANG_S
 
 
 class Qmp:
@@ -20,7 +20,7 @@ class Qmp:
 
     def __init__(self, connection: socket.socket) -> None:
         self._socket = connection
-        self._socket.settimeout(TIMEOUT_S)
+        self._socket.settimeout(HANG_S)
         self._lines = connection.makefile("r", encoding="utf-8", errors="replace")
         self._read()  # the greeting
         self.execute("qmp_capabilities")
@@ -73,7 +73,7 @@ class Qtest:
         self._socket = connection
         self._lines = connection.makefile("r", encoding="utf-8", errors="replace")
         self._levels: dict[int, bool] = {}
-        self._changed = threading.Condition()
+        self._changed = threading.Lock()
         threading.Thread(target=self._read, daemon=True).start()
         _send(self._socket, f"irq_intercept_out {device}\n")
 
@@ -86,12 +86,6 @@ class Qtest:
         with self._changed:
             return self._levels.get(line)
 
-    def wait_output(self, line: int, level: bool) -> None:
-        """Waits for the level. BenchFailure where it does not come."""
-        with self._changed:
-            if not self._changed.wait_for(lambda: self._levels.get(line) == level, TIMEOUT_S):
-                raise BenchFailure(f"output line {line} did not become {int(level)}")
-
     def _read(self) -> None:
         try:
             for text in self._lines:
@@ -99,7 +93,6 @@ class Qtest:
                 if change is not None:
                     with self._changed:
                         self._levels[change[0]] = change[1]
-                        self._changed.notify_all()
         except (OSError, ValueError):  # closed
             pass
 
