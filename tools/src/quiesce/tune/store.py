@@ -14,23 +14,24 @@ from quiesce.base.paths import shown
 SCHEMA = "quiesce-tune"
 VERSION = 1
 FILE_NAME = "work.json"
+PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def bound_method() -> str:
     """Changes where the code does that finds bounds: results of two are not mixed."""
-    return _code("bound", "descent", "goal", "tune_work")
+    return _code("optimum.bound", "optimum.descent", "optimum.goal", "tune.work")
 
 
 @cache
 def pulse_method() -> str:
     """The same for pulses."""
-    return _code("pulse", "setting", "tables")
+    return _code("tune.pulse", "tune.setting", "tune.tables")
 
 
 def _code(*names: str) -> str:
     digest = hashlib.sha256()
     for name in names:
-        digest.update((Path(__file__).parent / f"{name}.py").read_bytes())
+        digest.update((PACKAGE / f"{name.replace('.', '/')}.py").read_bytes())
     return digest.hexdigest()[:16]
 
 
