@@ -7,7 +7,7 @@ from conftest import ROOT
 
 sys.path.insert(0, str(ROOT / "tools/check"))
 
-from benchmark import judge  # noqa: E402
+from benchmark import judge, known_misses  # noqa: E402
 
 
 def figure(name: str, value: float | None, **changes: Any) -> dict[str, Any]:
@@ -61,3 +61,8 @@ def test_a_known_miss_that_is_met_is_said() -> None:
     is_good, lines = judge([figure("a", 0.5)], {"a": 1.6})
     assert is_good
     assert lines[0].startswith("met by now, take it off")
+
+
+def test_the_committed_list_is_read() -> None:
+    assert known_misses("control")["step_5_10_settle_s"] == 0.638
+    assert known_misses("none") == {}
