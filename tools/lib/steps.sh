@@ -89,11 +89,11 @@ absent() {
     printf 'none  %-20s %s\n' "$1" "$2"
 }
 
-# build PRESET [TARGET...]: a step of its own, once.
+# build PRESET [TARGET...]: a step of its own; a whole one once.
 build() {
-    local name="build-$1${2:+-${2//\//_}}" start_s=$SECONDS cpu alive status=0 TIMEFORMAT='%0U+%0S'
-    [[ " ${PASSED[*]} " != *" $name "* ]] || return 0
-    [[ " ${FAILED[*]} " != *" $name "* ]] || return 1
+    local name="build-$1${2:+-part}" start_s=$SECONDS cpu alive status=0 TIMEFORMAT='%0U+%0S'
+    (($# > 1)) || [[ " ${PASSED[*]} " != *" $name "* ]] || return 0
+    (($# > 1)) || [[ " ${FAILED[*]} " != *" $name "* ]] || return 1
     exec {alive}> >(say_alive "$name")
     # In a subshell: build_preset ends its script on failure. What it says goes on to stderr.
     { cpu="$({ time (build_preset "$@" 2>&3); } 2>&1 {alive}>&-)"; } 3>&2 || status=$?
