@@ -82,6 +82,7 @@ def test_rate_that_the_controller_refuses_is_refused(bench: Bench, chain: Path) 
 
 # Counted by others, with an older compiler run of the same release and another bracket, to within
 # a few instructions; the RMS figures (579, 985) were over 256 points.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number_format", "fft", "magnitude"), [("q15", 44736, 31416), ("q31", 87018, 31181)]
 )
@@ -97,6 +98,7 @@ def test_peer_is_the_real_library(bench, peer_image, number_format, fft, magnitu
     assert peer.mean_instr(1000) == peer.peak_instr / 50
 
 
+@pytest.mark.slow
 def test_whole_measurement(build: Path, monkeypatch, chain: Path, peer_image: Path) -> None:
     monkeypatch.setenv("QUIESCE_BUILD", str(build))
     lines: list[str] = []

@@ -105,6 +105,7 @@ def test_anfis_gradient_is_that_of_differences():
             assert gradient[index] == pytest.approx(difference, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_anfis_starts_at_the_least_squares_optimum_and_improves_it():
     segments, scales = three_currents()
     box = Box.of(segments)
@@ -118,6 +119,7 @@ def test_anfis_starts_at_the_least_squares_optimum_and_improves_it():
     assert errors[-1] < 0.6 * errors[0]
 
 
+@pytest.mark.slow
 def test_anfis_recovers_a_model_of_its_own_kind():
     file = DamperFile(root() / "sim_hil/data/dampers/rd8040_anfis27.toml")
     records = [sine(10.0, 1.5e-3, at, cycles=3.0, rate_Hz=2000.0) for at in (0, 0.2, 0.6, 1.0)]
@@ -157,6 +159,7 @@ def numpy_force(name: str, parameters: dict, picked: np.ndarray) -> np.ndarray:
     return parameters["force_scale_N"] * sums
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "most"), [("anfis", 0.1), ("ts_fuzzy", 0.12), ("support_vector", 0.07)]
 )

@@ -130,6 +130,7 @@ def at_rest_first(record):
     return {name: np.where(record.time_s == 0.0, 0.0, getattr(record, name)) for name in names}
 
 
+@pytest.mark.slow
 def test_a_memory_needs_lags_and_feedback_helps_free_running():
     records = with_memory(1, 2, 3)
     segments, scales = segments_of(*records[:2])
@@ -261,6 +262,7 @@ class Passing:
         return hysteresis_network.base_file(self._model).simulate(library.motion(record), steps)
 
 
+@pytest.mark.slow
 def test_hysteresis_network_learns_a_memory_and_forgets_no_current():
     train = [one for at in (0.0, 0.5, 1.0) for one in with_memory(1, 2, current_A=at)]
     segments, scales = segments_of(*train)
@@ -271,6 +273,7 @@ def test_hysteresis_network_learns_a_memory_and_forgets_no_current():
     assert error_of(model, held_out) < 0.5 * error_of(static, held_out)
 
 
+@pytest.mark.slow
 def test_hysteresis_network_agrees_with_numpy():
     segments, scales = segments_of(*with_memory(1))
     model = hysteresis_network.train(segments, scales, 1, SMALL)
@@ -329,6 +332,7 @@ def test_mixed_commands_are_refused():
         hysteresis_network.train([whole(record), whole(volts)], Scales.of([whole(record)]))
 
 
+@pytest.mark.slow
 def test_a_part_of_a_record_is_learned_from_its_rows_only():
     record = with_memory(1)[0]
     spoilt = record.force_N.copy()

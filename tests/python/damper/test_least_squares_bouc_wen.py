@@ -115,6 +115,7 @@ def test_beta_may_be_negative() -> None:
     assert found.gamma == pytest.approx(truth.gamma, rel=0.005)
 
 
+@pytest.mark.slow
 def test_common_n_and_polynomials_over_the_current() -> None:
     def truth(current: float) -> BoucWenFit:
         return replace(

@@ -42,6 +42,7 @@ def searched(build: Path, recipe: Path, tmp_path_factory: pytest.TempPathFactory
 # Lookup
 
 
+@pytest.mark.slow
 def test_lookup_reproduces_the_published_choice_at_every_drive(quiesce) -> None:
     result = quiesce("rules", "lookup", "--json")
     assert result.returncode == 0, result.stderr
@@ -118,6 +119,7 @@ def test_rule_file_that_was_written_does_what_the_report_says(searched, quiesce,
             assert abs(one["start"][key] - value) < 2e-3
 
 
+@pytest.mark.slow
 def test_jobs_do_not_change_the_result(searched, recipe, quiesce, tmp_path) -> None:
     options = ["--generations", "4", "--start", recipe, "--tune", "both", "--out", "out"]
     result = quiesce("rules", "optimize", *SHORT, *options, "--jobs", "1")
@@ -126,6 +128,7 @@ def test_jobs_do_not_change_the_result(searched, recipe, quiesce, tmp_path) -> N
         assert (tmp_path / "out" / name).read_bytes() == (searched[1] / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_step_scenario_counts_both_of_its_steady_states(quiesce) -> None:
     options = ["--scenario", "step_10_20Hz", "--generations", "1", "--population", "4", "--json"]
     result = quiesce("rules", "optimize", *options, "--out", "out")
@@ -137,6 +140,7 @@ def test_step_scenario_counts_both_of_its_steady_states(quiesce) -> None:
         assert abs(place["start"]["mean_current_A"] - 5.0) < 0.05
 
 
+@pytest.mark.slow
 def test_weights_and_outputs_steer_the_search(quiesce) -> None:
     """With current as the only cost, the rules end at 0 A."""
     options = ["--scenario", "sine_10Hz", "--objective", "thrifty", "--weight", "displacement=0"]
@@ -149,6 +153,7 @@ def test_weights_and_outputs_steer_the_search(quiesce) -> None:
     assert place["best_constant"]["current_mA"] == 0
 
 
+@pytest.mark.slow
 def test_several_objectives_give_a_front_with_a_rule_file_each(quiesce, tmp_path) -> None:
     options = ["--method", "nsga2", "--weight", "current=1", "--generations", "4"]
     options += ["--scenario", "sine_10Hz", "--population", "8", "--json", "--out", "out"]
