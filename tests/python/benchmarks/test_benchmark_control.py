@@ -11,9 +11,9 @@ import pytest
 from quiesce.base.errors import UsageError
 from quiesce.engine.bench import Bench
 from quiesce.optimum import store
-from quiesce.plant.variant import Variant
+from quiesce.plant.variant import Variant, write_variant
 from quiesce_benchmarks.cli import main
-from quiesce_benchmarks.control import benchmark, broadband, robust, safety
+from quiesce_benchmarks.control import benchmark, bounds, broadband, robust, safety
 from quiesce_benchmarks.control.cost import Counted, added_worst_instr
 from quiesce_benchmarks.control.measures import (
     band_bound_pct,
@@ -281,9 +281,9 @@ def test_other_plants_are_those_whose_bounds_are_stored(
     rig = Rig(Bench(), plant, judged, params, 1, tmp_path)
     variations = robust.GOAL_VARIATIONS[::7]
     mine = {store.case_key(varied_plant(rig, one).file, 5.0) for one in variations}
-    stored = [case for case in store.robust_cases(plant.file) if case.freq_Hz == 5.0]
+    stored = [case for case in bounds.robust_cases(plant.file) if case.freq_Hz == 5.0]
     for case in stored[::7]:
-        store.write_variant(case.plant, case.variant, tmp_path / "theirs.toml")
+        write_variant(case.plant, case.variant, tmp_path / "theirs.toml")
         mine.discard(store.case_key(tmp_path / "theirs.toml", 5.0))
     assert len(variations) == len(stored[::7]) and not mine
 

@@ -8,7 +8,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import root, shown
 
 FOLDER = "docs/results/bounds"
-COMMAND = "python -m quiesce.optimum.store"
+COMMAND = "python -m quiesce_benchmarks.control.bounds"
 
 
 class Optima:

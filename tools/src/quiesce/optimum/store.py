@@ -1,16 +1,11 @@
 """Bounds and best constant currents, computed in parallel and kept in a JSON file.
 
-    python -m quiesce.optimum.store OUT.json [--plant FILE] [--robustness]
-
 Each result is stored as it arrives, under a key of the plant's content, frequency and drive; what
 the file already holds is not computed again.
 """
 
-import argparse
 import hashlib
-import itertools
 import json
-import os
 import tempfile
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -18,10 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import default_plant, shown
+from quiesce.base.paths import shown
 from quiesce.base.progress import Progress
 from quiesce.optimum.bound import INTERVALS, STARTS, bound
 from quiesce.optimum.constant import best_constant
@@ -33,15 +26,6 @@ from quiesce.plant.variant import Variant, read_plant_data, write_variant
 SCHEMA = "quiesce-bounds"
 SETTINGS = {"intervals": INTERVALS, "starts": STARTS}
 MATTERS = ("structure", "damper", "driver", "coil", "shaker", "integration")
-
-SWEEP_HZ = tuple(float(f) for f in np.arange(4.0, 22.01, 0.5))
-ROBUST_HZ = (5.0, 10.0, 15.0, 20.0)
-ROBUST_VARIANTS = tuple(
-    Variant(rise_s=lag, force=force, freq=freq, drive_V=drive_V)
-    for lag, force, drive_V, freq in itertools.product(
-        (0.002, 0.005, 0.010), (0.7, 1.0, 1.5), (0.09, 0.12), (0.9, 1.0, 1.1)
-    )
-)
 
 
 @dataclass(frozen=True)
@@ -179,31 +163,3 @@ def _key(case: Case) -> str:
         file = Path(folder) / "plant.toml"
         write_variant(case.plant, case.variant, file)
         return case_key(file, case.freq_Hz)
-
-
-def nominal_cases(plant: Path) -> list[Case]:
-    return [Case(plant, Variant(), freq, tuple(GOALS)) for freq in SWEEP_HZ]
-
-
-def robust_cases(plant: Path) -> list[Case]:
-    return [
-        Case(plant, variant, freq, ("amp",))
-        for variant, freq in itertools.product(ROBUST_VARIANTS, ROBUST_HZ)
-    ]
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("out", type=Path, metavar="OUT.json")
-    parser.add_argument("--plant", type=Path, default=default_plant())
-    parser.add_argument("--robustness", action="store_true", help="54 plants at 4 frequencies")
-    parser.add_argument("--workers", type=int, default=os.cpu_count())
-    args = parser.parse_args()
-    cases = robust_cases(args.plant) if args.robustness else nominal_cases(args.plant)
-    words = f"python -m quiesce.optimum.store docs/results/bounds/{args.out.name}"
-    words += " --robustness" if args.robustness else ""
-    compute_all(BoundStore(args.out, words), cases, args.workers)
-
-
-if __name__ == "__main__":
-    main()
