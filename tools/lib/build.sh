@@ -1,9 +1,17 @@
 # shellcheck shell=bash
 # Builds a CMake preset where something has changed. Sourced by tools/hil, test and quiesce.
 
+# Where ccache is installed, what another preset, another clone or an earlier state of this one has
+# compiled is not compiled again. Paths inside of the project count as relative.
+build_cache() {
+    command -v ccache >/dev/null || return 0
+    export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$ROOT}"
+}
+
 # What a build folder was configured from; another value needs a fresh one.
 build_stamp() {
-    printf '%s %s\n' "$ROOT" "$1"
+    printf '%s %s %s\n' "$ROOT" "$1" "${CMAKE_C_COMPILER_LAUNCHER:-}"
     cat "$ROOT/CMakePresets.json" "$ROOT"/cmake/{arm-none-eabi,aarch64-linux-gnu}.cmake | sha256sum
 }
 
@@ -45,6 +53,7 @@ build_preset() {
     local targets=()
     (($# == 0)) || targets=(--target "$@")
     mkdir -p "$LOG_DIR"
+    build_cache
     lock "build-$preset" 9
     build_configure "$preset"
     set +e

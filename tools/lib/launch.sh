@@ -1,7 +1,12 @@
 # shellcheck shell=bash
-# From a fresh clone to a running `quiesce`. Sourced by tools/hil and tools/quiesce.
+# From a fresh clone to a running `quiesce`. Sourced by tools/hil, tools/quiesce and
+# tools/benchmark.
 # shellcheck source=tools/lib/build.sh
 source "$ROOT/tools/lib/build.sh"
+# shellcheck source=tools/lib/needs.sh
+source "$ROOT/tools/lib/needs.sh"
+# shellcheck source=tools/lib/python.sh
+source "$ROOT/tools/lib/python.sh"
 
 asks_for_help() {
     local argument
@@ -11,31 +16,30 @@ asks_for_help() {
     return 1
 }
 
-# launch_build PRESET: what the bench runs, without the tests (ninja's target of a whole folder).
-launch_build() {
-    case "$1" in
-    mps2) build_preset mps2 targets/all ;;
-    *) build_preset "$1" sim_hil/all ;;
-    esac
+# python_is_usable: it was complete once, in this folder, whatever tools/requirements.txt says now.
+python_is_usable() {
+    [ -x "$VENV/bin/python" ] && grep -qxF "$ROOT" "$VENV/.complete" 2>/dev/null
 }
 
-# launch PRESET... -- MODULE ARGUMENT...: becomes that Python module in the caller's folder.
-# Help needs the Python environment only.
-launch() {
-    local presets=() preset
-    while [ "$1" != -- ]; do
-        presets+=("$1")
-        shift
-    done
+# launch_prepare NEEDS ARGUMENT...: sets up and builds what is missing. Where nothing compiled is
+# needed and .venv is there, no lock is taken and nothing is waited for. A stop does not wait for
+# newer packages either: any environment that was complete will do.
+launch_prepare() {
+    local needs=()
+    read -ra needs <<<"$1" || true
     shift
-    if (($# == 1)) || asks_for_help "$@"; then
-        "$ROOT/tools/setup" python
-    else
+    if ((${#needs[@]} > 0 && $# > 0)) && ! asks_for_help "$@"; then
         "$ROOT/tools/setup" run
-        for preset in "${presets[@]}"; do
-            launch_build "$preset"
-        done
+        needs_build "${needs[@]}"
+    elif [ "${1:-} ${2:-}" = "can stop" ] && python_is_usable; then
+        return 0
+    elif ! python_is_complete; then
+        "$ROOT/tools/setup" python
     fi
+}
+
+# launch MODULE ARGUMENT...: becomes that Python module in the caller's folder.
+launch() {
     # -I: nothing in the caller's folder or PYTHONPATH can stand in for a module.
     exec "$ROOT/.venv/bin/python" -I -m "$@"
 }

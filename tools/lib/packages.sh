@@ -62,10 +62,15 @@ packages_install() {
     fail "apt-get could not install: $* ($(packages_reason)). Check the network, then run again, or as root run: $line (log: build/logs/setup-apt-install.log)"
 }
 
+# packages_are_installed PACKAGE...: or nobody wants to know.
+packages_are_installed() {
+    [ -n "${QUIESCE_SKIP_PACKAGES:-}" ] || [ -z "$(packages_missing "$@")" ]
+}
+
 # packages_setup PACKAGE...: nothing where all are installed.
 packages_setup() {
     local missing
-    [ -z "${QUIESCE_SKIP_PACKAGES:-}" ] || return 0
+    packages_are_installed "$@" && return 0
     mapfile -t missing < <(packages_missing "$@")
-    ((${#missing[@]} == 0)) || packages_install "${missing[@]}"
+    packages_install "${missing[@]}"
 }

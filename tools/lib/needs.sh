@@ -1,0 +1,53 @@
+# shellcheck shell=bash
+# What a command runs of compiled code: the one table of it. Sourced by tools/lib/launch.sh.
+#
+#   bench    quiesce_bench on this machine     images   what it drives in the emulator
+#   plant    the library of quiesce.plant      linux    the Linux controller
+#   dampers  the module of quiesce.damper
+
+# needs_of COMMAND [ACTION] ...: of `quiesce`; nothing where it starts without a build. A command
+# that is not here needs nothing: `quiesce` refuses what it does not know.
+needs_of() {
+    case "${1:-} ${2:-}" in
+    "hil "* | "replay "*) needs_of_target "$@" ;;
+    "chain "* | "params "* | "plant "* | "record "*) echo bench ;;
+    "rules lookup" | "rules optimize" | "rules show") echo bench ;;
+    "rules "*) ;;
+    "sweep "*) echo bench plant ;;
+    "identify plan") ;;
+    "identify "*) echo dampers ;;
+    "tune "*) echo bench plant dampers ;;
+    "can "*) ;;
+    esac
+}
+
+# needs_of_target COMMAND OPTION...: what its --target, or the default, needs.
+needs_of_target() {
+    case "$*" in
+    *--target[\ =]linux*) echo bench linux ;;
+    *--target[\ =]host*) echo bench ;;
+    hil* | *--target[\ =]*) echo bench images ;;
+    *) echo bench ;;
+    esac
+}
+
+# needs_of_benchmark NAME...: of `benchmark`. Images that only benchmarks run: their build_images.
+needs_of_benchmark() {
+    echo bench plant dampers
+}
+
+# needs_build NEED...: builds that, and nothing else.
+needs_build() {
+    local need host=() mps2=()
+    for need in "$@"; do
+        case "$need" in
+        bench) host+=(quiesce_bench icount_plugin) ;;
+        plant) host+=(quiesce_plant) ;;
+        dampers) host+=(quiesce_dampers) ;;
+        linux) host+=(quiesced) ;;
+        images) mps2+=(quiesce_mps2_shm quiesce_mps2_uart uart_echo) ;;
+        esac
+    done
+    ((${#host[@]} == 0)) || build_preset host "${host[@]}"
+    ((${#mps2[@]} == 0)) || build_preset mps2 "${mps2[@]}"
+}
