@@ -353,7 +353,7 @@ def test_command_prints_every_figure_and_tells_what_is_absent(bench, tmp_path: P
     assert figures["random_bases_tried"]["value"] <= 4 and code == 1
     assert figures["random_bases_beyond_bound"]["value"] is None
     absent = "\n".join(report["context"]["absent"])
-    for words in ("--no-cost", "libfuzzylite 6: ", "pyfuzzylite 8: ", "bench_peers fuzzylite"):
+    for words in ("--no-cost", "libfuzzylite 6: ", "pyfuzzylite 8: ", "fetch_peers fuzzylite"):
         assert words in absent
     assert json.loads((tmp_path / "out/fuzzy.json").read_text()) == report
     assert "<svg" in (tmp_path / "out/fuzzy_errors.svg").read_text()

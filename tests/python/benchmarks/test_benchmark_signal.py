@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from quiesce.signal.replay import sensor_counts
 from quiesce_benchmarks.cli import main
+from quiesce_benchmarks.seeds import generator
 from quiesce_benchmarks.signal import benchmark, recorded, response, truth
 from quiesce_benchmarks.signal.accuracy import Readings, neighbour_Hz, reading_tick, wrapped_deg
 from quiesce_benchmarks.signal.bounds import sine_bound
@@ -16,7 +17,6 @@ from quiesce_benchmarks.signal.plant import lasting_s
 from quiesce_benchmarks.signal.records import (
     Rig,
     Tally,
-    generator,
     make_rig,
     noise_rms,
     tally_switched,

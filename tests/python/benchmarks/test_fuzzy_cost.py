@@ -13,7 +13,7 @@ from quiesce_benchmarks.fuzzy.cost import EngineCost, PeerCost
 from quiesce_benchmarks.fuzzy.random import random_base
 from quiesce_benchmarks.fuzzy.reference import CENTROID, MAX, Q15, VARIANTS, Variant, compiled
 from quiesce_benchmarks.fuzzy.tables import engine_table, peer_table
-from quiesce_benchmarks.signal.cost import count
+from quiesce_benchmarks.images import count
 
 STEPS = 40
 

@@ -1,14 +1,15 @@
-"""The images that only benchmarks run, built where they are missing."""
+"""The images that only benchmarks run: built where they are missing, and counted."""
 
 import os
 import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from quiesce.base.errors import EXIT_BAD_INPUT, BenchFailure, UsageError
 from quiesce.base.paths import build_folder, root
-from quiesce.engine.bench import ending, require_file
+from quiesce.engine.bench import Bench, ending, require_file
 
 
 def built_image(name: str) -> Path:
@@ -44,3 +45,9 @@ def build(script: str, name: str) -> None:
     if process.returncode != 0:
         raise BenchFailure(f"{script} ended with {ending(process.returncode)}: {last}")
     print(last, end="", file=sys.stderr, flush=True)
+
+
+def count(bench: Bench, image: Path, *words: int, profile: str = "off") -> dict[str, Any]:
+    """Runs an image with these words to its end; what it counted and printed."""
+    options = [text for word in words for text in ("--word", str(word))]
+    return bench.json("count", "--image", str(image), "--profile", profile, *options)

@@ -21,7 +21,7 @@ from quiesce_benchmarks.control.ruler import Ruler
 from quiesce_benchmarks.control.suite import FULL, QUICK, Order, Results, measure_all, measure_cost
 from quiesce_benchmarks.control.variants import energy_plants
 from quiesce_benchmarks.report import Report
-from quiesce_benchmarks.signal.benchmark import seed_number
+from quiesce_benchmarks.seeds import seed_number
 
 NAME = "control"
 HELP = "a control law in closed loop: steady, steps, other plants, other inputs, safety, cost"

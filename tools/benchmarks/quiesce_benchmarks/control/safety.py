@@ -19,7 +19,7 @@ from quiesce_benchmarks.control.rig import (
 )
 from quiesce_benchmarks.control.scenarios import Scenario, sine, steady
 from quiesce_benchmarks.control.steady import SHIPPED_s
-from quiesce_benchmarks.signal.records import generator
+from quiesce_benchmarks.seeds import generator
 
 STEADY_s = 20.0
 # A day of frequencies in turn, so that trims are learnt, left and found again.

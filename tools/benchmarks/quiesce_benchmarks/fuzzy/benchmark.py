@@ -37,7 +37,7 @@ from quiesce_benchmarks.fuzzy.tables import (
 )
 from quiesce_benchmarks.images import built_image
 from quiesce_benchmarks.report import Figure, Report
-from quiesce_benchmarks.signal.benchmark import seed_number
+from quiesce_benchmarks.seeds import seed_number
 
 NAME = "fuzzy"
 HELP = "the fuzzy engines: accuracy, instructions, random rule bases, beside their peers"

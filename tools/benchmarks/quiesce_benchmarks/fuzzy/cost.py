@@ -18,9 +18,8 @@ from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.table import table_words
 
 from quiesce_benchmarks.fuzzy.reference import FORMATS, VARIANTS, Variant, compiled
-from quiesce_benchmarks.images import built_image
+from quiesce_benchmarks.images import built_image, count
 from quiesce_benchmarks.link_map import read_sections
-from quiesce_benchmarks.signal.cost import count
 
 PEER_EVALUATIONS = 1000
 PEER_SEED = 12345

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from quiesce_benchmarks.seeds import generator
 from quiesce_benchmarks.signal.bounds import sine_bound
 from quiesce_benchmarks.signal.records import (
     AMPLITUDE_m_s2,
     Rig,
     Tally,
-    generator,
     log_uniform,
     noise_rms,
     random_phase,

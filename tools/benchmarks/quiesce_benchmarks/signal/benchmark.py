@@ -11,6 +11,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 
 from quiesce_benchmarks.report import Figure, Report
+from quiesce_benchmarks.seeds import seed_number
 from quiesce_benchmarks.signal import accuracy, response
 from quiesce_benchmarks.signal import cost as signal_cost
 from quiesce_benchmarks.signal.accuracy import phase_excess_deg, worst_ratio
@@ -29,13 +30,6 @@ the instructions of a tick beside a batch pipeline on CMSIS-DSP."""
 
 # Ticks whose instructions are counted: at each rate, and for the share of each source file.
 QUICK_COST_TICKS = {"ticks": 20_000, "profile_ticks": 10_000}
-
-
-def seed_number(text: str) -> int:
-    value = int(text)
-    if not 0 <= value < 1 << 32:
-        raise ValueError
-    return value
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -15,7 +15,7 @@ from quiesce.base.errors import UsageError, one_line
 from quiesce.base.table import format_table
 from quiesce.engine.bench import Bench, require_emulator
 
-from quiesce_benchmarks.images import built_image
+from quiesce_benchmarks.images import built_image, count
 from quiesce_benchmarks.link_map import by_source, read_sections
 from quiesce_benchmarks.report import Figure
 
@@ -183,12 +183,6 @@ def measure_cost(
         peers = tuple(measure_peer(bench, image, form) for form in PEER_FORMATS)
     done("cost of the peer, CMSIS-DSP")
     return SignalCost(tuple(costs), peers, modules, worst_modules, absent)
-
-
-def count(bench: Bench, image: Path, *words: int, profile: str = "off") -> dict[str, Any]:
-    """Runs an image with these words to its end; what it counted and printed."""
-    options = [text for word in words for text in ("--word", str(word))]
-    return bench.json("count", "--image", str(image), "--profile", profile, *options)
 
 
 def measure_ticks(bench: Bench, image: Path, tick_rate_Hz: int, ticks: int) -> TickCost:

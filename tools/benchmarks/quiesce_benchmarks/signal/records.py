@@ -4,7 +4,6 @@ Arrays are records x ticks. Times are in ticks from the start of a record.
 """
 
 import tempfile
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -93,11 +92,6 @@ def make_rig(settings: Sequence[str]) -> Rig:
     """UsageError for settings that the controller refuses."""
     bench = Bench()
     return Rig(bench, settings, effective_params(bench, settings))
-
-
-def generator(seed: int, *names: object) -> np.random.Generator:
-    """Random numbers of one piece of work: the same whatever else runs, and in which order."""
-    return np.random.default_rng([seed, zlib.crc32(repr(names).encode())])
 
 
 def log_uniform(rng: np.random.Generator, low: float, high: float, count: int) -> np.ndarray:

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from quiesce_benchmarks.seeds import generator
 from quiesce_benchmarks.signal.records import (
     WRONG_SHARE,
     AMPLITUDE_m_s2,
     Rig,
     Tally,
-    generator,
     log_uniform,
     noise_rms,
     random_phase,
