@@ -18,6 +18,7 @@ inputs_of() {
     format) echo "$code examples tests tools/check .clang-format" ;;
     scripts) echo ".ci tools tests" ;;
     ruff) echo "ruff.toml tools tests examples" ;;
+    bench-house) echo . ;;
     pytest-slow | bench-*) echo "$code pytest.ini tests/python tools" ;;
     pytest-vm) echo "$code pytest.ini tests/system/vm tools" ;;
     proofs) echo "tests/proof tools/check tools/src tools/benchmarks" ;;
