@@ -16,7 +16,8 @@
 /// step must stay below 2.78 / it. is_passive: these parameters cannot give out energy that was not
 /// put in, at constant current and without the offset (sufficient, not necessary).
 ///
-/// Add a model: one header in kernels/, its include and its line in kernels.h.
+/// Add a model: one header in kernels/ (BoucWen: bouc_wen.h), its include and its line in
+/// kernels.h.
 #ifndef QUIESCE_KERNEL_H
 #define QUIESCE_KERNEL_H
 

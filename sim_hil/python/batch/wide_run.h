@@ -1,8 +1,10 @@
-// Compiled once for every instruction set, with QUIESCE_ISA as its name.
-#include "wide.h"
+/// A kernel over a motion, many candidates side by side. Compiled once for every kernel and set of
+/// instructions: a file of wide_run.cpp.in each.
+#ifndef QUIESCE_WIDE_RUN_H
+#define QUIESCE_WIDE_RUN_H
 
-#include "kernels.h"
 #include "run_group.h"
+#include "wide.h"
 
 namespace quiesce {
 
@@ -20,25 +22,12 @@ struct LaneAccess<QUIESCE_ISA::Wide> {
 
 namespace QUIESCE_ISA {
 
-namespace {
-
 template <class Kernel>
 void run(const GroupJob &job) {
     GroupRun<Kernel, Wide>{job}();
 }
 
-#define QUIESCE_FUNCTION(Kernel) run<Kernel>,
-const GroupFunction kFunctions[] = {QUIESCE_KERNELS(QUIESCE_FUNCTION)};
-#undef QUIESCE_FUNCTION
-
-} // namespace
-
-GroupTable group_table();
-GroupTable group_table() {
-#define QUIESCE_TEXT(name) #name
-#define QUIESCE_TEXT_OF(name) QUIESCE_TEXT(name)
-    return {kFunctions, kLanes, QUIESCE_TEXT_OF(QUIESCE_ISA)};
-}
-
 } // namespace QUIESCE_ISA
 } // namespace quiesce
+
+#endif
