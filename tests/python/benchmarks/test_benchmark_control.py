@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from quiesce.base.errors import UsageError
+from quiesce.base.paths import default_plant
 from quiesce.engine.bench import Bench
 from quiesce.optimum import store
 from quiesce.plant.variant import Variant, write_variant
@@ -31,7 +32,6 @@ from quiesce_benchmarks.control.rig import (
     Plant,
     Reduction,
     Rig,
-    default_plant_file,
     grid_A,
     make_judged,
 )
@@ -168,7 +168,7 @@ def test_scenario_is_a_file_of_the_bench(build: Path, tmp_path: Path, monkeypatc
         safety.day(1, 240.0),
     ):
         file = tmp_path / "scenario.toml"
-        file.write_text(scenario.text(default_plant_file()), encoding="utf-8")
+        file.write_text(scenario.text(default_plant()), encoding="utf-8")
         assert "is valid" in bench.call("scenario-check", str(file))
 
 
@@ -233,7 +233,7 @@ class Known(Optima):
 
 
 def published_plant(drive_V: float = 0.1) -> Plant:
-    return Plant(default_plant_file().resolve(), 5.0, drive_V, 0.005)
+    return Plant(default_plant().resolve(), 5.0, drive_V, 0.005)
 
 
 def test_bound_is_the_best_of_all_that_is_known() -> None:
@@ -364,8 +364,8 @@ def test_command_prints_every_figure_and_writes_plots(bench, tmp_path: Path) -> 
 
 def test_any_law_on_any_plant_can_be_judged(bench, tmp_path: Path) -> None:
     """Published goals are not for it, and bounds are not known; constants are."""
-    plant = tomllib.loads(default_plant_file().read_text())
-    text = default_plant_file().read_text().replace("rise_s = 0.005", "rise_s = 0.004")
+    plant = tomllib.loads(default_plant().read_text())
+    text = default_plant().read_text().replace("rise_s = 0.005", "rise_s = 0.004")
     assert plant["coil"]["rise_s"] == 0.005
     (tmp_path / "mine.toml").write_text(text)
     (tmp_path / "empty").mkdir()
@@ -423,7 +423,7 @@ def test_controller_fits_the_plant_s_driver_and_coil(build: Path, monkeypatch) -
     ],
 )
 def test_bad_input_is_one_line(refused, tmp_path: Path, options, words) -> None:
-    text = default_plant_file().read_text().replace("freq_Hz = 96.0", "freq_Hz = -96.0")
+    text = default_plant().read_text().replace("freq_Hz = 96.0", "freq_Hz = -96.0")
     (tmp_path / "half.toml").write_text(text)
     message = refused("bench", "control", "--quick", *options)
     for word in words:

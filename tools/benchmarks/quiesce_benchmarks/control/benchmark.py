@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from quiesce.base.errors import UsageError, one_line
-from quiesce.base.paths import shown
+from quiesce.base.paths import default_plant, shown
 from quiesce.engine.bench import Bench
 from quiesce.hil.published import load_reference
 
@@ -16,7 +16,7 @@ from quiesce_benchmarks.control.cost import Counted
 from quiesce_benchmarks.control.figures import all_figures, context_of
 from quiesce_benchmarks.control.law_file import law_options, table_bytes
 from quiesce_benchmarks.control.optima import COMMAND, load_optima
-from quiesce_benchmarks.control.rig import Plant, Rig, default_plant_file, make_judged, read_plant
+from quiesce_benchmarks.control.rig import Plant, Rig, make_judged, read_plant
 from quiesce_benchmarks.control.ruler import Ruler
 from quiesce_benchmarks.control.suite import FULL, QUICK, Order, Results, measure_all, measure_cost
 from quiesce_benchmarks.control.variants import energy_plants
@@ -102,7 +102,7 @@ def plot(folder: Path, ruler: Ruler, results: Results) -> None:
 def measure(args: argparse.Namespace, folder: Path) -> Report:
     data = broadband.find_folder(args.data)
     bench = Bench()
-    plant = read_plant(bench, args.plant or default_plant_file())
+    plant = read_plant(bench, args.plant or default_plant())
     judged, params = make_judged(bench, args.law, args.set, plant)
     with tempfile.TemporaryDirectory(prefix="quiesce-control-") as scratch:
         options = law_options(args.law, args.table, Path(scratch))

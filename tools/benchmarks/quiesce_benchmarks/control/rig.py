@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import root
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.params import effective_params
 from quiesce.engine.pool import Work, run_work
@@ -24,7 +23,6 @@ from quiesce_benchmarks.control.scenarios import Scenario
 
 DISPLACEMENT, BALANCED = "displacement", "balanced"
 SETTINGS = (DISPLACEMENT, BALANCED)
-DEFAULT_PLANT = "sim_hil/data/plants/squeeze_2012.toml"
 
 
 @dataclass(frozen=True)
@@ -101,10 +99,6 @@ def read_plant(bench: Bench, file: Path) -> Plant:
         float(data["shaker"]["drive_V"]),
         float(data["coil"]["rise_s"]),
     )
-
-
-def default_plant_file() -> Path:
-    return root() / DEFAULT_PLANT
 
 
 class Rig:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from quiesce.base.paths import root
+from quiesce.base.paths import default_plant
 from quiesce.engine.bench import setting_options
 from quiesce.engine.trace import Trace, read_trace
 
@@ -15,7 +15,6 @@ from quiesce_benchmarks.signal.offline import trailing_Hz
 from quiesce_benchmarks.signal.records import Rig, Tally
 from quiesce_benchmarks.signal.response import SETTLED_SHARE, ticks_until_lasting
 
-PLANT = "sim_hil/data/plants/squeeze_2012.toml"
 NOISE_mg = 0.5
 STICK_Hz = (4.0, 5.0, 6.0)
 STICK_CURRENT_mA = 5000
@@ -54,7 +53,7 @@ def scenario_text(freqs_Hz: Sequence[float], segment_s: float) -> str:
     )
     return (
         'schema = "quiesce-scenario"\nversion = 1\nname = "bench"\n'
-        f'plant = "{root() / PLANT}"\nduration_s = {duration_s}\nnoise_mg = {NOISE_mg}\n\n'
+        f'plant = "{default_plant()}"\nduration_s = {duration_s}\nnoise_mg = {NOISE_mg}\n\n'
         f"{segments}[[window]]\nstart_s = {duration_s / 2.0}\nend_s = {duration_s}\n"
     )
 

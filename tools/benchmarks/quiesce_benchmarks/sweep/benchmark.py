@@ -34,14 +34,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def true_values() -> dict[str, float]:
-    """Of squeeze_2012, by the names of the parameters, for a modal mass of 1 kg."""
-    from quiesce.base.paths import root
+    """Of the default plant, by the names of the parameters, for a modal mass of 1 kg."""
+    from quiesce.base.paths import default_plant
     from quiesce.plant.library import Plant
     from quiesce.plant.variant import read_plant_data
 
-    from quiesce_benchmarks.sweep.cases import PLANTS
-
-    file = root() / PLANTS / "squeeze_2012.toml"
+    file = default_plant()
     table, modes = read_plant_data(file), Plant(file).modes
     values = {"delay_ms": 0.0, "corner_Hz": table["shaker"]["corner_Hz"], "yield_exponent": 1.0}
     for i, mode in enumerate(modes, 1):
