@@ -73,10 +73,14 @@ python_setup() {
     rm -rf "$VENV"
     run_logged setup-venv "$PYTHON" -m venv "$VENV" ||
         fail "'$PYTHON -m venv' failed (log: build/logs/setup-venv.log). Is the disk full?"
-    retry setup-python python_pip install --require-hashes -r "$REQUIREMENTS" ||
+    # What is imported is compiled when it is, but what an emergency stop imports now.
+    retry setup-python python_pip install --no-compile --require-hashes -r "$REQUIREMENTS" ||
         fail "could not install the Python packages: $(pip_reason setup-python). Check the network and pip's settings, then run again (log: build/logs/setup-python.log)"
     site="$("$VENV/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
     printf '%s\n' "$ROOT"/{tools/src,tools/benchmarks,tests/system/vm} >"$site/quiesce.pth"
+    run_logged setup-import "$VENV/bin/python" -I -c '
+from quiesce.can import database, e2e, link, slcan, stopping, traffic
+database.load()' || fail "the Python environment does not work (log: build/logs/setup-import.log)" 1
     # Last, and in one step: an interrupted set-up has no such file and starts again.
     python_stamp >"$VENV/.complete.new"
     mv "$VENV/.complete.new" "$VENV/.complete"
