@@ -3,11 +3,11 @@
 
 #include <stddef.h>
 
-#include "adapt_store.h"
 #include "current_monitor.h"
 #include "fuzzy.h"
 #include "guard.h"
-#include "law.h"
+#include "law_phase.h"
+#include "law_state.h"
 #include "plant_pulses.h"
 #include "plant_rules.h"
 #include "signal_chain.h"
@@ -47,15 +47,10 @@ typedef struct {
 
 _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
-_Static_assert(QUIESCE_ADAPTATION_WORDS == ADAPT_STORE_WORDS, "what is learnt, in words");
 _Static_assert(QUIESCE_PEAKS == ESTIMATOR_TONES, "telemetry holds the estimator's components");
 
 static const fuzzy_table_t *shipped_rules(void) {
     return (const fuzzy_table_t *)(const void *)plant_rules_table;
-}
-
-static const phase_table_t *shipped_pulses(void) {
-    return (const phase_table_t *)(const void *)plant_pulses_table;
 }
 
 static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
@@ -89,7 +84,7 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
     signal_chain_init(&c->signal, &c->params);
     c->rules_next = shipped_rules();
     c->law = law_find(c->params.law);
-    law_phase_init(&c->law_state.phase, &c->params, shipped_pulses());
+    law_state_init(&c->law_state, &c->params, plant_pulses_table);
     c->hold_ticks = ticks_in_ms(c->params.track_hold_ms, c->params.tick_rate_Hz);
     init_output(c, params, is_accepted);
     return is_accepted;
@@ -219,30 +214,14 @@ static void report_components(const signal_chain_t *signal, quiesce_telemetry_t 
     }
 }
 
-// Half turns Q16 in thousandths of a degree.
-static int32_t half_turn_mdeg(int32_t half_turn_q16) {
-    return half_turn_q16 * 5625 / 2048;
-}
-
-static void report_phase(const controller_t *self, quiesce_telemetry_t *t) {
-    const law_phase_t *phase = &self->law_state.phase;
-    t->lock_is_on = self->signal.lock.is_locked ? 1u : 0u;
-    t->adapt_state = (uint32_t)phase->adapt.state;
-    t->adapt_trials = phase->adapt.trials;
-    t->adapt_gains = phase->adapt.gains;
-    t->trim_on_mdeg = half_turn_mdeg(phase->trim.value[ADAPT_ON_EDGE]);
-    t->trim_off_mdeg = half_turn_mdeg(phase->trim.value[ADAPT_OFF_EDGE]);
-    t->trim_level_q15 = 32768 + phase->trim.value[ADAPT_LEVEL];
-    t->trim_is_whole = phase->trim.value[ADAPT_WHOLE] != 0 ? 1u : 0u;
-}
-
 static void report(const controller_t *self, quiesce_telemetry_t *t) {
     t->state = (uint32_t)self->supervisor.state;
     t->fault = (uint32_t)self->supervisor.fault;
     t->fault_count = self->supervisor.fault_count;
     t->bad_sample_count = self->bad_sample_count;
     report_components(&self->signal, t);
-    report_phase(self, t);
+    t->lock_is_on = self->signal.lock.is_locked ? 1u : 0u;
+    law_phase_report(&self->law_state, t);
 }
 
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
@@ -314,42 +293,31 @@ quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words
 quiesce_phase_verdict_t quiesce_phase_table_use(quiesce_t *self, const uint32_t *words,
                                                 uint32_t count) {
     controller_t *c = (controller_t *)(void *)self->opaque;
-    const phase_table_t *table = shipped_pulses();
-    if (words != NULL) {
-        const phase_table_verdict_t verdict = phase_table_check(words, count);
-        if (verdict != PHASE_TABLE_OK) {
-            return (quiesce_phase_verdict_t)verdict;
-        }
-        table = (const phase_table_t *)(const void *)words;
+    if (words == NULL) {
+        words = plant_pulses_table;
+        count = sizeof plant_pulses_table / sizeof plant_pulses_table[0];
     }
-    const bool is_frozen = c->law_state.phase.is_frozen;
-    law_phase_init(&c->law_state.phase, &c->params, table);
-    c->law_state.phase.is_frozen = is_frozen;
-    return QUIESCE_PHASE_OK;
-}
-
-static adapt_owner_t owner_of(const controller_t *c) {
-    return (adapt_owner_t){c->law_state.phase.table->crc, (uint32_t)c->params.phase_setting};
+    return (quiesce_phase_verdict_t)law_phase_use(&c->law_state, &c->params, words, count);
 }
 
 void quiesce_adaptation_save(const quiesce_t *self, quiesce_adaptation_t *out) {
     const controller_t *c = (const controller_t *)(const void *)self->opaque;
-    adapt_store(&c->law_state.phase.adapt, owner_of(c), out->words);
+    law_phase_save(&c->law_state, &c->params, out->words);
 }
 
 bool quiesce_adaptation_load(quiesce_t *self, const quiesce_adaptation_t *in) {
     controller_t *c = (controller_t *)(void *)self->opaque;
-    return adapt_restore(&c->law_state.phase.adapt, owner_of(c), in->words);
+    return law_phase_load(&c->law_state, &c->params, in->words);
 }
 
 void quiesce_adaptation_reset(quiesce_t *self) {
     controller_t *c = (controller_t *)(void *)self->opaque;
-    adapt_clear(&c->law_state.phase.adapt);
+    law_phase_reset(&c->law_state);
 }
 
 void quiesce_adaptation_freeze(quiesce_t *self, bool is_frozen) {
     controller_t *c = (controller_t *)(void *)self->opaque;
-    c->law_state.phase.is_frozen = is_frozen;
+    law_phase_freeze(&c->law_state, is_frozen);
 }
 
 int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *fired) {

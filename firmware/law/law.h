@@ -1,11 +1,11 @@
 /// One small interface for every control law. A law turns what is known of the vibration into a
-/// requested coil current; the guard has the last word. To add one: a file with its law_t, a line
-/// in law.c, a label in parameters.toml.
+/// requested coil current; the guard has the last word. To add one: a file with its law_t, its
+/// state in law_state.h, a line in law.c, a label in parameters.toml.
 #ifndef LAW_H
 #define LAW_H
 
 #include "fixq.h"
-#include "law_phase.h"
+#include "harmonics.h"
 #include "quiesce_params.h"
 
 /// The component that is locked on to.
@@ -26,11 +26,13 @@ typedef struct {
     bool is_output_on;  ///< in the last tick: what was requested passed the guard
 } law_in_t;
 
-/// State of any law: caller-owned, cleared by reset.
-typedef struct {
-    int64_t current_mA_q20;
-    law_phase_t phase;
-} law_state_t;
+/// State of all laws (law_state.h), caller-owned; each looks at its own.
+typedef struct law_state law_state_t;
+
+/// Starts from rest. table: the words that ship for the laws that have a table, checked; they must
+/// stay.
+typedef void (*law_init_t)(law_state_t *state, const quiesce_params_t *params,
+                           const uint32_t *table);
 
 /// Request in mA, 0 .. params->max_current_mA + whatever the guard will clip.
 typedef int32_t (*law_step_t)(law_state_t *state, const quiesce_params_t *params,
@@ -38,6 +40,7 @@ typedef int32_t (*law_step_t)(law_state_t *state, const quiesce_params_t *params
 
 typedef struct {
     const char *name; ///< its label in parameters.toml
+    law_init_t init;  ///< NULL: it starts with zeros
     law_step_t step;
     bool uses_rules; ///< base_mA; else the rule base rests
     bool uses_lock;  ///< lock; else nothing is locked on to

@@ -7,4 +7,4 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
     return params->constant_current_mA;
 }
 
-const law_t law_constant = {"constant", step, false, false};
+const law_t law_constant = {.name = "constant", .step = step};

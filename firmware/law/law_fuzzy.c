@@ -7,4 +7,4 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
     return in->base_mA;
 }
 
-const law_t law_fuzzy = {"fuzzy", step, true, false};
+const law_t law_fuzzy = {.name = "fuzzy", .step = step, .uses_rules = true};

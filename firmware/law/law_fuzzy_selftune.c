@@ -2,7 +2,7 @@
 // velocity and acceleration have equal signs and falls while they differ; polarity -1 reverses
 // that. Optional leak back to the rule base's current. State in uA, so that slow rates and leaks
 // add up.
-#include "law.h"
+#include "law_state.h"
 
 static bool is_tuning(const quiesce_params_t *params, const law_in_t *in) {
     return in->freq_is_valid && in->freq_uHz / 1000 < params->selftune_upper_mHz;
@@ -34,13 +34,13 @@ static int64_t leak_q20(const quiesce_params_t *params, int64_t excess_q20) {
 static int32_t step(law_state_t *state, const quiesce_params_t *params, const law_in_t *in) {
     const int64_t base_q20 = (int64_t)in->base_mA << 20;
     if (!is_tuning(params, in)) {
-        state->current_mA_q20 = base_q20;
+        state->selftune_mA_q20 = base_q20;
         return in->base_mA;
     }
-    const int64_t driven_q20 = state->current_mA_q20 + step_q20(params) * direction(params, in);
+    const int64_t driven_q20 = state->selftune_mA_q20 + step_q20(params) * direction(params, in);
     const int64_t current_q20 = driven_q20 - leak_q20(params, driven_q20 - base_q20);
-    state->current_mA_q20 = clamp_i64(current_q20, 0, (int64_t)params->max_current_mA << 20);
-    return (int32_t)(state->current_mA_q20 >> 20);
+    state->selftune_mA_q20 = clamp_i64(current_q20, 0, (int64_t)params->max_current_mA << 20);
+    return (int32_t)(state->selftune_mA_q20 >> 20);
 }
 
-const law_t law_fuzzy_selftune = {"fuzzy_selftune", step, true, false};
+const law_t law_fuzzy_selftune = {.name = "fuzzy_selftune", .step = step, .uses_rules = true};

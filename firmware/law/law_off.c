@@ -8,4 +8,4 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
     return 0;
 }
 
-const law_t law_off = {"off", step, false, false};
+const law_t law_off = {.name = "off", .step = step};

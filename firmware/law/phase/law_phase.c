@@ -2,14 +2,22 @@
 
 #include <stddef.h>
 
-#include "law.h"
+#include "adapt_store.h"
+#include "law_state.h"
 
 enum { WHOLE_q16 = 65536 };
 
-void law_phase_init(law_phase_t *self, const quiesce_params_t *p, const phase_table_t *table) {
+_Static_assert(QUIESCE_ADAPTATION_WORDS == ADAPT_STORE_WORDS, "what is learnt, in words");
+
+static const phase_table_t *as_table(const uint32_t *words) {
+    return (const phase_table_t *)(const void *)words;
+}
+
+// Unlocked, nothing learnt.
+static void start(phase_state_t *self, const quiesce_params_t *p, const phase_table_t *table) {
     const uint32_t blend_ticks = ticks_in_ms(p->phase_blend_ms, p->tick_rate_Hz);
     const uint32_t setting = (uint32_t)p->phase_setting;
-    *self = (law_phase_t){
+    *self = (phase_state_t){
         .table = table,
         .points = phase_table_points(table, setting),
         .point_count = table->points[setting],
@@ -39,7 +47,7 @@ static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
 }
 
 // Frequency, pulse and trim of the half cycle that has begun.
-static void refresh(law_phase_t *self, const quiesce_params_t *params, uint32_t step_turn) {
+static void refresh(phase_state_t *self, const quiesce_params_t *params, uint32_t step_turn) {
     const uint64_t per_tick = (uint64_t)step_turn * (uint32_t)params->tick_rate_Hz;
     self->freq_mHz = (uint32_t)((per_tick * 1000u) >> 32);
     self->place = phase_place(self->points, self->point_count, self->freq_mHz);
@@ -52,19 +60,19 @@ static void refresh(law_phase_t *self, const quiesce_params_t *params, uint32_t 
     self->is_stale = false;
 }
 
-static void let_go(law_phase_t *self) {
+static void let_go(phase_state_t *self) {
     self->blend_q16 = 0;
     self->is_stale = true;
     adapt_pause(&self->adapt);
 }
 
-static int32_t blended(law_phase_t *self, int32_t from_mA, int32_t to_mA) {
+static int32_t blended(phase_state_t *self, int32_t from_mA, int32_t to_mA) {
     const uint32_t next_q16 = self->blend_q16 + self->blend_step_q16;
     self->blend_q16 = next_q16 < WHOLE_q16 ? next_q16 : WHOLE_q16;
     return from_mA + (int32_t)(((int64_t)(to_mA - from_mA) * self->blend_q16) >> 16);
 }
 
-static void adapt(law_phase_t *self, const quiesce_params_t *params, const law_in_t *in) {
+static void adapt(phase_state_t *self, const quiesce_params_t *params, const law_in_t *in) {
     adapt_step(&self->adapt, &(adapt_in_t){
                                  .may_try = params->adapt == QUIESCE_ADAPT_ON && !self->is_frozen &&
                                             self->blend_q16 == WHOLE_q16,
@@ -77,7 +85,7 @@ static void adapt(law_phase_t *self, const quiesce_params_t *params, const law_i
 }
 
 static int32_t step(law_state_t *state, const quiesce_params_t *params, const law_in_t *in) {
-    law_phase_t *self = &state->phase;
+    phase_state_t *self = &state->phase;
     if (!in->lock.is_on || !in->is_output_on) {
         let_go(self);
         return params->unlock_current_mA;
@@ -95,4 +103,56 @@ static int32_t step(law_state_t *state, const quiesce_params_t *params, const la
     return blended(self, params->unlock_current_mA, pulse_mA);
 }
 
-const law_t law_phase = {"phase", step, false, true};
+static void init(law_state_t *state, const quiesce_params_t *params, const uint32_t *table) {
+    start(&state->phase, params, as_table(table));
+}
+
+const law_t law_phase = {.name = "phase", .init = init, .step = step, .uses_lock = true};
+
+phase_table_verdict_t law_phase_use(law_state_t *state, const quiesce_params_t *params,
+                                    const uint32_t *words, uint32_t count) {
+    const phase_table_verdict_t verdict = phase_table_check(words, count);
+    if (verdict == PHASE_TABLE_OK) {
+        const bool is_frozen = state->phase.is_frozen;
+        start(&state->phase, params, as_table(words));
+        state->phase.is_frozen = is_frozen;
+    }
+    return verdict;
+}
+
+static adapt_owner_t owner_of(const phase_state_t *self, const quiesce_params_t *params) {
+    return (adapt_owner_t){self->table->crc, (uint32_t)params->phase_setting};
+}
+
+void law_phase_save(const law_state_t *state, const quiesce_params_t *params, uint32_t *words) {
+    adapt_store(&state->phase.adapt, owner_of(&state->phase, params), words);
+}
+
+bool law_phase_load(law_state_t *state, const quiesce_params_t *params, const uint32_t *words) {
+    return adapt_restore(&state->phase.adapt, owner_of(&state->phase, params), words);
+}
+
+void law_phase_reset(law_state_t *state) {
+    adapt_clear(&state->phase.adapt);
+}
+
+void law_phase_freeze(law_state_t *state, bool is_frozen) {
+    state->phase.is_frozen = is_frozen;
+}
+
+// Half turns Q16 in thousandths of a degree.
+static int32_t half_turn_mdeg(int32_t half_turn_q16) {
+    return half_turn_q16 * 5625 / 2048;
+}
+
+void law_phase_report(const law_state_t *state, quiesce_telemetry_t *t) {
+    const adapt_t *self = &state->phase.adapt;
+    const int16_t *trim = state->phase.trim.value;
+    t->adapt_state = (uint32_t)self->state;
+    t->adapt_trials = self->trials;
+    t->adapt_gains = self->gains;
+    t->trim_on_mdeg = half_turn_mdeg(trim[ADAPT_ON_EDGE]);
+    t->trim_off_mdeg = half_turn_mdeg(trim[ADAPT_OFF_EDGE]);
+    t->trim_level_q15 = 32768 + trim[ADAPT_LEVEL];
+    t->trim_is_whole = trim[ADAPT_WHOLE] != 0 ? 1u : 0u;
+}

@@ -10,26 +10,30 @@
 #ifndef LAW_PHASE_H
 #define LAW_PHASE_H
 
-#include "adapt.h"
+#include "law.h"
 #include "phase_table.h"
-#include "quiesce_params.h"
+#include "quiesce.h"
 
-typedef struct {
-    const phase_table_t *table;
-    const phase_point_t *points; ///< of the setting in use
-    uint32_t point_count;
-    adapt_t adapt;
-    uint32_t blend_step_q16; ///< a tick
-    uint32_t blend_q16;      ///< 0: unlock current, 65536: pulses
-    bool is_stale;           ///< place and pulse are to be found anew
-    bool is_frozen;          ///< adaptation stands still, whatever the parameter says
-    uint32_t freq_mHz;
-    phase_place_t place;
-    phase_pulse_t pulse; ///< trimmed
-    adapt_trim_t trim;   ///< in effect
-} law_phase_t;
+/// Uses other pulses from the next tick on; nothing is learnt about them yet. A table that is
+/// refused changes nothing. The words must stay.
+phase_table_verdict_t law_phase_use(law_state_t *state, const quiesce_params_t *params,
+                                    const uint32_t *words, uint32_t count);
 
-/// Starts unlocked, nothing learnt. The table has been checked and must stay.
-void law_phase_init(law_phase_t *self, const quiesce_params_t *params, const phase_table_t *table);
+/// What has been learnt, as the ADAPT_STORE_WORDS words of adapt_store.h.
+void law_phase_save(const law_state_t *state, const quiesce_params_t *params, uint32_t *words);
+
+/// Puts it back. Returns false, and changes nothing, iff it is not this table's and setting's, or
+/// damaged, or beyond the limits.
+bool law_phase_load(law_state_t *state, const quiesce_params_t *params, const uint32_t *words);
+
+/// Forgets it.
+void law_phase_reset(law_state_t *state);
+
+/// Learning stands still, whatever the parameter says; a table that is put to use changes nothing
+/// about that.
+void law_phase_freeze(law_state_t *state, bool is_frozen);
+
+/// What telemetry says of it: adapt_* and trim_*.
+void law_phase_report(const law_state_t *state, quiesce_telemetry_t *t);
 
 #endif

@@ -1,7 +1,8 @@
-#include "law.h"
+#include "law_phase.h"
 
 #include <stddef.h>
 
+#include "law_state.h"
 #include "pulse_words.h"
 #include "test_signal.h"
 #include "unity.h"
@@ -24,11 +25,9 @@ static law_in_t in;
 static harmonic_sums_t half;
 
 static void start(void) {
-    const phase_table_t *table = (const phase_table_t *)(const void *)words;
     pulse_words_make(words, displacement, POINTS, balanced, POINTS);
     TEST_ASSERT_EQUAL(PHASE_TABLE_OK, phase_table_check(words, words[2]));
-    state = (law_state_t){0};
-    law_phase_init(&state.phase, &params, table);
+    law_state_init(&state, &params, words);
 }
 
 void setUp(void) {

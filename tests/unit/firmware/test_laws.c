@@ -1,4 +1,4 @@
-#include "law.h"
+#include "law_state.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -60,7 +60,7 @@ static void test_selftune_follows_table_x(void) {
     for (uint32_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         for (int32_t polarity = -1; polarity <= 1; polarity += 2) {
             params.selftune_polarity = polarity;
-            state.current_mA_q20 = INT64_C(2000) << 20;
+            state.selftune_mA_q20 = INT64_C(2000) << 20;
             in.accel_um_s2 = 20000 * rows[i].accel_sign;
             in.velocity_um_s_q32 = 1 * rows[i].velocity_sign;
             // 200 A/s at 1 kHz is 200 mA a tick.
@@ -89,14 +89,14 @@ static void test_selftune_leaves_the_base_alone_above_its_frequency_and_unlocked
 
 static void test_selftune_deadband_holds(void) {
     params.selftune_deadband_um_s2 = 30000;
-    state.current_mA_q20 = INT64_C(1500) << 20;
+    state.selftune_mA_q20 = INT64_C(1500) << 20;
     TEST_ASSERT_EQUAL_INT32(1500, run(&law_fuzzy_selftune, 100));
 }
 
 static void test_selftune_leak_returns_to_the_base(void) {
     params.selftune_leak_ms = 200;
     in.accel_um_s2 = 0; // no drive: pure decay from 3 A to 1 A
-    state.current_mA_q20 = INT64_C(3000) << 20;
+    state.selftune_mA_q20 = INT64_C(3000) << 20;
     TEST_ASSERT_INT32_WITHIN(5, 1000 + 735, run(&law_fuzzy_selftune, 200)); // e^-1 of 2 A
     TEST_ASSERT_INT32_WITHIN(1, 1000, run(&law_fuzzy_selftune, 3000));
 }
@@ -106,11 +106,11 @@ static void test_selftune_leak_arrives_at_both_ends(void) {
     in.accel_um_s2 = 0;
     params.selftune_leak_ms = 10000;
     params.tick_rate_Hz = 4000;
-    state.current_mA_q20 = INT64_C(3000) << 20;
+    state.selftune_mA_q20 = INT64_C(3000) << 20;
     TEST_ASSERT_INT32_WITHIN(1, 1000, run(&law_fuzzy_selftune, 400000));
     params.selftune_leak_ms = 1;
     params.tick_rate_Hz = 500;
-    state.current_mA_q20 = INT64_C(3000) << 20;
+    state.selftune_mA_q20 = INT64_C(3000) << 20;
     TEST_ASSERT_EQUAL_INT32(1666, run(&law_fuzzy_selftune, 1)); // a third left of 2 A
     TEST_ASSERT_EQUAL_INT32(1000, run(&law_fuzzy_selftune, 30));
 }
@@ -118,7 +118,7 @@ static void test_selftune_leak_arrives_at_both_ends(void) {
 static void test_selftune_slowest_rate_adds_up(void) {
     params.selftune_rate_mA_s = 3;
     params.tick_rate_Hz = 4000;
-    state.current_mA_q20 = INT64_C(1000) << 20;
+    state.selftune_mA_q20 = INT64_C(1000) << 20;
     TEST_ASSERT_INT32_WITHIN(1, 1030, run(&law_fuzzy_selftune, 40000));
 }
 
