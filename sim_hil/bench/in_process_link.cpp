@@ -9,10 +9,10 @@ bool InProcessLink::start(const quiesce_params_t &params) {
     server_ = lockstep_t{};
     const bool is_accepted = lockstep_start(&server_, &params);
     if (!tables_.rules.empty()) {
-        use_rules(server_.app.controller, tables_.rules);
+        use_rules(server_.controller, tables_.rules);
     }
     if (!tables_.phase.empty()) {
-        use_phase_table(server_.app.controller, tables_.phase);
+        use_phase_table(server_.controller, tables_.phase);
     }
     return is_accepted;
 }

@@ -1,13 +1,11 @@
 /// Lock-step server: one stimulus in, one control tick, one reply out.
 ///
 /// The bench drives every target through this: in its own process, through RAM shared with an
-/// emulator (mailbox.h), or as SLCAN frames over a UART (lockstep_can.h). The firmware behind it is
-/// the same application that a board runs, on simulated peripherals.
+/// emulator (mailbox.h), or as SLCAN frames over a UART (lockstep_can.h). Behind it is the same
+/// control step that a board runs; the stimulus is all that it sees.
 #ifndef LOCKSTEP_H
 #define LOCKSTEP_H
 
-#include "app.h"
-#include "hal_sim.h"
 #include "quiesce.h"
 
 /// lockstep_stimulus_t.flags
@@ -32,9 +30,9 @@ typedef struct {
 } lockstep_reply_t;
 
 typedef struct {
-    app_t app;
-    hal_accel_t accel;
-    hal_current_t current;
+    quiesce_t controller;
+    quiesce_in_t in;   ///< of the last tick
+    quiesce_out_t out; ///< of the last tick
 } lockstep_t;
 
 /// (Re)starts the controller from rest. Returns false iff a parameter is refused; the controller is

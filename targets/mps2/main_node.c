@@ -13,14 +13,6 @@
 /// Some 25 ms of frames: an older demand is of no use to a driver.
 #define QUEUE_BYTES 512u
 
-struct hal_accel {
-    const node_t *node;
-};
-
-struct hal_current {
-    const node_t *node;
-};
-
 typedef struct {
     uint8_t bytes[QUEUE_BYTES];
     uint32_t first;
@@ -30,8 +22,6 @@ typedef struct {
 
 typedef struct {
     node_t node;
-    hal_accel_t accel;
-    hal_current_t current;
     hal_tick_t tick;
     hal_uart_t uart;
     slcan_decoder_t decoder;
@@ -39,21 +29,6 @@ typedef struct {
     node_inputs_t inputs;
     uint32_t restarts;
 } board_t;
-
-bool hal_accel_read(hal_accel_t *accel, hal_axis_t axis, int32_t *counts) {
-    (void)axis;
-    return node_accel_sample(accel->node, counts);
-}
-
-void hal_current_write(hal_current_t *driver, int32_t current_mA, bool enable) {
-    (void)driver;
-    (void)current_mA;
-    (void)enable; // the demand frame carries both
-}
-
-bool hal_current_read(hal_current_t *driver, int32_t *current_mA) {
-    return node_current_measured(driver->node, current_mA);
-}
 
 static void enqueue(queue_t *queue, const can_frame_t *frame) {
     uint8_t text[SLCAN_MAX_BYTES];
@@ -115,16 +90,15 @@ static void run_tick(board_t *board, uint32_t ticks) {
 }
 
 int main(void) {
+    static const node_sources_t sources = {.enable = NODE_ENABLE_CAN, .accel_is_on_bus = true};
     static board_t board;
     quiesce_params_t params;
 
     board.tick.timer = CMSDK_TIMER0;
-    board.accel.node = &board.node;
-    board.current.node = &board.node;
     uart_mps2_open(&board.uart, CMSDK_UART0, UART_BAUD);
     slcan_decoder_init(&board.decoder);
     quiesce_params_default(&params);
-    (void)node_init(&board.node, &params, NODE_ENABLE_CAN, &board.accel, &board.current);
+    (void)node_init(&board.node, &params, sources);
     use_rate(&board);
     for (;;) {
         const uint32_t ticks = hal_tick_elapsed(&board.tick);

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "backends.h"
 #include "config.h"
+#include "firmware.h"
 
 namespace quiesced {
 

@@ -5,7 +5,7 @@
 namespace quiesced {
 
 std::uint32_t latched_fault(const node_t &node) {
-    const quiesce_telemetry_t &telemetry = node.app.out.telemetry;
+    const quiesce_telemetry_t &telemetry = node.out.telemetry;
     const bool is_latched =
         telemetry.state == QUIESCE_STATE_FAULT && telemetry.fault != QUIESCE_FAULT_PARAMETER;
     return is_latched ? telemetry.fault : static_cast<std::uint32_t>(QUIESCE_FAULT_NONE);

@@ -1,10 +1,11 @@
-/// What the program runs, as C++ sees it: node, messages, and the backends but for accelerometers
-/// and current drivers, whose handles backends.h has.
+/// What the program runs, as C++ sees it: node, messages, backends.
 #ifndef QUIESCED_FIRMWARE_H
 #define QUIESCED_FIRMWARE_H
 
 extern "C" {
+#include "accel_backends.h"
 #include "can_bus.h"
+#include "current_backends.h"
 #include "gpio.h"
 #include "node.h"
 #include "nvm_file.h"

@@ -21,44 +21,32 @@ constexpr int kLastAttempts = 1000;       // a millisecond apart
 
 Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange, can_bus_t *bus,
            watchdog_t *watchdog)
-    : config_(config), exchange_(exchange), devices_(exchange.peripherals), log_(exchange.log),
-      bus_(bus), watchdog_(watchdog), latch_(exchange), estop_(config.gpio.estop_input.has_value()),
-      changes_(exchange.log) {
-    accel_ = {read_accel, this};
-    current_ = {write_current, read_current, this};
-    (void)node_init(&node_, &params, config.enable_from, &accel_, &current_);
+    : config_(config), exchange_(exchange), log_(exchange.log), bus_(bus), latch_(exchange),
+      board_(config, exchange, bus, watchdog), changes_(exchange.log) {
+    const bool is_accepted =
+        node_init(&node_, &params, {config.enable_from, config.accel.source == AccelSource::can});
+    axis_ = is_accepted ? static_cast<hal_axis_t>(params.accel_axis) : HAL_AXIS_Z;
+    write_command();
     node_.store = store;
     node_.store_context = this;
     node_.store_is_slow = true;
 }
 
-bool Loop::read_accel(void *self, hal_axis_t axis, std::int32_t *counts) {
-    auto &loop = *static_cast<Loop *>(self);
-    if (loop.config_.accel.source == AccelSource::can) {
-        return node_accel_sample(&loop.node_, counts);
-    }
-    AccelDevice *device = loop.devices_.accel.get();
-    const bool is_fresh = device != nullptr && hal_accel_read(&device->handle, axis, counts);
-    loop.silent_ticks_ = is_fresh ? 0 : loop.silent_ticks_ + 1;
-    return is_fresh;
+/// A fault of an earlier run keeps the driver off, whatever the core says.
+void Loop::write_current(std::int32_t current_mA, bool enable) {
+    board_.write_current(current_mA, enable && !latch_.is_holding());
 }
 
-void Loop::write_current(void *self, std::int32_t current_mA, bool enable) {
-    auto &loop = *static_cast<Loop *>(self);
-    CurrentDevice *device = loop.devices_.current.get();
-    loop.is_written_ = false;
-    if (device != nullptr) {
-        const std::uint32_t failures = device->failures();
-        hal_current_write(&device->handle, current_mA, enable && !loop.latch_.is_holding());
-        loop.is_written_ = device->failures() == failures;
-    }
+void Loop::write_command() {
+    write_current(node_.out.current_cmd_mA, node_.out.driver_enable);
 }
 
-bool Loop::read_current(void *self, std::int32_t *current_mA) {
-    auto &loop = *static_cast<Loop *>(self);
-    CurrentDevice *device = loop.devices_.current.get();
-    return (device != nullptr && hal_current_read(&device->handle, current_mA)) ||
-           node_current_measured(&loop.node_, current_mA);
+/// The driver has its safe current while the controller starts.
+void Loop::restart(const quiesce_params_t &params) {
+    write_current(quiesce_params_safe_current_mA(&params), node_.out.driver_enable);
+    node_restart(&node_, &params);
+    axis_ = static_cast<hal_axis_t>(node_.params.accel_axis);
+    write_command();
 }
 
 /// Called every tick until it is answered.
@@ -84,7 +72,7 @@ void Loop::use_adaptation(const quiesce_adaptation_t &adaptation) {
     if (node_.params.law != QUIESCE_LAW_PHASE) {
         return;
     }
-    const bool is_used = quiesce_adaptation_load(&node_.app.controller, &adaptation);
+    const bool is_used = quiesce_adaptation_load(&node_.controller, &adaptation);
     log_.log(LogLevel::info, is_used ? "what was learnt before is used"
                                      : "what was learnt before belongs to other parameters");
 }
@@ -92,7 +80,7 @@ void Loop::use_adaptation(const quiesce_adaptation_t &adaptation) {
 void Loop::keep_adaptation() {
     has_adaptation_ = node_.params.law == QUIESCE_LAW_PHASE;
     if (has_adaptation_) {
-        quiesce_adaptation_save(&node_.app.controller, &adaptation_);
+        quiesce_adaptation_save(&node_.controller, &adaptation_);
     }
 }
 
@@ -116,7 +104,9 @@ void Loop::use_params(const quiesce_params_t &params) {
     }
     quiesce_param_error_t error{};
     keep_adaptation();
-    if (!node_use_params(&node_, &params, &error)) {
+    if (quiesce_params_check(&params, &error)) {
+        restart(params);
+    } else {
         log_.log(LogLevel::error, "parameters stay: %s: %s", error.name, error.reason);
     }
 }
@@ -157,139 +147,24 @@ void Loop::receive() {
     }
 }
 
-bool Loop::board_enable() {
-    if (!config_.gpio.enable_input) {
-        return true;
-    }
-    (void)devices_.enable_input.pick_up();
-    bool level = false;
-    gpio_line_t *line = devices_.enable_input.get();
-    if (line != nullptr && !gpio_get(line, &level)) {
-        log_.log(LogLevel::error, "enable_input is gone: not enabled");
-        devices_.enable_input.give_up();
-        return false;
-    }
-    // Nobody reads its edges; they must not pile up.
-    gpio_edge_t edge;
-    for (int i = 0; line != nullptr && i < kMaxReceived && gpio_next_edge(line, &edge); ++i) {
-    }
-    return level;
-}
-
-node_inputs_t Loop::board_inputs(std::uint32_t elapsed) {
-    node_inputs_t inputs{};
-    inputs.enable = board_enable();
-    inputs.estop = estop_.is_pressed(devices_.estop_input, log_);
-    inputs.driver_has_failed = !is_drivable();
-    inputs.ticks_elapsed = elapsed;
-    const hal_tick_t &timing = source_.timing();
-    inputs.overruns = timing.overruns;
-    inputs.lateness_us = timing.lateness_ns / 1000U;
-    inputs.work_us = timing.work_ns / 1000U;
-    if (bus_ != nullptr) {
-        inputs.tx_dropped = can_bus_counters(bus_)->tx_dropped;
-        inputs.bus_off_count = can_bus_counters(bus_)->bus_off;
-    }
-    return inputs;
-}
-
 bool Loop::is_safe_command() const {
-    return node_.app.out.current_cmd_mA == quiesce_params_safe_current_mA(&node_.params) &&
-           !node_.app.out.driver_enable;
+    return node_.out.current_cmd_mA == quiesce_params_safe_current_mA(&node_.params) &&
+           !node_.out.driver_enable;
 }
 
-/// The command has left with the demand frame, or, where the driver is at this machine, was written
-/// in the control step.
-void Loop::send(const can_frame_t *frames, std::uint32_t count) {
-    const std::int64_t written_ns = is_written_ ? monotonic_ns() : 0;
+void Loop::send() {
+    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    const std::uint32_t count = node_frames(&node_, frames);
     const std::int64_t demand_ns = send_frames(bus_, frames, count);
-    const std::int64_t left_ns =
-        config_.current.output == CurrentOutput::can ? demand_ns : written_ns;
-    estop_.command_sent(left_ns != 0 && is_safe_command(), left_ns, node_.app.tick, log_);
-}
-
-/// Whether the driver takes its current: a CAN driver looks after itself.
-bool Loop::is_drivable() {
-    if (config_.current.output == CurrentOutput::can) {
-        return true;
-    }
-    CurrentDevice *device = devices_.current.get();
-    return device != nullptr && device->failures() == current_failures_;
-}
-
-void Loop::write_lines() {
-    const bool rewrite = is_due_each_second();
-    enable_output_.set(devices_.enable_output, node_.app.out.driver_enable && is_drivable(),
-                       rewrite, log_);
-    fault_output_.set(devices_.fault_output, node_.app.out.telemetry.fault != QUIESCE_FAULT_NONE,
-                      rewrite, log_);
-}
-
-void Loop::look_after_accel() {
-    if (config_.accel.source == AccelSource::can) {
-        return;
-    }
-    if (devices_.accel.get() == nullptr) {
-        silent_ticks_ = devices_.accel.pick_up() ? 0 : silent_ticks_;
-    } else if (silent_ticks_ > rate_Hz_) {
-        log_.log(LogLevel::error, "accelerometer: no sample for a second; it is opened anew");
-        devices_.accel.give_up();
-    }
-}
-
-void Loop::look_after_current() {
-    CurrentDevice *device = devices_.current.get();
-    if (device == nullptr) {
-        if (devices_.current.pick_up()) {
-            current_failures_ = 0;
-        }
-        return;
-    }
-    const std::uint32_t failures = device->failures();
-    changes_.failed_writes(failures, monotonic_ns());
-    if (is_due_each_second()) {
-        if (failures != current_failures_) {
-            log_.log(LogLevel::error, "current output: it is opened anew");
-            devices_.current.give_up();
-        }
-        current_failures_ = failures;
-    }
-}
-
-/// What it takes to get the bus back may wait: it is the other thread's.
-void Loop::look_after_bus() {
-    if (bus_ != nullptr && can_bus_maintain(bus_, monotonic_ns())) {
-        exchange_.wake();
-    }
-}
-
-void Loop::look_after_devices() {
-    look_after_accel();
-    look_after_current();
-    (void)devices_.data_ready_input.pick_up();
-    look_after_bus();
-    feed_watchdogs(monotonic_ns());
-}
-
-/// Both say that the loop goes on; the disk, which the other thread may wait for, has no part in
-/// it.
-void Loop::feed_watchdogs(std::int64_t now_ns) {
-    if (watchdog_ != nullptr) {
-        watchdog_feed(watchdog_, now_ns);
-    }
-    const Notifier &manager = exchange_.manager;
-    if (manager.watchdog_period_ns() > 0 && now_ns >= next_notice_ns_) {
-        next_notice_ns_ = now_ns + manager.watchdog_period_ns();
-        manager.send("WATCHDOG=1");
-    }
+    board_.command_left(demand_ns, is_safe_command(), node_.in.tick);
 }
 
 Snapshot Loop::snapshot() const {
     Snapshot snapshot{};
-    snapshot.telemetry = node_.app.out.telemetry;
-    snapshot.is_driver_enabled = node_.app.out.driver_enable;
-    snapshot.is_enabled = node_.app.in.enable;
-    snapshot.is_estop = node_.app.in.estop;
+    snapshot.telemetry = node_.out.telemetry;
+    snapshot.is_driver_enabled = node_.out.driver_enable;
+    snapshot.is_enabled = node_.in.enable;
+    snapshot.is_estop = node_.in.estop;
     snapshot.kept_fault = latch_.held();
     snapshot.param_hash = can_node_param_hash(&node_.params);
     snapshot.timing = source_.timing();
@@ -326,7 +201,7 @@ void Loop::put_params() {
 }
 
 void Loop::report(std::int64_t now_ns) {
-    changes_.control(node_.app.out.telemetry);
+    changes_.control(node_.out.telemetry);
     changes_.overruns(source_.timing().overruns, now_ns);
     put_params();
     if (bus_ != nullptr) {
@@ -346,15 +221,19 @@ void Loop::tick(std::uint32_t elapsed) {
     receive();
     answer_store();
     prepare_apply();
-    node_inputs_t inputs = board_inputs(elapsed);
+    node_inputs_t inputs = board_.read(axis_, elapsed, source_.timing());
     latch_.before_tick(inputs);
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
-    const std::uint32_t count = node_tick(&node_, &inputs, frames);
-    send(frames, count);
-    write_lines();
+    node_step(&node_, &inputs);
+    write_command();
+    if (const quiesce_params_t *params = node_task(&node_)) {
+        restart(*params);
+    }
+    send();
+    board_.write_lines(node_.out.driver_enable, node_.out.telemetry.fault != QUIESCE_FAULT_NONE,
+                       is_due_each_second());
     latch_.after_tick(node_);
     after_restart();
-    look_after_devices();
+    board_.look_after(rate_Hz_, is_due_each_second(), changes_);
     report(monotonic_ns());
 }
 
@@ -364,7 +243,7 @@ void Loop::run(std::uint64_t ticks) {
     source_.start(rate_Hz_, config_.gpio.data_ready_input.has_value());
     std::uint64_t done = 0;
     while (!stop_is_requested() && (ticks == 0 || done < ticks)) {
-        const std::uint32_t elapsed = source_.wait(devices_.data_ready_input, log_);
+        const std::uint32_t elapsed = source_.wait(exchange_.peripherals.data_ready_input, log_);
         if (elapsed == 0) {
             continue;
         }
@@ -384,7 +263,7 @@ bool Loop::say_farewell(const can_frame_t &frame) {
         if (can_bus_send(bus_, &frame)) {
             return true;
         }
-        look_after_bus();
+        board_.look_after_bus();
         sleep_ms(1);
     }
     return false;
@@ -393,15 +272,16 @@ bool Loop::say_farewell(const can_frame_t &frame) {
 void Loop::leave() {
     can_frame_t frame{};
     for (int i = 0; i < kFarewells; ++i) {
-        node_leave(&node_, &frame);
-        enable_output_.set(devices_.enable_output, false, true, log_);
+        write_current(quiesce_params_safe_current_mA(&node_.params), false);
+        node_farewell(&node_, &frame);
+        board_.release_enable_line();
         if (bus_ != nullptr && !say_farewell(frame)) {
             log_.log(LogLevel::error, "CAN: the farewell frame was not taken");
             break;
         }
         sleep_ms(kFarewellPause_ms);
     }
-    fault_output_.set(devices_.fault_output, false, true, log_);
+    board_.release_fault_line();
     log_.log(LogLevel::info, "safe current, output off; %llu ticks, %u lost",
              static_cast<unsigned long long>(exchange_.ticks.load()),
              static_cast<unsigned>(source_.timing().overruns));

@@ -15,10 +15,8 @@ from conftest import ROOT
 def build_peer(folder: Path) -> Path:
     """Compiles can_peer.c with the whole firmware."""
     firmware = ROOT / "firmware"
-    files = sorted(firmware.rglob("*.c"))
-    files += [ROOT / "hal/sim/hal_sim.c", Path(__file__).with_name("can_peer.c")]
-    folders = sorted({header.parent for header in firmware.rglob("*.h")})
-    folders += [ROOT / "hal/include", ROOT / "hal/sim"]
+    files = [*sorted(firmware.rglob("*.c")), Path(__file__).with_name("can_peer.c")]
+    folders = sorted({file.parent for file in firmware.rglob("*.h")})
     exe = folder / "can_peer"
     options = ["-std=gnu11", "-O1", *(f"-I{one}" for one in folders), "-o", str(exe)]
     subprocess.run(["gcc", *options, *map(str, files), "-lm"], check=True)

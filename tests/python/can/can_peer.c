@@ -1,4 +1,4 @@
-// A controller for the tests of the CAN tools: the firmware's node on simulated peripherals, at
+// A controller for the tests of the CAN tools: the firmware's node with a simulated sensor, at
 // 1 kHz, with SLCAN on a file descriptor. Runs until its input ends or SIGTERM. Where its reader is
 // slow it waits, so that a busy machine loses no frames; the ticks that it missed do not come.
 //
@@ -16,7 +16,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal_sim.h"
 #include "node.h"
 #include "slcan.h"
 
@@ -91,11 +90,16 @@ static void send_frame(peer_t *peer, const can_frame_t *frame) {
     }
 }
 
-static void tick(peer_t *peer, hal_accel_t *accel, unsigned number) {
+static void tick(peer_t *peer, unsigned number) {
     const double counts = 20000.0 * sin(2.0 * PI * 8.0 * number / 1000.0);
-    hal_sim_accel_set(accel, (int32_t)counts + (int32_t)(number * 7919u % 13u), true);
     const node_inputs_t inputs = {
-        .enable = true, .ticks_elapsed = 1, .work_us = 20, .tx_dropped = peer->dropped};
+        .enable = true,
+        .accel_is_fresh = true,
+        .accel_counts = (int32_t)counts + (int32_t)(number * 7919u % 13u),
+        .ticks_elapsed = 1,
+        .work_us = 20,
+        .tx_dropped = peer->dropped,
+    };
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
     const uint32_t count = node_tick(&peer->node, &inputs, frames);
     for (uint32_t i = 0; i < count; i++) {
@@ -117,12 +121,12 @@ static bool is_long_past(const struct timespec *due) {
     return (now.tv_sec - due->tv_sec) * NS_PER_S + (now.tv_nsec - due->tv_nsec) > MAX_LATE_NS;
 }
 
-static void run(peer_t *peer, hal_accel_t *accel) {
+static void run(peer_t *peer) {
     struct timespec due;
     (void)clock_gettime(CLOCK_MONOTONIC, &due);
     for (unsigned number = 0; !stop; number++) {
         receive(peer);
-        tick(peer, accel, number);
+        tick(peer, number);
         add_tick(&due);
         if (is_long_past(&due)) {
             (void)clock_gettime(CLOCK_MONOTONIC, &due);
@@ -151,8 +155,6 @@ static bool flag(int argc, char **argv, const char *name) {
 
 int main(int argc, char **argv) {
     static peer_t peer;
-    static hal_accel_t accel;
-    static hal_current_t current;
     if (argc < 2) {
         return 2;
     }
@@ -165,11 +167,11 @@ int main(int argc, char **argv) {
     slcan_decoder_init(&peer.decoder);
     quiesce_params_t params;
     quiesce_params_default(&params);
-    if (!node_init(&peer.node, &params, NODE_ENABLE_BOARD, &accel, &current)) {
+    if (!node_init(&peer.node, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
         return 1;
     }
     peer.node.store = keep;
     peer.node.store_context = &peer;
-    run(&peer, &accel);
+    run(&peer);
     return 0;
 }

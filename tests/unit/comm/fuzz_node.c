@@ -2,7 +2,6 @@
 // Whatever arrives, a tick's frames are within the budget, well made and in order; and a frame that
 // is malformed or of a wrong CRC changes nothing but its counter.
 #include "can_make.h"
-#include "hal_sim.h"
 #include "node.h"
 #include "slcan.h"
 
@@ -18,8 +17,6 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 static node_t node;
-static hal_accel_t accel;
-static hal_current_t driver;
 
 static void require(bool holds) {
     if (!holds) {
@@ -50,23 +47,35 @@ static void receive(const can_frame_t *frame) {
     }
 }
 
+// The demand frame, where there is one, says what a driver on the board would be told.
+static bool is_command(const can_frame_t *frame) {
+    struct quiesce_can_current_demand_t wire;
+    if (frame->id != QUIESCE_CAN_CURRENT_DEMAND_FRAME_ID) {
+        return true;
+    }
+    (void)quiesce_can_current_demand_unpack(&wire, frame->data, frame->length);
+    return wire.current_cmd_mA == node.out.current_cmd_mA &&
+           wire.driver_is_enabled == (node.out.driver_enable ? 1u : 0u);
+}
+
 static void tick(uint8_t flags) {
     const node_inputs_t board = {
         .enable = (flags & 1u) != 0,
         .estop = (flags & 0xF0u) == 0xF0u,
         .fault_reset = (flags & 2u) != 0,
+        .accel_counts = (int32_t)(flags * 2654435761u) >> 8,
+        .accel_is_fresh = (flags & 4u) != 0,
         .ticks_elapsed = 1u + (flags >> 6) % 3u,
     };
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
-    hal_sim_accel_set(&accel, (int32_t)(flags * 2654435761u) >> 8, (flags & 4u) != 0);
     const uint32_t count = node_tick(&node, &board, frames);
     require(count <= MOST_FRAMES);
     for (uint32_t i = 0; i < count; i++) {
         require(is_well_made(&frames[i]));
         require(i == 0 || frames[i].id > frames[i - 1u].id);
     }
-    require(node.app.out.current_cmd_mA >= 0);
-    require(driver.command_mA == node.app.out.current_cmd_mA);
+    require(node.out.current_cmd_mA >= 0);
+    require(count == 0 || is_command(&frames[0]));
 }
 
 static int32_t word_at(const uint8_t *bytes) {
@@ -146,11 +155,12 @@ static void run_stream(const uint8_t *bytes, size_t count) {
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count) {
     quiesce_params_t params;
     quiesce_params_default(&params);
-    accel = (hal_accel_t){0};
-    driver = (hal_current_t){0};
     memset(&node, 0, sizeof node);
-    require(count == 0 ||
-            node_init(&node, &params, (node_enable_t)(bytes[0] >> 1) % 3, &accel, &driver));
+    const node_sources_t from = {
+        .enable = count == 0 ? NODE_ENABLE_BOARD : (node_enable_t)(bytes[0] >> 1) % 3,
+        .accel_is_on_bus = count > 0 && (bytes[0] & 8u) != 0,
+    };
+    require(count == 0 || node_init(&node, &params, from));
     if (count > 0 && bytes[0] % 2u == 0) {
         run_stream(&bytes[1], count - 1u);
         return 0;

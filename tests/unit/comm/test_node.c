@@ -1,7 +1,6 @@
 // A controller with its messages: what the bus and the board say reaches it, and what it does
-// reaches driver and bus. Peripherals are simulated; the sensor node's sample is handed over.
+// reaches driver and bus. Sensor and driver are simulated, the latter written as node.h asks for.
 #include "can_make.h"
-#include "hal_sim.h"
 #include "node.h"
 #include "unity.h"
 
@@ -12,9 +11,13 @@
 #define STOP QUIESCE_CAN_EMERGENCY_STOP_CODE_STOP_CHOICE
 #define INDEX_OF(field) (offsetof(quiesce_params_t, field) / sizeof(int32_t))
 
+typedef struct {
+    int32_t command_mA;
+    bool is_enabled;
+} driver_t;
+
 static node_t node;
-static hal_accel_t accel;
-static hal_current_t driver;
+static driver_t driver;
 static quiesce_params_t params;
 static node_inputs_t board;
 static can_frame_t frames[CAN_NODE_MAX_FRAMES];
@@ -22,9 +25,14 @@ static uint32_t frame_count;
 static uint32_t seed;
 static uint8_t operator_alive;
 
+static void write_command(void) {
+    driver = (driver_t){node.out.current_cmd_mA, node.out.driver_enable};
+}
+
 static void start(node_enable_t enable) {
     memset(&node, 0xA5, sizeof node);
-    TEST_ASSERT_TRUE(node_init(&node, &params, enable, &accel, &driver));
+    TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.enable = enable}));
+    write_command();
 }
 
 void setUp(void) {
@@ -32,8 +40,6 @@ void setUp(void) {
     params.law = QUIESCE_LAW_CONSTANT;
     params.constant_current_mA = 1500;
     params.safe_current_mA = 250;
-    accel = (hal_accel_t){0};
-    driver = (hal_current_t){0};
     board = (node_inputs_t){.enable = true, .ticks_elapsed = 1};
     seed = 1;
     operator_alive = 0;
@@ -51,17 +57,30 @@ static void press(bool enable, bool fault_reset) {
     operator_alive = (uint8_t)((operator_alive + 1u) % 16u);
 }
 
+static void tick(void) {
+    node_step(&node, &board);
+    write_command();
+    const quiesce_params_t *const other = node_task(&node);
+    if (other != NULL) {
+        driver.command_mA = quiesce_params_safe_current_mA(other);
+        node_restart(&node, other);
+        write_command();
+    }
+    frame_count = node_frames(&node, frames);
+}
+
 // Ticks with a live sensor on the board.
 static void run(uint32_t ticks) {
     for (uint32_t i = 0; i < ticks; i++) {
         seed = seed * 1664525u + 1013904223u;
-        hal_sim_accel_set(&accel, (int32_t)(seed >> 16) - 32768, true);
-        frame_count = node_tick(&node, &board, frames);
+        board.accel_counts = (int32_t)(seed >> 16) - 32768;
+        board.accel_is_fresh = true;
+        tick();
     }
 }
 
 static uint32_t state(void) {
-    return node.app.out.telemetry.state;
+    return node.out.telemetry.state;
 }
 
 static struct quiesce_can_current_demand_t demand(void) {
@@ -149,7 +168,7 @@ static void test_stop_of_the_board_acts_in_its_tick(void) {
 
 static void check_failed_driver(void) {
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_DRIVER_FAILED, node.app.out.telemetry.fault);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_DRIVER_FAILED, node.out.telemetry.fault);
     TEST_ASSERT_EQUAL_INT32(250, driver.command_mA);
     TEST_ASSERT_FALSE(driver.is_enabled);
     TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
@@ -192,34 +211,60 @@ static void test_stop_is_acknowledged_over_the_bus_once_it_is_released(void) {
     TEST_ASSERT_NOT_EQUAL(QUIESCE_STATE_FAULT, state());
 }
 
+static void run_without_a_board(void) {
+    board.accel_is_fresh = false;
+    board.current_is_measured = false;
+    tick();
+}
+
 static void test_bus_sample_is_there_for_its_tick(void) {
-    int32_t counts = 7;
-    int32_t current_mA = 7;
-    run(1);
-    TEST_ASSERT_FALSE(node_accel_sample(&node, &counts));
-    TEST_ASSERT_FALSE(node_current_measured(&node, &current_mA));
-    TEST_ASSERT_TRUE(counts == 7 && current_mA == 7);
+    TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.accel_is_on_bus = true}));
+    run_without_a_board();
+    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
+    TEST_ASSERT_FALSE(node.in.current_is_measured);
     receive(make_accel(-4321, false, false, 0));
     receive(make_current(-99, 0));
-    TEST_ASSERT_FALSE(node_accel_sample(&node, &counts)); // its tick has not begun
+    run_without_a_board();
+    TEST_ASSERT_TRUE(node.in.accel_is_fresh);
+    TEST_ASSERT_TRUE(node.in.current_is_measured);
+    TEST_ASSERT_EQUAL_INT32(-4321, node.in.accel_counts);
+    TEST_ASSERT_EQUAL_INT32(-99, node.in.current_meas_mA);
+    run_without_a_board();
+    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
+    TEST_ASSERT_EQUAL_INT32(-4321, node.in.accel_counts);
+    TEST_ASSERT_TRUE(node.in.current_is_measured);
+}
+
+static void test_the_sensor_is_where_it_was_set_up(void) {
+    receive(make_accel(-4321, false, false, 0));
+    run_without_a_board(); // a sample on the bus is no sample of the board's sensor
+    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
+    TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.accel_is_on_bus = true}));
     run(1);
-    TEST_ASSERT_TRUE(node_accel_sample(&node, &counts));
-    TEST_ASSERT_TRUE(node_current_measured(&node, &current_mA));
-    TEST_ASSERT_EQUAL_INT32(-4321, counts);
-    TEST_ASSERT_EQUAL_INT32(-99, current_mA);
+    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
+}
+
+static void test_the_boards_measurement_goes_before_the_buss(void) {
+    board.current_is_measured = true;
+    board.current_meas_mA = 77;
+    receive(make_current(-99, 0));
     run(1);
-    TEST_ASSERT_FALSE(node_accel_sample(&node, &counts));
-    TEST_ASSERT_TRUE(node_current_measured(&node, &current_mA));
+    TEST_ASSERT_EQUAL_INT32(77, node.in.current_meas_mA);
+    board.current_is_measured = false;
+    run(1);
+    TEST_ASSERT_TRUE(node.in.current_is_measured);
+    TEST_ASSERT_EQUAL_INT32(-99, node.in.current_meas_mA);
 }
 
 static void test_raw_stream_has_the_samples_that_the_controller_got(void) {
     struct quiesce_can_raw_sample_t raw;
     (void)ask(OP(RAW_STREAM), 0, 10);
     for (uint32_t i = 0; i < 100; i++) {
-        const int32_t last = accel.counts;
+        const int32_t last = node.in.accel_counts;
         if (i % 3u == 0) {
-            hal_sim_accel_set(&accel, 0, false);
-            frame_count = node_tick(&node, &board, frames);
+            board.accel_counts = 0;
+            board.accel_is_fresh = false;
+            tick();
         } else {
             run(1);
         }
@@ -227,9 +272,8 @@ static void test_raw_stream_has_the_samples_that_the_controller_got(void) {
         TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_RAW_SAMPLE_FRAME_ID, frame->id);
         (void)quiesce_can_raw_sample_unpack(&raw, frame->data, frame->length);
         TEST_ASSERT_EQUAL(i % 3u != 0, raw.accel_is_fresh);
-        TEST_ASSERT_EQUAL_INT32(i % 3u == 0 ? last : accel.counts, raw.accel_counts);
-        TEST_ASSERT_EQUAL_UINT16(node.app.tick, raw.tick_low);
-        accel.counts = raw.accel_counts;
+        TEST_ASSERT_EQUAL_INT32(i % 3u == 0 ? last : board.accel_counts, raw.accel_counts);
+        TEST_ASSERT_EQUAL_UINT16(node.in.tick, raw.tick_low);
     }
 }
 
@@ -280,10 +324,12 @@ static void test_a_latched_fault_is_not_forgotten_by_apply(void) {
 
 static void test_refused_parameters_are_mended_over_the_bus(void) {
     params.slew_mA_s = -1;
-    TEST_ASSERT_FALSE(node_init(&node, &params, NODE_ENABLE_BOARD, &accel, &driver));
+    TEST_ASSERT_FALSE(node_init(&node, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD}));
+    write_command();
+    TEST_ASSERT_EQUAL_INT32(250, driver.command_mA);
     TEST_ASSERT_FALSE(driver.is_enabled);
     run(20);
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_PARAMETER, node.app.out.telemetry.fault);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_PARAMETER, node.out.telemetry.fault);
     (void)ask(OP(STAGE), INDEX_OF(law), QUIESCE_LAW_OFF);
     const struct quiesce_can_service_reply_t refused = ask(OP(APPLY), 0, 0);
     TEST_ASSERT_EQUAL(CAN_NODE_OUT_OF_RANGE, refused.result);
@@ -291,20 +337,51 @@ static void test_refused_parameters_are_mended_over_the_bus(void) {
     (void)ask(OP(STAGE), INDEX_OF(slew_mA_s), 5000);
     TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(APPLY), 0, 0).result);
     run(1);
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_NONE, node.app.out.telemetry.fault);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_NONE, node.out.telemetry.fault);
     TEST_ASSERT_TRUE(driver.is_enabled);
 }
 
-static void test_use_params_says_what_is_wrong(void) {
-    quiesce_params_t other = params;
-    quiesce_param_error_t error;
+static void stage_and_apply(void) {
+    (void)ask(OP(STAGE), INDEX_OF(safe_current_mA), 300);
+    receive(make_request(OP(APPLY), 0, 0, 0));
+}
+
+// The driver gets the safe current of what comes while the controller still stands.
+static void test_task_hands_parameters_over_before_anything_restarts(void) {
     run(2000);
-    other.safe_current_mA = -1;
-    TEST_ASSERT_FALSE(node_use_params(&node, &other, &error));
-    TEST_ASSERT_EQUAL_UINT32(INDEX_OF(safe_current_mA), error.index);
-    TEST_ASSERT_FALSE(node_use_params(&node, &other, NULL));
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
-    TEST_ASSERT_EQUAL_INT32(1500, driver.command_mA);
+    stage_and_apply();
+    node_step(&node, &board);
+    const quiesce_params_t *const other = node_task(&node);
+    TEST_ASSERT_NOT_NULL(other);
+    TEST_ASSERT_EQUAL_INT32(300, quiesce_params_safe_current_mA(other));
+    TEST_ASSERT_EQUAL_UINT32(0, node.restarts);
+    TEST_ASSERT_EQUAL_MEMORY(&params, &node.params, sizeof params);
+    TEST_ASSERT_EQUAL_INT32(1500, node.out.current_cmd_mA);
+    TEST_ASSERT_NULL(node_task(&node));
+    node_restart(&node, other);
+    TEST_ASSERT_EQUAL_UINT32(1, node.restarts);
+    TEST_ASSERT_EQUAL_INT32(300, node.out.current_cmd_mA);
+    TEST_ASSERT_TRUE(node.out.driver_enable);
+}
+
+static void test_tick_is_all_three_parts(void) {
+    static node_t other;
+    can_frame_t others[CAN_NODE_MAX_FRAMES];
+    run(2000);
+    stage_and_apply();
+    for (uint32_t i = 0; i < 500; i++) {
+        board.accel_counts = (int32_t)(i * 7919u % 65536u) - 32768;
+        memcpy(&other, &node, sizeof node);
+        tick();
+        TEST_ASSERT_EQUAL_UINT32(frame_count, node_tick(&other, &board, others));
+        TEST_ASSERT_EQUAL_MEMORY(&node, &other, sizeof node);
+        for (uint32_t k = 0; k < frame_count; k++) {
+            TEST_ASSERT_EQUAL_HEX32(frames[k].id, others[k].id);
+            TEST_ASSERT_EQUAL_UINT8(frames[k].length, others[k].length);
+            TEST_ASSERT_EQUAL_MEMORY(frames[k].data, others[k].data, frames[k].length);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, other.restarts);
 }
 
 typedef struct {
@@ -358,9 +435,7 @@ static void test_slow_store_is_answered_by_its_owner(void) {
 static void test_leaving_switches_the_output_off(void) {
     can_frame_t frame;
     run(2000);
-    node_leave(&node, &frame);
-    TEST_ASSERT_EQUAL_INT32(250, driver.command_mA);
-    TEST_ASSERT_FALSE(driver.is_enabled);
+    node_farewell(&node, &frame);
     frames[0] = frame;
     TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
     TEST_ASSERT_EQUAL_UINT8(0, demand().driver_is_enabled);
@@ -370,7 +445,7 @@ static void test_lost_ticks_reach_the_controller(void) {
     run(2000);
     board.ticks_elapsed = 3;
     run(1);
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_TICK_LOST, node.app.out.telemetry.fault);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_TICK_LOST, node.out.telemetry.fault);
 }
 
 int main(void) {
@@ -383,12 +458,15 @@ int main(void) {
     RUN_TEST(test_driver_that_fails_is_switched_off_until_it_is_acknowledged);
     RUN_TEST(test_stop_is_acknowledged_over_the_bus_once_it_is_released);
     RUN_TEST(test_bus_sample_is_there_for_its_tick);
+    RUN_TEST(test_the_sensor_is_where_it_was_set_up);
+    RUN_TEST(test_the_boards_measurement_goes_before_the_buss);
     RUN_TEST(test_raw_stream_has_the_samples_that_the_controller_got);
     RUN_TEST(test_apply_restarts_from_rest_with_the_safe_current);
     RUN_TEST(test_contradicting_parameters_change_nothing);
     RUN_TEST(test_a_latched_fault_is_not_forgotten_by_apply);
     RUN_TEST(test_refused_parameters_are_mended_over_the_bus);
-    RUN_TEST(test_use_params_says_what_is_wrong);
+    RUN_TEST(test_task_hands_parameters_over_before_anything_restarts);
+    RUN_TEST(test_tick_is_all_three_parts);
     RUN_TEST(test_save_stores_what_is_in_effect);
     RUN_TEST(test_slow_store_is_answered_by_its_owner);
     RUN_TEST(test_leaving_switches_the_output_off);

@@ -118,7 +118,7 @@ static uint32_t run_case(lockstep_t *server, uint32_t number) {
     for (uint32_t tick = 0; tick < TICKS; tick++, stretch.left_ticks--) {
         if (stretch.left_ticks == 0) {
             stretch = draw_stretch(&seed);
-            server->app.tick += random_below(&seed, 4) == 0 ? 7u : 0u; // lost ticks
+            server->in.tick += random_below(&seed, 4) == 0 ? 7u : 0u; // lost ticks
         }
         const lockstep_stimulus_t in =
             draw_stimulus(&seed, tick, (uint32_t)params.tick_rate_Hz, &stretch);

@@ -129,19 +129,6 @@ static void test_quiet_sensor_leads_to_safe_and_back(void) {
     assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
 }
 
-static void test_the_axis_that_the_parameter_names_is_read(void) {
-    for (int32_t axis = QUIESCE_ACCEL_AXIS_X; axis <= QUIESCE_ACCEL_AXIS_Z; axis++) {
-        params.accel_axis = axis;
-        start();
-        vibrate(10000, 1);
-        TEST_ASSERT_EQUAL_INT32(axis, server.accel.axis);
-    }
-    params.accel_axis = 3;
-    TEST_ASSERT_FALSE(lockstep_start(&server, &params));
-    vibrate(10000, 1);
-    TEST_ASSERT_EQUAL_INT32(HAL_AXIS_Z, server.accel.axis);
-}
-
 static void test_short_dropout_is_bridged(void) {
     params.law = QUIESCE_LAW_CONSTANT;
     start();
@@ -232,7 +219,7 @@ static void test_lost_tick_invalidates_the_frequency_until_a_window_is_new(void)
     start();
     vibrate(10000, 1500);
     TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.freq_is_valid);
-    server.app.tick += 50;
+    server.in.tick += 50;
     vibrate(10000, 150);
     TEST_ASSERT_EQUAL_UINT32(0, reply.telemetry.freq_is_valid);
     vibrate(10000, 150);
@@ -257,7 +244,7 @@ static void test_lost_tick_is_a_clearing_fault(void) {
     params.law = QUIESCE_LAW_CONSTANT;
     start();
     vibrate(10000, 500);
-    server.app.tick += 3;
+    server.in.tick += 3;
     vibrate(10000, 1);
     assert_state(QUIESCE_STATE_SAFE, QUIESCE_FAULT_TICK_LOST);
     vibrate(10000, 3);
@@ -356,7 +343,6 @@ int main(void) {
     RUN_TEST(test_refused_parameter_latches_and_keeps_the_safe_current);
     RUN_TEST(test_sensor_faults_lead_to_safe_and_back);
     RUN_TEST(test_quiet_sensor_leads_to_safe_and_back);
-    RUN_TEST(test_the_axis_that_the_parameter_names_is_read);
     RUN_TEST(test_short_dropout_is_bridged);
     RUN_TEST(test_emergency_stop_latches_within_its_tick);
     RUN_TEST(test_disable_takes_the_current_away_and_enable_returns_it);

@@ -13,6 +13,7 @@ add_executable(
   quiesced/test_fault.cpp
   quiesced/test_handover.cpp
   quiesced/test_log.cpp
+  quiesced/test_loop.cpp
   quiesced/test_make_safe.cpp
   quiesced/test_notify.cpp
   quiesced/test_options.cpp

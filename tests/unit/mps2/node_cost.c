@@ -4,7 +4,6 @@
 // stream, a fault comes and goes.
 #include "can_make.h"
 #include "counted_call.h"
-#include "hal_sim.h"
 #include "mailbox.h"
 #include "node.h"
 #include "print.h"
@@ -22,8 +21,6 @@ typedef struct {
 
 typedef struct {
     node_t node;
-    hal_accel_t accel;
-    hal_current_t driver;
     node_inputs_t board;
     can_node_tick_t tick;
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
@@ -31,7 +28,7 @@ typedef struct {
 
 static void tick_messages(rig_t *rig) {
     can_node_inputs(&rig->node.can, 1, &rig->node.bus);
-    (void)can_node_tick(&rig->node.can, &rig->tick, &rig->node.app.out, rig->frames);
+    (void)can_node_tick(&rig->node.can, &rig->tick, &rig->node.out, rig->frames);
 }
 
 static void tick_node(rig_t *rig) {
@@ -62,18 +59,28 @@ static void receive_all(rig_t *rig, uint32_t i, uint32_t what) {
     }
 }
 
+// The control step alone, between messages.
+static void control(rig_t *rig) {
+    quiesce_in_t *const in = &rig->node.in;
+    in->tick++;
+    in->enable = true;
+    in->accel_counts = rig->board.accel_counts;
+    in->accel_is_fresh = rig->board.accel_is_fresh;
+    quiesce_step(&rig->node.controller, in, &rig->node.out);
+    rig->tick.accel_is_fresh = rig->node.bus.accel_is_fresh;
+}
+
 static void run(rig_t *rig, const order_t *order) {
     for (uint32_t i = 0; i < order->ticks; i++) {
-        int32_t counts;
         receive_all(rig, i, order->what);
         const bool has_fault = i % FAULT_EVERY_TICKS > FAULT_EVERY_TICKS / 2u;
-        hal_sim_accel_set(&rig->accel, (int32_t)(i * 2654435761u) >> 16, !has_fault);
+        rig->board.accel_counts = (int32_t)(i * 2654435761u) >> 16;
+        rig->board.accel_is_fresh = !has_fault;
         if (order->what == COUNT_NODE_TICK) {
             counted_call((counted_function_t)tick_node, (uintptr_t)rig, 0, 0);
             continue;
         }
-        app_tick(&rig->node.app, &(app_operator_t){.enable = true}, 1);
-        rig->tick.accel_is_fresh = node_accel_sample(&rig->node, &counts);
+        control(rig);
         if (order->what == COUNT_CAN_TICK) {
             counted_call((counted_function_t)tick_messages, (uintptr_t)rig, 0, 0);
         } else {
@@ -88,7 +95,7 @@ int main(void) {
     quiesce_params_t params;
     quiesce_params_default(&params);
     rig.board = (node_inputs_t){.enable = true, .ticks_elapsed = 1};
-    if (!node_init(&rig.node, &params, NODE_ENABLE_BOARD, &rig.accel, &rig.driver)) {
+    if (!node_init(&rig.node, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
         return 1;
     }
     counted_call_init();

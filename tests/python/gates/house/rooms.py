@@ -53,7 +53,7 @@ def unknown_rooms(root: Path) -> Iterator[str]:
 
 def stale_rooms(root: Path) -> Iterator[str]:
     """What the table lists and the tree does not have."""
-    optional = ("docs/tutorial", "firmware/app", "hal/sim")
+    optional = ("docs/tutorial",)
     for folder in listed_folders():
         if folder not in optional and not (root / folder).is_dir():
             yield f"rooms.toml lists {folder}, which is not there"

@@ -50,18 +50,9 @@ class Rig {
     explicit Rig(std::uint32_t kept) : exchange(std::make_unique<Exchange>()) {
         exchange->latched_fault.store(kept);
         latch = std::make_unique<FaultLatch>(*exchange);
-        accel_ = {[](void *self, hal_axis_t, std::int32_t *counts) {
-                      *counts = static_cast<Rig *>(self)->count_++ % 7;
-                      return true;
-                  },
-                  this};
-        current_ = {[](void *self, std::int32_t, bool enable) {
-                        static_cast<Rig *>(self)->is_driver_enabled = enable;
-                    },
-                    [](void *, std::int32_t *) { return false; }, this};
         quiesce_params_t params{};
         quiesce_params_default(&params);
-        (void)node_init(node.get(), &params, NODE_ENABLE_BOARD, &accel_, &current_);
+        (void)node_init(node.get(), &params, {NODE_ENABLE_BOARD, false});
     }
 
     std::uint32_t tick(bool is_pressed, bool is_reset) {
@@ -70,11 +61,14 @@ class Rig {
         inputs.estop = is_pressed;
         inputs.fault_reset = is_reset;
         inputs.ticks_elapsed = 1;
+        inputs.accel_is_fresh = true;
+        inputs.accel_counts = count_++ % 7;
         latch->before_tick(inputs);
         can_frame_t frames[CAN_NODE_MAX_FRAMES];
         (void)node_tick(node.get(), &inputs, frames);
         latch->after_tick(*node);
-        return node->app.out.telemetry.state;
+        is_driver_enabled = node->out.driver_enable;
+        return node->out.telemetry.state;
     }
 
     std::uint32_t kept() const { return exchange->latched_fault.load(); }
@@ -85,8 +79,6 @@ class Rig {
     bool is_driver_enabled = false;
 
   private:
-    hal_accel_t accel_{};
-    hal_current_t current_{};
     std::int32_t count_ = 0;
 };
 

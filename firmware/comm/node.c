@@ -1,0 +1,162 @@
+#include "node.h"
+
+#include <stddef.h>
+
+// Between a start and the first step: the command, and what messages that go out before say of it.
+static bool start(node_t *node) {
+    const int32_t safe_mA = quiesce_params_safe_current_mA(&node->params);
+    node->in = (quiesce_in_t){0};
+    node->out = (quiesce_out_t){
+        .current_cmd_mA = safe_mA,
+        .telemetry = {.current_cmd_mA = safe_mA},
+    };
+    node->out.driver_enable = quiesce_init(&node->controller, &node->params);
+    return node->out.driver_enable;
+}
+
+bool node_init(node_t *node, const quiesce_params_t *params, node_sources_t from) {
+    *node = (node_t){.params = *params, .from = from};
+    can_node_init(&node->can, params);
+    return start(node);
+}
+
+void node_restart(node_t *node, const quiesce_params_t *params) {
+    node->params = *params;
+    node->restarts++;
+    (void)start(node);
+    can_node_use_params(&node->can, &node->params);
+}
+
+void node_receive(node_t *node, const can_frame_t *frame) {
+    can_node_receive(&node->can, frame);
+}
+
+static bool is_enabled(const node_t *node, const node_inputs_t *board) {
+    switch (node->from.enable) {
+    case NODE_ENABLE_BOARD:
+        return board->enable;
+    case NODE_ENABLE_CAN:
+        return node->bus.enable;
+    case NODE_ENABLE_BOTH:
+        return board->enable && node->bus.enable;
+    default:
+        return false;
+    }
+}
+
+static void take_sample(node_t *node, const node_inputs_t *board) {
+    quiesce_in_t *const in = &node->in;
+    const bool is_on_bus = node->from.accel_is_on_bus;
+    in->accel_is_fresh = is_on_bus ? node->bus.accel_is_fresh : board->accel_is_fresh;
+    if (in->accel_is_fresh) {
+        in->accel_counts = is_on_bus ? node->bus.accel_counts : board->accel_counts;
+    }
+}
+
+static void take_current(node_t *node, const node_inputs_t *board) {
+    quiesce_in_t *const in = &node->in;
+    in->current_is_measured = board->current_is_measured || node->bus.current_is_measured;
+    if (in->current_is_measured) {
+        in->current_meas_mA =
+            board->current_is_measured ? board->current_meas_mA : node->bus.current_meas_mA;
+    }
+}
+
+static void take_inputs(node_t *node, const node_inputs_t *board) {
+    quiesce_in_t *const in = &node->in;
+    in->tick += board->ticks_elapsed;
+    in->enable = is_enabled(node, board);
+    in->estop = board->estop || node->bus.estop;
+    in->fault_reset = board->fault_reset || node->bus.fault_reset;
+    in->driver_has_failed = board->driver_has_failed || node->bus.driver_has_failed;
+    take_sample(node, board);
+    take_current(node, board);
+}
+
+// For the frames; a restart within the tick forgets the inputs.
+static void note(node_t *node, const node_inputs_t *board) {
+    node->said = (can_node_tick_t){
+        .enable = node->in.enable,
+        .estop = node->in.estop,
+        .accel_counts = node->in.accel_counts,
+        .accel_is_fresh = node->in.accel_is_fresh,
+        .current_meas_mA = node->in.current_meas_mA,
+        .current_is_measured = node->in.current_is_measured,
+        .overruns = board->overruns,
+        .lateness_us = board->lateness_us,
+        .work_us = board->work_us,
+        .tx_dropped = board->tx_dropped,
+        .bus_off_count = board->bus_off_count,
+    };
+}
+
+void node_step(node_t *node, const node_inputs_t *inputs) {
+    can_node_inputs(&node->can, inputs->ticks_elapsed, &node->bus);
+    take_inputs(node, inputs);
+    note(node, inputs);
+    quiesce_step(&node->controller, &node->in, &node->out);
+}
+
+// A restart would forget a latched fault; only refused parameters are mended by others.
+static bool has_latched_fault(const node_t *node) {
+    const quiesce_telemetry_t *t = &node->out.telemetry;
+    return t->state == QUIESCE_STATE_FAULT && t->fault != QUIESCE_FAULT_PARAMETER;
+}
+
+static const quiesce_params_t *accept_staged(node_t *node) {
+    const quiesce_params_t *const staged = can_node_staged(&node->can);
+    quiesce_param_error_t error;
+    int32_t value = 0;
+    if (has_latched_fault(node)) {
+        can_node_answer(&node->can, CAN_NODE_FAULT_IS_LATCHED, 0);
+        return NULL;
+    }
+    if (quiesce_params_check(staged, &error)) {
+        can_node_answer(&node->can, CAN_NODE_DONE, 0);
+        return staged;
+    }
+    (void)quiesce_param_get(staged, error.index, &value);
+    can_node_answer(&node->can,
+                    can_service_allows(error.index, value) ? CAN_NODE_CONTRADICTION
+                                                           : CAN_NODE_OUT_OF_RANGE,
+                    error.index);
+    return NULL;
+}
+
+static void save(node_t *node) {
+    const bool is_stored = node->store != NULL && node->store(node->store_context, &node->params);
+    if (!is_stored || !node->store_is_slow) {
+        can_node_answer(&node->can, is_stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED, 0);
+    }
+}
+
+const quiesce_params_t *node_task(node_t *node) {
+    switch (can_node_task(&node->can)) {
+    case CAN_NODE_APPLY:
+        return accept_staged(node);
+    case CAN_NODE_SAVE:
+        save(node);
+        return NULL;
+    case CAN_NODE_NOTHING:
+    default:
+        return NULL;
+    }
+}
+
+uint32_t node_frames(node_t *node, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
+    return can_node_tick(&node->can, &node->said, &node->out, frames);
+}
+
+uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
+                   can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
+    node_step(node, inputs);
+    const quiesce_params_t *const params = node_task(node);
+    if (params != NULL) {
+        node_restart(node, params);
+    }
+    return node_frames(node, frames);
+}
+
+void node_farewell(node_t *node, can_frame_t *frame) {
+    can_node_farewell(&node->can, quiesce_params_safe_current_mA(&node->params), frame);
+}
