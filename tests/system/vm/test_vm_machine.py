@@ -54,3 +54,10 @@ def test_failing_script_is_told_with_its_last_words(vm: Vm) -> None:
         with pytest.raises(BenchFailure, match="script ended with 2"):
             results_of(machine.wait_end())
         assert "no_such_script.sh" in machine.tail()
+
+
+def test_killed_emulator_is_told(vm: Vm) -> None:
+    with vm.boot("timing.sh") as machine:
+        os.kill(machine.process_id, signal.SIGKILL)
+        with pytest.raises(BenchFailure, match="QEMU was ended by signal 9"):
+            machine.wait_line("READY")

@@ -101,18 +101,24 @@ class Machine:
         return list(self.lines)
 
     def tail(self) -> str:
-        """The end of the console on one line."""
+        """The end of the console on one line, and the signal that ended QEMU, where one did."""
         lines = [line for line in self.lines if line][-TAIL_LINES:]
-        return "end of its console: " + (" | ".join(lines) if lines else "(it printed nothing)")
+        console = "end of its console: " + (" | ".join(lines) if lines else "(it printed nothing)")
+        code = self._wait() if self._is_over else 0
+        return console if code >= 0 else f"QEMU was ended by signal {-code}; {console}"
 
     def close(self) -> None:
-        if self._holder is not None:
-            self._holder.release()
         self._process.kill()
-        self._process.wait()
+        self._wait()
         self._reader.join()
         for end in (self._qmp_socket, self._qtest_socket):
             end.close()
+
+    def _wait(self) -> int:
+        """How QEMU ended. Its number is its own until it is waited for: the holder goes first."""
+        if self._holder is not None:
+            self._holder.release()
+        return self._process.wait()
 
     def _read(self) -> None:
         assert self._process.stdout is not None
@@ -144,6 +150,8 @@ def _start(command: list[str], sockets: list[socket.socket]) -> subprocess.Popen
             stderr=subprocess.STDOUT,
             pass_fds=[end.fileno() for end in sockets],
             preexec_fn=die_with_parent,
+            # Of its own: a group that loses its leader while one in it is stopped is hung up.
+            process_group=0,
         )
     except FileNotFoundError:
         raise UsageError(f"{EMULATOR} is missing: install Debian's qemu-system-arm")
