@@ -56,6 +56,11 @@ def test_failing_script_is_told_with_its_last_words(vm: Vm) -> None:
         assert "no_such_script.sh" in machine.tail()
 
 
+def test_stopped_emulator_is_not_hung_up_with_its_starters(vm: Vm) -> None:
+    with vm.boot("timing.sh") as machine:
+        assert os.getpgid(machine.process_id) == machine.process_id
+
+
 def test_killed_emulator_is_told(vm: Vm) -> None:
     with vm.boot("timing.sh") as machine:
         os.kill(machine.process_id, signal.SIGKILL)

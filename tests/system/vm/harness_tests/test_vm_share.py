@@ -11,7 +11,7 @@ import pytest
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce_vm import cpu_share
 from quiesce_vm.serial_line import SerialLine
-from quiesce_vm.slow import main
+from quiesce_vm.slow import main, told
 
 WAIT_S = 60.0
 
@@ -107,6 +107,14 @@ def test_measured_share_is_read_back() -> None:
     assert usage.line() == "emulator: 0.250 of a core over 10.0 s"
     assert cpu_share.used_share(f"33 passed\n{usage.line()}\n") == 0.25
     assert cpu_share.used_share("33 passed") is None
+
+
+def test_a_slow_run_tells_each_reason_once() -> None:
+    errors = [f"ERROR tests/test_vm_bus.py::test_{name} - Failed: the guest ended" for name in "ab"]
+    assert told("\n".join(["EE", *errors, "2 errors in 1.0s"])) == (
+        "Failed: the guest ended | 2 errors in 1.0s"
+    )
+    assert told("..\n2 passed in 1.0s\n") == "2 passed in 1.0s"
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "1.5", "nan", "inf", "a quarter"])

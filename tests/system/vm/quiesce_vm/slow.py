@@ -47,11 +47,12 @@ def run_once(share: float) -> SlowRun:
         is_passed=result.returncode == 0 and is_held,
         used_share=used,
         time_s=round(time.monotonic() - start_s, 1),
-        said=_told(result.stdout),
+        said=told(result.stdout),
     )
 
 
-def _told(output: str) -> str:
+def told(output: str) -> str:
+    """The reasons in pytest's summary, each once, and its last line."""
     lines = output.strip().splitlines()
     failures = [
         line.partition(" - ")[2] for line in lines if line.startswith(("FAILED ", "ERROR "))
