@@ -4,7 +4,7 @@
 // From the root of the repository: cmake --preset host, then cmake --build --preset host --target
 // first_loop, then build/host/examples/first_loop. Or with a compiler alone:
 // clang-format off
-// cc -std=c11 -fno-strict-aliasing $(find firmware -type d -printf '-I%p ') -o first_loop examples/first_loop/first_loop.c $(find firmware -name '*.c' | grep -v -e /comm/ -e /app/) -lm && ./first_loop
+// cc -std=c11 -fno-strict-aliasing $(find firmware -type d -printf '-I%p ') -o first_loop examples/first_loop/first_loop.c $(find firmware -name '*.c' | grep -v -e /comm/) -lm && ./first_loop
 // clang-format on
 
 #include <inttypes.h>
