@@ -369,12 +369,18 @@ static void test_tick_is_all_three_parts(void) {
     can_frame_t others[CAN_NODE_MAX_FRAMES];
     run(2000);
     stage_and_apply();
+    memcpy(&other, &node, sizeof node);
     for (uint32_t i = 0; i < 500; i++) {
         board.accel_counts = (int32_t)(i * 7919u % 65536u) - 32768;
-        memcpy(&other, &node, sizeof node);
         tick();
         TEST_ASSERT_EQUAL_UINT32(frame_count, node_tick(&other, &board, others));
-        TEST_ASSERT_EQUAL_MEMORY(&node, &other, sizeof node);
+        // Words only: the bytes between the members of other structures mean nothing.
+        TEST_ASSERT_EQUAL_MEMORY(&node.out.telemetry, &other.out.telemetry,
+                                 sizeof node.out.telemetry);
+        TEST_ASSERT_EQUAL_MEMORY(&node.params, &other.params, sizeof node.params);
+        TEST_ASSERT_EQUAL_INT32(node.out.current_cmd_mA, other.out.current_cmd_mA);
+        TEST_ASSERT_EQUAL(node.out.driver_enable, other.out.driver_enable);
+        TEST_ASSERT_EQUAL_UINT32(node.restarts, other.restarts);
         for (uint32_t k = 0; k < frame_count; k++) {
             TEST_ASSERT_EQUAL_HEX32(frames[k].id, others[k].id);
             TEST_ASSERT_EQUAL_UINT8(frames[k].length, others[k].length);
