@@ -4,6 +4,7 @@ QUIESCE_BUILD names another folder with the builds host/ and mps2/.
 """
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -14,6 +15,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 Result = subprocess.CompletedProcess[str]
+
+# What is started in the background ignores Ctrl-C, and so would every command that a test starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def require(path: Path) -> Path:

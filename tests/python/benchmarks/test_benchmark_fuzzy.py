@@ -359,6 +359,7 @@ def test_command_prints_every_figure_and_tells_what_is_absent(bench, tmp_path: P
     assert "<svg" in (tmp_path / "out/fuzzy_errors.svg").read_text()
 
 
+@pytest.mark.slow
 def test_command_without_peers_cannot_judge(bench) -> None:
     code, printed = bench("--check", "--no-random")
     assert code == EXIT_ABSENT

@@ -347,6 +347,7 @@ def test_command_prints_every_figure_and_writes_plots(bench, tmp_path: Path) -> 
         assert "<svg" in (tmp_path / f"out/{name}.svg").read_text()
 
 
+@pytest.mark.slow
 def test_command_prints_tables_and_depends_on_the_seed_alone(bench, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     options = ("--data", "empty", "--seed")

@@ -160,6 +160,7 @@ def test_models_are_listed(example: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "grey_box" in out
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_the_best_so_far(example: Path, tmp_path: Path) -> None:
     """Interrupted while fitting: a model file and a report are there, and --resume ends it."""
     words = [

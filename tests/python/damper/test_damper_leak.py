@@ -4,8 +4,11 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from quiesce.cli.main import main
 from test_damper_identify import write_example
+
+pytestmark = pytest.mark.slow  # several fits
 
 
 def test_forces_of_test_rows_change_nothing_but_the_test_error(tmp_path: Path) -> None:

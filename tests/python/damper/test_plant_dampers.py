@@ -103,6 +103,7 @@ def test_learned_model_on_a_base_has_no_factor(build) -> None:
         scale_force(data["damper"], 2.0)
 
 
+@pytest.mark.slow
 def test_tune_works_with_a_damper_that_remembers(build, small: Path, tmp_path: Path) -> None:
     result = run_quiesce(
         tmp_path, "tune", small, "--quick", "--from-Hz", "14", "--to-Hz", "16", "--step-Hz", "2",

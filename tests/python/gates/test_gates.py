@@ -56,6 +56,7 @@ def test_cppcheck_gate(tree: Clone) -> None:
     assert gate(tree, "cppcheck").returncode != 0
 
 
+@pytest.mark.slow
 def test_scripts_gate(tree: Clone) -> None:
     assert gate(tree, "scripts").returncode == 0
     (tree.root / "tools/bad").write_text("#!/bin/bash\nrm $1/*\n")

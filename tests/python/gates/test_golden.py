@@ -40,6 +40,7 @@ def test_nothing_differs(build: Path) -> None:
     assert result.returncode == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["streams/storm_07", "loops/sine_10Hz/fuzzy"])
 def test_a_block_that_differs_is_named(build: Path, tmp_path: Path, case: str) -> None:
     columns = (GOLDEN / "golden.txt").read_text().splitlines()[1].split()[1:]
@@ -55,6 +56,7 @@ def test_a_block_that_differs_is_named(build: Path, tmp_path: Path, case: str) -
     assert found["first"] == {"case": case, "ticks": [3000, 3999], "columns": ["fault_count"]}
 
 
+@pytest.mark.slow
 def test_a_plant_that_differs_is_told_apart(build: Path, tmp_path: Path) -> None:
     recorded = tmp_path / "golden.txt"
     recorded.write_text(

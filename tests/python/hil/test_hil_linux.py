@@ -33,6 +33,7 @@ def quick(quiesced: Path, tmp_path_factory: pytest.TempPathFactory):
 # The run
 
 
+@pytest.mark.slow
 def test_every_reply_equals_the_host(quick) -> None:
     result, folder = quick
     assert result.returncode == 0, result.stderr
@@ -52,6 +53,7 @@ def test_every_reply_equals_the_host(quick) -> None:
     assert by_target["host"] == by_target["linux"] and len(by_target["linux"]) == 2
 
 
+@pytest.mark.slow
 def test_table_and_page_say_what_was_compared(quick) -> None:
     result, folder = quick
     assert max(len(line) for line in result.stdout.splitlines()) <= 110

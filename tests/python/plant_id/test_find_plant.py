@@ -24,6 +24,8 @@ from quiesce_benchmarks.sweep.cases import (
     write_case,
 )
 
+pytestmark = pytest.mark.slow  # each finds a plant
+
 NOMINAL = ROOT / "sim_hil/data/plants/squeeze_2012.toml"
 SHORT = SweepPlan(
     rate_Hz=1000, sweep_s=16.0, dwell_Hz=(5.0, 12.0), hold_s=0.4, rest_s=1.2, max_current_A=5.0

@@ -11,6 +11,7 @@ MUTANTS = 3000
 ENDS = ("read", "refused")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("format", FORMATS)
 def test_mutants_are_refused_or_read_for_what_they_say(format: str) -> None:
     counts = fuzz(format, MUTANTS, seed=4)

@@ -186,6 +186,7 @@ def interrupt_after(folder: Path, generation: int, arguments: list[str]) -> tupl
     return process.wait(timeout=60), "".join(lines)
 
 
+@pytest.mark.slow
 def test_interrupted_search_resumes_to_the_same_files(recipe, quiesce, tmp_path) -> None:
     options = [*SHORT, "--method", "de", "--generations", "40", "--start", str(recipe)]
     status, text = interrupt_after(tmp_path, 2, [*options, "--out", "parts"])

@@ -29,6 +29,8 @@ from quiesce.tune.robust import sine_text
 from quiesce.tune.setting import Marks
 from quiesce.tune.store import TuneStore
 
+pytestmark = pytest.mark.slow  # optimal control takes its time
+
 PUBLISHED = ROOT / "sim_hil/data/plants/squeeze_2012.toml"
 SHORT = ("--quick", "--from-Hz", "8", "--to-Hz", "16", "--step-Hz", "8")
 ALONE = ("--robustness", "none", "--no-closed-loop")
