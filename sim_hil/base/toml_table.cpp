@@ -4,11 +4,25 @@
 #include <cmath>
 #include <sstream>
 
+#include <toml++/toml.h>
+
 #include "input_error.h"
 
 namespace quiesce {
 
 namespace {
+
+const toml::node &read(const TomlNode &node) {
+    return reinterpret_cast<const toml::node &>(node);
+}
+
+const TomlNode *opaque(const toml::node *node) {
+    return reinterpret_cast<const TomlNode *>(node);
+}
+
+const toml::table &read_table(const TomlNode *node) {
+    return *read(*node).as_table();
+}
 
 std::string joined(const std::vector<std::string> &words) {
     std::string out;
@@ -40,7 +54,7 @@ std::string expected_number(const Range &range) {
 
 } // namespace
 
-TomlTable::TomlTable(const toml::table &table, const std::string &file, std::string path)
+TomlTable::TomlTable(const TomlNode &table, const std::string &file, std::string path)
     : table_(&table), file_(file), path_(std::move(path)) {}
 
 std::string TomlTable::full_key(const std::string &key) const {
@@ -48,8 +62,8 @@ std::string TomlTable::full_key(const std::string &key) const {
 }
 
 std::string TomlTable::message(const std::string &key, const std::string &what) const {
-    const toml::node *node = table_->get(key);
-    const auto line = (node != nullptr ? node : table_)->source().begin.line;
+    const toml::node *node = read_table(table_).get(key);
+    const auto line = (node != nullptr ? *node : read(*table_)).source().begin.line;
     const std::string where = line > 0 ? ":" + std::to_string(line) : "";
     return file_ + where + ": " + full_key(key) + ": " + what;
 }
@@ -59,28 +73,29 @@ void TomlTable::fail(const std::string &key, const std::string &message) const {
 }
 
 bool TomlTable::has(const std::string &key) const {
-    return table_->contains(key);
+    return read_table(table_).contains(key);
 }
 
 bool TomlTable::is_integer(const std::string &key) const {
-    return table_->contains(key) && table_->get(key)->is_integer();
+    return has(key) && read_table(table_).get(key)->is_integer();
 }
 
-const toml::node *TomlTable::find(const std::string &key) {
+const TomlNode *TomlTable::find(const std::string &key) {
     asked_.insert(key);
-    return table_->get(key);
+    return opaque(read_table(table_).get(key));
 }
 
-const toml::node &TomlTable::require(const std::string &key, const std::string &expected) {
-    const toml::node *node = find(key);
+const TomlNode &TomlTable::require(const std::string &key, const std::string &expected) {
+    const TomlNode *node = find(key);
     if (node == nullptr) {
         fail(key, "missing; " + expected);
     }
     return *node;
 }
 
-double TomlTable::checked_number(const std::string &key, const toml::node &node,
+double TomlTable::checked_number(const std::string &key, const TomlNode &opaque_node,
                                  const Range &range) const {
+    const toml::node &node = read(opaque_node);
     const std::optional<double> value =
         node.is_number() ? node.value<double>() : std::optional<double>{};
     if (!value || !(*value >= range.min && *value <= range.max)) {
@@ -94,14 +109,14 @@ double TomlTable::number(const std::string &key, const Range &range) {
 }
 
 double TomlTable::number(const std::string &key, const Range &range, double fallback) {
-    const toml::node *node = find(key);
+    const TomlNode *node = find(key);
     return node == nullptr ? fallback : checked_number(key, *node, range);
 }
 
 std::int64_t TomlTable::integer(const std::string &key, std::int64_t min, std::int64_t max) {
     const std::string expected =
         "expected an integer in " + std::to_string(min) + " .. " + std::to_string(max);
-    const toml::node &node = require(key, expected);
+    const toml::node &node = read(require(key, expected));
     const auto *value = node.as_integer();
     if (value == nullptr || value->get() < min || value->get() > max) {
         fail(key, expected + ", found " + shown(node));
@@ -116,7 +131,7 @@ std::int64_t TomlTable::integer(const std::string &key, std::int64_t min, std::i
 
 std::vector<double> TomlTable::coefficients(const std::string &key, std::size_t most,
                                             const Range &range) {
-    if (!has(key) || !table_->get(key)->is_array()) {
+    if (!has(key) || !read_table(table_).get(key)->is_array()) {
         return {number(key, range)};
     }
     std::vector<double> values = numbers(key, 0);
@@ -128,15 +143,18 @@ std::vector<double> TomlTable::coefficients(const std::string &key, std::size_t 
 }
 
 bool TomlTable::boolean(const std::string &key, bool fallback) {
-    const toml::node *node = find(key);
-    if (node != nullptr && !node->is_boolean()) {
-        fail(key, "expected true or false, found " + shown(*node));
+    const TomlNode *node = find(key);
+    if (node == nullptr) {
+        return fallback;
     }
-    return node == nullptr ? fallback : node->as_boolean()->get();
+    if (!read(*node).is_boolean()) {
+        fail(key, "expected true or false, found " + shown(read(*node)));
+    }
+    return read(*node).as_boolean()->get();
 }
 
 std::string TomlTable::text(const std::string &key) {
-    const toml::node &node = require(key, "expected a text in quotes");
+    const toml::node &node = read(require(key, "expected a text in quotes"));
     if (!node.is_string() || node.as_string()->get().empty()) {
         fail(key, "expected a text in quotes, found " + shown(node));
     }
@@ -145,7 +163,7 @@ std::string TomlTable::text(const std::string &key) {
 
 std::string TomlTable::choice(const std::string &key, const std::vector<std::string> &choices) {
     const std::string expected = "expected one of: " + joined(choices);
-    const toml::node &node = require(key, expected);
+    const toml::node &node = read(require(key, expected));
     std::string value = node.value<std::string>().value_or("");
     if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
         fail(key, expected + "; found " + shown(node));
@@ -153,8 +171,9 @@ std::string TomlTable::choice(const std::string &key, const std::vector<std::str
     return value;
 }
 
-std::vector<double> TomlTable::row(const std::string &key, const toml::node &node,
+std::vector<double> TomlTable::row(const std::string &key, const TomlNode &opaque_node,
                                    std::size_t length) const {
+    const toml::node &node = read(opaque_node);
     const toml::array *array = node.as_array();
     if (array == nullptr || array->empty() || (length > 0 && array->size() != length)) {
         const std::string count = length > 0 ? std::to_string(length) + " numbers" : "numbers";
@@ -163,7 +182,7 @@ std::vector<double> TomlTable::row(const std::string &key, const toml::node &nod
     }
     std::vector<double> out;
     for (const toml::node &element : *array) {
-        out.push_back(checked_number(key, element, {-1e12, 1e12, "each element"}));
+        out.push_back(checked_number(key, *opaque(&element), {-1e12, 1e12, "each element"}));
     }
     return out;
 }
@@ -175,7 +194,7 @@ std::vector<double> TomlTable::numbers(const std::string &key, std::size_t lengt
 std::vector<std::vector<double>> TomlTable::square(const std::string &key, std::size_t count) {
     const std::string expected =
         "expected " + std::to_string(count) + " rows of " + std::to_string(count) + " numbers";
-    const toml::node &node = require(key, expected);
+    const toml::node &node = read(require(key, expected));
     const toml::array *array = node.as_array();
     if (array == nullptr || array->size() != count) {
         fail(key, expected + ", found " +
@@ -183,17 +202,17 @@ std::vector<std::vector<double>> TomlTable::square(const std::string &key, std::
     }
     std::vector<std::vector<double>> out;
     for (const toml::node &element : *array) {
-        out.push_back(row(key, element, count));
+        out.push_back(row(key, *opaque(&element), count));
     }
     return out;
 }
 
 TomlTable TomlTable::table(const std::string &key) {
-    const toml::node &node = require(key, "expected a table [" + full_key(key) + "]");
+    const toml::node &node = read(require(key, "expected a table [" + full_key(key) + "]"));
     if (!node.is_table()) {
         fail(key, "expected a table [" + full_key(key) + "], found " + shown(node));
     }
-    return TomlTable(*node.as_table(), file_, full_key(key));
+    return TomlTable(*opaque(&node), file_, full_key(key));
 }
 
 std::optional<TomlTable> TomlTable::optional_table(const std::string &key) {
@@ -201,28 +220,30 @@ std::optional<TomlTable> TomlTable::optional_table(const std::string &key) {
 }
 
 std::vector<TomlTable> TomlTable::tables(const std::string &key) {
-    const toml::node *node = find(key);
+    const TomlNode *found = find(key);
     std::vector<TomlTable> out;
-    if (node == nullptr) {
+    if (found == nullptr) {
         return out;
     }
-    if (!node->is_array_of_tables()) {
-        fail(key, "expected tables [[" + full_key(key) + "]], found " + shown(*node));
+    const toml::node &node = read(*found);
+    if (!node.is_array_of_tables()) {
+        fail(key, "expected tables [[" + full_key(key) + "]], found " + shown(node));
     }
-    for (const toml::node &element : *node->as_array()) {
+    for (const toml::node &element : *node.as_array()) {
         const std::string index = "[" + std::to_string(out.size() + 1) + "]";
-        out.emplace_back(*element.as_table(), file_, full_key(key) + index);
+        out.emplace_back(*opaque(&element), file_, full_key(key) + index);
     }
     return out;
 }
 
 std::vector<std::string> TomlTable::keys() const {
     std::vector<std::string> out;
-    for (const auto &[key, node] : *table_) {
+    const toml::table &table = read_table(table_);
+    for (const auto &[key, node] : table) {
         out.emplace_back(key.str());
     }
-    const auto line = [this](const std::string &key) {
-        return table_->get(key)->source().begin.line;
+    const auto line = [&table](const std::string &key) {
+        return table.get(key)->source().begin.line;
     };
     std::stable_sort(out.begin(), out.end(), [&line](const std::string &a, const std::string &b) {
         return line(a) < line(b);
@@ -250,7 +271,8 @@ void TomlTable::reject_unknown_keys() const {
 
 TomlFile::TomlFile(const std::string &file) : file_(file) {
     try {
-        table_ = toml::parse_file(file);
+        const auto table = std::make_shared<const toml::table>(toml::parse_file(file));
+        table_ = std::shared_ptr<const TomlNode>(table, opaque(table.get()));
     } catch (const toml::parse_error &error) {
         const auto line = error.source().begin.line;
         const std::string where = line > 0 ? ":" + std::to_string(line) : "";
@@ -266,7 +288,7 @@ TomlFile::TomlFile(const std::string &file, const std::string &schema, std::int6
 }
 
 TomlTable TomlFile::root() const {
-    return TomlTable(table_, file_, "");
+    return TomlTable(*table_, file_, "");
 }
 
 } // namespace quiesce

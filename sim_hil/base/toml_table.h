@@ -4,14 +4,17 @@
 #define QUIESCE_TOML_TABLE_H
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include <toml++/toml.h>
-
 namespace quiesce {
+
+/// A node as the library toml++ has it. Its header takes every file that reads it a second of the
+/// first build, so only toml_table.cpp does.
+struct TomlNode;
 
 /// What a number may be: min .. max, both allowed, in this unit.
 struct Range {
@@ -24,8 +27,8 @@ struct Range {
 /// fallback also for a key that is missing. Refers to the table of a TomlFile that must outlive it.
 class TomlTable {
   public:
-    /// path: what comes before its keys in messages ("" for the root).
-    TomlTable(const toml::table &table, const std::string &file, std::string path);
+    /// table: is one. path: what comes before its keys in messages ("" for the root).
+    TomlTable(const TomlNode &table, const std::string &file, std::string path);
 
     bool has(const std::string &key) const;
     bool is_integer(const std::string &key) const;
@@ -68,14 +71,13 @@ class TomlTable {
 
   private:
     std::string message(const std::string &key, const std::string &what) const;
-    const toml::node *find(const std::string &key);
-    const toml::node &require(const std::string &key, const std::string &expected);
+    const TomlNode *find(const std::string &key);
+    const TomlNode &require(const std::string &key, const std::string &expected);
     std::string full_key(const std::string &key) const;
-    double checked_number(const std::string &key, const toml::node &node, const Range &range) const;
-    std::vector<double> row(const std::string &key, const toml::node &node,
-                            std::size_t length) const;
+    double checked_number(const std::string &key, const TomlNode &node, const Range &range) const;
+    std::vector<double> row(const std::string &key, const TomlNode &node, std::size_t length) const;
 
-    const toml::table *table_;
+    const TomlNode *table_;
     std::string file_;
     std::string path_;
     std::set<std::string> asked_;
@@ -95,7 +97,7 @@ class TomlFile {
 
   private:
     std::string file_;
-    toml::table table_;
+    std::shared_ptr<const TomlNode> table_;
 };
 
 } // namespace quiesce

@@ -3,20 +3,17 @@
 #include <iostream>
 #include <sstream>
 
-#include <nlohmann/json.hpp>
-
 #include "commands.h"
 #include "comparing_link.h"
 #include "digest.h"
 #include "in_process_link.h"
 #include "input_error.h"
+#include "json.h"
 #include "run_options.h"
 
 namespace quiesce {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<std::uint64_t> parse_seeds(const std::string &list) {
     std::vector<std::uint64_t> seeds;
@@ -70,10 +67,10 @@ int cmd_compare(const std::vector<std::string> &words) {
                       {"first_mismatch", first_mismatch_json(link.first_mismatch(), seeds)},
                       {"distinct_commands", digest.distinct_commands()},
                       {"seeds", seeds},
-                      {"targets", {host.target(), target->target()}},
+                      {"targets", std::vector<std::string>{host.target(), target->target()}},
                       {"faults_seen", digest.faults_seen()},
-                      {"instr_median", counts ? Json(counts->median) : Json(nullptr)},
-                      {"instr_worst", counts ? Json(counts->worst) : Json(nullptr)}};
+                      {"instr_median", counts ? Json(counts->median) : Json()},
+                      {"instr_worst", counts ? Json(counts->worst) : Json()}};
     std::cout << out.dump() << '\n';
     return 0;
 }

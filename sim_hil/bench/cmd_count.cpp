@@ -1,12 +1,11 @@
 /// count: an image that runs by itself to its end, its instructions counted between its markers.
 #include <iostream>
 
-#include <nlohmann/json.hpp>
-
 #include "arguments.h"
 #include "commands.h"
 #include "image_run.h"
 #include "input_error.h"
+#include "json.h"
 
 namespace quiesce {
 
@@ -46,7 +45,7 @@ int cmd_count(const std::vector<std::string> &words) {
     options.profile = profile_from(arguments);
     options.answer_time = kLongestRun;
     const ImageRun run = run_image(options, words_from(arguments));
-    nlohmann::ordered_json out = {
+    Json out = {
         {"passes", run.counts.ticks},
         {"worst", run.counts.worst},
         {"worst_pass", run.counts.worst_tick},
@@ -54,11 +53,11 @@ int cmd_count(const std::vector<std::string> &words) {
         {"mean", static_cast<double>(run.counts.total) / static_cast<double>(run.counts.ticks)},
         {"printed", run.printed}};
     if (options.profile != "off") {
-        nlohmann::ordered_json profile = nlohmann::ordered_json::object();
+        Json profile = Json::object();
         for (const auto &[address, count] : run.profile) {
-            profile[std::to_string(address)] = count;
+            profile.set(std::to_string(address), count);
         }
-        out["profile"] = profile;
+        out.set("profile", profile);
     }
     std::cout << out.dump() << '\n';
     return 0;

@@ -3,11 +3,10 @@
 #include <cmath>
 #include <iostream>
 
-#include <nlohmann/json.hpp>
-
 #include "arguments.h"
 #include "commands.h"
 #include "firmware.h"
+#include "json.h"
 
 namespace quiesce {
 
@@ -35,7 +34,7 @@ int cmd_fuzzy_surface(const std::vector<std::string> &words) {
     Arguments("fuzzy-surface", words, {}).require_no_positional();
     const std::vector<double> freq_Hz = axis(kFreqLast_Hz);
     const std::vector<double> rms_m_s2 = axis(kRmsLast_m_s2);
-    nlohmann::ordered_json current_A = nlohmann::ordered_json::array();
+    Json current_A = Json::array();
     for (const double f : freq_Hz) {
         std::vector<double> row(rms_m_s2.size());
         std::transform(rms_m_s2.begin(), rms_m_s2.end(), row.begin(), [f](double rms) {
@@ -43,8 +42,7 @@ int cmd_fuzzy_surface(const std::vector<std::string> &words) {
         });
         current_A.push_back(row);
     }
-    const nlohmann::ordered_json out = {
-        {"freq_Hz", freq_Hz}, {"rms_m_s2", rms_m_s2}, {"current_A", current_A}};
+    const Json out = {{"freq_Hz", freq_Hz}, {"rms_m_s2", rms_m_s2}, {"current_A", current_A}};
     std::cout << out.dump() << '\n';
     return 0;
 }

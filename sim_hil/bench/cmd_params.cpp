@@ -1,29 +1,28 @@
 /// params: every parameter of the controller as JSON.
 #include <iostream>
 
-#include <nlohmann/json.hpp>
-
 #include "arguments.h"
 #include "commands.h"
 #include "firmware.h"
+#include "json.h"
 
 namespace quiesce {
 
 namespace {
 
-nlohmann::ordered_json describe(const quiesce_param_info_t &info) {
-    nlohmann::ordered_json out = {{"name", info.name},
-                                  {"unit", info.unit},
-                                  {"min", info.min},
-                                  {"max", info.max},
-                                  {"default", info.default_value},
-                                  {"choices", nullptr},
-                                  {"labels", nullptr}};
+Json describe(const quiesce_param_info_t &info) {
+    Json out = {{"name", info.name},
+                {"unit", info.unit},
+                {"min", info.min},
+                {"max", info.max},
+                {"default", info.default_value},
+                {"choices", nullptr},
+                {"labels", nullptr}};
     if (info.choices != nullptr) {
-        out["choices"] = std::vector<int>(info.choices, info.choices + info.choice_count);
+        out.set("choices", std::vector<int>(info.choices, info.choices + info.choice_count));
     }
     if (info.labels != nullptr) {
-        out["labels"] = std::vector<std::string>(info.labels, info.labels + info.max + 1);
+        out.set("labels", std::vector<std::string>(info.labels, info.labels + info.max + 1));
     }
     return out;
 }
@@ -32,7 +31,7 @@ nlohmann::ordered_json describe(const quiesce_param_info_t &info) {
 
 int cmd_params(const std::vector<std::string> &words) {
     Arguments("params", words, {}).require_no_positional();
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    Json list = Json::array();
     for (std::uint32_t index = 0; index < QUIESCE_PARAM_COUNT; ++index) {
         list.push_back(describe(*quiesce_param_info(index)));
     }

@@ -5,11 +5,10 @@
 #include <iostream>
 #include <iterator>
 
-#include <nlohmann/json.hpp>
-
 #include "commands.h"
 #include "digest.h"
 #include "input_error.h"
+#include "json.h"
 #include "param_options.h"
 #include "run_options.h"
 #include "tick_columns.h"
@@ -133,16 +132,16 @@ int cmd_replay(const std::vector<std::string> &words) {
     link->finish();
     result.trace.write(trace_file);
     const double duration_s = static_cast<double>(counts.size()) / params.tick_rate_Hz;
-    const nlohmann::ordered_json out = {{"law", law_label(params)},
-                                        {"target", link->target()},
-                                        {"ticks", counts.size()},
-                                        {"records", counts.size() / plan.record_ticks},
-                                        {"faults", result.faults},
-                                        {"faults_seen", result.digest.faults_seen()},
-                                        {"distinct_commands", result.digest.distinct_commands()},
-                                        {"telemetry_crc32", result.digest.telemetry_crc32()},
-                                        {"wall_s", result.wall_s},
-                                        {"realtime_factor", duration_s / result.wall_s}};
+    const Json out = {{"law", law_label(params)},
+                      {"target", link->target()},
+                      {"ticks", counts.size()},
+                      {"records", counts.size() / plan.record_ticks},
+                      {"faults", result.faults},
+                      {"faults_seen", result.digest.faults_seen()},
+                      {"distinct_commands", result.digest.distinct_commands()},
+                      {"telemetry_crc32", result.digest.telemetry_crc32()},
+                      {"wall_s", result.wall_s},
+                      {"realtime_factor", duration_s / result.wall_s}};
     std::cout << out.dump() << '\n';
     return 0;
 }

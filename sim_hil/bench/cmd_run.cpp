@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <iostream>
 
-#include <nlohmann/json.hpp>
-
 #include "commands.h"
 #include "comparing_link.h"
 #include "digest.h"
 #include "in_process_link.h"
 #include "input_error.h"
+#include "json.h"
 #include "metrics.h"
 #include "param_options.h"
 #include "run_options.h"
@@ -18,12 +17,6 @@ namespace quiesce {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json or_null(const std::optional<double> &value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
 /// What was measured in one window, by name; freq_hz is the excitation's in its middle.
 Json window_json(const Window &window, const WindowMetrics &measured,
                  const Excitation &excitation) {
@@ -31,7 +24,7 @@ Json window_json(const Window &window, const WindowMetrics &measured,
     return {{"start_s", window.start_s},
             {"end_s", window.end_s},
             {"freq_hz", excitation.at(0.5 * (window.start_s + window.end_s)).freq_Hz},
-            {"amp_um", amplitude_m ? Json(1e6 * *amplitude_m) : Json(nullptr)},
+            {"amp_um", amplitude_m ? Json(1e6 * *amplitude_m) : Json()},
             {"disp_rms_um", 1e6 * measured.displacement_rms_m()},
             {"peak_disp_um", 1e6 * measured.peak_displacement_m()},
             {"accel_rms_mm_s2", 1e3 * measured.accel_rms_m_s2()},
@@ -39,9 +32,9 @@ Json window_json(const Window &window, const WindowMetrics &measured,
             {"damper_work_J", measured.damper_work_J()}};
 }
 
-Json windows_json(const RunSetup &setup, const RunMetrics &metrics) {
+std::vector<Json> windows_json(const RunSetup &setup, const RunMetrics &metrics) {
     const Excitation excitation = make_excitation(setup.scenario, setup.plant.shaker);
-    Json out = Json::array();
+    std::vector<Json> out;
     for (std::size_t i = 0; i < metrics.windows.size(); ++i) {
         out.push_back(window_json(setup.scenario.windows[i], metrics.windows[i], excitation));
     }
@@ -50,45 +43,45 @@ Json windows_json(const RunSetup &setup, const RunMetrics &metrics) {
 
 /// The figures of a window once more beside those of the run: amp_um of the first window, amp2_um
 /// of the second.
-void add_window(Json &out, const Json &windows, std::size_t index) {
+void add_window(Json &out, const std::vector<Json> &windows, std::size_t index) {
     const std::string number = index == 0 ? "" : std::to_string(index + 1);
     for (const auto &[name, unit] : {std::pair<const char *, const char *>{"freq", "_hz"},
                                      {"amp", "_um"},
                                      {"accel_rms", "_mm_s2"},
                                      {"disp_rms", "_um"},
                                      {"peak_disp", "_um"}}) {
-        out[name + number + unit] =
-            index < windows.size() ? windows[index][std::string(name) + unit] : Json(nullptr);
+        out.set(name + number + unit,
+                index < windows.size() ? windows[index].at(std::string(name) + unit) : Json());
     }
 }
 
 Json run_json(const RunSetup &setup, const std::string &target, const RunMetrics &metrics,
               const DigestObserver &digest) {
-    const Json windows = windows_json(setup, metrics);
+    const std::vector<Json> windows = windows_json(setup, metrics);
     Json out = {
         {"scenario", setup.scenario.name}, {"law", law_label(setup.params)}, {"target", target}};
     add_window(out, windows, 0);
     add_window(out, windows, 1);
-    out["mean_current_A"] = metrics.windows.back().mean_current_A();
-    out["rms_disp_um"] = 1e6 * metrics.rms_displacement_m;
-    out["damper_work_J"] = metrics.windows.back().damper_work_J();
-    out["transient_peak_disp_um"] =
-        metrics.transient_peak_m ? Json(1e6 * *metrics.transient_peak_m) : Json(nullptr);
-    out["settle_s"] = or_null(metrics.settle_s);
-    out["windows"] = windows;
-    out["faults"] = digest.fault_count();
-    out["faults_seen"] = digest.faults_seen();
-    out["distinct_commands"] = digest.distinct_commands();
-    out["telemetry_crc32"] = digest.telemetry_crc32();
-    out["seed"] = setup.seed;
-    out["noise_mg"] = setup.plant.sensor.noise_mg;
-    out["drive_V"] = setup.plant.shaker.drive_V;
+    out.set("mean_current_A", metrics.windows.back().mean_current_A());
+    out.set("rms_disp_um", 1e6 * metrics.rms_displacement_m);
+    out.set("damper_work_J", metrics.windows.back().damper_work_J());
+    out.set("transient_peak_disp_um",
+            metrics.transient_peak_m ? Json(1e6 * *metrics.transient_peak_m) : Json());
+    out.set("settle_s", json_or_null(metrics.settle_s));
+    out.set("windows", windows);
+    out.set("faults", digest.fault_count());
+    out.set("faults_seen", digest.faults_seen());
+    out.set("distinct_commands", digest.distinct_commands());
+    out.set("telemetry_crc32", digest.telemetry_crc32());
+    out.set("seed", setup.seed);
+    out.set("noise_mg", setup.plant.sensor.noise_mg);
+    out.set("drive_V", setup.plant.shaker.drive_V);
     return out;
 }
 
 void add_counts(Json &out, const std::optional<InstructionCounts> &counts) {
-    out["instr_median"] = counts ? Json(counts->median) : Json(nullptr);
-    out["instr_worst"] = counts ? Json(counts->worst) : Json(nullptr);
+    out.set("instr_median", counts ? Json(counts->median) : Json());
+    out.set("instr_worst", counts ? Json(counts->worst) : Json());
 }
 
 /// Runs it repeat times and returns the result with the fastest time. trace: records the last run;
@@ -110,9 +103,9 @@ Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repe
         }
         out = run_json(setup, link.target(), metrics.result(), digest);
     }
-    out["ticks"] = best.ticks;
-    out["wall_s"] = best.wall_s;
-    out["realtime_factor"] = best.realtime_factor;
+    out.set("ticks", best.ticks);
+    out.set("wall_s", best.wall_s);
+    out.set("realtime_factor", best.realtime_factor);
     return out;
 }
 
@@ -141,7 +134,7 @@ int cmd_run(const std::vector<std::string> &words) {
     ControllerLink &driven = link->is_complete() ? *link : static_cast<ControllerLink &>(checked);
     std::optional<TraceObserver> trace = trace_from(arguments, setup.tick_count());
     Json out = repeated_run(setup, driven, repeat, trace ? &*trace : nullptr);
-    out["mismatches"] = link->is_complete() ? Json(nullptr) : Json(checked.mismatches());
+    out.set("mismatches", link->is_complete() ? Json() : Json(checked.mismatches()));
     if (trace) {
         trace->trace().write(arguments.required("trace"));
     }

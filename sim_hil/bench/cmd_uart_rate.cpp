@@ -6,11 +6,10 @@
 #include <iostream>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "arguments.h"
 #include "commands.h"
 #include "input_error.h"
+#include "json.h"
 #include "qemu_uart_link.h"
 
 namespace quiesce {
@@ -123,14 +122,13 @@ int cmd_uart_rate(const std::vector<std::string> &words) {
     };
     const double protocol_per_s = median_per_s(times.protocol_s);
     const double echo_per_s = median_per_s(times.echo_s);
-    const nlohmann::ordered_json out = {
-        {"exchanges", exchanges},
-        {"protocol_per_s", protocol_per_s},
-        {"echo_per_s", echo_per_s},
-        {"ratio", protocol_per_s / echo_per_s},
-        {"realtime_factor", protocol_per_s / params.tick_rate_Hz},
-        {"bytes_each_way", per_exchange(link.sent_bytes() - sent_before)},
-        {"reply_bytes", per_exchange(link.received_bytes() - received_before)}};
+    const Json out = {{"exchanges", exchanges},
+                      {"protocol_per_s", protocol_per_s},
+                      {"echo_per_s", echo_per_s},
+                      {"ratio", protocol_per_s / echo_per_s},
+                      {"realtime_factor", protocol_per_s / params.tick_rate_Hz},
+                      {"bytes_each_way", per_exchange(link.sent_bytes() - sent_before)},
+                      {"reply_bytes", per_exchange(link.received_bytes() - received_before)}};
     link.finish();
     std::cout << out.dump() << '\n';
     return 0;

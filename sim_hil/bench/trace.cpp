@@ -3,9 +3,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include <nlohmann/json.hpp>
-
 #include "input_error.h"
+#include "json.h"
 #include "reply_fields.h"
 
 namespace quiesce {
@@ -33,8 +32,7 @@ void Trace::put_telemetry(const quiesce_telemetry_t &telemetry) {
 void Trace::write(const std::string &file) const {
     const std::string unfinished = file + ".part";
     std::ofstream out(unfinished, std::ios::binary);
-    const nlohmann::ordered_json head = {{"columns", columns_},
-                                         {"rows", values_.size() / columns_.size()}};
+    const Json head = {{"columns", columns_}, {"rows", values_.size() / columns_.size()}};
     out << head.dump() << '\n';
     out.write(reinterpret_cast<const char *>(values_.data()),
               static_cast<std::streamsize>(values_.size() * sizeof(double)));

@@ -8,7 +8,7 @@
 
 namespace quiesce {
 
-/// The fastest first; the last one runs on every processor of this architecture.
+/// The fastest first; none where this build is of another processor.
 std::vector<GroupTable> wide_sets();
 
 } // namespace quiesce
