@@ -10,10 +10,10 @@ run_ctest() {
     ctest --preset "$1" --parallel "$(nproc)" --no-tests=error
 }
 
-# run_ctest_of FOLDER REGEX: those tests of one folder of a build.
+# run_ctest_of FOLDER REGEX [OPTION...]: those tests of one folder of a build.
 run_ctest_of() {
     ctest --test-dir "build/$1" --tests-regex "$2" --parallel "$(nproc)" --output-on-failure \
-        --no-tests=error
+        --no-tests=error "${@:3}"
 }
 
 # run_pytest MARKS [PATH...]: a file stays with one worker: its fixtures run once.
@@ -61,7 +61,7 @@ section_sanitize() {
     local area
     area="$(changed_lines | touched area)"
     wants "ctest-sanitize-$area" && build mps2 && build sanitize "tests/unit/$area/all" &&
-        step "ctest-sanitize-$area" run_ctest_of "sanitize/tests/unit/$area" .
+        step "ctest-sanitize-$area" run_ctest_of "sanitize/tests/unit/$area" . --exclude-regex '^fuzz_'
 }
 
 section_lint() {

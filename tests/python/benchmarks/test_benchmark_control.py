@@ -343,6 +343,7 @@ def bench(build: Path, tmp_path: Path, monkeypatch, capsys):
     return run
 
 
+@pytest.mark.slow
 def test_command_prints_every_figure_and_writes_plots(bench, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     code, printed = bench("--json", "--check", "--data", "empty")
@@ -362,6 +363,7 @@ def test_command_prints_every_figure_and_writes_plots(bench, tmp_path: Path) -> 
         assert "<svg" in (tmp_path / f"out/{name}.svg").read_text()
 
 
+@pytest.mark.slow
 def test_any_law_on_any_plant_can_be_judged(bench, tmp_path: Path) -> None:
     """Published goals are not for it, and bounds are not known; constants are."""
     plant = tomllib.loads(default_plant().read_text())

@@ -340,6 +340,7 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     return run
 
 
+@pytest.mark.slow
 def test_command_prints_every_figure_and_tells_what_is_absent(bench, tmp_path: Path) -> None:
     code, printed = bench("--json", "--check", "--no-cost")
     report = json.loads(printed)

@@ -328,6 +328,7 @@ def bench(
     return run
 
 
+@pytest.mark.slow
 def test_command_prints_every_figure_and_writes_plots(bench, tmp_path: Path) -> None:
     code, printed = bench("--json", "--check")
     report = json.loads(printed)
@@ -357,6 +358,7 @@ def test_command_prints_tables_and_depends_on_the_seed_alone(bench, tmp_path: Pa
         assert words in first
 
 
+@pytest.mark.slow
 def test_absent_recordings_are_not_a_met_goal(bench, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     report = json.loads(bench("--json", "--data", "empty")[1])

@@ -112,6 +112,7 @@ def test_slcan_rate_covers_what_a_controller_sends() -> None:
     assert bus_load.baud_needed([message(1, 1, 8)] * 100)[1] is None
 
 
+@pytest.mark.slow
 def test_load_prints_what_it_computes(quiesce) -> None:
     result = quiesce("can", "load", "--json")
     assert result.returncode == 0
@@ -135,6 +136,7 @@ def test_load_prints_what_it_computes(quiesce) -> None:
     assert table.returncode == 0 and "no bound" in table.stdout
 
 
+@pytest.mark.slow
 def test_the_bench_says_what_it_could_not_judge(quiesce) -> None:
     result = quiesce("bench", "can", "--no-vm", "--check", "--json")
     assert result.returncode == 3, result.stderr
@@ -163,6 +165,7 @@ def test_load_refuses(refused, options: list[str], words: str) -> None:
     assert words in refused("can", "load", *options)
 
 
+@pytest.mark.slow
 def test_a_file_that_is_no_dbc_is_refused(refused, tmp_path) -> None:
     for name, content in (("a.dbc", b"nonsense {"), ("b.dbc", b"\xff\xfe"), ("c.dbc", b"")):
         (tmp_path / name).write_bytes(content)

@@ -37,6 +37,7 @@ def test_truths_lie_within_the_bounds_of_the_search() -> None:
         assert len(problem.variables) == 7
 
 
+@pytest.mark.slow
 def test_both_reach_the_noise_floor_and_ours_in_fewer_evaluations(cases: list[Case]) -> None:
     assert all(one.ours.is_success for one in cases)
     scipy = cases[0].scipy

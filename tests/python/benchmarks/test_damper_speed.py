@@ -58,6 +58,7 @@ def test_fewest_substeps_are_enough_and_not_one_more() -> None:
         assert bool(errors.max() <= speed.MOST_ERROR) is is_enough
 
 
+@pytest.mark.slow
 def test_contenders_are_all_there_and_within_the_error(speeds: speed.Speeds) -> None:
     names = [one.name for one in speeds.sets]
     assert names == library.module().instruction_sets()

@@ -46,6 +46,7 @@ def test_short_run_is_counted_and_repeats_exactly(bench: Bench, chain: Path) -> 
     assert signal_cost.measure_ticks(bench, chain, 1000, TICKS) == cost
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate_Hz", [500, 1000, 2000, 4000])
 def test_stimulus_reaches_what_it_is_there_for(bench: Bench, chain: Path, rate_Hz: int) -> None:
     seconds = 90  # more than two rounds

@@ -67,6 +67,7 @@ def error_line(result: Result, code: int) -> str:
 # Parameters
 
 
+@pytest.mark.slow
 def test_get_shows_every_parameter(controller: Controller, tool) -> None:
     controller.start()
     assert values(tool) == {one["name"]: one["default"] for one in parameters()}
@@ -86,6 +87,7 @@ def test_set_changes_all_or_nothing(controller: Controller, tool) -> None:
     assert values(tool) == before
 
 
+@pytest.mark.slow
 def test_set_says_where_it_could_not_be_stored(controller: Controller, tool) -> None:
     controller.start("--no-store")
     result = tool("set", "law=off", "--save")
@@ -110,6 +112,7 @@ def test_set_refuses_before_it_sends(
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_nobody_answers(controller: Controller, tool) -> None:
     controller.start("--silent")
     assert "no controller answers" in error_line(tool("get"), 1)
@@ -194,6 +197,7 @@ def test_check_judges_cycle_times(count: int, is_on_time: bool) -> None:
     assert len(problems) == (not is_on_time)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -222,6 +226,7 @@ def check_preamble(frames: list[can.Message]) -> None:
     assert [one["param_value"] for one in raw] == [one["default"] for one in parameters()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("suffix", "number"),
     [
@@ -249,6 +254,7 @@ def test_record_is_whole_however_it_ends(
     assert sorted(tmp_path.glob("run*")) == [tmp_path / f"run_0001{suffix}"]
 
 
+@pytest.mark.slow
 def test_every_file_of_a_rotation_begins_with_the_parameters(
     controller: Controller, tool, tmp_path: Path
 ) -> None:
@@ -268,6 +274,7 @@ def test_every_file_of_a_rotation_begins_with_the_parameters(
     assert total - requests == received - (COUNT + 1)
 
 
+@pytest.mark.slow
 def test_mdf_carries_database_and_parameters(controller: Controller, tool, tmp_path: Path) -> None:
     from asammdf import MDF
 
@@ -280,6 +287,7 @@ def test_mdf_carries_database_and_parameters(controller: Controller, tool, tmp_p
     assert dump["identification"]["version_minor"] >= 0
 
 
+@pytest.mark.slow
 def test_record_of_every_sample(controller: Controller, tool, tmp_path: Path) -> None:
     controller.start()
     assert tool("record", "--out", "run.blf", "--seconds", "4", "--raw").returncode == 0
@@ -292,6 +300,7 @@ def test_record_of_every_sample(controller: Controller, tool, tmp_path: Path) ->
     assert len(ticks) > 100 and ticks == sorted(set(ticks))
 
 
+@pytest.mark.slow
 def test_record_without_a_controller(controller: Controller, tool, tmp_path: Path) -> None:
     controller.start("--silent")
     result = tool("record", "--out", "run.log", "--seconds", "4")
@@ -309,6 +318,7 @@ def frames_told(process: subprocess.Popen[str]) -> int:
     return int(re.search(r"(\d+) frames, ", line)[1])
 
 
+@pytest.mark.slow
 def test_record_goes_on_after_the_bus_was_lost(controller: Controller, tmp_path: Path) -> None:
     controller.start()
     process = start_quiesce(tmp_path, "can", "record", "--out", "run.asc", "--bus", controller.bus)
@@ -378,6 +388,7 @@ def test_record_refuses_a_series_that_is_there(refused, tmp_path: Path, stale: s
 # monitor
 
 
+@pytest.mark.slow
 def test_monitor_shows_loss_and_return(controller: Controller, tmp_path: Path) -> None:
     controller.start()
     process = start_quiesce(tmp_path, "can", "monitor", "--bus", controller.bus)
@@ -475,6 +486,7 @@ def test_an_absent_package_is_named(
     assert "package cantools is not installed" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_list_says_why(quiesce) -> None:
     result = quiesce("can", "list", "--json")
     assert result.returncode == 0

@@ -74,6 +74,7 @@ def test_finds_the_truth_and_writes_a_model(
     assert simulate is not None
 
 
+@pytest.mark.slow
 def test_same_seed_same_model(example: Path, tmp_path: Path) -> None:
     texts = []
     for folder in ("a", "b"):
@@ -83,6 +84,7 @@ def test_same_seed_same_model(example: Path, tmp_path: Path) -> None:
     assert texts[0] == texts[1]
 
 
+@pytest.mark.slow
 def test_fixed_and_bounded_parameters(example: Path, tmp_path: Path) -> None:
     more = ["--model", "normalised_bouc_wen", "--fix", "n=2", "--bound", "rho_1_m=100:1000"]
     assert main(arguments(example, tmp_path, *more)) == 0
@@ -91,6 +93,7 @@ def test_fixed_and_bounded_parameters(example: Path, tmp_path: Path) -> None:
     assert 100.0 <= model.parameters["rho_1_m"] <= 1000.0
 
 
+@pytest.mark.slow
 def test_resume_keeps_what_is_there(
     example: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -106,6 +109,7 @@ def test_resume_keeps_what_is_there(
     assert (tmp_path / "models/kwok_tanh.toml").stat().st_mtime_ns > before
 
 
+@pytest.mark.slow
 def test_broken_state_is_done_again(example: Path, tmp_path: Path) -> None:
     assert main(arguments(example, tmp_path, "--model", "bingham")) == 0
     (tmp_path / "models/bingham.state.json").write_text("{", encoding="utf-8")
@@ -138,6 +142,7 @@ def test_bad_options_end_in_one_line(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_wrong_sign_is_a_hint(
     example: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -204,6 +209,7 @@ def write_sine(file: Path, mean_mm: float, freq_Hz: float) -> None:
     file.write_text("\n".join(["time_s,disp_mm,force_N", *lines]) + "\n", encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_least_squares_from_three_sines(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     files = [tmp_path / name for name in ("still.csv", "shifted.csv", "faster.csv")]
     for file, mean_mm, freq_Hz in zip(files, (0.0, 3.0, 0.0), (1.0, 1.0, 2.0), strict=True):

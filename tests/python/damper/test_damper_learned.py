@@ -225,6 +225,7 @@ def heated(temperature_C: float):
     return warmed(record, viscous, record.force_N - viscous, temperature, ThermalFactors())
 
 
+@pytest.mark.slow
 def test_support_vectors_follow_the_temperature():
     segments, scales = segments_of(*(heated(at) for at in (20.0, 40.0, 60.0, 80.0)))
     settings = support_vector.Settings(penalties=(100.0,), gammas=(0.5, 1.0))
@@ -307,6 +308,7 @@ def test_stf_is_stable_and_learns_at_the_usual_rates(current_A):
     assert errors[-1] < 0.7 * errors[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("current_A", CURRENTS_A)
 @pytest.mark.parametrize("part", [0.01, 0.5])
 def test_stf_memberships_do_not_collapse_at_a_high_rate(current_A, part):
@@ -325,6 +327,7 @@ def test_stf_guard_repairs_what_an_update_broke():
     assert min(broken.grades(at).sum() for at in np.linspace(-1.0, 1.0, 401)) > 0.0
 
 
+@pytest.mark.slow
 def test_stf_frozen_is_the_same_in_the_library():
     segments, scales = three_currents()
     settings = learner("neuro_fuzzy_stf").Settings(cycles=5)

@@ -290,6 +290,7 @@ def test_hysteresis_network_agrees_with_numpy():
     np.testing.assert_allclose(forces, expected, atol=1e-10 * scales.force_N)
 
 
+@pytest.mark.slow
 def test_grey_box_stands_on_its_base():
     segments, scales = segments_of(*with_memory(1, 2))
     kwok = {"c_N_s_m": 800.0, "alpha_N": 400.0, "beta_s_m": 20.0, "delta": 0.5}
@@ -304,6 +305,7 @@ def test_grey_box_stands_on_its_base():
     assert error_of(model, held_out) < 0.2
 
 
+@pytest.mark.slow
 def test_a_base_with_a_wrong_parameter_is_named():
     segments, scales = segments_of(*with_memory(1))
     base = DamperModel("base", "kwok_tanh", 1.0, 1.0, {"stiffness": 1.0})

@@ -165,6 +165,7 @@ def test_command_writes_plan_and_files_that_can_be_read_back(tmp_path: Path, cap
         assert head == "time_s,disp_m,current_A"
 
 
+@pytest.mark.slow
 def test_recorded_excitation_is_data_that_identification_takes(tmp_path: Path, capsys) -> None:
     assert act(cli_plan, *OPTIONS, "--out", tmp_path) == 0
     file = next(tmp_path.glob("*sine_20mm_0.716Hz_1A.csv"))

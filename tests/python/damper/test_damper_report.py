@@ -260,12 +260,14 @@ def test_page_stands_alone_and_escapes_what_users_wrote(models, segments, tmp_pa
     assert numbers["whiteness"]["is_white"] is True
 
 
+@pytest.mark.slow
 def test_page_without_held_out_rows_says_so(models, segments, tmp_path: Path) -> None:
     train, _ = segments
     write_report(tmp_path, [replace(models[1], test=None)], train, [], [], {})
     assert "held out: nothing" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_model_that_diverges_is_reported_without_plots(segments, tmp_path: Path) -> None:
     record = segments[0][0].record
     beyond = whole(replace(record, velocity_m_s=1e306 * record.velocity_m_s))
@@ -283,6 +285,7 @@ def test_nothing_fitted_is_refused_and_nothing_written(segments, tmp_path: Path)
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_same_result_gives_the_same_bytes(models, segments, tmp_path: Path) -> None:
     for name in ("a", "b"):
         write_report(tmp_path / name, models[1:2], *segments, ["n"], {"title": "t"})

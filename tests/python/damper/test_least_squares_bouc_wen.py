@@ -98,6 +98,7 @@ def test_noise_costs_little(noise: float, limits: dict[str, float]) -> None:
         assert abs(np.mean([one[name] for one in found])) < 0.5 * limit, name
 
 
+@pytest.mark.slow
 def test_offset_and_downward_shift_change_nothing_else() -> None:
     still, shifted, faster = (
         record(replace(TRUTH, f0_N=120.0), freq, shift, 0.0)
@@ -108,6 +109,7 @@ def test_offset_and_downward_shift_change_nothing_else() -> None:
     assert max(map(abs, deviations(found).values())) < 0.002
 
 
+@pytest.mark.slow
 def test_beta_may_be_negative() -> None:
     truth = replace(TRUTH, beta=-6.0)
     found = fit(sines_of(truth))

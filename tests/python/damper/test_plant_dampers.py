@@ -70,6 +70,7 @@ def test_constant_current_reduces_the_motion(build) -> None:
         assert all(window["damper_work_J"] < 0.0 for window in figures["windows"])
 
 
+@pytest.mark.slow
 def test_damper_file_that_is_missing_or_wrong_is_named(refused, small: Path) -> None:
     damper = small.parent / "small.toml"
     damper.write_text(BOUC_WEN.replace("sigma = 0.5", "sigma = 0.1"), encoding="utf-8")

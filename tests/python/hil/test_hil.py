@@ -74,6 +74,7 @@ def metrics(quick) -> dict:
 # The run
 
 
+@pytest.mark.slow
 def test_excitation_without_one_frequency_is_judged_by_rms(build: Path, tmp_path: Path) -> None:
     options = ["--target", "host", "--law", "fuzzy", "--law", "constant_best", "--quick"]
     result = run_quiesce(
@@ -198,6 +199,7 @@ def test_differing_telemetry_is_named() -> None:
     assert differing_cases([Fake("host", 5), Fake("mps2", 6)]) == ["x x"]
 
 
+@pytest.mark.slow
 def test_seed_and_noise_reach_the_runs(build: Path, tmp_path: Path) -> None:
     options = ["--scenario", "sine_5Hz", "--law", "fuzzy", "--target", "host", "--json"]
     result = run_quiesce(
@@ -208,6 +210,7 @@ def test_seed_and_noise_reach_the_runs(build: Path, tmp_path: Path) -> None:
     assert {(run["seed"], run["noise_mg"]) for run in runs} == {(7, 1.5)}
 
 
+@pytest.mark.slow
 def test_own_plant_has_no_published_figures_beside_it(build: Path, tmp_path: Path) -> None:
     options = ["--scenario", "frame_3dof", "--law", "constant_best", "--target", "host", "--json"]
     result = run_quiesce(tmp_path, "hil", *options, "--out", "r")
@@ -219,6 +222,7 @@ def test_own_plant_has_no_published_figures_beside_it(build: Path, tmp_path: Pat
 # Figures
 
 
+@pytest.mark.slow
 def test_figures_agree_with_the_independent_simulation(noise_free) -> None:
     reference = load_reference()
     compared = 0

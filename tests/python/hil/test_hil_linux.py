@@ -64,6 +64,7 @@ def test_table_and_page_say_what_was_compared(quick) -> None:
         assert words in page
 
 
+@pytest.mark.slow
 def test_runs_follow_one_another_on_one_controller(quiesced: Path) -> None:
     bench = Bench()
     scenario = ["--scenario", str(ROOT / SCENARIO)]

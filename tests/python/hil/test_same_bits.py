@@ -61,6 +61,7 @@ def counts(bench: Bench, file: Path, column: str, unit: str) -> np.ndarray:
     return sensor_counts(accel_m_s2, params)
 
 
+@pytest.mark.slow
 @EVERY_RECORDING
 def test_recording_gives_the_same_bits_everywhere(
     bench: Bench, build: Path, image: Path, tmp_path: Path, counts: np.ndarray

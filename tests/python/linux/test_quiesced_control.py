@@ -167,6 +167,7 @@ __attribute__((destructor)) static void tell(void) {
 """
 
 
+@pytest.mark.slow
 def test_the_loop_allocates_nothing(quiesced: Quiesced, tmp_path: Path) -> None:
     """However long it runs, its thread has asked for memory equally often."""
     counts = tmp_path / "count"

@@ -76,6 +76,7 @@ def test_plan_that_cannot_be_recorded_is_refused(changes, word) -> None:
         SweepPlan(**changes)
 
 
+@pytest.mark.slow
 def test_excitation_is_written_without_acceleration(quiesce, tmp_path: Path) -> None:
     result = quiesce("sweep", *SHORT, "--out", "folder/excitation.csv")
     assert result.returncode == 0, result.stderr
@@ -86,6 +87,7 @@ def test_excitation_is_written_without_acceleration(quiesce, tmp_path: Path) -> 
     assert "quiesce sweep --identify" in result.stdout
 
 
+@pytest.mark.slow
 def test_simulated_recording_depends_on_the_seed_alone(quiesce, tmp_path: Path) -> None:
     for name, seed in (("a", 3), ("b", 3), ("c", 4)):
         out = f"{name}.csv"

@@ -172,7 +172,10 @@ def test_reference_controller_in_both_engines(variant: Variant) -> None:
     assert_near_the_reference(base, points)
 
 
-@pytest.mark.parametrize("number", range(RANDOM_BASES))
+@pytest.mark.parametrize(
+    "number",
+    [*range(12), *(pytest.param(k, marks=pytest.mark.slow) for k in range(12, RANDOM_BASES))],
+)
 def test_random_base_in_both_engines(number: int) -> None:
     base = random_compiled(number)
     points = cell_corners(base, np.random.default_rng(number), 1500)
@@ -180,6 +183,7 @@ def test_random_base_in_both_engines(number: int) -> None:
     assert_near_the_reference(base, points)
 
 
+@pytest.mark.slow
 def test_random_bases_are_of_all_kinds() -> None:
     bases = [random_compiled(number) for number in range(RANDOM_BASES)]
     straight = [not why_not_straight(base) for base in bases]
@@ -363,6 +367,7 @@ def saw(teeth: int) -> FuzzySet:
     return FuzzySet("saw", tuple((k / teeth, float(k % 2)) for k in range(teeth + 1)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("teeth", [100, 200, 252, 253, 254, 255, 256, 400])
 def test_number_of_cells_of_an_input(teeth: int) -> None:
     """255 cells: as many as a table counts."""
@@ -424,6 +429,7 @@ def compile_c(folder: Path, compiler: str, base: CompiledBase, name: str) -> Non
     assert result.returncode == 0, result.stderr[:2000]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_c_compiles_without_a_warning(compiler: str, tmp_path: Path) -> None:
     bases = [compile_base(reference_base(method)) for method in REFERENCE_METHODS]

@@ -60,6 +60,7 @@ def reordered(base: RuleBase) -> RuleBase:
 # The command
 
 
+@pytest.mark.slow
 def test_a_file_and_itself_are_the_same(quiesce, tmp_path: Path) -> None:
     result = quiesce("rules", "diff", SINGLETON, SINGLETON, "--out", "out")
     assert result.returncode == 0, result.stderr
@@ -86,6 +87,7 @@ def test_one_rule_that_differs(quiesce, tmp_path: Path) -> None:
     assert "data:image/svg+xml;base64," in page and "I IS Z against I IS S" in page
 
 
+@pytest.mark.slow
 def test_threshold_is_in_the_outputs_unit(quiesce, tmp_path: Path) -> None:
     shifted = changed(tmp_path, "b.fcl", ("Z := 0;", "Z := 0.5;"))
 
@@ -100,6 +102,7 @@ def test_threshold_is_in_the_outputs_unit(quiesce, tmp_path: Path) -> None:
     assert beyond("0") == pytest.approx(100 * 48 / 500, abs=0.4)
 
 
+@pytest.mark.slow
 def test_the_methods_differ_by_what_is_known(quiesce, tmp_path: Path) -> None:
     """Sum per rule against maximum per term: 0.335 A on this controller."""
     other = changed(tmp_path, "sum.fcl", ("ACCU : MAX", "ACCU : SUM"))
@@ -111,6 +114,7 @@ def test_the_methods_differ_by_what_is_known(quiesce, tmp_path: Path) -> None:
     assert told["outputs"][0]["largest"] == pytest.approx(0.335, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_singletons_against_centroid(quiesce) -> None:
     result = quiesce("rules", "diff", SINGLETON, CENTROID, "--out", "out")
     assert result.returncode == 1
@@ -118,6 +122,7 @@ def test_singletons_against_centroid(quiesce) -> None:
     assert "term Z 0 against" in result.stdout
 
 
+@pytest.mark.slow
 def test_what_is_written_otherwise_may_mean_the_same(quiesce, tmp_path: Path) -> None:
     """Shoulders without their vertical edges at the ends of the universe."""
     other = changed(tmp_path, "b.fcl", ("(0, 0) (0, 1) (3, 1)", "(3, 1)"))

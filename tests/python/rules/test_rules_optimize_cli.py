@@ -106,6 +106,7 @@ def test_search_tells_what_it_found(searched) -> None:
     assert at_10Hz["bound_pct"] == [26.2, 26.0]
 
 
+@pytest.mark.slow
 def test_rule_file_that_was_written_does_what_the_report_says(searched, quiesce, tmp_path) -> None:
     """Read again as the start of another search, it has the cost of the one that was found."""
     _, folder = searched
@@ -222,6 +223,7 @@ def test_damaged_state_is_refused_and_kept(recipe, quiesce, tmp_path) -> None:
 # Bad input
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -90,6 +90,7 @@ def loaded(folder: Path) -> State:
 # Methods
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["tournament", "roulette", "de"])
 def test_the_known_optimum_is_found(tmp_path, name) -> None:
     runner = run(tmp_path, name, Limits(120))
@@ -99,6 +100,7 @@ def test_the_known_optimum_is_found(tmp_path, name) -> None:
     assert runner.history.best[0] > 10 * runner.history.best[-1]
 
 
+@pytest.mark.slow
 def test_differential_evolution_does_as_well_as_scipy(tmp_path) -> None:
     from scipy.optimize import differential_evolution
 
@@ -111,6 +113,7 @@ def test_differential_evolution_does_as_well_as_scipy(tmp_path) -> None:
     assert ours.history.best[-1] <= max(1.2 * reference.fun, 0.5)
 
 
+@pytest.mark.slow
 def test_front_of_two_objectives_holds_both_ends_and_points_between(tmp_path) -> None:
     runner = run(tmp_path, "nsga2", Limits(80))
     costs = np.array([[distance(g), sum(g[:6])] for g in runner.visited])

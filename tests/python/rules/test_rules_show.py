@@ -64,6 +64,7 @@ def telemetry(file: Path) -> Path:
 # The command
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", [SINGLETON, CENTROID])
 def test_show_writes_its_pictures(quiesce, tmp_path: Path, file: Path) -> None:
     result = quiesce("rules", "show", file, "--out", "out")
@@ -80,6 +81,7 @@ def test_show_writes_its_pictures(quiesce, tmp_path: Path, file: Path) -> None:
     assert "http://" not in page and "https://" not in page
 
 
+@pytest.mark.slow
 def test_show_prints_the_rules_as_a_matrix(quiesce) -> None:
     lines = quiesce("rules", "show", SINGLETON, "--out", "out").stdout.splitlines()
     head = next(i for i, line in enumerate(lines) if line.startswith("f \\ a"))
@@ -94,6 +96,7 @@ def test_show_prints_the_rules_as_a_matrix(quiesce) -> None:
     assert any("Z 0, S 1.25, M 2.5, L 3.75, VL 5" in line for line in lines)
 
 
+@pytest.mark.slow
 def test_show_counts_the_rules_of_a_run(quiesce, tmp_path: Path) -> None:
     file = telemetry(tmp_path / "run.csv")
     result = quiesce("rules", "show", SINGLETON, "--run", file, "--out", "out", "--json")
@@ -105,6 +108,7 @@ def test_show_counts_the_rules_of_a_run(quiesce, tmp_path: Path) -> None:
     assert told["rules"][0]["mean_strength"] == 1.0
 
 
+@pytest.mark.slow
 def test_show_tells_what_a_run_visited(quiesce, tmp_path: Path) -> None:
     file = telemetry(tmp_path / "run.csv")
     result = quiesce("rules", "show", SINGLETON, "--run", file, "--out", "out")
@@ -113,6 +117,7 @@ def test_show_tells_what_a_run_visited(quiesce, tmp_path: Path) -> None:
     assert "Rules that fired" in (tmp_path / "out/index.html").read_text()
 
 
+@pytest.mark.slow
 def test_visits_change_the_picture(quiesce, tmp_path: Path) -> None:
     file = telemetry(tmp_path / "run.csv")
     quiesce("rules", "show", SINGLETON, "--out", "plain")
@@ -121,6 +126,7 @@ def test_visits_change_the_picture(quiesce, tmp_path: Path) -> None:
     assert "#d55e00" in visited.read_text() and "#d55e00" not in plain.read_text()
 
 
+@pytest.mark.slow
 def test_show_runs_a_scenario(quiesce) -> None:
     result = quiesce("rules", "show", SINGLETON, "--run", "step_10_20Hz", "--out", "out", "--json")
     told = json.loads(result.stdout)

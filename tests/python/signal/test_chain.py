@@ -93,6 +93,7 @@ def test_what_folds_into_the_band_is_gone(rate_Hz: int) -> None:
     assert alias_rejection_dB(rate_Hz, 50.0) > 60.0
 
 
+@pytest.mark.slow
 def test_documented_table_is_what_the_command_writes(quiesce, tmp_path: Path) -> None:
     result = quiesce("chain", "--out", "out")
     assert result.returncode == 0, result.stderr
@@ -102,6 +103,7 @@ def test_documented_table_is_what_the_command_writes(quiesce, tmp_path: Path) ->
     assert (tmp_path / "out/conditioning.svg").read_text().count("<path") > 20
 
 
+@pytest.mark.slow
 def test_chain_follows_the_corner(quiesce, tmp_path: Path) -> None:
     assert quiesce("chain", "--out", "out", "--set", "dc_cutoff_mHz=1000").returncode == 0
     row = next(

@@ -48,6 +48,7 @@ def test_replay_of_the_example_finds_both_frequencies(quiesce, tmp_path: Path) -
         assert min(picture.size) > 500
 
 
+@pytest.mark.slow
 def test_replay_on_the_image_gives_the_same_rows(quiesce, image, tmp_path: Path) -> None:
     tables = []
     for target in ("host", "mps2"):
@@ -56,6 +57,7 @@ def test_replay_on_the_image_gives_the_same_rows(quiesce, image, tmp_path: Path)
     assert tables[0] == tables[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("unit", "m_s2"), [("g", 9.80665), ("m_s2", 1.0), ("mm_s2", 1e-3)])
 def test_replay_takes_units_other_names_and_rates(quiesce, tmp_path: Path, unit, m_s2) -> None:
     time_s = np.arange(2500) / 625.0
@@ -71,6 +73,7 @@ def test_replay_takes_units_other_names_and_rates(quiesce, tmp_path: Path, unit,
     assert rows["rms_um_s2"][-1] * 1e-6 == pytest.approx(0.5 / np.sqrt(2.0), rel=0.01)
 
 
+@pytest.mark.slow
 def test_replay_replaces_an_earlier_result(quiesce, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out/replay.csv").write_text("old")
@@ -95,6 +98,7 @@ def test_record_makes_the_shipped_recording(quiesce, tmp_path: Path) -> None:
 # Measured recordings
 
 
+@pytest.mark.slow
 def test_replay_follows_the_measured_sweep(quiesce, tmp_path: Path) -> None:
     options = ["--column", "mems_pkg_g", "--unit", "g", "--reference-column", "ref_piezo_g"]
     file = measured("shaker_sweep_0_11hz_100sps.csv")
@@ -111,6 +115,7 @@ def test_replay_follows_the_measured_sweep(quiesce, tmp_path: Path) -> None:
     assert driven["valid_pct"] == 100.0 and driven["within_pct"] == 100.0
 
 
+@pytest.mark.slow
 def test_replay_finds_the_slow_sweep(quiesce) -> None:
     figures = replay(
         quiesce, measured("shaker_sweep_15_16hz_400sps.csv"),
@@ -120,6 +125,7 @@ def test_replay_finds_the_slow_sweep(quiesce) -> None:
     assert figures["reference"]["within_pct"] == 100.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "freq_Hz"),
     [("5.5hz", 10.31), ("10.2hz", 9.96), ("15.0hz", 14.21)],
