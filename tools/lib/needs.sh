@@ -33,7 +33,11 @@ needs_of_target() {
 
 # needs_of_benchmark NAME...: of `benchmark`. Images that only benchmarks run: their build_images.
 needs_of_benchmark() {
-    echo bench plant dampers
+    case "${1:-}" in
+    can | fuzzy | house | signal) echo bench ;;
+    control | sweep) echo bench plant ;;
+    *) echo bench plant dampers ;;
+    esac
 }
 
 # needs_build NEED...: builds that, and nothing else.
