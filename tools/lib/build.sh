@@ -12,6 +12,7 @@ build_cache() {
 # What a build folder was configured from; another value needs a fresh one.
 build_stamp() {
     printf '%s %s %s\n' "$ROOT" "$1" "${CMAKE_C_COMPILER_LAUNCHER:-}"
+    grep -m 1 '^flags' /proc/cpuinfo | sha256sum || true # the damper models are for this processor
     cat "$ROOT/CMakePresets.json" "$ROOT"/cmake/{arm-none-eabi,aarch64-linux-gnu}.cmake | sha256sum
 }
 

@@ -20,7 +20,7 @@ changed_base() {
 # changed_lines: "LINES PATH" of every file that is not as in the base, committed or not.
 changed_lines() {
     local base
-    base="$(changed_base)"
+    base="$(changed_base)" || return
     git diff --numstat --no-renames --diff-filter=d "${base:-HEAD}" 2>/dev/null |
         awk -F '\t' '{ print $1 + $2, $3 }'
     git ls-files --others --exclude-standard 2>/dev/null | sed 's/^/100 /'

@@ -1,8 +1,12 @@
 # shellcheck shell=bash
 # The virtual environment .venv with the pinned packages of tools/requirements.txt, and the quiesce
 # package of tools/src on its path. Sourced by tools/setup.
+#
+# .venv is a link into .venvs: another environment is made beside the one in use and takes its place
+# when it is complete, so that `quiesce can stop` has one at any time, and after a failed set-up.
 
 VENV="$ROOT/.venv"
+VENVS="$ROOT/.venvs"
 REQUIREMENTS="$ROOT/tools/requirements.txt"
 
 # python_probe EXE: "MAJOR MINOR", and " venv" where it can make environments. False iff it does not run.
@@ -37,11 +41,12 @@ python_find() {
     return 1
 }
 
-# What a complete environment was made from. Environments do not survive a move of the folder.
+# python_stamp [FOLDER]: what a complete environment was made from. Environments do not survive a
+# move of the project.
 python_stamp() {
     cat "$REQUIREMENTS" "$ROOT/tools/lib/python.sh" | sha256sum
     printf '%s\n' "$ROOT"
-    "$VENV/bin/python" -V
+    "${1:-$VENV}/bin/python" -V
 }
 
 python_is_complete() {
@@ -56,8 +61,13 @@ python_require() {
     fail "Python 3.11 or newer with its venv module is needed; found: ${PYTHON_SEEN:-none}. Install one (Debian 12: python3 python3-venv), or name it: QUIESCE_PYTHON=/path/to/python3.11"
 }
 
+# pip_of ENVIRONMENT ARGUMENT...
+pip_of() {
+    "$1/bin/python" -I -m pip --disable-pip-version-check --no-input "${@:2}"
+}
+
 python_pip() {
-    "$VENV/bin/python" -I -m pip --disable-pip-version-check --no-input "$@"
+    pip_of "$VENV" "$@"
 }
 
 # pip_reason LOG: pip's last error, in its words.
@@ -65,23 +75,42 @@ pip_reason() {
     grep -h '^ERROR' "$LOG_DIR/$1.log" | tail -n 1 | cut -c1-300 || true
 }
 
+# python_switch FOLDER: .venv is that one from now on. What runs may still import from the one
+# before; those before that go.
+python_switch() {
+    local fresh="$1" before folder
+    before="$(readlink "$VENV" || true)"
+    if [ -z "$before" ] && [ -d "$VENV" ]; then # as it was made once
+        before=before
+        mv "$VENV" "$VENVS/$before"
+    fi
+    rm -f "$VENV.new"
+    ln -s ".venvs/${fresh##*/}" "$VENV.new"
+    mv -T "$VENV.new" "$VENV"
+    for folder in "$VENVS"/*; do
+        [[ "${folder##*/}" == @("${fresh##*/}"|"${before##*/}") ]] || rm -rf "$folder"
+    done
+}
+
 python_setup() {
-    local site
+    local site fresh
     python_is_complete && return 0
     python_require
     say "set-up: Python environment .venv with $PYTHON and the packages of tools/requirements.txt"
-    rm -rf "$VENV"
-    run_logged setup-venv "$PYTHON" -m venv "$VENV" ||
+    mkdir -p "$VENVS"
+    fresh="$(mktemp -d "$VENVS/XXXXXX")"
+    chmod 755 "$fresh"
+    run_logged setup-venv "$PYTHON" -m venv "$fresh" ||
         fail "'$PYTHON -m venv' failed (log: build/logs/setup-venv.log). Is the disk full?"
     # What is imported is compiled when it is, but what an emergency stop imports now.
-    retry setup-python python_pip install --no-compile --require-hashes -r "$REQUIREMENTS" ||
+    retry setup-python pip_of "$fresh" install --no-compile --require-hashes -r "$REQUIREMENTS" ||
         fail "could not install the Python packages: $(pip_reason setup-python). Check the network and pip's settings, then run again (log: build/logs/setup-python.log)"
-    site="$("$VENV/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
+    site="$("$fresh/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
     printf '%s\n' "$ROOT"/{tools/src,tools/benchmarks,tests/system/vm} >"$site/quiesce.pth"
-    run_logged setup-import "$VENV/bin/python" -I -c '
+    run_logged setup-import "$fresh/bin/python" -I -c '
 from quiesce.can import database, e2e, link, slcan, stopping, traffic
 database.load()' || fail "the Python environment does not work (log: build/logs/setup-import.log)" 1
     # Last, and in one step: an interrupted set-up has no such file and starts again.
-    python_stamp >"$VENV/.complete.new"
-    mv "$VENV/.complete.new" "$VENV/.complete"
+    python_stamp "$fresh" >"$fresh/.complete"
+    python_switch "$fresh"
 }

@@ -10,7 +10,7 @@ TEST_SUMMARY="tests/summary.md"
 # from `code`.
 inputs_of() {
     local code="CMakeLists.txt CMakePresets.json cmake firmware hal targets sim_hil tests/CMakeLists.txt
-        tests/build_images tests/unit tests/golden tests/system/vm/guest tools/benchmarks"
+        tests/build_images tests/unit tests/golden tests/system/vm/guest tools/benchmarks examples"
     case "$1" in
     ctest-*) echo "$code" ;;
     cppcheck) echo "$code tools/check" ;;
@@ -19,9 +19,9 @@ inputs_of() {
     scripts) echo ".ci tools tests" ;;
     ruff) echo "ruff.toml tools tests examples" ;;
     bench-house) echo . ;;
-    pytest-slow | bench-*) echo "$code pytest.ini tests/python tools" ;;
-    pytest-vm) echo "$code pytest.ini tests/system/vm tools" ;;
-    proofs) echo "tests/proof tools/check tools/src tools/benchmarks" ;;
+    bench-*) echo "$code tests tools docs/results/bounds" ;;
+    pytest-vm) echo "$code pytest.ini tests tools" ;;
+    proofs) echo "$code tests/proof tools" ;;
     *) echo . ;;
     esac
 }

@@ -12,6 +12,10 @@ ABSENT=()
 SUMMARIES=()
 RECORDS=() # one line a step: name|result|seconds|CPU seconds|closing line or reason
 ALIVE_EVERY_S=60
+STAMPED=1 # 0: what passes is a part of its step, and no reason to keep the whole later
+# Nothing outside of a git tree, where no step is kept.
+FILES_AT_START=""
+if git -C "$ROOT" rev-parse --git-dir >/dev/null 2>&1; then FILES_AT_START="$(files_hash .)"; fi
 
 # summary_of LOG: the closing line of ctest, pytest or a benchmark, in the runner's own words.
 summary_of() {
@@ -66,6 +70,12 @@ step() {
     return "$status"
 }
 
+# has_changed: a file, since this run began. Programs are built once a run: what a later step passes
+# with may be what was before.
+has_changed() {
+    [ -n "$FILES_AT_START" ] && [ "$(files_hash .)" != "$FILES_AT_START" ]
+}
+
 # step_done NAME STATUS HASH SECONDS CPU_S LINE LOG: a step without a hash is run every time.
 step_done() {
     local word=ok result=passed where=""
@@ -73,7 +83,7 @@ step_done() {
     [ -z "$6" ] || SUMMARIES+=("$6")
     if (($2 == 0)); then
         PASSED+=("$1")
-        [ -z "$3" ] || stamp_write "$1" "${@:3:4}"
+        [ -z "$3" ] || ((STAMPED == 0)) || has_changed || stamp_write "$1" "${@:3:4}"
     else
         FAILED+=("$1")
         word=FAIL result=FAILED where="  (build/logs/$7.log)"

@@ -26,6 +26,7 @@ AREAS = (
     ("sim_hil/plant/", "plant"),
     ("sim_hil/damper/", "plant"),
     ("sim_hil/link/", "link"),
+    ("sim_hil/python/", "plant"),
     ("sim_hil/", "bench"),
 )
 # Their sanitized builds are minutes of templates; `all` has them.
@@ -40,8 +41,18 @@ PYTHON_TESTS = {
     "plant": ("damper/test_plant_dampers.py",),
     "report": ("damper/test_damper_report.py",),
 }
+SCRIPTS = (
+    ".ci/",
+    "tools/check/",
+    "tools/hil",
+    "tools/lib/",
+    "tools/quiesce",
+    "tools/setup",
+    "tools/test",
+)
 SCRIPT_TESTS = tuple(
-    f"gates/test_{name}.py" for name in ("setup_scripts", "gates", "tiers", "touched")
+    f"gates/test_{name}.py"
+    for name in ("setup_scripts", "gates", "start_without_build", "tiers", "touched")
 )
 PAGE_TESTS = ("docs/test_pages.py", "docs/test_results.py")
 GENERATED = re.compile(r"(generated/|\.(toml|dbc|fcl)$|/gen/.*\.py$)")
@@ -82,8 +93,10 @@ def units(paths: list[str]) -> list[str]:
         if SOURCE.search(path) and area_of(path) == "firmware"
         for test in unit_tests_of(path)
     }
-    if any(path.startswith("firmware/") and SOURCE.search(path) for path in paths):
+    is_firmware = any(path.startswith("firmware/") and SOURCE.search(path) for path in paths)
+    if is_firmware:
         names.add("test_controller")
+    if is_firmware or any(path.startswith("tests/golden/") for path in paths):
         lines.append("unit golden golden_streams .")
     for area in sorted(areas - {"mps2", "support"}):
         if area == "firmware" and names:
@@ -103,7 +116,7 @@ def python_tests(path: str) -> list[str]:
         names: Iterable[str] = PYTHON_TESTS.get(parts[3], (parts[3],))
     elif path.startswith("tools/benchmarks/quiesce_benchmarks/"):
         names = PAGE_TESTS if "/house/" in path else ("benchmarks",)
-    elif path.startswith(("tools/lib/", "tools/check/", "tools/test", ".ci/")):
+    elif path.startswith(SCRIPTS):
         names = SCRIPT_TESTS
     elif path.startswith("tests/python/") and len(parts) > 3 and path.endswith(".py"):
         names = (parts[2],)

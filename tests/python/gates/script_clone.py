@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 SCRIPTS = ("benchmarks/build_images", "benchmarks/fetch_peers", "hil", "quiesce", "setup", "test")
 COMMON = (
-    "awk bash cat chmod cp cut dirname env flock grep mkdir mktemp mv nproc readlink rm "
+    "awk bash cat chmod cp cut dirname env flock grep ln mkdir mktemp mv nproc readlink rm "
     "sha256sum tail tar touch"
 ).split()
 ALL_INSTALLED = 'shift 2; for p in "$@"; do echo "installed $p"; done'

@@ -163,6 +163,48 @@ def test_failed_package_download_is_one_line_with_pips_reason(clone: Clone) -> N
     assert not (clone.root / ".venv/.complete").exists()
 
 
+def in_use(clone: Clone) -> None:
+    """The clone has a complete environment, of an older layout."""
+    (clone.root / ".venv/bin").mkdir(parents=True)
+    clone.fake("python", "echo Python 3.12.0").rename(clone.root / ".venv/bin/python")
+    clone.function("common python", "python_stamp >.venv/.complete")
+
+
+def want_more(clone: Clone) -> None:
+    with (clone.root / "tools/requirements.txt").open("a") as requirements:
+        requirements.write("another==1.0\n")
+
+
+def test_failed_set_up_leaves_the_environment_in_use(clone: Clone) -> None:
+    in_use(clone)
+    want_more(clone)
+    make = 'mkdir -p "$3/bin"; cp "$0" "$3/bin/python"'
+    cases = f"venv) {make};; pip) exit 1;; *) echo 3 12 venv;;"
+    python = clone.fake("python", f'[ "$1" != -I ] || shift; case "$2" in {cases} esac')
+    assert clone.script("setup", "python", QUIESCE_PYTHON=str(python)).returncode == 2
+    usable = clone.function("common launch", "python_is_usable && .venv/bin/python -V")
+    assert usable.stdout == "Python 3.12.0\n"
+
+
+def test_new_environment_takes_the_place_of_the_old(clone: Clone) -> None:
+    in_use(clone)
+    make = 'mkdir -p "$3/bin" "$3/site"; cp "$0" "$3/bin/python"'
+    where = 'echo "${0%/bin/python}/site"'
+    cases = f"*-m\\ venv*) {make};; *sysconfig*) {where};; *-m\\ pip*) ;; *) echo 3 12 venv;;"
+    python = clone.fake("python", f'[ "$1" != -I ] || shift; case "$*" in {cases} esac')
+    before = "before"
+    for _ in range(3):
+        want_more(clone)
+        result = clone.script("setup", "python", QUIESCE_PYTHON=str(python))
+        assert result.returncode == 0, result.stderr
+        assert (clone.root / ".venv").is_symlink()
+        assert (clone.root / ".venv/site/quiesce.pth").exists()
+        assert clone.function("common python", "python_is_complete && echo yes").stdout == "yes\n"
+        kept = {folder.name for folder in (clone.root / ".venvs").iterdir()}
+        assert before in kept and len(kept) == 2  # it may be in use
+        before = (clone.root / ".venv").readlink().name
+
+
 def test_interrupted_environment_is_made_again(clone: Clone) -> None:
     (clone.root / ".venv/bin").mkdir(parents=True)
     clone.fake("python", "echo Python 3.12.0").rename(clone.root / ".venv/bin/python")

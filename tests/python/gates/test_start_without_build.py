@@ -109,6 +109,23 @@ def test_needs(clone: Clone, words: str, needs: str) -> None:
     assert clone.bash(f"needs_of {words}").strip() == needs
 
 
+@pytest.mark.parametrize(
+    ("words", "needs"),
+    [
+        ([], "bench images"),
+        (["--quick", "--target", "linux"], "bench linux"),
+        (["--target=host"], "bench"),
+    ],
+)
+def test_hil_builds_what_its_target_needs(clone: Clone, words: list[str], needs: str) -> None:
+    with (clone.root / "tools/lib/needs.sh").open("a") as script:
+        script.write('needs_build() { echo "$*"; exit 3; }\n')
+    (clone.root / "tools/setup").write_text("#!/bin/sh\n")
+    process = clone.start("hil", *words)
+    assert finished(process)[0] == f"{needs}\n"
+    assert process.returncode == 3
+
+
 def test_every_command_is_in_the_table() -> None:
     table = (ROOT / "tools/lib/needs.sh").read_text()
     assert set(re.findall(r'"(\w+) (?:\w+)?"', table)) == {name for name, _, _ in COMMANDS}

@@ -85,6 +85,21 @@ def test_a_step_is_run_again_where_its_inputs_changed(clone: Clone, file, is_run
     assert ("kept  ctest-host" in changed) != is_run_again
 
 
+def test_a_part_of_a_step_is_no_reason_to_keep_it(clone: Clone) -> None:
+    repository(clone)
+    clone.function("common steps", f"STAMPED=0; {RESUME.format('echo part')}")
+    result = clone.function("common steps", f"{RESUME.format('echo whole')}; report")
+    assert "steps: 1 passed, 0 failed\n" in result.stdout
+
+
+def test_a_file_that_changes_during_the_run_is_no_reason_to_keep_a_step(clone: Clone) -> None:
+    repository(clone)
+    edit = "echo 2 >firmware/a.c"  # after the build, before the step
+    clone.function("common steps", f"{edit}; {RESUME.format('echo old program')}")
+    result = clone.function("common steps", f"{RESUME.format('echo new')}; report")
+    assert "steps: 1 passed, 0 failed\n" in result.stdout
+
+
 def test_a_step_that_failed_is_run_again(clone: Clone) -> None:
     repository(clone)
     clone.function("common steps", RESUME.format("true"))

@@ -33,6 +33,8 @@ def test_a_block_of_the_firmware_brings_the_tests_that_see_it() -> None:
         ("hal/linux/watchdog.c", "unit unit/linux tests/unit/linux/all ."),
         ("tests/unit/plant/test_plant.cpp", "unit unit/plant tests/unit/plant/all ."),
         ("sim_hil/plant/actuator.cpp", "unit unit/plant tests/unit/plant/all ."),
+        ("sim_hil/python/plant_handle.cpp", "unit unit/plant tests/unit/plant/all ."),
+        ("tests/golden/streams.c", "unit golden golden_streams ."),
         ("hal/mps2/startup.c", "board"),
         ("tools/src/quiesce/rules/words.py", "ruff tools/src/quiesce/rules/words.py"),
         ("tools/src/quiesce/rules/words.py", "pytest tests/python/rules"),
@@ -42,6 +44,7 @@ def test_a_block_of_the_firmware_brings_the_tests_that_see_it() -> None:
         ("examples/first_loop/first_loop.c", "pytest tests/python/docs"),
         ("tools/test", "script tools/test"),
         ("tools/test", "pytest tests/python/gates/test_setup_scripts.py"),
+        ("tools/hil", "pytest tests/python/gates/test_start_without_build.py"),
         ("firmware/param/parameters.toml", "generated"),
     ],
 )

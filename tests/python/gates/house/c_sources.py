@@ -11,8 +11,9 @@ from house.circles import Graph
 from house.rooms import RIGS, folders, table
 
 SUFFIXES = (".c", ".h", ".cpp", ".hpp")
-INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
-COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>|(\w+))', re.MULTILINE)
+# Texts first: what looks like a comment in one is none.
+COMMENT = re.compile(r"""("(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+')|//[^\n]*|/\*.*?\*/""", re.DOTALL)
 STRING = re.compile(r'"(?:\\.|[^"\\\n])*"')
 FUNCTION = re.compile(
     r"^(?!typedef|#)([^\n;={}()]*?)\b(\w+)\([^;{}]*\)(?: const| noexcept| override)*\s*\{\n"
@@ -28,6 +29,7 @@ class Source:
     text: str  # without comments and strings
     quoted: tuple[str, ...] = ()
     angled: tuple[str, ...] = ()
+    computed: tuple[str, ...] = ()  # #include NAME_OF_A_MACRO
     words: frozenset[str] = field(default=frozenset(), repr=False)
     bodies: tuple[tuple[str, str], ...] = field(default=(), repr=False)  # name, body of functions
     extern: frozenset[str] = frozenset()  # functions that it defines for others
@@ -44,15 +46,16 @@ class Source:
 
 @lru_cache(maxsize=4096)
 def parsed(path: str, raw: str) -> Source:
-    text = COMMENT.sub(" ", raw)
+    text = COMMENT.sub(lambda found: found[1] or " ", raw)
     found = INCLUDE.findall(text)
     text = STRING.sub('""', text)
     functions = FUNCTION.findall(text)
     return Source(
         path=path,
         text=text,
-        quoted=tuple(quoted for quoted, _ in found if quoted),
-        angled=tuple(angled for _, angled in found if angled),
+        quoted=tuple(quoted for quoted, _, _ in found if quoted),
+        angled=tuple(angled for _, angled, _ in found if angled),
+        computed=tuple(name for _, _, name in found if name),
         words=frozenset(WORD.findall(text)),
         bodies=tuple((name, body) for _, name, body in functions),
         extern=frozenset(name for kind, name, _ in functions if "static" not in kind.split()),
@@ -109,8 +112,8 @@ class Tree:
         return names
 
     def included(self, source: Source, header: str) -> str | None:
-        """The file that an include in quotes means: beside the one that includes it, else the one
-        that its room may see, else any. None where it is none of the project's."""
+        """The file that an include means, in quotes or not: beside the one that includes it, else
+        the one that its room may see, else any. None where it is none of the project's."""
         beside = os.path.normpath(os.path.join(source.folder, header))
         if beside in self.sources:
             return beside
@@ -127,7 +130,7 @@ class Tree:
         return {path: self.includes_of(source) for path, source in self.sources.items()}
 
     def includes_of(self, source: Source) -> set[str]:
-        found = {self.included(source, header) for header in source.quoted}
+        found = {self.included(source, header) for header in source.quoted + source.angled}
         return {path for path in found if path is not None}
 
     @cached_property

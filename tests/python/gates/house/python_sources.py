@@ -101,6 +101,8 @@ def note(node: ast.AST, module: Module, statement: Statement) -> None:
         module.imports += [Import(alias.name, (), 0, node.lineno) for alias in node.names]
     elif kind is ast.ImportFrom:
         names = tuple(alias.name for alias in node.names)
+        if node.module == "sys" and "stdout" in names:
+            module.speech.append(("sys.stdout", node.lineno))
         module.imports.append(Import(node.module or "", names, node.level, node.lineno))
 
 
@@ -118,13 +120,21 @@ def note_call(call: ast.Call, module: Module) -> None:
         module.speech.append(("print", call.lineno))
     elif name in ("import_module", "__import__"):
         module.by_name.append((beginning(call.args[0] if call.args else None), call.lineno))
+    elif name in ("run_module", "run_path"):
+        module.by_name.append((None, call.lineno))
 
 
 def beginning(text: ast.expr | None) -> str | None:
-    """How a string or f-string begins; None where only the run knows."""
+    """How a string or f-string begins; None where only the run knows: no more than the package that
+    it is in, or relative to something."""
+    is_open = isinstance(text, ast.JoinedStr)
     if isinstance(text, ast.JoinedStr):
         text = text.values[0]
-    return str(text.value) if isinstance(text, ast.Constant) else None
+    if not isinstance(text, ast.Constant):
+        return None
+    found = str(text.value)
+    is_package = is_open and found.rstrip(".") in PACKAGES
+    return None if is_package or found.startswith(".") else found
 
 
 def name_of(path: str) -> str:

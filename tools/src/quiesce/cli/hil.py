@@ -39,7 +39,7 @@ TARGETS = {"all": ["host", "mps2"], "linux": ["host", "linux"]}
 TRACE_LAW = "fuzzy"
 TRACE_SEEDS = 5
 QUICK_TRACE_SEEDS = 2
-UART_EXCHANGES = 3000
+UART_EXCHANGES = 1600  # eight blocks
 TELEMETRY_EVERY = 100
 
 EPILOG = f"""examples:

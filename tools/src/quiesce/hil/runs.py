@@ -189,7 +189,7 @@ def measure_speed(
 ) -> dict[str, float | None]:
     """Real-time factor of the closed loop, nothing else running here: the best of some repeats."""
     is_quick = plan.is_quick
-    repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 10, "linux": 1}
+    repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 5, "linux": 1}
     factors: dict[str, float | None] = {"host": None, "mps2": None}
     for target in plan.targets:
         options = ["--scenario", str(scenario.file), "--law", law.bench_law]
