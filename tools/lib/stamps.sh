@@ -20,6 +20,7 @@ inputs_of() {
     ruff) echo "ruff.toml tools tests examples" ;;
     bench-house) echo . ;;
     bench-*) echo "$code tests tools docs/results/bounds" ;;
+    pytest-package) echo "$code tools tests/system docs README.md LICENSE pytest.ini" ;;
     pytest-vm) echo "$code pytest.ini tests tools" ;;
     proofs) echo "$code tests/proof tools" ;;
     *) echo . ;;

@@ -63,6 +63,7 @@ def test_a_fit_above_the_floor_is_no_success() -> None:
     assert found["bw7_evals_ratio"].is_ok and found["bw7_time_ratio"].is_ok
 
 
+@pytest.mark.slow
 def test_table_states_what_was_compared(cases: list[Case]) -> None:
     text = bw7.table(cases)
     assert "all 3 truths" in text and "scipy DE, the first 1" in text

@@ -241,6 +241,7 @@ def test_figures_agree_with_the_independent_simulation(noise_free) -> None:
     assert compared == 2 * 4 * 6
 
 
+@pytest.mark.slow
 def test_no_law_beats_the_bound(noise_free) -> None:
     for run in noise_free["runs"]:
         assert run["amp_reduction_pct"] <= run["bound_amp_pct"] + 0.5

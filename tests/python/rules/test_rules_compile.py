@@ -346,6 +346,7 @@ def test_outputs_of_any_number_of_counts(lsb: float, method: str) -> None:
     assert_near_the_reference(built, points)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("span", [2**22 - 1, 2**22, 2**24 - 2, 2**24 - 1, 2**24 - 0.4, 2**24])
 @pytest.mark.parametrize("origin", [0, -(2**31) + 1, 2**31 - 1])
 def test_singletons_at_the_ends_of_their_range(span: float, origin: int) -> None:

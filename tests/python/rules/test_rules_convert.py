@@ -92,6 +92,7 @@ SMOOTH = [
 STRAIGHT = {"fcl": "(0, 1) (5, 0)", "fll": "Ramp 5.000 0.000", "fis": "'linzmf',[0 5]"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("format", "shape", "value"), SMOOTH)
 def test_smooth_shape_is_its_formula(format: str, shape: str, value) -> None:
     text = TEXTS[format].replace(STRAIGHT[format], shape)
