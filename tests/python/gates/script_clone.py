@@ -57,8 +57,8 @@ class Clone:
         return self.run(str(self.root / "tools" / name), *arguments, **env)
 
     def function(self, libraries: str, code: str, **env: str) -> subprocess.CompletedProcess[str]:
-        """Runs `code` with some of tools/lib sourced."""
-        folders = ("tools/lib", "tools/benchmarks/lib")
+        """Runs `code` with some of tools/lib and its like sourced."""
+        folders = ("tools/lib", "tools/benchmarks/lib", "tests/system/vm")
         sources = "; ".join(
             f"source {folder}/{name}.sh"
             for name in libraries.split()

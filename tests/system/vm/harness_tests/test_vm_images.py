@@ -8,14 +8,17 @@ from pathlib import Path
 import pytest
 from test_setup_scripts import ROOT, Clone, assert_one_line
 
-SETUP = "common vm"
+SETUP = "common images"
+VM = Path("tests/system/vm")
 EXTRA = ("find", "head", "id", "sed", "sort", "dpkg-deb", "tar", "xz")
 
 
 @pytest.fixture
 def scripts(tmp_path: Path) -> Clone:
     clone = Clone(tmp_path)
-    shutil.copy(ROOT / "tests/system/vm/build_images", clone.root / "tests/system/vm/build_images")
+    (clone.root / VM).mkdir(parents=True)
+    for name in ("build_images", "images.sh"):
+        shutil.copy(ROOT / VM / name, clone.root / VM / name)
     for name in EXTRA:
         if not (clone.bin / name).exists():
             (clone.bin / name).symlink_to(shutil.which(name))
@@ -38,12 +41,12 @@ def fill_cache(clone: Clone, text: str = "a package") -> Path:
     [(["everything"], ["everything", "root, kernel or all"]), (["root", "all"], ["one argument"])],
 )
 def test_unknown_argument_is_refused(scripts: Clone, arguments, words) -> None:
-    assert_one_line(scripts.script("vm_images", *arguments), *words)
+    assert_one_line(scripts.run(str(scripts.root / VM / "build_images"), *arguments), *words)
     assert not (scripts.root / "build").exists()
 
 
 def test_help_needs_nothing_installed(scripts: Clone) -> None:
-    result = scripts.script("vm_images", "--help")
+    result = scripts.run(str(scripts.root / VM / "build_images"), "--help")
     assert result.returncode == 0
     assert result.stdout.startswith("usage:")
     assert not (scripts.root / "build").exists()
@@ -94,10 +97,7 @@ def test_apt_keeps_to_a_root_of_its_own(scripts: Clone) -> None:
     options = result.stdout.splitlines()
     assert f"Dir={scripts.root}/build/vm/apt" in options
     assert f"Dir::State::status={scripts.root}/build/vm/apt/var/lib/dpkg/status" in options
-    texts = [
-        (ROOT / name).read_text()
-        for name in ("tests/system/vm/build_images", "tests/system/vm/images.sh")
-    ]
+    texts = [(ROOT / VM / name).read_text() for name in ("build_images", "images.sh")]
     assert not any("--add-architecture" in text for text in texts)
 
 
