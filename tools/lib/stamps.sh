@@ -19,7 +19,7 @@ inputs_of() {
     scripts) echo ".ci tools tests" ;;
     ruff) echo "ruff.toml tools tests examples" ;;
     bench-house) echo . ;;
-    bench-*) echo "$code tests tools docs/results/bounds" ;;
+    bench-*) echo "$code tests/system/vm tools docs/results/bounds" ;;
     pytest-package) echo "$code tools tests/system docs README.md LICENSE pytest.ini" ;;
     pytest-vm) echo "$code pytest.ini tests tools" ;;
     proofs) echo "$code tests/proof tools" ;;

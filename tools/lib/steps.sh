@@ -122,7 +122,8 @@ list_step() {
     pytest-vm) list_pytest "$1" tests/system/vm ;;
     ctest-*)
         if [ -f "build/${1#ctest-}/CTestTestfile.cmake" ]; then
-            ctest --preset "${1#ctest-}" -N | sed -n -E "s/^ *Test +#[0-9]+: /$1 /p"
+            ctest --preset "${1#ctest-}" -N | grep -v '_NOT_BUILT$' |
+                sed -n -E "s/^ *Test +#[0-9]+: /$1 /p"
         else
             say "$1: its tests can be named once build/${1#ctest-} is there"
         fi

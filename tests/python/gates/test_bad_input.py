@@ -1,5 +1,6 @@
 """Bad input: one clear line that says what to do, exit code 2, nothing written."""
 
+import os
 import shlex
 import signal
 import subprocess
@@ -106,7 +107,9 @@ def test_replay_option_is_refused(refused, tmp_path: Path, options, words) -> No
         (["--noise-mg", "-1"], ["--noise-mg"]),
         (["--seed", "many"], ["--seed"]),
         (["--target", "moon"], ["moon", "mps2"]),
-        (["--fast"], ["--fast", "--help"]),
+        (["--fast"], ["--fast", "quiesce hil --help"]),
+        (["--out", ""], ["an argument is empty"]),
+        (["--out="], ["an argument is empty", "--out="]),
         (["--out", "torn.toml"], ["torn.toml", "--out"]),
     ],
 )
@@ -156,6 +159,7 @@ def test_missing_bench_says_what_to_run(refused, tmp_path: Path) -> None:
     [
         ([], ["COMMAND", "--help"]),
         (["fly"], ["fly", "hil"]),
+        (["--fast"], ["unknown option '--fast'"]),
         (["plant", "check", "none.toml"], ["none.toml"]),
         (["params", "warp"], ["warp"]),
         (["record", "sine_5Hz", "--law", "constant_best", "--out", "x.csv"], ["constant_best"]),
@@ -189,7 +193,8 @@ def test_help_is_on_stdout(quiesce, command) -> None:
     assert result.stderr == ""
 
 
-def test_interrupt_ends_in_one_line_without_output(build: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupt_ends_in_one_line_without_output(build: Path, tmp_path: Path, number) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "quiesce", "hil", "--target", "host", "--out", "out"],
         cwd=tmp_path,
@@ -197,15 +202,39 @@ def test_interrupt_ends_in_one_line_without_output(build: Path, tmp_path: Path) 
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        start_new_session=True,
     )
     assert process.stderr.readline().startswith("[")
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     out, err = process.communicate(timeout=60)
+    with pytest.raises(ProcessLookupError):  # none of its processes stays behind
+        os.killpg(process.pid, 0)
     assert process.returncode == 130
     assert out == ""
     assert err.splitlines()[-1] == "quiesce: interrupted; nothing was written"
     assert "Traceback" not in err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("words", [["params"], ["--help"], ["hil", "--help"]])
+def test_full_disk_of_standard_output_is_one_line(build: Path, tmp_path: Path, words) -> None:
+    with Path("/dev/full").open("w") as full:
+        result = subprocess.run(
+            [sys.executable, "-m", "quiesce", *words],
+            cwd=tmp_path,
+            env={
+                "PYTHONPATH": str(ROOT / "tools/src"),
+                "QUIESCE_BUILD": str(build),
+                "PATH": "/bin",
+            },
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+        )
+    assert result.returncode == 2
+    assert "standard output" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
 
 
 def test_reader_that_goes_away_leaves_no_trace(build: Path, tmp_path: Path) -> None:

@@ -40,6 +40,9 @@ def assert_one_line(result: subprocess.CompletedProcess[str], *words: str) -> No
         ("test", ["--only", "units"], ["units", "sanitize"]),
         ("test", ["edit", "--list"], ["--list", "--help"]),
         ("test", ["--only"], ["--only", "sanitize"]),
+        ("test", ["edit", "all"], ["one of edit, all and --only"]),
+        ("test", ["edit", "--only", "unit"], ["one of edit, all and --only"]),
+        ("test", ["--again"], ["--again goes with all"]),
     ],
 )
 def test_unknown_argument_is_refused(clone: Clone, name, arguments, words) -> None:

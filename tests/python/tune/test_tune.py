@@ -181,7 +181,7 @@ def test_interrupted_run_keeps_what_is_finished_and_goes_on(build, tmp_path: Pat
     err = process.communicate()[1]
     assert process.returncode == 130, err
     assert [line for line in err.splitlines() if not line.startswith("[")] == [
-        "quiesce: interrupted; finished pieces are kept in out, the same command goes on"
+        "quiesce: interrupted; the same command goes on with the pieces that are finished"
     ]
     kept = json.loads(store.read_text())["pieces"]
     assert kept

@@ -2,9 +2,12 @@
 
 import argparse
 import os
+import signal
 import sys
-from collections.abc import Callable
-from typing import NoReturn
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any, NoReturn
 
 from quiesce.base.errors import (
     EXIT_BAD_INPUT,
@@ -22,6 +25,53 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{one_line(message)}; see '{self.prog} --help'")
 
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """What is left over is told by the parser of the command that it was said to. An empty word
+        is a variable of a script that was not set, and no folder."""
+        for word in sys.argv[1:] if args is None else args:
+            if not word or (word.startswith("--") and word.endswith("=")):
+                self.error(f"an argument is empty: '{word}'")
+        found, rest = super().parse_known_args(args, namespace)
+        if rest:
+            self.error(f"unrecognized arguments: {' '.join(rest)}")
+        return found, rest
+
+
+@contextmanager
+def ended_alike() -> Iterator[None]:
+    """Whoever ends it, Ctrl-C or SIGTERM: what is finished is kept, and no process stays behind."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def output_is_written() -> bool:
+    """False where standard output takes no more, BrokenPipeError where its reader has gone; nothing
+    is left in it that the interpreter would try again."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):
+            raise
+        return False
+    return True
+
+
+def status_of(run: Callable[[], int]) -> int:
+    """Also of a run that ends in its help text."""
+    try:
+        return run()
+    except SystemExit as end:
+        return int(end.code or 0)
+
 
 def exit_code_of(program: str, run: Callable[[], int]) -> int:
     """Runs a command and returns its exit code; every failure is one line on stderr."""
@@ -30,8 +80,11 @@ def exit_code_of(program: str, run: Callable[[], int]) -> int:
         print(f"{program}: {one_line(message)}", file=sys.stderr)
 
     try:
-        status = run()
-        sys.stdout.flush()
+        with ended_alike():
+            status = status_of(run)
+        if not output_is_written():
+            say("standard output: not all could be written; is its disk full?")
+            return EXIT_BAD_INPUT
         return status
     except UsageError as error:
         say(error)
@@ -43,10 +96,12 @@ def exit_code_of(program: str, run: Callable[[], int]) -> int:
         say("interrupted; nothing was written")
         return EXIT_INTERRUPTED
     except BrokenPipeError:
-        # The reader of stdout has gone; leave nothing for the interpreter to flush into it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        with suppress(BrokenPipeError):
+            output_is_written()
         return EXIT_FAILED
     except OSError as error:
+        with suppress(BrokenPipeError):
+            output_is_written()
         say(f"{error.filename or 'file'}: {error.strerror or error}")
         return EXIT_BAD_INPUT
     except Exception as error:

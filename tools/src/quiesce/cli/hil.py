@@ -121,7 +121,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--noise-mg", type=noise_mg, metavar="X", help="sensor noise, RMS (scenario's: 0.5)"
     )
-    parser.add_argument("--quick", action="store_true", help="a shorter run, see above")
+    parser.add_argument("--quick", action="store_true", help="a shorter run, see below")
     parser.add_argument("--json", action="store_true", help="print metrics.json, not the table")
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="folder of the report (build/report/hil)"

@@ -7,6 +7,7 @@ from types import ModuleType
 
 from quiesce import __version__
 from quiesce.base.command import Parser, exit_code_of
+from quiesce.base.errors import UsageError
 
 # Name, module, what the list says. A module has add_parser(subparsers), which sets `run`, and may
 # have words_of(arguments): what the parser gets in their place.
@@ -72,6 +73,8 @@ def make_parser(wanted: str, module: ModuleType | None) -> argparse.ArgumentPars
 
 def run(arguments: list[str]) -> int:
     wanted = arguments[0] if arguments else ""
+    if wanted.startswith("-") and wanted not in ("-h", "--help", "--version"):
+        raise UsageError(f"unknown option '{wanted}'; see 'quiesce --help'")
     module = module_of(wanted)
     words_of = getattr(module, "words_of", list)
     args = make_parser(wanted, module).parse_args(words_of(arguments))

@@ -4,12 +4,11 @@ import argparse
 import json
 import os
 import shlex
-import signal
 import sys
 from pathlib import Path
 
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import shown
 
 EPILOG = """examples:
   quiesce tune my_plant.toml --quick            a first look, under a minute
@@ -158,14 +157,11 @@ def tune_into(args: argparse.Namespace) -> int:
 
 def run(args: argparse.Namespace) -> int:
     check(args)
-    # Whoever ends it: finished pieces are kept, and no process stays behind.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return tune_into(args)
     except KeyboardInterrupt:
-        folder = shown(args.out or build_folder() / "tune")
         print(
-            f"quiesce: interrupted; finished pieces are kept in {folder}, the same command goes on",
+            "quiesce: interrupted; the same command goes on with the pieces that are finished",
             file=sys.stderr,
         )
         return EXIT_INTERRUPTED
