@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from quiesce_benchmarks.house.committed import Committed
+from quiesce_benchmarks.house.fuzzy_tables import engine_table, host_table, ratio_table
 from quiesce_benchmarks.house.markdown import count, markdown, number
 from quiesce_benchmarks.house.signal_tables import (
     accuracy_table,
@@ -126,6 +127,9 @@ TABLES: dict[str, Callable[[dict[str, Any]], str]] = {
     "costs": cost_table,
     "modules": module_table,
     "peers": peer_table,
+    "engines": engine_table,
+    "hosts": host_table,
+    "ratios": ratio_table,
 }
 
 
