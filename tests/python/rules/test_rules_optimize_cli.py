@@ -231,7 +231,7 @@ def test_damaged_state_is_refused_and_kept(recipe, quiesce, tmp_path) -> None:
         (["--scenario", "none.toml"], ["none.toml", "No such file"]),
         (["--start", "none.fcl"], ["none.fcl"]),
         (["--start", "torn.fcl"], ["torn.fcl"]),
-        (["--generations", "-1"], ["--generations", "-1 is not in 1 .. 100000"]),
+        (["--generations", "-1"], ["--generations", "1 .. 100000, found '-1'"]),
         (["--generations", "0"], ["--generations"]),
         (["--generations", "many"], ["--generations", "many"]),
         (["--evaluations", "0"], ["--evaluations"]),

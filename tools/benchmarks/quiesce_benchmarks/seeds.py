@@ -3,13 +3,9 @@
 import zlib
 
 import numpy as np
+from quiesce.base.command import whole_number
 
-
-def seed_number(text: str) -> int:
-    value = int(text)
-    if not 0 <= value < 1 << 32:
-        raise ValueError
-    return value
+seed_number = whole_number(0, (1 << 32) - 1)
 
 
 def generator(seed: int, *names: object) -> np.random.Generator:

@@ -1,6 +1,7 @@
 """How a command line ends: the parser that refuses in one line, and exit codes for failures."""
 
 import argparse
+import math
 import os
 import signal
 import sys
@@ -30,13 +31,50 @@ class Parser(argparse.ArgumentParser):
     ) -> tuple[argparse.Namespace, list[str]]:
         """What is left over is told by the parser of the command that it was said to. An empty word
         is a variable of a script that was not set, and no folder."""
-        for word in sys.argv[1:] if args is None else args:
+        words = sys.argv[1:] if args is None else list(args)
+        for option, word in zip(["", *words], words, strict=False):
             if not word or (word.startswith("--") and word.endswith("=")):
-                self.error(f"an argument is empty: '{word}'")
+                self.error("an argument is empty: " + (word or f"{option} ''"))
         found, rest = super().parse_known_args(args, namespace)
         if rest:
             self.error(f"unrecognized arguments: {' '.join(rest)}")
         return found, rest
+
+
+def whole_number(low: int, high: int) -> Callable[[str], int]:
+    """A type for argparse: an integer in low .. high."""
+
+    def read(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = low - 1
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(
+                f"expected an integer in {low} .. {high}, found '{text}'"
+            )
+        return value
+
+    return read
+
+
+def real_number(low: float, high: float, what: str = "") -> Callable[[str], float]:
+    """A type for argparse: a finite number in low .. high, which may be infinite. what: its
+    name."""
+
+    def read(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (low <= value <= high and math.isfinite(value)):
+            name = f"{what}, a number" if what else "a number"
+            raise argparse.ArgumentTypeError(
+                f"expected {name} in {low:g} .. {high:g}, found '{text}'"
+            )
+        return value
+
+    return read
 
 
 @contextmanager

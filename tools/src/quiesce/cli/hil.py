@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import real_number, whole_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.paths import build_folder, shown
 from quiesce.engine import laws, scenarios
@@ -67,27 +68,6 @@ of telemetry every 100 ticks or as --telemetry-every says. Channels: slcan:DEVIC
 """
 
 
-def noise_mg(text: str) -> float:
-    value = float(text)
-    if not 0.0 <= value <= 1e4:
-        raise ValueError
-    return value
-
-
-def seed(text: str) -> int:
-    value = int(text)
-    if not 0 <= value < 2**62:
-        raise ValueError
-    return value
-
-
-def ticks(text: str) -> int:
-    value = int(text)
-    if not 1 <= value <= 65535:
-        raise ValueError
-    return value
-
-
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "hil",
@@ -111,15 +91,23 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--can", metavar="CHANNEL", help="what leads to quiesced --lockstep (one started here)"
     )
     parser.add_argument(
-        "--telemetry-every", type=ticks, metavar="N",
+        "--telemetry-every", type=whole_number(1, 65535), metavar="N",
         help=f"ticks between two bursts of all telemetry over CAN ({TELEMETRY_EVERY})",
     )  # fmt: skip
     parser.add_argument(
         "--set", metavar="NAME=VALUE", help="parameter for every law, repeatable", **repeatable
     )
-    parser.add_argument("--seed", type=seed, metavar="N", help="of the sensor noise (scenario's)")
     parser.add_argument(
-        "--noise-mg", type=noise_mg, metavar="X", help="sensor noise, RMS (scenario's: 0.5)"
+        "--seed",
+        type=whole_number(0, 2**62 - 1),
+        metavar="N",
+        help="of the sensor noise (scenario's)",
+    )
+    parser.add_argument(
+        "--noise-mg",
+        type=real_number(0.0, 1e4),
+        metavar="X",
+        help="sensor noise, RMS (scenario's: 0.5)",
     )
     parser.add_argument("--quick", action="store_true", help="a shorter run, see below")
     parser.add_argument("--json", action="store_true", help="print metrics.json, not the table")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import build_folder, shown
 from quiesce.engine.bench import Bench
@@ -31,13 +32,6 @@ both are taken out.
 """
 
 
-def positive_int(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise ValueError
-    return value
-
-
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "replay",
@@ -56,7 +50,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--target", choices=["host", "mps2"], default="host", help="(%(default)s)")
     parser.add_argument(
         "--every",
-        type=positive_int,
+        type=whole_number(1, 1_000_000_000),
         default=10,
         metavar="N",
         help="ticks from one row of replay.csv to the next (%(default)s)",

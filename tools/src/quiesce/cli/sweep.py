@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import build_folder, shown
 from quiesce.plant_id.sweep import SweepPlan, Timeline, dwell_s, timeline, write_csv
@@ -118,15 +119,8 @@ def add_find_options(group: argparse._ArgumentGroup) -> None:
         help="the damper does not act where the sensor is: fit the shapes there, too",
     )
     group.add_argument(
-        "--modes", type=mode_count, metavar="N", help="modes in the swept band (found)"
+        "--modes", type=whole_number(1, 16), metavar="N", help="modes in the swept band (found)"
     )
-
-
-def mode_count(text: str) -> int:
-    value = int(text)
-    if not 1 <= value <= 16:
-        raise ValueError
-    return value
 
 
 def plan_of(args: argparse.Namespace) -> SweepPlan:

@@ -7,6 +7,7 @@ import shlex
 import sys
 from pathlib import Path
 
+from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import shown
 
@@ -42,7 +43,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--quick", action="store_true", help="few frequencies, coarser bounds")
     parser.add_argument("--json", action="store_true", help="print the figures as one JSON object")
     parser.add_argument(
-        "--jobs", type=job_count, default=os.cpu_count() or 1, metavar="N",
+        "--jobs", type=whole_number(1, 1024), default=os.cpu_count() or 1, metavar="N",
         help="processes (%(default)s)",
     )  # fmt: skip
     parser.add_argument("--fresh", action="store_true", help="give up what DIR holds already")
@@ -90,14 +91,9 @@ def add_sources(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--damper-elsewhere", action="store_true", help="the damper does not act at the sensor"
     )
-    group.add_argument("--modes", type=job_count, metavar="N", help="modes in the band (found)")
-
-
-def job_count(text: str) -> int:
-    value = int(text)
-    if not 1 <= value <= 1024:
-        raise ValueError
-    return value
+    group.add_argument(
+        "--modes", type=whole_number(1, 1024), metavar="N", help="modes in the band (found)"
+    )
 
 
 def check(args: argparse.Namespace) -> None:

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.base.command import real_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.cli.identify.help import fill, number
+from quiesce.cli.identify.help import fill
 
 NAME = "inverse"
 HELP = "the current for a wanted force: check, plot and map"
@@ -28,15 +29,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     fill(parser, EPILOG)
     parser.add_argument("model", type=Path, metavar="MODEL.toml", help="damper file")
     parser.add_argument(
-        "--max-current-A", type=number(1e-6, 1e3, "a current in A"), metavar="A",
+        "--max-current-A", type=real_number(1e-6, 1e3, "a current in A"), metavar="A",
         help="largest current (max_current_A of the file's [valid])",
     )  # fmt: skip
     parser.add_argument(
-        "--max-speed-m-s", type=number(1e-6, 1e3, "a speed in m/s"), metavar="m/s",
+        "--max-speed-m-s", type=real_number(1e-6, 1e3, "a speed in m/s"), metavar="m/s",
         help="largest speed (that of the file)",
     )  # fmt: skip
     parser.add_argument(
-        "--amplitude-mm", type=number(1e-3, 1e4, "a length in mm"), metavar="mm",
+        "--amplitude-mm", type=real_number(1e-3, 1e4, "a length in mm"), metavar="mm",
         help="of the sines (half the file's stroke)",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write map and plot there")

@@ -7,9 +7,10 @@ from pathlib import Path
 import tomli_w
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import real_number
 from quiesce.base.paths import shown
 from quiesce.base.table import format_table
-from quiesce.cli.identify.help import fill, number
+from quiesce.cli.identify.help import fill
 from quiesce.damper.plain import plain
 from quiesce.damper.plan import KINDS, Damper, Plan, Test, excitation, make_plan, needs
 
@@ -34,22 +35,23 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     def needed(name: str, high: float, what: str, text: str, least: float = 1e-3) -> None:
         unit = name.rsplit("-", 1)[1]
         parser.add_argument(
-            name, required=True, type=number(least, high, what), metavar=unit, help=text
+            name, required=True, type=real_number(least, high, what), metavar=unit, help=text
         )
 
     needed("--stroke-mm", 1e4, "a length in mm", "stroke from end to end")
     needed("--max-force-N", 1e8, "a force in N", "largest force, at the largest current")
     needed("--max-current-A", 1e3, "a current in A", "largest coil current")
     parser.add_argument(
-        "--max-speed-m-s", type=number(1e-5, 100.0, "a speed in m/s"), metavar="m/s",
+        "--max-speed-m-s", type=real_number(1e-5, 100.0, "a speed in m/s"), metavar="m/s",
         help="largest speed that the model is for",
     )  # fmt: skip
     parser.add_argument(
-        "--rig-max-Hz", type=number(0.1, 1000.0, "a frequency in Hz"), metavar="Hz", default=10.0,
+        "--rig-max-Hz", type=real_number(0.1, 1000.0, "a frequency in Hz"), metavar="Hz",
+        default=10.0,
         help="fastest sine of the rig (%(default)g)",
     )  # fmt: skip
     parser.add_argument(
-        "--mass-kg", type=number(1e-4, 1e5, "a mass in kg"), metavar="kg",
+        "--mass-kg", type=real_number(1e-4, 1e5, "a mass in kg"), metavar="kg",
         help="mass of the damper, for its heating (guessed from force and stroke)",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write plan and excitations")

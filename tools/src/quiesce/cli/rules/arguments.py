@@ -1,26 +1,14 @@
 """Arguments that the searching commands share."""
 
 import argparse
-from collections.abc import Callable
 
+from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
 from quiesce.rules.optimize.scenarios import MAX_SETTLE_s, MEASURE_s, SETTLE_s
 
 MAX_VALUES = 100
 FREQ_LOW_Hz, FREQ_HIGH_Hz = 0.1, 100.0
 DRIVE_HIGH_V = 1e6
-
-
-def whole(low: int, high: int) -> Callable[[str], int]:
-    """An argparse type: an integer in low .. high."""
-
-    def integer(text: str) -> int:
-        value = int(text)
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{text} is not in {low} .. {high}")
-        return value
-
-    return integer
 
 
 def numbers(text: str, option: str, low: float, high: float) -> list[float]:
@@ -47,7 +35,7 @@ def drives_V(text: str) -> list[float]:
 
 def add_settle(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--settle", type=whole(1, MAX_SETTLE_s), default=SETTLE_s, metavar="S",
+        "--settle", type=whole_number(1, MAX_SETTLE_s), default=SETTLE_s, metavar="S",
         help=f"of each --freq, before {MEASURE_s} s are measured: longer for a structure that "
         "rings longer (%(default)s)",
     )  # fmt: skip

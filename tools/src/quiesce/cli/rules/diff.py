@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import real_number
 from quiesce.base.errors import EXIT_FAILED
 from quiesce.base.paths import build_folder, shown
 from quiesce.cli.rules.show import add_reading_options, read_with_notes, slice_of
@@ -66,7 +67,7 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
     parser.add_argument("a", metavar="A", type=Path, help="rule file: .fcl, .fll or .fis")
     parser.add_argument("b", metavar="B", type=Path, help="another one")
     parser.add_argument(
-        "--threshold", type=threshold, metavar="X",
+        "--threshold", type=real_number(0.0, math.inf), metavar="X",
         help="share of the inputs where outputs differ by more than X in their unit "
         "(a thousandth of the output's range)",
     )  # fmt: skip
@@ -76,13 +77,6 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--json", action="store_true", help="print the differences as JSON")
     parser.set_defaults(run=run)
-
-
-def threshold(text: str) -> float:
-    value = float(text)
-    if not 0.0 <= value < math.inf:
-        raise ValueError
-    return value
 
 
 def read_pair(args: argparse.Namespace) -> tuple[RuleBase, RuleBase]:

@@ -6,9 +6,10 @@ import os
 import tempfile
 from pathlib import Path
 
+from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz, whole
+from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
 from quiesce.cli.rules.optimize import stopping_pool
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
@@ -47,7 +48,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--plant", metavar="FILE", help="plant file (squeeze_2012.toml)")
     add_settle(parser)
     parser.add_argument(
-        "--step-mA", type=whole(1, 20000), default=STEP_mA, metavar="N",
+        "--step-mA", type=whole_number(1, 20000), default=STEP_mA, metavar="N",
         help="of the currents (%(default)s)",
     )  # fmt: skip
     parser.add_argument(
@@ -56,7 +57,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )  # fmt: skip
     parser.add_argument("--write", type=Path, metavar="FILE", help="write the rules, as FCL")
     parser.add_argument(
-        "--jobs", type=whole(1, 256), default=os.cpu_count() or 1, metavar="N",
+        "--jobs", type=whole_number(1, 256), default=os.cpu_count() or 1, metavar="N",
         help="closed-loop runs at once (%(default)s)",
     )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print JSON")

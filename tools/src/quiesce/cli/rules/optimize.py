@@ -10,10 +10,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import build_folder, shown
 from quiesce.base.progress import say
-from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz, whole
+from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
 from quiesce.engine import scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
@@ -103,20 +104,24 @@ def add_how(parser: argparse.ArgumentParser) -> None:
         "--selection", choices=SELECTIONS, default=SELECTIONS[0], help="of the GA (%(default)s)"
     )
     parser.add_argument(
-        "--population", type=whole(4, 1000), metavar="N", help="(ga, de: 24; nsga2: 40)"
+        "--population", type=whole_number(4, 1000), metavar="N", help="(ga, de: 24; nsga2: 40)"
     )
     parser.add_argument(
-        "--generations", type=whole(1, 100000), default=30, metavar="N", help="(%(default)s)"
+        "--generations", type=whole_number(1, 100000), default=30, metavar="N", help="(%(default)s)"
     )
     parser.add_argument(
-        "--evaluations", type=whole(1, 10**7), metavar="N",
+        "--evaluations", type=whole_number(1, 10**7), metavar="N",
         help="end after the generation in which so many rule bases have been tried",
     )  # fmt: skip
     parser.add_argument(
-        "--seed", type=whole(0, 2**62), default=1, metavar="N", help="of the search (%(default)s)"
+        "--seed",
+        type=whole_number(0, 2**62),
+        default=1,
+        metavar="N",
+        help="of the search (%(default)s)",
     )
     parser.add_argument(
-        "--jobs", type=whole(1, 256), default=os.cpu_count() or 1, metavar="N",
+        "--jobs", type=whole_number(1, 256), default=os.cpu_count() or 1, metavar="N",
         help="closed-loop runs at once (%(default)s)",
     )  # fmt: skip
     parser.add_argument("--resume", action="store_true", help="go on with the search in --out")
