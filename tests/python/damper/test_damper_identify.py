@@ -120,7 +120,7 @@ def test_broken_state_is_done_again(example: Path, tmp_path: Path) -> None:
     ("more", "hint"),
     [
         (["--model", "bouc_wenn"], "no model 'bouc_wenn'"),
-        (["--model", ""], "no model ''"),
+        (["--model", ""], "an argument is empty: --model ''"),
         (["--fix", "n"], "write NAME=VALUE"),
         (["--fix", "nn=2"], "no model has such a parameter"),
         (["--bound", "n=1"], "write NAME=LOW:HIGH"),
