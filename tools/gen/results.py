@@ -23,17 +23,11 @@ BENCH = ROOT / "build/host/sim_hil/quiesce_bench"
 NODE_IMAGE = ROOT / "build/mps2/tests/unit/mps2/node_cost.elf"
 NODE_TICKS = "20000"
 # Of a benchmark's context: what the pages' tables show.
-KEPT = (
-    "seed",
-    "quick",
-    "settings",
-    "accuracy",
-    "plant_steps",
-    "cost",
-    "engines",
-    "host_instr",
-    "ratios",
-)
+KEPT = {
+    "control": ("seed", "quick", "settings", "cost"),
+    "fuzzy": ("seed", "quick", "engines", "peers", "host_instr", "ratios"),
+    "signal": ("seed", "quick", "settings", "accuracy", "plant_steps", "cost"),
+}
 # What the image counts for a first word of 0, 1, 2.
 NODE_PARTS = ("messages", "one_received", "tick")
 
@@ -53,9 +47,8 @@ def hil_result(folder: Path) -> dict[str, Any]:
 def benchmark_result(file: Path) -> dict[str, Any]:
     result = json.loads(file.read_text())
     command = f"./tools/benchmark {result['bench']}"
-    kept = {key: result["context"][key] for key in KEPT if key in result["context"]}
-    if "engines" in kept:  # of other benchmarks too long
-        kept["peers"] = result["context"]["peers"]
+    keys = KEPT.get(result["bench"], ("seed", "quick"))
+    kept = {key: result["context"][key] for key in keys if key in result["context"]}
     return {"command": command, **result, "context": kept}
 
 

@@ -92,12 +92,21 @@ python_switch() {
     done
 }
 
+# What set-ups left that failed or were interrupted: each may be hundreds of megabytes.
+python_drop_unfinished() {
+    local folder
+    for folder in "$VENVS"/*/; do
+        [ -f "$folder/.complete" ] || rm -rf "$folder"
+    done
+}
+
 python_setup() {
     local site fresh
     python_is_complete && return 0
     python_require
     say "set-up: Python environment .venv with $PYTHON and the packages of tools/requirements.txt"
     mkdir -p "$VENVS"
+    python_drop_unfinished
     fresh="$(mktemp -d "$VENVS/XXXXXX")"
     chmod 755 "$fresh"
     run_logged setup-venv "$PYTHON" -m venv "$fresh" ||

@@ -184,7 +184,9 @@ def test_failed_set_up_leaves_the_environment_in_use(clone: Clone) -> None:
     make = 'mkdir -p "$3/bin"; cp "$0" "$3/bin/python"'
     cases = f"venv) {make};; pip) exit 1;; *) echo 3 12 venv;;"
     python = clone.fake("python", f'[ "$1" != -I ] || shift; case "$2" in {cases} esac')
-    assert clone.script("setup", "python", QUIESCE_PYTHON=str(python)).returncode == 2
+    for _ in range(3):
+        assert clone.script("setup", "python", QUIESCE_PYTHON=str(python)).returncode == 2
+        assert len(list((clone.root / ".venvs").iterdir())) == 1  # they do not pile up
     usable = clone.function("common launch", "python_is_usable && .venv/bin/python -V")
     assert usable.stdout == "Python 3.12.0\n"
 

@@ -28,7 +28,7 @@ def engine_table(fuzzy: dict[str, Any]) -> str:
     for peer in context["peers"]:
         samples = peer["resolution"]
         method = f"centroid of {samples} samples" if samples else "sum"
-        cells = [count(round(peer["mean_instr"])), count(peer["worst_instr"])]
+        cells = [count(peer["mean_instr"]), count(peer["worst_instr"])]
         rows.append(
             [f"libfuzzylite 6, {method}", *cells, f"{count(peer['code_bytes'])} (image)", ""]
         )
@@ -38,7 +38,7 @@ def engine_table(fuzzy: dict[str, Any]) -> str:
 def host_table(fuzzy: dict[str, Any]) -> str:
     """Instructions of one evaluation on this machine, under callgrind, by method."""
     rows = [
-        [one["method"], one["what"], f"{one['mean_instr']:,.0f}"]
+        [one["method"], one["what"], count(one["mean_instr"])]
         for one in sorted(
             fuzzy["context"]["host_instr"], key=lambda one: one["method"] == "centroid"
         )
