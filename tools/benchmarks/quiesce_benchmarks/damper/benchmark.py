@@ -19,14 +19,17 @@ DESCRIPTION = """Measured dampers by the rules of tools/benchmarks/dampers/scori
 of two static baselines, and our models, chosen by validation inside the training part and scored on
 held-out rows. One parameter set over five currents. Synthetic truth: are parameters and intervals
 right? Speed of the batched evaluator against scipy's integrator and against ourselves, one by one,
-and of a whole fit against scipy's differential evolution."""
+and of a whole fit against scipy's differential evolution. --quick: fewer trials, and of the
+measured sets the three that take minutes."""
 
 PARTS = ("real", "one-set", "truth", "bw7", "speed")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--part", action="append", choices=PARTS, help="only this; repeatable")
-    parser.add_argument("--set", action="append", metavar="NAME", help="only this measured set")
+    parser.add_argument(
+        "--set", action="append", metavar="NAME", help="only this measured set; repeatable"
+    )
     parser.add_argument(
         "--models", metavar="NAMES", help="models for the measured sets, with commas, or all"
     )
@@ -72,7 +75,8 @@ def real_part(args: argparse.Namespace, folder: Path) -> tuple[list[Figure], lis
     for name in args.set or []:
         if name not in known:
             raise UsageError(f"--set {name}: there are {', '.join(known)}")
-    chosen = [one for one in entries if not args.set or one["name"] in args.set]
+    wanted = args.set or (real.QUICK_SETS if args.quick else known)
+    chosen = [one for one in entries if one["name"] in wanted]
     models = names_of(args.models) if args.models else list(real.MODELS)
     data = real.data_folder()
     if data is None:

@@ -34,6 +34,9 @@ MODELS = (
     "grey_box",
 )
 
+# Those of `--quick`: minutes each; the others take half an hour and more.
+QUICK_SETS = ("utfsm_sweep_0A", "utfsm_sweep_1A", "sano")
+
 # Set -> largest unexplained ratio and error.
 GOALS = {
     "utfsm_sweep_0A": (0.38, 0.079),
