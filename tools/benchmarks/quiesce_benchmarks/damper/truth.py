@@ -52,7 +52,7 @@ class Size:
 
 
 FULL = Size((), 2, 100)
-QUICK = Size(("bingham", "kwok_tanh", "viscous_dahl", "normalised_bouc_wen", "zhang_tanh"), 1, 20)
+QUICK = Size(("bingham", "kwok_tanh", "viscous_dahl", "normalised_bouc_wen", "zhang_tanh"), 1, 100)
 
 
 @dataclass(frozen=True)
