@@ -11,20 +11,31 @@ TEST_SUMMARY="tests/summary.md"
 inputs_of() {
     local code="CMakeLists.txt CMakePresets.json cmake firmware hal targets sim_hil tests/CMakeLists.txt
         tests/build_images tests/unit tests/golden tests/system/vm/guest tools/benchmarks examples"
+    local figures=":!tools/benchmarks/quiesce_benchmarks"
     case "$1" in
-    ctest-*) echo "$code" ;;
-    cppcheck) echo "$code tools/check" ;;
-    tidy) echo "$code tools/check .clang-tidy" ;;
+    ctest-*) echo "$code $figures" ;;
+    cppcheck) echo "$code $figures tools/check" ;;
+    tidy) echo "$code $figures tools/check .clang-tidy" ;;
     format) echo "$code examples tests tools/check .clang-format" ;;
     scripts) echo ".ci tools tests" ;;
     ruff) echo "ruff.toml tools tests examples" ;;
     bench-house) echo . ;;
-    bench-*) echo "$code tests/system/vm tools docs/results/bounds" ;;
+    bench-*) echo "$code tests/system/vm tools docs/results/bounds $(other_benchmarks "$1")" ;;
     pytest-package) echo "$code tools tests/system docs README.md LICENSE pytest.ini" ;;
     pytest-vm) echo "$code pytest.ini tests tools" ;;
     proofs) echo "$code tests/proof tools" ;;
     *) echo . ;;
     esac
+}
+
+# other_benchmarks STEP: what only the other ones read, as paths to leave out.
+other_benchmarks() {
+    local own="${1#bench-}" folder
+    [ "$own" != identify ] || own=damper
+    for folder in "$ROOT"/tools/benchmarks/quiesce_benchmarks/*/; do
+        folder="$(basename "$folder")"
+        [ "$folder" = "$own" ] || echo ":!tools/benchmarks/quiesce_benchmarks/$folder"
+    done
 }
 
 # files_hash PATH...: of these files here, committed or not.
