@@ -3,39 +3,18 @@
 
 #include <stddef.h>
 
+#include "control.h"
 #include "current_monitor.h"
-#include "fuzzy.h"
 #include "guard.h"
-#include "law_phase.h"
-#include "law_state.h"
-#include "plant_pulses.h"
-#include "plant_rules.h"
 #include "signal_chain.h"
 #include "supervisor.h"
 
-// Frequency in uHz, RMS acceleration in um/s2; one output, mA.
-#define RULE_INPUTS 2u
-#define RULE_UNITS 1u
-// Whatever a loaded table says, a request stays a current that arithmetic can hold.
-#define RULES_MAX_mA 1000000
-
-// The rule base in use, and what it said last: its inputs change every few ticks only.
-typedef struct {
-    const fuzzy_table_t *table;
-    int32_t input[RULE_INPUTS];
-    int32_t current_mA;
-    uint32_t fired;
-} rules_t;
-
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
 typedef struct {
-    quiesce_params_t params;
     signal_chain_t signal;
-    rules_t rules;
-    const fuzzy_table_t *rules_next; ///< from the next tick on
-    const law_t *law;
-    law_state_t law_state;
-    uint32_t hold_ticks; ///< that laws go on with a frequency that is no longer valid
+    view_t view;
+    control_t control;
+    uint32_t recover_ticks; ///< of good samples before the output may be enabled
     supervisor_t supervisor;
     current_monitor_t monitor;
     guard_t guard;
@@ -48,10 +27,6 @@ typedef struct {
 _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
 _Static_assert(QUIESCE_PEAKS == ESTIMATOR_TONES, "telemetry holds the estimator's components");
-
-static const fuzzy_table_t *shipped_rules(void) {
-    return (const fuzzy_table_t *)(const void *)plant_rules_table;
-}
 
 static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
@@ -76,16 +51,16 @@ static void init_output(controller_t *self, const quiesce_params_t *p, bool is_a
 bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
     controller_t *c = (controller_t *)(void *)self->opaque;
     const bool is_accepted = quiesce_params_check(params, NULL);
-    *c = (controller_t){.params = *params};
+    *c = (controller_t){.view.may_learn = true};
+    // Where they are refused the chain still runs, on defaults; the supervisor lets nothing of it
+    // out.
+    quiesce_params_t used = *params;
     if (!is_accepted) {
-        // The chain still runs, on defaults; the supervisor lets nothing of it out.
-        quiesce_params_default(&c->params);
+        quiesce_params_default(&used);
     }
-    signal_chain_init(&c->signal, &c->params);
-    c->rules_next = shipped_rules();
-    c->law = law_find(c->params.law);
-    law_state_init(&c->law_state, &c->params, plant_pulses_table);
-    c->hold_ticks = ticks_in_ms(c->params.track_hold_ms, c->params.tick_rate_Hz);
+    signal_chain_init(&c->signal, &used);
+    control_init(&c->control, &used);
+    c->recover_ticks = (uint32_t)used.sensor_recover_ticks;
     init_output(c, params, is_accepted);
     return is_accepted;
 }
@@ -122,32 +97,6 @@ static bool is_tick_lost(controller_t *self, uint32_t tick) {
     return is_lost;
 }
 
-// The shipped rules run as straight-line C, the same numbers in half the time.
-static int32_t rules_current_mA(const fuzzy_table_t *rules, const int32_t input[RULE_INPUTS]) {
-    int32_t current_mA = 0;
-    (void)(rules == shipped_rules() ? plant_rules(input, &current_mA)
-                                    : fuzzy_evaluate(rules, input, &current_mA));
-    return clamp_i32(current_mA, 0, RULES_MAX_mA);
-}
-
-static uint32_t rules_fired(const fuzzy_table_t *rules, const int32_t input[RULE_INPUTS]) {
-    uint64_t fired = 0;
-    (void)fuzzy_fired(rules, input, &fired);
-    return (uint32_t)fired;
-}
-
-static void rules_step(rules_t *self, const fuzzy_table_t *table, int32_t freq_uHz,
-                       int32_t rms_um_s2) {
-    if (self->table == table && self->input[0] == freq_uHz && self->input[1] == rms_um_s2) {
-        return;
-    }
-    self->table = table;
-    self->input[0] = freq_uHz;
-    self->input[1] = rms_um_s2;
-    self->current_mA = rules_current_mA(table, self->input);
-    self->fired = rules_fired(table, self->input);
-}
-
 static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample,
                       bool has_gap) {
     const current_verdict_t verdict = current_monitor_step(
@@ -157,35 +106,13 @@ static void supervise(controller_t *self, const quiesce_in_t *in, const conditio
     const supervisor_in_t events = {
         .clearing_fault = sensor != QUIESCE_FAULT_NONE ? sensor : lost,
         .latched_fault = latched_fault(in, verdict),
-        .is_ready = sample->good_ticks >= (uint32_t)self->params.sensor_recover_ticks,
+        .is_ready = sample->good_ticks >= self->recover_ticks,
         .enable = in->enable,
         .fault_reset = in->fault_reset,
     };
     if (supervisor_step(&self->supervisor, &events)) {
         current_monitor_reset(&self->monitor);
     }
-}
-
-static law_in_t law_input(const controller_t *self, const signal_chain_out_t *signal,
-                          int32_t fuzzy_mA) {
-    // A short doubt must not make the command jump: that would itself change the vibration.
-    const bool is_known = self->signal.estimator.age_ticks <= self->hold_ticks;
-    const lock_in_t *lock = &self->signal.lock;
-    return (law_in_t){
-        .velocity_um_s_q32 = signal->velocity_um_s_q32,
-        .accel_um_s2 = signal->sample.accel_um_s2,
-        .freq_uHz = self->signal.estimator.tone[0].freq_uHz,
-        .freq_is_valid = is_known,
-        .base_mA = is_known ? fuzzy_mA : self->params.unlock_current_mA,
-        .lock =
-            {
-                .is_on = lock->is_locked,
-                .phase_turn = lock->phase_turn,
-                .step_turn = lock->step_turn,
-                .half = lock->has_half ? &lock->last : NULL,
-            },
-        .is_output_on = supervisor_allows_output(&self->supervisor),
-    };
 }
 
 // Turns Q32 in thousandths of a degree, -180000 .. 179999.
@@ -221,7 +148,6 @@ static void report(const controller_t *self, quiesce_telemetry_t *t) {
     t->bad_sample_count = self->bad_sample_count;
     report_components(&self->signal, t);
     t->lock_is_on = self->signal.lock.is_locked ? 1u : 0u;
-    law_phase_report(&self->law_state, t);
 }
 
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
@@ -232,24 +158,21 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
         .accel_counts = in->accel_counts,
         .is_fresh = in->accel_is_fresh,
         .has_gap = is_tick_lost(c, in->tick),
-        .wants_lock = c->law->uses_lock,
+        .wants_lock = c->control.law->wants_lock,
     };
     signal_chain_out_t signal;
-    signal_chain_step(&c->signal, &signal_in, &signal);
+    signal_chain_step(&c->signal, &signal_in, &c->view, &signal);
     if (signal.sample.flag != CONDITION_GOOD) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
 
-    if (c->law->uses_rules) {
-        rules_step(&c->rules, c->rules_next, c->signal.estimator.tone[0].freq_uHz,
-                   signal.rms_um_s2);
-    }
-    const law_in_t law_in = law_input(c, &signal, c->rules.current_mA);
-    const int32_t request_mA = c->law->step(&c->law_state, &c->params, &law_in);
+    law_demand_t request;
+    c->view.is_output_on = supervisor_allows_output(&c->supervisor);
+    control_step(&c->control, &c->view, &request);
 
     supervise(c, in, &signal.sample, signal_in.has_gap);
     out->current_cmd_mA =
-        guard_step(&c->guard, request_mA, supervisor_allows_output(&c->supervisor));
+        guard_step(&c->guard, request.value[0], supervisor_allows_output(&c->supervisor));
     out->driver_enable = supervisor_allows_driver(&c->supervisor);
     // A driver that is switched off is expected to carry nothing.
     c->last_command_mA = out->driver_enable ? out->current_cmd_mA : 0;
@@ -260,70 +183,43 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     t->displacement_nm = signal.displacement_nm;
     t->velocity_um_s = motion_velocity_um_s(signal.velocity_um_s_q32);
     t->rms_um_s2 = signal.rms_um_s2;
-    t->rules_fired = c->rules.fired;
-    t->current_fuzzy_mA = c->rules.current_mA;
-    t->current_law_mA = request_mA;
+    t->current_law_mA = request.value[0];
     t->current_cmd_mA = out->current_cmd_mA;
 }
 
-// What the rules said last is forgotten last: the same words may hold another table by now.
-static void use_rules(controller_t *c, const fuzzy_table_t *table) {
-    c->rules_next = table;
-    c->rules.table = NULL;
+static control_t *control_of(quiesce_t *self) {
+    return &((controller_t *)(void *)self->opaque)->control;
 }
 
-quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
-    controller_t *c = (controller_t *)(void *)self->opaque;
-    if (words == NULL) {
-        use_rules(c, shipped_rules());
-        return QUIESCE_RULES_OK;
+static const control_t *known_of(const quiesce_t *self) {
+    return &((const controller_t *)(const void *)self->opaque)->control;
+}
+
+quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
+    return control_use(control_of(self), words, count);
+}
+
+bool quiesce_learnt_save(const quiesce_t *self, quiesce_learnt_t *out) {
+    return control_save(known_of(self), out);
+}
+
+bool quiesce_learnt_load(quiesce_t *self, const quiesce_learnt_t *in) {
+    return control_load(control_of(self), in);
+}
+
+void quiesce_learnt_freeze(quiesce_t *self, bool is_frozen) {
+    ((controller_t *)(void *)self->opaque)->view.may_learn = !is_frozen;
+}
+
+const quiesce_word_t *quiesce_report_words(int32_t index) {
+    static const quiesce_word_t none[QUIESCE_REPORT_WORDS] = {{NULL, NULL}};
+    const law_t *law = law_find(index);
+    if (law == NULL) {
+        return NULL;
     }
-    const fuzzy_table_t *table = (const fuzzy_table_t *)(const void *)words;
-    const fuzzy_verdict_t verdict = fuzzy_table_check(table, count);
-    if (verdict != FUZZY_TABLE_OK) {
-        return (quiesce_rules_verdict_t)verdict;
-    }
-    if (table->inputs != RULE_INPUTS || table->outputs != 1u || table->units != RULE_UNITS) {
-        return QUIESCE_RULES_FIT;
-    }
-    use_rules(c, table);
-    return QUIESCE_RULES_OK;
+    return law->reports != NULL ? law->reports : none;
 }
 
-quiesce_phase_verdict_t quiesce_phase_table_use(quiesce_t *self, const uint32_t *words,
-                                                uint32_t count) {
-    controller_t *c = (controller_t *)(void *)self->opaque;
-    if (words == NULL) {
-        words = plant_pulses_table;
-        count = sizeof plant_pulses_table / sizeof plant_pulses_table[0];
-    }
-    return (quiesce_phase_verdict_t)law_phase_use(&c->law_state, &c->params, words, count);
-}
-
-void quiesce_adaptation_save(const quiesce_t *self, quiesce_adaptation_t *out) {
-    const controller_t *c = (const controller_t *)(const void *)self->opaque;
-    law_phase_save(&c->law_state, &c->params, out->words);
-}
-
-bool quiesce_adaptation_load(quiesce_t *self, const quiesce_adaptation_t *in) {
-    controller_t *c = (controller_t *)(void *)self->opaque;
-    return law_phase_load(&c->law_state, &c->params, in->words);
-}
-
-void quiesce_adaptation_reset(quiesce_t *self) {
-    controller_t *c = (controller_t *)(void *)self->opaque;
-    law_phase_reset(&c->law_state);
-}
-
-void quiesce_adaptation_freeze(quiesce_t *self, bool is_frozen) {
-    controller_t *c = (controller_t *)(void *)self->opaque;
-    law_phase_freeze(&c->law_state, is_frozen);
-}
-
-int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *fired) {
-    const int32_t input[] = {freq_uHz, rms_um_s2};
-    if (fired != NULL) {
-        *fired = rules_fired(shipped_rules(), input);
-    }
-    return rules_current_mA(shipped_rules(), input);
+void quiesce_report(const quiesce_t *self, int32_t word[QUIESCE_REPORT_WORDS]) {
+    control_report(known_of(self), word);
 }

@@ -1,5 +1,7 @@
 #include "signal_chain.h"
 
+#include <stddef.h>
+
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
     ELSEWHERE_DIVISOR = 32,    // a lock 3 % off the dominant component is on something else
@@ -42,6 +44,7 @@ void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
     self->lowest_step_turn = step_turn_of(p->band_low_mHz, rate_Hz);
     self->highest_step_turn = step_turn_of(p->band_high_mHz, rate_Hz);
     self->min_accel_um_s2 = p->track_min_accel_um_s2;
+    self->hold_ticks = ticks_in_ms(p->track_hold_ms, p->tick_rate_Hz);
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
@@ -114,7 +117,34 @@ static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool ha
     }
 }
 
-void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal_chain_out_t *out) {
+// um/s, away from 0: never 0 where the state is not.
+static int32_t velocity_away_um_s(int64_t velocity_um_s_q32) {
+    return motion_velocity_um_s(velocity_um_s_q32 + (velocity_um_s_q32 > 0 ? UINT32_MAX : 0));
+}
+
+static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
+    const lock_in_t *lock = &self->lock;
+    // A short doubt must not make the command jump: that would itself change the vibration.
+    const bool is_known = self->estimator.age_ticks <= self->hold_ticks;
+    view->valid |= (is_known ? VIEW_TONE : 0) | (lock->is_locked ? VIEW_LOCK : 0);
+    view->tone = (view_tone_t){
+        .rms_um_s2 = out->rms_um_s2,
+        .freq_uHz = self->estimator.tone[0].freq_uHz,
+        .phase_turn = lock->phase_turn,
+        .step_turn = lock->step_turn,
+        .half = lock->has_half ? &lock->last : NULL,
+    };
+}
+
+static void show(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
+    view->valid = self->condition.has_dc ? VIEW_ACCEL | VIEW_VELOCITY | VIEW_RMS : 0;
+    view->body[0].accel_um_s2 = out->sample.accel_um_s2;
+    view->body[0].velocity_um_s = velocity_away_um_s(out->velocity_um_s_q32);
+    show_tone(self, out, view);
+}
+
+void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t *view,
+                       signal_chain_out_t *out) {
     condition_step(&self->condition, in->accel_counts, in->is_fresh, &out->sample);
     if (out->sample.is_fault) {
         // What was taken in before the fault was seen must not outlive it.
@@ -127,4 +157,5 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal
     if (in->wants_lock) {
         hold_on(self, out, in->has_gap);
     }
+    show(self, out, view);
 }

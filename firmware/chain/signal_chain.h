@@ -1,5 +1,5 @@
 /// The sensing half of the controller, wired: condition, rms, estimator, displacement, motion and,
-/// for laws that use it, the lock on the dominant component.
+/// for laws that use it, the lock on the dominant component. It writes what laws see.
 #ifndef SIGNAL_CHAIN_H
 #define SIGNAL_CHAIN_H
 
@@ -11,6 +11,7 @@
 #include "motion.h"
 #include "quiesce_params.h"
 #include "rms.h"
+#include "view.h"
 
 typedef struct {
     condition_t condition;
@@ -23,6 +24,7 @@ typedef struct {
     uint32_t lowest_step_turn; ///< of the band, a tick
     uint32_t highest_step_turn;
     int32_t min_accel_um_s2; ///< RMS
+    uint32_t hold_ticks;     ///< that laws go on with a frequency that is no longer valid
 } signal_chain_t;
 
 typedef struct {
@@ -42,7 +44,9 @@ typedef struct {
 /// Starts from rest. The parameters have been checked.
 void signal_chain_init(signal_chain_t *self, const quiesce_params_t *params);
 
-/// One tick. What is known of the components is read from self->estimator.
-void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, signal_chain_out_t *out);
+/// One tick. What is known of the components is read from self->estimator; of *view, all but
+/// is_output_on and may_learn is written.
+void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t *view,
+                       signal_chain_out_t *out);
 
 #endif

@@ -80,9 +80,23 @@ static void pack_timing(can_node_t *self, const can_node_tick_t *tick, can_frame
     self->work_max_us = 0;
 }
 
+// Each word of the law's report in turn.
+static void pack_law(can_node_t *self, const quiesce_telemetry_t *t, const quiesce_t *controller,
+                     can_frame_t *frame) {
+    int32_t word[QUIESCE_REPORT_WORDS];
+    const int32_t law = self->service.in_effect.law;
+    const quiesce_word_t *names = quiesce_report_words(law);
+    quiesce_report(controller, word);
+    can_pack_law(law, t, self->report_number, word[self->report_number], frame);
+    self->report_number = (self->report_number + 1u) % QUIESCE_REPORT_WORDS;
+    if (names == NULL || names[self->report_number].name == NULL) {
+        self->report_number = 0;
+    }
+}
+
 // The data of a message that is due. Returns false iff there is nothing to say.
 static bool pack(can_node_t *self, uint32_t message, const can_node_tick_t *tick,
-                 const quiesce_out_t *out, can_frame_t *frame) {
+                 const quiesce_out_t *out, const quiesce_t *controller, can_frame_t *frame) {
     const quiesce_telemetry_t *t = &out->telemetry;
     const bool is_streaming = self->service.raw_ms > 0u;
     switch (message) {
@@ -101,7 +115,7 @@ static bool pack(can_node_t *self, uint32_t message, const can_node_tick_t *tick
         can_pack_peak(t, message - QUIESCE_CAN_AT_SPECTRUM_PEAK0, frame);
         return true;
     case QUIESCE_CAN_AT_LAW_STATE:
-        can_pack_law(t, frame);
+        pack_law(self, t, controller, frame);
         return true;
     case QUIESCE_CAN_AT_FAULT_FREEZE:
         return can_freeze_page(&self->freeze, frame);
@@ -142,12 +156,12 @@ static const uint8_t cyclic[] = {
 };
 
 static uint32_t put_cyclic(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
-                           can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
+                           const quiesce_t *controller, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < sizeof cyclic; i++) {
         const uint32_t message = cyclic[i];
         if (can_schedule_is_due(&self->schedule, message) && count < CAN_NODE_MAX_FRAMES - 1u &&
-            pack(self, message, tick, out, &frames[count])) {
+            pack(self, message, tick, out, controller, &frames[count])) {
             finish(message, &self->alive[message], &frames[count]);
             count++;
         }
@@ -156,7 +170,7 @@ static uint32_t put_cyclic(can_node_t *self, const can_node_tick_t *tick, const 
 }
 
 uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
-                       can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
+                       const quiesce_t *controller, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
     const uint32_t passed_ms = can_schedule_tick(&self->schedule);
     const can_freeze_tick_t frozen = {
         .accel_counts = tick->accel_counts,
@@ -166,7 +180,7 @@ uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quie
     };
     can_freeze_watch(&self->freeze, passed_ms, &frozen);
     watch_timing(self, tick);
-    uint32_t count = passed_ms > 0u ? put_cyclic(self, tick, out, frames) : 0u;
+    uint32_t count = passed_ms > 0u ? put_cyclic(self, tick, out, controller, frames) : 0u;
 
     uint8_t alive;
     can_service_elapse(&self->service, passed_ms);

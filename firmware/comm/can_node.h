@@ -30,6 +30,7 @@ typedef struct {
     uint32_t param_hash;
     uint32_t lateness_max_us; ///< since the last LoopTiming
     uint32_t work_max_us;
+    uint32_t report_number; ///< of the law's report, in the next LawState
 } can_node_t;
 
 /// Forgets everything; parameters in effect are params (their tick rate gives the cycle times;
@@ -56,9 +57,9 @@ const quiesce_params_t *can_node_staged(const can_node_t *self);
 /// Answers the task. param_index: of the parameter that was refused, else 0.
 void can_node_answer(can_node_t *self, can_node_result_t result, uint32_t param_index);
 
-/// The frames that are due after the control step. Returns their number.
+/// The frames that are due after the control step of this controller. Returns their number.
 uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
-                       can_frame_t frames[CAN_NODE_MAX_FRAMES]);
+                       const quiesce_t *controller, can_frame_t frames[CAN_NODE_MAX_FRAMES]);
 
 /// The demand frame alone, for the moment when the controller leaves: safe current, output off.
 void can_node_farewell(can_node_t *self, int32_t safe_current_mA, can_frame_t *frame);

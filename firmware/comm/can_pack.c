@@ -45,10 +45,12 @@ void can_pack_peak(const quiesce_telemetry_t *t, uint32_t peak, can_frame_t *fra
     (void)quiesce_can_spectrum_peak0_pack(frame->data, &wire, sizeof frame->data);
 }
 
-void can_pack_law(const quiesce_telemetry_t *t, can_frame_t *frame) {
+void can_pack_law(int32_t law, const quiesce_telemetry_t *t, uint32_t report_number,
+                  int32_t report_word, can_frame_t *frame) {
     const struct quiesce_can_law_state_t wire = {
-        .rules_fired = t->rules_fired,
-        .current_fuzzy_mA = quiesce_can_law_state_current_fuzzy_mA_sat(t->current_fuzzy_mA),
+        .law = quiesce_can_law_state_law_sat(law),
+        .report_number = quiesce_can_law_state_report_number_sat(report_number),
+        .report_word = report_word,
         .current_law_mA = quiesce_can_law_state_current_law_mA_sat(t->current_law_mA),
     };
     (void)quiesce_can_law_state_pack(frame->data, &wire, sizeof frame->data);

@@ -28,7 +28,9 @@ void can_pack_status(const can_node_tick_t *tick, const quiesce_telemetry_t *t, 
 void can_pack_motion(const quiesce_telemetry_t *t, can_frame_t *frame);
 /// peak: 0 .. QUIESCE_PEAKS - 1; their messages have one layout.
 void can_pack_peak(const quiesce_telemetry_t *t, uint32_t peak, can_frame_t *frame);
-void can_pack_law(const quiesce_telemetry_t *t, can_frame_t *frame);
+/// report_number: 0 .. QUIESCE_REPORT_WORDS - 1, whose word is report_word.
+void can_pack_law(int32_t law, const quiesce_telemetry_t *t, uint32_t report_number,
+                  int32_t report_word, can_frame_t *frame);
 void can_pack_timing(uint32_t overruns, uint32_t lateness_max_us, uint32_t work_max_us,
                      can_frame_t *frame);
 void can_pack_health(const can_node_counters_t *counters, const can_node_tick_t *tick,

@@ -144,7 +144,7 @@ const quiesce_params_t *node_task(node_t *node) {
 }
 
 uint32_t node_frames(node_t *node, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
-    return can_node_tick(&node->can, &node->said, &node->out, frames);
+    return can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
 }
 
 uint32_t node_tick(node_t *node, const node_inputs_t *inputs,

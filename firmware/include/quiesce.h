@@ -10,6 +10,11 @@
 #include <stdint.h>
 
 #include "quiesce_params.h"
+#include "quiesce_size.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /// Spectral peaks in telemetry, strongest acceleration first.
 #define QUIESCE_PEAKS 3
@@ -54,15 +59,6 @@ typedef struct {
     bool driver_has_failed;   ///< the current driver reports a fault, or cannot be told its current
 } quiesce_in_t;
 
-/// What the adaptation of law phase is doing.
-typedef enum {
-    QUIESCE_ADAPT_WAITING = 0,   ///< for a lock, for the end of a fault, or switched off
-    QUIESCE_ADAPT_MEASURING = 1, ///< how the vibration is without a trial's change
-    QUIESCE_ADAPT_TRYING = 2,    ///< a trial's change is in effect
-    QUIESCE_ADAPT_CHECKING = 3,  ///< back again: is it as it was?
-    QUIESCE_ADAPT_RESTING = 4,   ///< nothing is left to gain
-} quiesce_adapt_state_t;
-
 /// One sinusoidal component of the acceleration: amp x cos(phase).
 typedef struct {
     int32_t freq_uHz;
@@ -91,18 +87,9 @@ typedef struct {
     int32_t displacement_amp_nm;         ///< half peak-to-peak of that over a cycle
     int32_t velocity_rms_um_s;           ///< of the whole band, from the last spectrum
     quiesce_peak_t peaks[QUIESCE_PEAKS]; ///< 0 Hz where there are fewer
-    uint32_t rules_fired;                ///< bit per fuzzy rule in its file's order, the first 32
-    int32_t current_fuzzy_mA; ///< the rule base's output; 0 with a law that does not use it
-    int32_t current_law_mA;   ///< what the law requests
-    int32_t current_cmd_mA;   ///< what leaves the guard
-    uint32_t lock_is_on;      ///< law phase has locked on to the dominant component
-    uint32_t adapt_state;     ///< quiesce_adapt_state_t
-    uint32_t adapt_trials;    ///< finished since init, saturating
-    uint32_t adapt_gains;     ///< of them that were kept, saturating
-    int32_t trim_on_mdeg;     ///< change of the pulse in effect: its first edge, later is positive
-    int32_t trim_off_mdeg;    ///< and its last edge
-    int32_t trim_level_q15;   ///< and its level as a factor: 32768 is 1
-    uint32_t trim_is_whole;   ///< 1: its gap is closed
+    int32_t current_law_mA;              ///< what the law requests
+    int32_t current_cmd_mA;              ///< what leaves the guard
+    uint32_t lock_is_on;                 ///< law phase has locked on to the dominant component
 } quiesce_telemetry_t;
 
 /// One tick's output.
@@ -131,92 +118,92 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
 /// safe_current_mA, or 0 where it or max_current_mA is outside its own range or they contradict.
 int32_t quiesce_params_safe_current_mA(const quiesce_params_t *params);
 
-/// Why a rule table is refused. Numbers are for logs and are never reused.
+/// Why a table is refused. Numbers are for logs and are never reused.
 typedef enum {
-    QUIESCE_RULES_OK = 0,
-    QUIESCE_RULES_SIZE = 1,   ///< shorter than it says, or too long
-    QUIESCE_RULES_MAGIC = 2,  ///< not a table, or of another version
-    QUIESCE_RULES_CRC = 3,    ///< damaged
-    QUIESCE_RULES_SHAPE = 4,  ///< numbers of inputs, outputs, rules
-    QUIESCE_RULES_CELL = 5,   ///< memberships
-    QUIESCE_RULES_RULE = 6,   ///< a rule names what is not there
-    QUIESCE_RULES_OUTPUT = 7, ///< a term out of range
-    QUIESCE_RULES_FIT = 8, ///< not frequency (uHz) and RMS acceleration (um/s2) to one current (mA)
-} quiesce_rules_verdict_t;
+    QUIESCE_TABLE_OK = 0,
+    QUIESCE_TABLE_SIZE = 1,   ///< shorter than it says, or too long
+    QUIESCE_TABLE_MAGIC = 2,  ///< not a table of the kind that the law works with, or of another
+                              ///< version; or the law has none
+    QUIESCE_TABLE_CRC = 3,    ///< damaged
+    QUIESCE_TABLE_SHAPE = 4,  ///< numbers of inputs, outputs, rules, points
+    QUIESCE_TABLE_CELL = 5,   ///< memberships
+    QUIESCE_TABLE_RULE = 6,   ///< a rule names what is not there
+    QUIESCE_TABLE_OUTPUT = 7, ///< a term out of range
+    QUIESCE_TABLE_FIT = 8,    ///< inputs, outputs or their units are not the law's
+    QUIESCE_TABLE_POINT = 9,  ///< a frequency that does not rise, a floor above its level, a long
+                              ///< ramp
+} quiesce_table_verdict_t;
 
-/// Uses another rule base from the next tick on: words from `quiesce rules compile`, count of
-/// them; NULL: the one that ships. The words stay the caller's and must not change while they are
-/// in use. A table that is refused changes nothing. Call between steps, also while running: the
-/// swap is one pointer. quiesce_init goes back to the one that ships.
-quiesce_rules_verdict_t quiesce_rules_use(quiesce_t *self, const uint32_t *words, uint32_t count);
+/// The law that runs uses another table (rules, pulses, ..) from the next tick on: words from
+/// `quiesce rules compile`, `quiesce tune`, .., count of them; NULL: the one that ships. What was
+/// learnt about another table is forgotten. The words stay the caller's and must not change while
+/// they are in use. A table that is refused changes nothing. Call between steps, also while
+/// running: the swap is one pointer. quiesce_init goes back to the one that ships.
+quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count);
 
-/// Receives a rule table in parts beside the one in use: two slots of the caller's memory. A table
-/// is put to use whole and checked, or not at all; the one before it is kept.
-#define QUIESCE_RULES_WORDS 1024
+/// Receives a table in parts beside the one in use: two slots of the caller's memory. A table is
+/// put to use whole and checked, or not at all; the one before it is kept.
+#define QUIESCE_TABLE_WORDS 1024
 typedef struct {
-    uint32_t words[2][QUIESCE_RULES_WORDS];
+    uint32_t words[2][QUIESCE_TABLE_WORDS];
     uint32_t filled;   ///< words received in the spare slot
     uint32_t in_use;   ///< slot 0 or 1, or 2: the one that ships
-    uint32_t previous; ///< likewise, what quiesce_rules_revert goes back to
-} quiesce_rules_store_t;
+    uint32_t previous; ///< likewise, what quiesce_table_store_revert goes back to
+} quiesce_table_store_t;
 
-/// Empty, with the shipped rules in use.
-void quiesce_rules_store_init(quiesce_rules_store_t *store);
+/// Empty, with the shipped table in use.
+void quiesce_table_store_init(quiesce_table_store_t *store);
 
 /// Appends words of a new table to the spare slot; offset 0 starts anew and gives up what
-/// quiesce_rules_revert would go back to. Returns false, and changes nothing, iff offset is
+/// quiesce_table_store_revert would go back to. Returns false, and changes nothing, iff offset is
 /// neither 0 nor where the last part ended, or the part does not fit.
-bool quiesce_rules_store_write(quiesce_rules_store_t *store, uint32_t offset, const uint32_t *words,
+bool quiesce_table_store_write(quiesce_table_store_t *store, uint32_t offset, const uint32_t *words,
                                uint32_t count);
 
 /// Checks what was received and uses it from the next tick on. A table that is refused leaves the
 /// one in use where it is. Call it, like the next two, between steps.
-quiesce_rules_verdict_t quiesce_rules_store_commit(quiesce_rules_store_t *store, quiesce_t *self);
+quiesce_table_verdict_t quiesce_table_store_commit(quiesce_table_store_t *store, quiesce_t *self);
 
-/// Goes back to the rules in use before the last commit, and gives up what was received since. A
+/// Goes back to the table in use before the last commit, and gives up what was received since. A
 /// second call changes nothing.
-void quiesce_rules_store_revert(quiesce_rules_store_t *store, quiesce_t *self);
+void quiesce_table_store_revert(quiesce_table_store_t *store, quiesce_t *self);
 
-/// Why a table of pulses is refused. Numbers are for logs and are never reused.
-typedef enum {
-    QUIESCE_PHASE_OK = 0,
-    QUIESCE_PHASE_SIZE = 1,  ///< shorter than it says, or too long
-    QUIESCE_PHASE_MAGIC = 2, ///< not a table of pulses, or of another version
-    QUIESCE_PHASE_CRC = 3,   ///< damaged
-    QUIESCE_PHASE_SHAPE = 4, ///< numbers of points
-    QUIESCE_PHASE_POINT =
-        5, ///< a frequency that does not rise, a floor above its level, a long ramp
-} quiesce_phase_verdict_t;
-
-/// Law phase uses another table of pulses from the next tick on: words from `quiesce tune`, count
-/// of them; NULL: the one that ships. What was learnt is cleared: it belonged to the other table.
-/// The words stay the caller's and must not change while they are in use. A table that is refused
-/// changes nothing. Call between steps; quiesce_init goes back to the one that ships.
-quiesce_phase_verdict_t quiesce_phase_table_use(quiesce_t *self, const uint32_t *words,
-                                                uint32_t count);
-
-/// What law phase has learnt about the plant, as words to keep over a restart.
-#define QUIESCE_ADAPTATION_WORDS 132
+/// What the law that runs has learnt about the structure, as words to keep over a restart.
+#define QUIESCE_LEARNT_MAX_WORDS 255
 typedef struct {
-    uint32_t words[QUIESCE_ADAPTATION_WORDS];
-} quiesce_adaptation_t;
+    uint32_t count; ///< of words; the others are 0
+    uint32_t words[QUIESCE_LEARNT_MAX_WORDS];
+} quiesce_learnt_t;
 
-/// Takes out what has been learnt. Bounded, some 5,000 instructions: call it now and then.
-void quiesce_adaptation_save(const quiesce_t *self, quiesce_adaptation_t *out);
+/// Takes it out. Returns false, with a count of 0, iff this law learns nothing. Bounded, some 5,000
+/// instructions: call it now and then.
+bool quiesce_learnt_save(const quiesce_t *self, quiesce_learnt_t *out);
 
-/// Puts it back, after quiesce_init or quiesce_phase_table_use. Returns false, and changes nothing,
-/// iff it is damaged, of another version, of another table or setting, or beyond the limits in the
-/// parameters.
-bool quiesce_adaptation_load(quiesce_t *self, const quiesce_adaptation_t *in);
-
-/// Forgets it: the table's own pulses again.
-void quiesce_adaptation_reset(quiesce_t *self);
+/// Puts it back, after quiesce_init or quiesce_table_use; NULL: forgets what was learnt. Returns
+/// false, and changes nothing, iff it is damaged, of another version, law, table or setting, or
+/// beyond the limits in the parameters.
+bool quiesce_learnt_load(quiesce_t *self, const quiesce_learnt_t *in);
 
 /// Stops learning until it is told otherwise; what has been learnt stays in use.
-void quiesce_adaptation_freeze(quiesce_t *self, bool is_frozen);
+void quiesce_learnt_freeze(quiesce_t *self, bool is_frozen);
 
-/// The shipped rule base alone, for drawing and checking it: current in mA at a frequency and an
-/// RMS acceleration. *rules_fired (may be NULL) receives a bit per rule in its file's order.
-int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *rules_fired);
+/// What the law that runs has to tell of itself beyond telemetry.
+#define QUIESCE_REPORT_WORDS 8
+typedef struct {
+    const char *name; ///< NULL: the word is not used
+    const char *unit;
+} quiesce_word_t;
+
+/// The QUIESCE_REPORT_WORDS words of a law's report, by the value of parameter law. Returns NULL
+/// iff there is no such law.
+const quiesce_word_t *quiesce_report_words(int32_t law);
+
+/// Writes all words, those that are not used as 0. Made when it is asked for, of what the last step
+/// left: up to 1,000 instructions, which no tick pays.
+void quiesce_report(const quiesce_t *self, int32_t word[QUIESCE_REPORT_WORDS]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,56 +1,71 @@
-/// One small interface for every control law. A law turns what is known of the vibration into a
-/// requested coil current; the guard has the last word. To add one: a file with its law_t, its
-/// state in law_state.h, a line in law.c, a label in parameters.toml.
+/// The contract of every control law: from what is known of the structure to a current, or a force,
+/// for each damper. The tracker makes a force a current; the guard has the last word.
+///
+/// To add one: a file with its law_t and a label in parameters.toml. Numbers, rules, pulses, gains
+/// that it works with are a table: words that its check accepts, loaded on the road of all tables.
 #ifndef LAW_H
 #define LAW_H
 
-#include "fixq.h"
-#include "harmonics.h"
-#include "quiesce_params.h"
+#include "quiesce.h"
+#include "view.h"
 
-/// The component that is locked on to.
+/// Bytes for the state of the law that runs.
+#define LAW_STATE_BYTES 1024u
+
+/// What a law works with; lives beside its state.
 typedef struct {
-    bool is_on;
-    uint32_t phase_turn;         ///< of its acceleration, a = amp x cos(phase), at this tick
-    uint32_t step_turn;          ///< a tick
-    const harmonic_sums_t *half; ///< half a cycle whose sums became known in this tick, else NULL
-} law_lock_t;
+    quiesce_params_t params; ///< checked
+    const uint32_t *table;   ///< words that the kind's check accepts; NULL without a kind
+} law_setup_t;
+
+typedef enum {
+    LAW_DEMANDS_CURRENT, ///< mA
+    LAW_DEMANDS_FORCE,   ///< mN on end a of the damper
+} law_demand_kind_t;
+
+/// For each damper, any value: what follows limits it.
+typedef struct {
+    int32_t value[QUIESCE_DAMPERS];
+} law_demand_t;
+
+/// The same for every damper.
+static inline void law_demand_all(law_demand_t *out, int32_t value) {
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        out->value[i] = value;
+    }
+}
+
+/// One kind of table. Its words begin with magic (kind and version), CRC-32 and their number.
+typedef struct {
+    uint32_t magic;
+    const uint32_t *shipped; ///< used until another one is; NULL: none ships
+    uint32_t shipped_words;
+    quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
+} law_table_kind_t;
 
 typedef struct {
-    int64_t velocity_um_s_q32;
-    int32_t accel_um_s2;
-    int32_t freq_uHz;   ///< last dominant frequency
-    bool freq_is_valid; ///< or was, less than track_hold_ms ago
-    int32_t base_mA;    ///< the rule base's current, or unlock_current_mA while freq is not valid
-    law_lock_t lock;    ///< off for laws that do not use it
-    bool is_output_on;  ///< in the last tick: what was requested passed the guard
-} law_in_t;
-
-/// State of all laws (law_state.h), caller-owned; each looks at its own.
-typedef struct law_state law_state_t;
-
-/// Starts from rest. table: the words that ship for the laws that have a table, checked; they must
-/// stay.
-typedef void (*law_init_t)(law_state_t *state, const quiesce_params_t *params,
-                           const uint32_t *table);
-
-/// Request in mA, 0 .. params->max_current_mA + whatever the guard will clip.
-typedef int32_t (*law_step_t)(law_state_t *state, const quiesce_params_t *params,
-                              const law_in_t *in);
-
-typedef struct {
-    const char *name; ///< its label in parameters.toml
-    law_init_t init;  ///< NULL: it starts with zeros
-    law_step_t step;
-    bool uses_rules; ///< base_mA; else the rule base rests
-    bool uses_lock;  ///< lock; else nothing is locked on to
+    const char *name;              ///< value of parameter law
+    uint64_t needs;                ///< VIEW_ bits; while they are not all valid it is not stepped
+    const law_table_kind_t *kind;  ///< of its table; NULL: it has none
+    uint16_t state_bytes;          ///< <= LAW_STATE_BYTES
+    uint8_t demands;               ///< law_demand_kind_t
+    bool wants_lock;               ///< the dominant component is to be locked on to
+    const quiesce_word_t *reports; ///< QUIESCE_REPORT_WORDS of them, the last ones without a name
+    /// From rest; all of *state is 0 before. NULL: that is all.
+    void (*init)(void *state, const law_setup_t *setup);
+    /// Another table is in use. NULL: as init, from rest.
+    void (*retable)(void *state, const law_setup_t *setup);
+    /// One tick. Returns false iff it has no demand: the fallback acts.
+    bool (*step)(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out);
+    /// What it has to tell. NULL: nothing. On request only, not in every tick.
+    void (*report)(const void *state, const law_setup_t *setup, int32_t word[QUIESCE_REPORT_WORDS]);
+    /// What it has learnt, at most QUIESCE_LEARNT_MAX_WORDS words; returns their number. NULL: it
+    /// learns nothing.
+    uint32_t (*save)(const void *state, const law_setup_t *setup, uint32_t *words);
+    /// Puts that back; count 0: forgets it. Returns false, and changes nothing, iff it does not
+    /// belong here.
+    bool (*load)(void *state, const law_setup_t *setup, const uint32_t *words, uint32_t count);
 } law_t;
-
-extern const law_t law_off;
-extern const law_t law_constant;
-extern const law_t law_fuzzy;
-extern const law_t law_fuzzy_selftune;
-extern const law_t law_phase;
 
 /// Law by the value of parameter law. Returns NULL iff there is none.
 const law_t *law_find(int32_t index);

@@ -1,10 +1,12 @@
-// Passive damper at one current.
+// Passive dampers at one current.
 #include "law.h"
 
-static int32_t step(law_state_t *state, const quiesce_params_t *params, const law_in_t *in) {
+static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
     (void)state;
-    (void)in;
-    return params->constant_current_mA;
+    (void)view;
+    law_demand_all(out, setup->params.constant_current_mA);
+    return true;
 }
 
+extern const law_t law_constant;
 const law_t law_constant = {.name = "constant", .step = step};

@@ -1,11 +1,13 @@
-// Open loop: the damper stays without current.
+// Open loop: the dampers stay without current.
 #include "law.h"
 
-static int32_t step(law_state_t *state, const quiesce_params_t *params, const law_in_t *in) {
+static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
     (void)state;
-    (void)params;
-    (void)in;
-    return 0;
+    (void)setup;
+    (void)view;
+    *out = (law_demand_t){{0}};
+    return true;
 }
 
+extern const law_t law_off;
 const law_t law_off = {.name = "off", .step = step};

@@ -59,7 +59,7 @@ struct Replay {
     double wall_s = 0.0;
 };
 
-Plan plan_from(const Arguments &arguments, std::size_t ticks) {
+Plan plan_from(const Arguments &arguments, std::int32_t law, std::size_t ticks) {
     const auto limit = static_cast<std::int64_t>(ticks);
     const std::int64_t record_ticks = arguments.integer("record-ticks", 1, limit).value_or(limit);
     if (limit % record_ticks != 0) {
@@ -70,13 +70,14 @@ Plan plan_from(const Arguments &arguments, std::size_t ticks) {
         static_cast<std::size_t>(record_ticks),
         static_cast<std::size_t>(arguments.integer("from-tick", 0, record_ticks - 1).value_or(0)),
         static_cast<std::size_t>(arguments.integer("every", 1, record_ticks).value_or(1)),
-        TickColumns({"t_s", "accel_counts", "flags"}, arguments.text("columns"))};
+        TickColumns({"t_s", "accel_counts", "flags"}, law, arguments.text("columns"))};
 }
 
 /// What the sensor delivers for one count of the file.
 lockstep_stimulus_t stimulus_of(std::int32_t counts) {
     const bool is_missing = counts == kNoSample;
-    return {is_missing ? 0 : counts, LOCKSTEP_ENABLE | (is_missing ? 0u : LOCKSTEP_FRESH), 0};
+    return {is_missing ? 0 : counts,
+            LOCKSTEP_ENABLE | LOCKSTEP_REPORT | (is_missing ? 0u : LOCKSTEP_FRESH), 0};
 }
 
 void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t tick_rate_Hz,
@@ -90,8 +91,8 @@ void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t ti
         if (tick == next_row) {
             plan.columns.put({static_cast<double>(tick) / tick_rate_Hz,
                               static_cast<double>(stimulus.accel_counts),
-                              static_cast<double>(stimulus.flags)},
-                             reply.telemetry, out.trace);
+                              static_cast<double>(stimulus.flags & ~LOCKSTEP_REPORT)},
+                             reply, out.trace);
             next_row += plan.every;
         }
     }
@@ -125,7 +126,7 @@ int cmd_replay(const std::vector<std::string> &words) {
     params = params_from(arguments, params);
     const std::vector<std::int32_t> counts = read_counts(arguments.required("counts"));
     const std::string trace_file = arguments.required("trace");
-    const Plan plan = plan_from(arguments, counts.size());
+    const Plan plan = plan_from(arguments, params.law, counts.size());
     const std::unique_ptr<ControllerLink> link = target_link(arguments);
     Replay result(plan.columns);
     replay(counts, plan, params, *link, result);

@@ -109,12 +109,12 @@ Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repe
     return out;
 }
 
-std::optional<TraceObserver> trace_from(const Arguments &arguments, std::int64_t ticks) {
+std::optional<TraceObserver> trace_from(const Arguments &arguments, const RunSetup &setup) {
     if (!arguments.text("trace")) {
         return std::nullopt;
     }
-    return TraceObserver(arguments.text("columns"),
-                         arguments.integer("every", 1, ticks).value_or(1));
+    return TraceObserver(setup.params.law, arguments.text("columns"),
+                         arguments.integer("every", 1, setup.tick_count()).value_or(1));
 }
 
 } // namespace
@@ -125,14 +125,15 @@ int cmd_run(const std::vector<std::string> &words) {
         options(
             {run_option_names(), target_option_names(), {"trace", "columns", "every", "repeat"}}));
     arguments.require_no_positional();
-    const RunSetup setup = run_setup(arguments);
+    RunSetup setup = run_setup(arguments);
+    setup.wants_report = arguments.text("trace").has_value();
     const std::int64_t repeat = arguments.integer("repeat", 1, 1000000).value_or(1);
     const std::unique_ptr<ControllerLink> link = target_link(arguments);
     // Words that the target does not send in a tick come from the host, which checks the others.
     InProcessLink host;
     ComparingLink checked(host, *link, Answer::Checked);
     ControllerLink &driven = link->is_complete() ? *link : static_cast<ControllerLink &>(checked);
-    std::optional<TraceObserver> trace = trace_from(arguments, setup.tick_count());
+    std::optional<TraceObserver> trace = trace_from(arguments, setup);
     Json out = repeated_run(setup, driven, repeat, trace ? &*trace : nullptr);
     out.set("mismatches", link->is_complete() ? Json() : Json(checked.mismatches()));
     if (trace) {

@@ -1,18 +1,13 @@
 #include "in_process_link.h"
 
-#include "phase_table_file.h"
-#include "rule_file.h"
-
 namespace quiesce {
 
 bool InProcessLink::start(const quiesce_params_t &params) {
     server_ = lockstep_t{};
     const bool is_accepted = lockstep_start(&server_, &params);
-    if (!tables_.rules.empty()) {
-        use_rules(server_.controller, tables_.rules);
-    }
-    if (!tables_.phase.empty()) {
-        use_phase_table(server_.controller, tables_.phase);
+    for (const Words &words : tables_) {
+        (void)quiesce_table_use(&server_.controller, words.data(),
+                                static_cast<std::uint32_t>(words.size()));
     }
     return is_accepted;
 }

@@ -13,14 +13,11 @@ namespace quiesce {
 
 class InProcessLink final : public ControllerLink {
   public:
-    /// Words of tables for the controller; none: the ones that ship.
-    struct Tables {
-        std::vector<std::uint32_t> rules;
-        std::vector<std::uint32_t> phase;
-    };
+    using Words = std::vector<std::uint32_t>;
 
     InProcessLink() = default;
-    explicit InProcessLink(Tables tables) : tables_(std::move(tables)) {}
+    /// tables: of any kind; a law uses those that are made for it, else what ships.
+    explicit InProcessLink(std::vector<Words> tables) : tables_(std::move(tables)) {}
 
     std::string target() const override { return "host"; }
     bool start(const quiesce_params_t &params) override;
@@ -28,7 +25,7 @@ class InProcessLink final : public ControllerLink {
     std::optional<InstructionCounts> finish() override { return std::nullopt; }
 
   private:
-    Tables tables_;
+    std::vector<Words> tables_;
     lockstep_t server_{};
 };
 

@@ -7,10 +7,9 @@
 #include "channel_factory.h"
 #include "in_process_link.h"
 #include "input_error.h"
-#include "phase_table_file.h"
 #include "qemu_shm_link.h"
 #include "qemu_uart_link.h"
-#include "rule_file.h"
+#include "table_file.h"
 
 namespace quiesce {
 
@@ -78,12 +77,12 @@ const Target kTargets[] = {
     {"host",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
          refuse_can(options);
-         InProcessLink::Tables tables;
+         std::vector<InProcessLink::Words> tables;
          if (!options.rules_path.empty()) {
-             tables.rules = load_rules(options.rules_path);
+             tables.push_back(load_rules(options.rules_path));
          }
          if (!options.phase_table_path.empty()) {
-             tables.phase = load_phase_table(options.phase_table_path);
+             tables.push_back(load_pulses(options.phase_table_path));
          }
          return std::make_unique<InProcessLink>(std::move(tables));
      }},

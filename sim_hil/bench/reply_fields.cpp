@@ -1,5 +1,7 @@
 #include "reply_fields.h"
 
+#include <iterator>
+
 namespace quiesce {
 
 namespace {
@@ -35,39 +37,34 @@ constexpr WordField kTelemetry[] = {
     {"peak2_freq_uHz", kSigned},
     {"peak2_amp_um_s2", kSigned},
     {"peak2_phase_mdeg", kSigned},
-    {"rules_fired", kUnsigned},
-    {"current_fuzzy_mA", kSigned},
     {"current_law_mA", kSigned},
     {"current_cmd_mA", kSigned},
     {"lock_is_on", kUnsigned},
-    {"adapt_state", kUnsigned},
-    {"adapt_trials", kUnsigned},
-    {"adapt_gains", kUnsigned},
-    {"trim_on_mdeg", kSigned},
-    {"trim_off_mdeg", kSigned},
-    {"trim_level_q15", kSigned},
-    {"trim_is_whole", kUnsigned},
 };
 static_assert(sizeof kTelemetry / sizeof kTelemetry[0] * 4 == sizeof(quiesce_telemetry_t));
 static_assert(QUIESCE_PEAKS == 3);
 static_assert(offsetof(lockstep_reply_t, telemetry) == 8);
 
-std::vector<WordField> with_reply_head() {
+constexpr WordField kReport[] = {
+    {"report0", kSigned}, {"report1", kSigned}, {"report2", kSigned}, {"report3", kSigned},
+    {"report4", kSigned}, {"report5", kSigned}, {"report6", kSigned}, {"report7", kSigned},
+};
+static_assert(std::size(kReport) == QUIESCE_REPORT_WORDS);
+static_assert(offsetof(lockstep_reply_t, report) ==
+              offsetof(lockstep_reply_t, telemetry) + sizeof(quiesce_telemetry_t));
+
+std::vector<WordField> all_fields() {
     std::vector<WordField> fields = {{"reply_current_cmd_mA", kSigned},
                                      {"reply_is_driver_enabled", kUnsigned}};
     fields.insert(fields.end(), std::begin(kTelemetry), std::end(kTelemetry));
+    fields.insert(fields.end(), std::begin(kReport), std::end(kReport));
     return fields;
 }
 
 } // namespace
 
-const std::vector<WordField> &telemetry_fields() {
-    static const std::vector<WordField> fields(std::begin(kTelemetry), std::end(kTelemetry));
-    return fields;
-}
-
 const std::vector<WordField> &reply_fields() {
-    static const std::vector<WordField> fields = with_reply_head();
+    static const std::vector<WordField> fields = all_fields();
     return fields;
 }
 

@@ -16,10 +16,7 @@ struct WordField {
     bool is_signed;
 };
 
-/// Every 32-bit word of quiesce_telemetry_t in memory order.
-const std::vector<WordField> &telemetry_fields();
-
-/// Every 32-bit word of lockstep_reply_t in memory order; the telemetry comes last.
+/// Every 32-bit word of lockstep_reply_t in memory order; telemetry and report come last.
 const std::vector<WordField> &reply_fields();
 
 /// Word number index (< sizeof object / 4) of a structure of 32-bit words.

@@ -41,6 +41,7 @@ class Loop {
     void sense(double time_s) {
         stimulus_ = {sensor_.sample_counts(plant_.truth().accel_m_s2),
                      LOCKSTEP_FRESH | LOCKSTEP_ENABLE, 0};
+        stimulus_.flags |= setup_.wants_report ? LOCKSTEP_REPORT : 0u;
         if (setup_.scenario.feed_current) {
             stimulus_.flags |= LOCKSTEP_HAS_CURRENT;
             stimulus_.current_meas_mA =

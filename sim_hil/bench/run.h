@@ -17,6 +17,7 @@ struct RunSetup {
     Scenario scenario;
     quiesce_params_t params;
     std::uint64_t seed;
+    bool wants_report = false; ///< what the law reports, in every tick
 
     double tick_s() const { return 1.0 / static_cast<double>(params.tick_rate_Hz); }
     std::int64_t tick_count() const;

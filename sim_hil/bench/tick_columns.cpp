@@ -1,10 +1,12 @@
 #include "tick_columns.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <sstream>
 
 #include "input_error.h"
+#include "reply_fields.h"
 
 namespace quiesce {
 
@@ -22,10 +24,33 @@ std::size_t index_of(const std::string &name, const std::vector<std::string> &na
     throw InputError("--columns: no column '" + name + "'; there are: " + known);
 }
 
+constexpr std::size_t kTelemetryWord = offsetof(lockstep_reply_t, telemetry) / 4;
+constexpr std::size_t kReportWord = offsetof(lockstep_reply_t, report) / 4;
+
+double value_of(const lockstep_reply_t &reply, std::size_t index) {
+    const std::uint32_t word = word_of(reply, index);
+    return reply_fields()[index].is_signed ? static_cast<double>(static_cast<std::int32_t>(word))
+                                           : static_cast<double>(word);
+}
+
 } // namespace
 
-TickColumns::TickColumns(std::vector<std::string> own, const std::optional<std::string> &list)
-    : own_count_(own.size()), all_names_(with_telemetry_columns(std::move(own))) {
+TickColumns::TickColumns(std::vector<std::string> own, std::int32_t law,
+                         const std::optional<std::string> &list)
+    : own_count_(own.size()), all_names_(std::move(own)) {
+    for (std::size_t i = kTelemetryWord; i < kReportWord; ++i) {
+        all_names_.emplace_back(reply_fields()[i].name);
+        words_.push_back(i);
+    }
+    const quiesce_word_t *reports = quiesce_report_words(law);
+    for (std::size_t i = 0; i < QUIESCE_REPORT_WORDS && reports[i].name != nullptr; ++i) {
+        all_names_.emplace_back(reports[i].name);
+        words_.push_back(kReportWord + i);
+    }
+    choose(list);
+}
+
+void TickColumns::choose(const std::optional<std::string> &list) {
     if (!list) {
         chosen_.resize(all_names_.size());
         std::iota(chosen_.begin(), chosen_.end(), std::size_t{0});
@@ -49,11 +74,11 @@ std::vector<std::string> TickColumns::names() const {
     return names;
 }
 
-void TickColumns::put(std::initializer_list<double> own, const quiesce_telemetry_t &telemetry,
+void TickColumns::put(std::initializer_list<double> own, const lockstep_reply_t &reply,
                       Trace &trace) const {
     for (const std::size_t column : chosen_) {
         trace.put(column < own_count_ ? own.begin()[column]
-                                      : telemetry_value(telemetry, column - own_count_));
+                                      : value_of(reply, words_[column - own_count_]));
     }
 }
 

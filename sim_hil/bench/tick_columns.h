@@ -1,4 +1,5 @@
-/// Columns of a trace: values of its own, then the telemetry of a tick; all or some of them.
+/// Columns of a trace: values of its own, then the telemetry of a tick and what the law reports;
+/// all or some of them.
 #ifndef QUIESCE_TICK_COLUMNS_H
 #define QUIESCE_TICK_COLUMNS_H
 
@@ -13,19 +14,23 @@ namespace quiesce {
 
 class TickColumns {
   public:
-    /// own: names of the columns before the telemetry. list: names separated by commas; all columns
-    /// without it. Throws InputError, naming what there is, for a name that is none of them.
-    TickColumns(std::vector<std::string> own, const std::optional<std::string> &list);
+    /// own: names of the columns before the telemetry. law: that runs; its report has names of its
+    /// own. list: names separated by commas; all columns without it. Throws InputError, naming what
+    /// there is, for a name that is none of them.
+    TickColumns(std::vector<std::string> own, std::int32_t law,
+                const std::optional<std::string> &list);
 
     std::vector<std::string> names() const;
 
     /// Appends one row. own: the values, in the order of their names.
-    void put(std::initializer_list<double> own, const quiesce_telemetry_t &telemetry,
-             Trace &trace) const;
+    void put(std::initializer_list<double> own, const lockstep_reply_t &reply, Trace &trace) const;
 
   private:
+    void choose(const std::optional<std::string> &list);
+
     std::size_t own_count_;
     std::vector<std::string> all_names_;
+    std::vector<std::size_t> words_;  ///< of the reply, for each name after the own ones
     std::vector<std::size_t> chosen_; ///< indices into all names
 };
 

@@ -14,9 +14,10 @@ namespace quiesce {
 
 class TraceObserver final : public TickObserver {
   public:
-    /// columns: names separated by commas, all without it; InputError for a name that is none of
-    /// them. every: ticks from one row to the next.
-    explicit TraceObserver(const std::optional<std::string> &columns = std::nullopt,
+    /// law: that runs. columns: names separated by commas, all without it; InputError for a name
+    /// that is none of them. every: ticks from one row to the next.
+    explicit TraceObserver(std::int32_t law,
+                           const std::optional<std::string> &columns = std::nullopt,
                            std::int64_t every = 1);
 
     void on_tick(const TickRecord &record) override;

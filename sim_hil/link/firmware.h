@@ -3,9 +3,8 @@
 #ifndef QUIESCE_FIRMWARE_H
 #define QUIESCE_FIRMWARE_H
 
-extern "C" {
 #include "lockstep.h"
 #include "quiesce.h"
-}
+#include "quiesce_rules.h"
 
 #endif

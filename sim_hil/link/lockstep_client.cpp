@@ -169,6 +169,9 @@ void LockstepClient::exchange(const lockstep_stimulus_t &stimulus, lockstep_repl
         const can_frame_t frame = receive();
         if (frame.id == QUIESCE_CAN_LOCKSTEP_COMMAND_FRAME_ID) {
             take_command(frame);
+            if (!has_flag(stimulus, LOCKSTEP_REPORT)) {
+                forget_report();
+            }
             reply = reply_;
             return;
         }
@@ -301,9 +304,18 @@ void LockstepClient::take_telemetry(const can_frame_t &frame) {
         word |= std::uint32_t{frame.data[i]} << (8 * i);
     }
     const std::size_t index = frame.id - QUIESCE_CAN_TELEMETRY_FIRST_ID;
-    std::memcpy(reinterpret_cast<std::uint8_t *>(&reply_.telemetry) + kWord * index, &word,
-                sizeof word);
-    received_.set(reply_word(kWord * index));
+    const std::size_t place = reply_word(kWord * index);
+    std::memcpy(reinterpret_cast<std::uint8_t *>(&reply_) + kWord * place, &word, sizeof word);
+    received_.set(place);
+}
+
+/// The target reports whenever it sends telemetry; nobody has asked for it here.
+void LockstepClient::forget_report() {
+    constexpr std::size_t kFirst = offsetof(lockstep_reply_t, report) / kWord;
+    for (std::size_t i = 0; i < QUIESCE_REPORT_WORDS; ++i) {
+        received_.reset(kFirst + i);
+        reply_.report[i] = 0;
+    }
 }
 
 void LockstepClient::fail(const std::string &what) const {

@@ -77,6 +77,7 @@ class LockstepClient {
     std::size_t put_stimulus(const lockstep_stimulus_t &stimulus, can_frame_t *frames) const;
     void take_command(const can_frame_t &frame);
     void take_telemetry(const can_frame_t &frame);
+    void forget_report();
     [[noreturn]] void fail(const std::string &what) const;
 
     FrameChannel &channel_;

@@ -17,10 +17,21 @@ static void take(quiesce_in_t *in, const lockstep_stimulus_t *stimulus) {
     in->fault_reset = (flags & LOCKSTEP_FAULT_RESET) != 0;
 }
 
+static void report(const lockstep_t *server, bool is_wanted, int32_t word[QUIESCE_REPORT_WORDS]) {
+    if (is_wanted) {
+        quiesce_report(&server->controller, word);
+        return;
+    }
+    for (uint32_t i = 0; i < QUIESCE_REPORT_WORDS; i++) {
+        word[i] = 0;
+    }
+}
+
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out) {
     take(&server->in, in);
     quiesce_step(&server->controller, &server->in, &server->out);
     out->current_cmd_mA = server->out.current_cmd_mA;
     out->is_driver_enabled = server->out.driver_enable ? 1u : 0u;
     out->telemetry = server->out.telemetry;
+    report(server, (in->flags & LOCKSTEP_REPORT) != 0, out->report);
 }

@@ -3,7 +3,8 @@
 #include <stddef.h>
 #include <string.h>
 
-_Static_assert(sizeof(quiesce_telemetry_t) == 4u * QUIESCE_CAN_TELEMETRY_WORDS,
+_Static_assert(sizeof(lockstep_reply_t) - offsetof(lockstep_reply_t, telemetry) ==
+                   4u * QUIESCE_CAN_TELEMETRY_WORDS,
                "quiesce.dbc has one telemetry message a word");
 _Static_assert(QUIESCE_PARAM_COUNT <= UINT8_MAX, "indices fit LockstepStatus");
 
@@ -112,6 +113,7 @@ static void run_tick(lockstep_can_t *self, const struct quiesce_can_lockstep_sti
         .flags = (wire->accel_is_fresh ? LOCKSTEP_FRESH : 0u) |
                  (wire->enable ? LOCKSTEP_ENABLE : 0u) | (wire->estop ? LOCKSTEP_ESTOP : 0u) |
                  (wire->fault_reset ? LOCKSTEP_FAULT_RESET : 0u) |
+                 (self->ticks_to_burst == 1u ? LOCKSTEP_REPORT : 0u) |
                  (self->has_current ? LOCKSTEP_HAS_CURRENT : 0u),
         .current_meas_mA = self->has_current ? self->current_meas_mA : 0,
     };
@@ -123,7 +125,9 @@ static void run_tick(lockstep_can_t *self, const struct quiesce_can_lockstep_sti
 static void put_telemetry_word(lockstep_can_t *self, can_frame_t *out) {
     const uint32_t index = self->telemetry_word;
     uint32_t word;
-    memcpy(&word, (const uint8_t *)&self->reply.telemetry + 4u * index, sizeof word);
+    memcpy(&word,
+           (const uint8_t *)&self->reply + offsetof(lockstep_reply_t, telemetry) + 4u * index,
+           sizeof word);
     *out = (can_frame_t){.id = QUIESCE_CAN_TELEMETRY_FIRST_ID + index, .length = 4};
     for (uint32_t i = 0; i < 4u; i++) {
         out->data[i] = (uint8_t)(word >> (8u * i));

@@ -29,6 +29,24 @@ RECORDED = Path(__file__).with_name("golden.txt")
 BLOCK_TICKS = 1000
 INPUTS = ("accel_counts", "flags")
 COMMAND = "current_cmd_mA"
+# What leaves the controller: the other columns only tell about it.
+COMMANDS = ("out_current_cmd_mA", "out_driver_enable", COMMAND)
+# Columns that only the report of some laws has, and what they are at rest.
+RULES_WORDS = {"rules_fired": 0, "current_fuzzy_mA": 0}
+PHASE_WORDS = {
+    "adapt_state": 0,
+    "adapt_trials": 0,
+    "adapt_gains": 0,
+    "trim_on_mdeg": 0,
+    "trim_off_mdeg": 0,
+    "trim_level_q15": 32768,
+    "trim_is_whole": 0,
+}
+LACKING = {
+    "fuzzy": PHASE_WORDS,
+    "fuzzy_selftune": PHASE_WORDS,
+    "phase": RULES_WORDS,
+}
 # Trials of the adaptation within the few seconds of a scenario.
 HASTY = ("adapt_start_ms=300", "adapt_settle_ms=150", "adapt_measure_ms=100")
 LAWS = {
@@ -106,6 +124,12 @@ def read_trace(file: Path) -> dict[str, array]:
     return {name: values[i::width] for i, name in enumerate(head["columns"])}
 
 
+def with_rest(trace: dict[str, array], rest: dict[str, int]) -> dict[str, array]:
+    """The trace with the columns that this law does not have, as they are at rest."""
+    ticks = len(trace[INPUTS[0]])
+    return trace | {name: array("d", [float(value)]) * ticks for name, value in rest.items()}
+
+
 def loop_case(trace: dict[str, array], columns: list[str]) -> Case:
     ticks = len(trace[INPUTS[0]])
     starts = range(0, ticks, BLOCK_TICKS)
@@ -128,13 +152,15 @@ def loop_columns(columns: list[str]) -> list[str]:
 def loops(bench: Path, scenarios: Path, columns: list[str]) -> Iterator[tuple[str, Case]]:
     with tempfile.TemporaryDirectory() as folder:
         trace = Path(folder) / "trace"
-        wanted = ",".join((*INPUTS, *columns))
         for scenario in scenario_files(scenarios):
             for name, (law, *settings) in LAWS.items():
                 options = [part for setting in settings for part in ("--set", setting)]
                 call = [bench, "run", "--scenario", scenario, "--law", law, *options]
+                rest = LACKING.get(law, RULES_WORDS | PHASE_WORDS)
+                wanted = ",".join(one for one in (*INPUTS, *columns) if one not in rest)
                 run([*call, "--trace", trace, "--columns", wanted], **PLAIN_LIBM)
-                yield f"loops/{scenario.stem}/{name}", loop_case(read_trace(trace), columns)
+                values = with_rest(read_trace(trace), rest)
+                yield f"loops/{scenario.stem}/{name}", loop_case(values, columns)
 
 
 def streams(program: Path) -> tuple[list[str], Cases]:
@@ -159,6 +185,10 @@ def first_block(recorded: Case, found: Case) -> int | None:
 def differing_columns(recorded: Case, found: Case, columns: list[str]) -> list[str]:
     pairs = zip(columns, recorded.get("col", []), found.get("col", []), strict=False)
     return [name for name, x, y in pairs if x != y]
+
+
+def differing_commands(recorded: Case, found: Case, columns: list[str]) -> int:
+    return sum(name in COMMANDS for name in differing_columns(recorded, found, columns))
 
 
 def columns_of(name: str, columns: list[str]) -> list[str]:
@@ -187,7 +217,8 @@ def describe(name: str, recorded: Case, found: Case, columns: list[str]) -> dict
 
 def compare(recorded: Cases, found: Cases, columns: list[str]) -> dict[str, object]:
     plants = plants_that_differ(recorded, found, columns)
-    words = differing_words = plant_words = 0
+    words = differing_words = plant_words = commands = 0
+    changed: dict[str, int] = {}
     first = None
     for name in sorted(recorded.keys() | found.keys()):
         old, new = recorded.get(name, {}), found.get(name, {})
@@ -197,12 +228,18 @@ def compare(recorded: Cases, found: Cases, columns: list[str]) -> dict[str, obje
             plant_words += count
             continue
         differing_words += count
+        named = columns_of(name, columns)
+        commands += differing_commands(old, new, named)
+        for column in differing_columns(old, new, named):
+            changed[column] = changed.get(column, 0) + 1
         if count and first is None:
             first = describe(name, old, new, columns)
     return {
         "words": words,
         "differing": differing_words,
         "differing_by_plant": plant_words,
+        "differing_commands": commands,
+        "cases_by_column": changed,
         "plants": sorted(plants),
         "first": first,
     }
@@ -217,6 +254,9 @@ def told(result: dict[str, object]) -> Iterator[str]:
         names = first["columns"]
         shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
         yield f"  first: {first['case']}, {where}; columns of this case: {shown or 'none'}"
+    if result["cases_by_column"]:
+        cases = ", ".join(f"{name} in {n}" for name, n in result["cases_by_column"].items())
+        yield f"  cases by column: {cases}; commands: {result['differing_commands']} words"
     if result["plants"]:
         yield (
             f"  {result['differing_by_plant']} more differ where the plant computes other numbers "

@@ -35,18 +35,37 @@
     X(peak2_freq_uHz, t->peaks[2].freq_uHz)                                                        \
     X(peak2_amp_um_s2, t->peaks[2].amp_um_s2)                                                      \
     X(peak2_phase_mdeg, t->peaks[2].phase_mdeg)                                                    \
-    X(rules_fired, t->rules_fired)                                                                 \
-    X(current_fuzzy_mA, t->current_fuzzy_mA)                                                       \
+    X(rules_fired, word.rules_fired)                                                               \
+    X(current_fuzzy_mA, word.current_fuzzy_mA)                                                     \
     X(current_law_mA, t->current_law_mA)                                                           \
     X(current_cmd_mA, t->current_cmd_mA)                                                           \
     X(lock_is_on, t->lock_is_on)                                                                   \
-    X(adapt_state, t->adapt_state)                                                                 \
-    X(adapt_trials, t->adapt_trials)                                                               \
-    X(adapt_gains, t->adapt_gains)                                                                 \
-    X(trim_on_mdeg, t->trim_on_mdeg)                                                               \
-    X(trim_off_mdeg, t->trim_off_mdeg)                                                             \
-    X(trim_level_q15, t->trim_level_q15)                                                           \
-    X(trim_is_whole, t->trim_is_whole)
+    X(adapt_state, word.adapt_state)                                                               \
+    X(adapt_trials, word.adapt_trials)                                                             \
+    X(adapt_gains, word.adapt_gains)                                                               \
+    X(trim_on_mdeg, word.trim_on_mdeg)                                                             \
+    X(trim_off_mdeg, word.trim_off_mdeg)                                                           \
+    X(trim_level_q15, word.trim_level_q15)                                                         \
+    X(trim_is_whole, word.trim_is_whole)
+
+typedef struct {
+    int32_t rules_fired, current_fuzzy_mA;
+    int32_t adapt_state, adapt_trials, adapt_gains;
+    int32_t trim_on_mdeg, trim_off_mdeg, trim_level_q15, trim_is_whole;
+} law_words_t;
+
+// As a law says them that has them, else as they were at rest.
+static law_words_t law_words(const quiesce_t *controller, int32_t law) {
+    int32_t w[QUIESCE_REPORT_WORDS];
+    quiesce_report(controller, w);
+    if (law == QUIESCE_LAW_PHASE) {
+        return (law_words_t){0, 0, w[0], w[1], w[2], w[3], w[4], w[5], w[6]};
+    }
+    const bool has_rules = law == QUIESCE_LAW_FUZZY || law == QUIESCE_LAW_FUZZY_SELFTUNE;
+    return (law_words_t){.current_fuzzy_mA = has_rules ? w[0] : 0,
+                         .rules_fired = has_rules ? w[1] : 0,
+                         .trim_level_q15 = 32768};
+}
 
 #define FIELD_NAME(name, value) #name,
 #define FIELD_WORD(name, value) (uint32_t)(value),
@@ -73,8 +92,10 @@ void record_start(record_t *self, const char *name) {
     }
 }
 
-void record_tick(record_t *self, const quiesce_out_t *out) {
+void record_tick(record_t *self, const quiesce_t *controller, int32_t law,
+                 const quiesce_out_t *out) {
     const quiesce_telemetry_t *t = &out->telemetry;
+    const law_words_t word = law_words(controller, law);
     const uint32_t words[] = {RECORD_FIELDS(FIELD_WORD)};
     uint32_t *block = &self->blocks[self->ticks++ / RECORD_BLOCK_TICKS];
     for (uint32_t i = 0; i < RECORD_COLUMNS; i++) {

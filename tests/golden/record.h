@@ -6,8 +6,10 @@
 
 #define RECORD_BLOCK_TICKS 1000u
 #define RECORD_MAX_BLOCKS 64u
-/// Words of quiesce_out_t: the command, the driver's enable, all telemetry.
-#define RECORD_COLUMNS (2u + sizeof(quiesce_telemetry_t) / sizeof(uint32_t))
+/// The command, the driver's enable, all telemetry, and the law's own words that were telemetry in
+/// the first recording.
+#define RECORD_COLUMNS (2u + sizeof(quiesce_telemetry_t) / sizeof(uint32_t) + RECORD_LAW_WORDS)
+#define RECORD_LAW_WORDS 9u
 
 typedef struct {
     const char *name;
@@ -22,8 +24,10 @@ void record_print_columns(void);
 /// name stays the caller's until record_end.
 void record_start(record_t *self, const char *name);
 
-/// Everything that one tick put out. At most RECORD_MAX_BLOCKS x RECORD_BLOCK_TICKS of them.
-void record_tick(record_t *self, const quiesce_out_t *out);
+/// Everything that one tick put out and the law has to tell. At most RECORD_MAX_BLOCKS x
+/// RECORD_BLOCK_TICKS of them.
+void record_tick(record_t *self, const quiesce_t *controller, int32_t law,
+                 const quiesce_out_t *out);
 
 /// Something beside the ticks: a verdict, what was learnt. It goes into the current block.
 void record_words(record_t *self, const uint32_t *words, uint32_t count);

@@ -13,14 +13,16 @@ void stream_open(stream_t *self, const char *prefix, uint32_t number) {
 }
 
 void stream_start(stream_t *self) {
-    record_word(&self->record, quiesce_init(&self->controller, &self->params) ? 1u : 0u);
+    const bool is_accepted = quiesce_init(&self->controller, &self->params);
+    self->law = is_accepted ? self->params.law : QUIESCE_LAW_FUZZY;
+    record_word(&self->record, is_accepted ? 1u : 0u);
 }
 
 void stream_step(stream_t *self) {
     self->in.tick++;
     self->tick++;
     quiesce_step(&self->controller, &self->in, &self->out);
-    record_tick(&self->record, &self->out);
+    record_tick(&self->record, &self->controller, self->law, &self->out);
 }
 
 void stream_close(stream_t *self) {

@@ -10,6 +10,7 @@
 typedef struct {
     quiesce_t controller;
     quiesce_params_t params;
+    int32_t law; ///< that runs: refused parameters leave it to the defaults
     quiesce_in_t in;
     quiesce_out_t out;
     record_t record;

@@ -3,11 +3,11 @@
 #include "golden_tables.h"
 #include "stream_cases.h"
 
-enum { CASES = 16, TICKS = 60000, LEARNT_MAX = 4 };
+enum { CASES = 16, TICKS = 60000, LEARNT_MAX = 4, LEARNT_WORDS = 132 };
 
 typedef struct {
     int32_t damped_q15; ///< what the current takes off the vibration, follows it slowly
-    quiesce_adaptation_t saved[LEARNT_MAX];
+    quiesce_learnt_t saved[LEARNT_MAX];
     uint32_t saves;
     uint32_t sweep; ///< 0 or 1: how fast the frequency rises
     bool is_frozen;
@@ -42,18 +42,17 @@ static int32_t damped_sample(stream_t *self, phase_case_t *state) {
 }
 
 static void save(stream_t *self, phase_case_t *state) {
-    quiesce_adaptation_t *to = &state->saved[state->saves++ % LEARNT_MAX];
-    quiesce_adaptation_save(&self->controller, to);
-    record_words(&self->record, to->words, QUIESCE_ADAPTATION_WORDS);
+    quiesce_learnt_t *to = &state->saved[state->saves++ % LEARNT_MAX];
+    (void)quiesce_learnt_save(&self->controller, to);
+    record_words(&self->record, to->words, to->count);
 }
 
 static void load(stream_t *self, const phase_case_t *state) {
-    quiesce_adaptation_t from = state->saved[draw_below(&self->seed, LEARNT_MAX)];
+    quiesce_learnt_t from = state->saved[draw_below(&self->seed, LEARNT_MAX)];
     if (draw_one_in(&self->seed, 4)) {
-        from.words[draw_below(&self->seed, QUIESCE_ADAPTATION_WORDS)] ^=
-            1u << draw_below(&self->seed, 32);
+        from.words[draw_below(&self->seed, LEARNT_WORDS)] ^= 1u << draw_below(&self->seed, 32);
     }
-    record_word(&self->record, quiesce_adaptation_load(&self->controller, &from) ? 1u : 0u);
+    record_word(&self->record, quiesce_learnt_load(&self->controller, &from) ? 1u : 0u);
 }
 
 static void swap_table(stream_t *self) {
@@ -64,20 +63,22 @@ static void swap_table(stream_t *self) {
     damaged[draw_below(&self->seed, GOLDEN_PULSES_WORDS)] ^= 1u << draw_below(&self->seed, 32);
     static const uint32_t *const tables[] = {golden_pulses, NULL, damaged};
     const uint32_t *words = tables[draw_below(&self->seed, 3)];
-    record_word(&self->record,
-                (uint32_t)quiesce_phase_table_use(&self->controller, words, GOLDEN_PULSES_WORDS));
+    const quiesce_table_verdict_t verdict =
+        quiesce_table_use(&self->controller, words, GOLDEN_PULSES_WORDS);
+    // The number that it had in the first recording.
+    record_word(&self->record, verdict == QUIESCE_TABLE_POINT ? 5u : (uint32_t)verdict);
 }
 
 static void operate(stream_t *self, phase_case_t *state) {
     // Frozen until the next one at most.
     state->is_frozen = !state->is_frozen && draw_one_in(&self->seed, 6);
-    quiesce_adaptation_freeze(&self->controller, state->is_frozen);
+    quiesce_learnt_freeze(&self->controller, state->is_frozen);
     switch (draw_below(&self->seed, 8)) {
     case 0:
         swap_table(self);
         break;
     case 1:
-        quiesce_adaptation_reset(&self->controller);
+        (void)quiesce_learnt_load(&self->controller, NULL);
         break;
     case 2:
     case 3:

@@ -6,7 +6,7 @@
 
 enum { CASES = 6, TICKS = 8000, RATE_Hz = 1000, PART_WORDS = 40 };
 
-static quiesce_rules_store_t store;
+static quiesce_table_store_t store;
 static uint32_t scratch[GOLDEN_RULES_MAX_WORDS];
 
 // Copies one of the tables, sometimes damaged or cut short. The store keeps words of its own.
@@ -24,39 +24,39 @@ static void receive(stream_t *self) {
     for (uint32_t at = 0; at < count; at += PART_WORDS) {
         const uint32_t left = count - at;
         const uint32_t slip = draw_one_in(&self->seed, 40) ? 1u : 0u;
-        const bool is_taken = quiesce_rules_store_write(&store, at + slip, &scratch[at],
+        const bool is_taken = quiesce_table_store_write(&store, at + slip, &scratch[at],
                                                         left < PART_WORDS ? left : PART_WORDS);
         record_word(&self->record, is_taken ? 1u : 0u);
     }
-    record_word(&self->record, (uint32_t)quiesce_rules_store_commit(&store, &self->controller));
+    record_word(&self->record, (uint32_t)quiesce_table_store_commit(&store, &self->controller));
 }
 
 // Other words where a table was, which is not in use meanwhile.
 static void rewrite(stream_t *self) {
     static uint32_t mine[GOLDEN_RULES_MAX_WORDS];
     const golden_table_t *table = &golden_rules[draw_below(&self->seed, GOLDEN_FITTING_RULES)];
-    (void)quiesce_rules_use(&self->controller, NULL, 0);
+    (void)quiesce_table_use(&self->controller, NULL, 0);
     memcpy(mine, table->words, table->count * sizeof *table->words);
-    record_word(&self->record, (uint32_t)quiesce_rules_use(&self->controller, mine, table->count));
+    record_word(&self->record, (uint32_t)quiesce_table_use(&self->controller, mine, table->count));
 }
 
 static void use(stream_t *self) {
     const golden_table_t *table = &golden_rules[draw_below(&self->seed, GOLDEN_RULES)];
     const uint32_t count = table->count - (draw_one_in(&self->seed, 4) ? 1u : 0u);
-    record_word(&self->record, (uint32_t)quiesce_rules_use(&self->controller, table->words, count));
+    record_word(&self->record, (uint32_t)quiesce_table_use(&self->controller, table->words, count));
 }
 
 static void operate(stream_t *self) {
     switch (draw_below(&self->seed, 9)) {
     case 0:
-        record_word(&self->record, (uint32_t)quiesce_rules_use(&self->controller, NULL, 0));
+        record_word(&self->record, (uint32_t)quiesce_table_use(&self->controller, NULL, 0));
         break;
     case 1:
     case 2:
         use(self);
         break;
     case 3:
-        quiesce_rules_store_revert(&store, &self->controller);
+        quiesce_table_store_revert(&store, &self->controller);
         break;
     case 4:
     case 5:
@@ -77,7 +77,7 @@ void stream_rules_cases(stream_t *self) {
         self->params.selftune_leak_ms = number < 3 ? 0 : 400;
         self->params.selftune_deadband_um_s2 = number < 3 ? 0 : 50000;
         stream_start(self);
-        quiesce_rules_store_init(&store);
+        quiesce_table_store_init(&store);
         self->in = (quiesce_in_t){.accel_is_fresh = true, .enable = true};
         while (self->tick < TICKS) {
             if (self->vibration.left_ticks == 0) {

@@ -1,6 +1,7 @@
 // What is not a stream: the parameter table, parameters that are refused, the rules on a grid.
 #include <stdio.h>
 
+#include "quiesce_rules.h"
 #include "stream_cases.h"
 
 enum { REFUSALS = 300, REFUSED_TICKS = 20 };

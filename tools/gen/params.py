@@ -30,6 +30,8 @@ def header(params: list[dict], digest: str) -> str:
                 f"    {prefix}_{label.upper()} = {i}," for i, label in enumerate(p["labels"])
             )
             enums += f"\n/// Values of quiesce_params_t.{p['name']}.\nenum {{\n{rows}\n}};\n"
+            if p["name"] == "law":
+                enums += every_law(p["labels"])
     return f"""// clang-format off
 /// Parameters of the controller. {banner(digest)}
 #ifndef QUIESCE_PARAMS_H
@@ -37,6 +39,10 @@ def header(params: list[dict], digest: str) -> str:
 
 #include <stdbool.h>
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
 
 #define QUIESCE_PARAM_COUNT {len(params)}
 {enums}
@@ -78,8 +84,25 @@ const quiesce_param_info_t *quiesce_param_info(uint32_t index);
 bool quiesce_param_set(quiesce_params_t *params, uint32_t index, int32_t value);
 bool quiesce_param_get(const quiesce_params_t *params, uint32_t index, int32_t *value);
 
+#ifdef __cplusplus
+}}
+#endif
+
 #endif
 """
+
+
+def every_law(labels: list[str]) -> str:
+    rows = " \\\n".join(f"    LAW({label.upper()}, {label})" for label in labels)
+    return (
+        f"\n/// Applies LAW(NUMBER, name) to each law.\n#define QUIESCE_EACH_LAW(LAW) \\\n{rows}\n"
+    )
+
+
+def load(text: str) -> list[dict]:
+    """Parameters; one with labels takes their numbers."""
+    params = tomllib.loads(text)["parameter"]
+    return [p | {"min": 0, "max": len(p["labels"]) - 1} if "labels" in p else p for p in params]
 
 
 def table(params: list[dict], digest: str) -> str:
@@ -143,7 +166,7 @@ def main() -> int:
     args = parser.parse_args()
     source = SOURCE.read_bytes()
     digest = hashlib.sha256(source).hexdigest()
-    params = tomllib.loads(source.decode())["parameter"]
+    params = load(source.decode())
     outputs = {
         "firmware/include/quiesce_params.h": header(params, digest),
         "firmware/param/param_table.c": table(params, digest),

@@ -1,24 +1,55 @@
-#include "law_phase.h"
+// The phase law: a pulse of current at the right phase of every half cycle, from a table over
+// frequency, trimmed on line to the plant at hand.
+//
+// Below resonance the damper holds on until just after the peak and lets go: it works like a
+// spring that gives nothing back. Above resonance it lets go on the way out: like a mass. The
+// table knows where (docs/explanation/phase-law.md).
+//
+// While nothing is locked on to, the request is unlock_current_mA. From there the pulses are faded
+// in over phase_blend_ms, so that the vibration changes slowly enough to be followed.
+#include "law.h"
 
 #include <stddef.h>
 
 #include "adapt_store.h"
-#include "law_state.h"
+#include "phase_state.h"
+#include "plant_pulses.h"
 
 enum { WHOLE_q16 = 65536 };
 
-_Static_assert(QUIESCE_ADAPTATION_WORDS == ADAPT_STORE_WORDS, "what is learnt, in words");
+_Static_assert(sizeof(phase_t) <= LAW_STATE_BYTES, "the arena is too small");
+_Static_assert(ADAPT_STORE_WORDS <= QUIESCE_LEARNT_MAX_WORDS, "what is learnt, in words");
 
-static const phase_table_t *as_table(const uint32_t *words) {
-    return (const phase_table_t *)(const void *)words;
+static const phase_table_t *table_of(const law_setup_t *setup) {
+    return (const phase_table_t *)(const void *)setup->table;
 }
 
+static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
+    const phase_table_verdict_t verdict = phase_table_check(words, count);
+    return verdict == PHASE_TABLE_POINT ? QUIESCE_TABLE_POINT : (quiesce_table_verdict_t)verdict;
+}
+
+static const law_table_kind_t pulses = {
+    .magic = PHASE_TABLE_MAGIC,
+    .shipped = plant_pulses_table,
+    .shipped_words = sizeof plant_pulses_table / sizeof plant_pulses_table[0],
+    .check = check,
+};
+
+static const quiesce_word_t reports[QUIESCE_REPORT_WORDS] = {
+    {"adapt_state", "adapt_state_t"}, {"adapt_trials", "-"},     {"adapt_gains", "-"},
+    {"trim_on_mdeg", "mdeg"},         {"trim_off_mdeg", "mdeg"}, {"trim_level_q15", "Q15"},
+    {"trim_is_whole", "-"},
+};
+
 // Unlocked, nothing learnt.
-static void start(phase_state_t *self, const quiesce_params_t *p, const phase_table_t *table) {
+static void init(void *state, const law_setup_t *setup) {
+    phase_t *self = state;
+    const quiesce_params_t *p = &setup->params;
+    const phase_table_t *table = table_of(setup);
     const uint32_t blend_ticks = ticks_in_ms(p->phase_blend_ms, p->tick_rate_Hz);
     const uint32_t setting = (uint32_t)p->phase_setting;
-    *self = (phase_state_t){
-        .table = table,
+    *self = (phase_t){
         .points = phase_table_points(table, setting),
         .point_count = table->points[setting],
         .is_stale = true,
@@ -47,7 +78,7 @@ static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
 }
 
 // Frequency, pulse and trim of the half cycle that has begun.
-static void refresh(phase_state_t *self, const quiesce_params_t *params, uint32_t step_turn) {
+static void refresh(phase_t *self, const quiesce_params_t *params, uint32_t step_turn) {
     const uint64_t per_tick = (uint64_t)step_turn * (uint32_t)params->tick_rate_Hz;
     self->freq_mHz = (uint32_t)((per_tick * 1000u) >> 32);
     self->place = phase_place(self->points, self->point_count, self->freq_mHz);
@@ -60,84 +91,69 @@ static void refresh(phase_state_t *self, const quiesce_params_t *params, uint32_
     self->is_stale = false;
 }
 
-static void let_go(phase_state_t *self) {
+static void let_go(phase_t *self) {
     self->blend_q16 = 0;
     self->is_stale = true;
     adapt_pause(&self->adapt);
 }
 
-static int32_t blended(phase_state_t *self, int32_t from_mA, int32_t to_mA) {
+static int32_t blended(phase_t *self, int32_t from_mA, int32_t to_mA) {
     const uint32_t next_q16 = self->blend_q16 + self->blend_step_q16;
     self->blend_q16 = next_q16 < WHOLE_q16 ? next_q16 : WHOLE_q16;
     return from_mA + (int32_t)(((int64_t)(to_mA - from_mA) * self->blend_q16) >> 16);
 }
 
-static void adapt(phase_state_t *self, const quiesce_params_t *params, const law_in_t *in) {
+static void adapt(phase_t *self, const quiesce_params_t *params, const view_t *view) {
     adapt_step(&self->adapt, &(adapt_in_t){
-                                 .may_try = params->adapt == QUIESCE_ADAPT_ON && !self->is_frozen &&
+                                 .may_try = params->adapt == QUIESCE_ADAPT_ON && view->may_learn &&
                                             self->blend_q16 == WHOLE_q16,
                                  .freq_mHz = self->freq_mHz,
                                  .index = self->place.index,
                                  .part_q16 = self->place.part_q16,
                                  .goal = {self->pulse.accel_weight_q8, self->pulse.accel_shape_q14},
-                                 .half = in->lock.half,
+                                 .half = view->tone.half,
                              });
 }
 
-static int32_t step(law_state_t *state, const quiesce_params_t *params, const law_in_t *in) {
-    phase_state_t *self = &state->phase;
-    if (!in->lock.is_on || !in->is_output_on) {
+static int32_t request_mA(phase_t *self, const quiesce_params_t *params, const view_t *view) {
+    const view_tone_t *tone = &view->tone;
+    if ((view->valid & VIEW_LOCK) == 0 || !view->is_output_on) {
         let_go(self);
         return params->unlock_current_mA;
     }
     if (self->is_stale) {
-        refresh(self, params, in->lock.step_turn);
+        refresh(self, params, tone->step_turn);
     }
-    self->is_stale = in->lock.half != NULL;
-    adapt(self, params, in);
+    self->is_stale = tone->half != NULL;
+    adapt(self, params, view);
     // What is requested now acts during the next tick. Half turns: the current repeats twice a
     // cycle.
-    const uint32_t start_turn = (in->lock.phase_turn + in->lock.step_turn) << 1;
-    const int32_t pulse_mA =
-        phase_pulse_current_mA(&self->pulse, start_turn, in->lock.step_turn << 1);
+    const uint32_t start_turn = (tone->phase_turn + tone->step_turn) << 1;
+    const int32_t pulse_mA = phase_pulse_current_mA(&self->pulse, start_turn, tone->step_turn << 1);
     return blended(self, params->unlock_current_mA, pulse_mA);
 }
 
-static void init(law_state_t *state, const quiesce_params_t *params, const uint32_t *table) {
-    start(&state->phase, params, as_table(table));
+static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
+    law_demand_all(out, request_mA(state, &setup->params, view));
+    return true;
 }
 
-const law_t law_phase = {.name = "phase", .init = init, .step = step, .uses_lock = true};
+static adapt_owner_t owner_of(const law_setup_t *setup) {
+    return (adapt_owner_t){table_of(setup)->crc, (uint32_t)setup->params.phase_setting};
+}
 
-phase_table_verdict_t law_phase_use(law_state_t *state, const quiesce_params_t *params,
-                                    const uint32_t *words, uint32_t count) {
-    const phase_table_verdict_t verdict = phase_table_check(words, count);
-    if (verdict == PHASE_TABLE_OK) {
-        const bool is_frozen = state->phase.is_frozen;
-        start(&state->phase, params, as_table(words));
-        state->phase.is_frozen = is_frozen;
+static uint32_t save(const void *state, const law_setup_t *setup, uint32_t *words) {
+    adapt_store(&((const phase_t *)state)->adapt, owner_of(setup), words);
+    return ADAPT_STORE_WORDS;
+}
+
+static bool load(void *state, const law_setup_t *setup, const uint32_t *words, uint32_t count) {
+    phase_t *self = state;
+    if (count == 0) {
+        adapt_clear(&self->adapt);
+        return true;
     }
-    return verdict;
-}
-
-static adapt_owner_t owner_of(const phase_state_t *self, const quiesce_params_t *params) {
-    return (adapt_owner_t){self->table->crc, (uint32_t)params->phase_setting};
-}
-
-void law_phase_save(const law_state_t *state, const quiesce_params_t *params, uint32_t *words) {
-    adapt_store(&state->phase.adapt, owner_of(&state->phase, params), words);
-}
-
-bool law_phase_load(law_state_t *state, const quiesce_params_t *params, const uint32_t *words) {
-    return adapt_restore(&state->phase.adapt, owner_of(&state->phase, params), words);
-}
-
-void law_phase_reset(law_state_t *state) {
-    adapt_clear(&state->phase.adapt);
-}
-
-void law_phase_freeze(law_state_t *state, bool is_frozen) {
-    state->phase.is_frozen = is_frozen;
+    return count == ADAPT_STORE_WORDS && adapt_restore(&self->adapt, owner_of(setup), words);
 }
 
 // Half turns Q16 in thousandths of a degree.
@@ -145,14 +161,30 @@ static int32_t half_turn_mdeg(int32_t half_turn_q16) {
     return half_turn_q16 * 5625 / 2048;
 }
 
-void law_phase_report(const law_state_t *state, quiesce_telemetry_t *t) {
-    const adapt_t *self = &state->phase.adapt;
-    const int16_t *trim = state->phase.trim.value;
-    t->adapt_state = (uint32_t)self->state;
-    t->adapt_trials = self->trials;
-    t->adapt_gains = self->gains;
-    t->trim_on_mdeg = half_turn_mdeg(trim[ADAPT_ON_EDGE]);
-    t->trim_off_mdeg = half_turn_mdeg(trim[ADAPT_OFF_EDGE]);
-    t->trim_level_q15 = 32768 + trim[ADAPT_LEVEL];
-    t->trim_is_whole = trim[ADAPT_WHOLE] != 0 ? 1u : 0u;
+static void report(const void *state, const law_setup_t *setup, int32_t *word) {
+    (void)setup;
+    const phase_t *self = state;
+    const int16_t *trim = self->trim.value;
+    word[0] = (int32_t)self->adapt.state;
+    word[1] = (int32_t)self->adapt.trials;
+    word[2] = (int32_t)self->adapt.gains;
+    word[3] = half_turn_mdeg(trim[ADAPT_ON_EDGE]);
+    word[4] = half_turn_mdeg(trim[ADAPT_OFF_EDGE]);
+    word[5] = 32768 + trim[ADAPT_LEVEL];
+    word[6] = trim[ADAPT_WHOLE] != 0 ? 1 : 0;
 }
+
+extern const law_t law_phase;
+const law_t law_phase = {
+    .name = "phase",
+    .needs = VIEW_RMS,
+    .kind = &pulses,
+    .state_bytes = sizeof(phase_t),
+    .wants_lock = true,
+    .reports = reports,
+    .init = init,
+    .step = step,
+    .report = report,
+    .save = save,
+    .load = load,
+};

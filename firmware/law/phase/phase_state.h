@@ -6,18 +6,16 @@
 #include "phase_table.h"
 
 typedef struct {
-    const phase_table_t *table;
     const phase_point_t *points; ///< of the setting in use
     uint32_t point_count;
     adapt_t adapt;
     uint32_t blend_step_q16; ///< a tick
     uint32_t blend_q16;      ///< 0: unlock current, 65536: pulses
     bool is_stale;           ///< place and pulse are to be found anew
-    bool is_frozen;          ///< adaptation stands still, whatever the parameter says
     uint32_t freq_mHz;
     phase_place_t place;
     phase_pulse_t pulse; ///< trimmed
     adapt_trim_t trim;   ///< in effect
-} phase_state_t;
+} phase_t;
 
 #endif

@@ -72,7 +72,7 @@ struct Exchange {
 
     // To the other thread.
     Mailbox<Snapshot> snapshot;
-    Mailbox<quiesce_adaptation_t> adaptation;
+    Mailbox<quiesce_learnt_t> learnt;
     Mailbox<quiesce_params_t> to_store;
     Mailbox<quiesce_params_t> in_effect; ///< after each restart with others
     /// To be kept until it is acknowledged, QUIESCE_FAULT_NONE: nothing; before the start: what an

@@ -11,7 +11,7 @@ namespace quiesced {
 namespace {
 
 constexpr int kMaxReceived = 64; // frames a tick; the rest waits for the next one
-constexpr std::uint32_t kAdaptationEvery_s = 60;
+constexpr std::uint32_t kLearntEvery_s = 60;
 constexpr int kFarewells = 3; // one might be lost
 constexpr int kFarewellPause_ms = 2;
 constexpr int kFarewellPatience_ms = 200; // well below the least timeout of a watchdog
@@ -68,20 +68,19 @@ void Loop::answer_store() {
     }
 }
 
-void Loop::use_adaptation(const quiesce_adaptation_t &adaptation) {
-    if (node_.params.law != QUIESCE_LAW_PHASE) {
+void Loop::use_learnt(const quiesce_learnt_t &learnt) {
+    quiesce_learnt_t known;
+    if (!quiesce_learnt_save(&node_.controller, &known)) { // a law that learns nothing
         return;
     }
-    const bool is_used = quiesce_adaptation_load(&node_.controller, &adaptation);
-    log_.log(LogLevel::info, is_used ? "what was learnt before is used"
-                                     : "what was learnt before belongs to other parameters");
+    const bool is_used = quiesce_learnt_load(&node_.controller, &learnt);
+    log_.log(LogLevel::info,
+             is_used ? "what was learnt before is used"
+                     : "what was learnt before belongs to another law, table or setting");
 }
 
-void Loop::keep_adaptation() {
-    has_adaptation_ = node_.params.law == QUIESCE_LAW_PHASE;
-    if (has_adaptation_) {
-        quiesce_adaptation_save(&node_.controller, &adaptation_);
-    }
+void Loop::keep_learnt() {
+    has_learnt_ = quiesce_learnt_save(&node_.controller, &learnt_);
 }
 
 /// What the node does not know: what the board can do.
@@ -89,7 +88,7 @@ void Loop::prepare_apply() {
     if (can_node_task(&node_.can) != CAN_NODE_APPLY) {
         return;
     }
-    keep_adaptation();
+    keep_learnt();
     const std::optional<Misfit> misfit = find_misfit(config_, *can_node_staged(&node_.can));
     if (misfit && latched_fault(node_) == QUIESCE_FAULT_NONE) {
         can_node_answer(&node_.can, CAN_NODE_CONTRADICTION, misfit->index);
@@ -103,7 +102,7 @@ void Loop::use_params(const quiesce_params_t &params) {
         return;
     }
     quiesce_param_error_t error{};
-    keep_adaptation();
+    keep_learnt();
     if (quiesce_params_check(&params, &error)) {
         restart(params);
     } else {
@@ -132,8 +131,8 @@ void Loop::after_restart() {
         rate_Hz_ = rate_Hz;
         source_.change_rate(rate_Hz);
     }
-    if (has_adaptation_) {
-        use_adaptation(adaptation_);
+    if (has_learnt_) {
+        use_learnt(learnt_);
     }
 }
 
@@ -186,10 +185,10 @@ void Loop::put_snapshot() {
     }
 }
 
-void Loop::put_adaptation() {
-    keep_adaptation();
-    if (has_adaptation_) {
-        (void)exchange_.adaptation.put(adaptation_);
+void Loop::put_learnt() {
+    keep_learnt();
+    if (has_learnt_) {
+        (void)exchange_.learnt.put(learnt_);
     }
 }
 
@@ -210,9 +209,9 @@ void Loop::report(std::int64_t now_ns) {
     if (exchange_.snapshot_is_wanted.exchange(false)) {
         put_snapshot();
     }
-    if (is_due_each_second() && ++adaptation_age_s_ >= kAdaptationEvery_s) {
-        adaptation_age_s_ = 0;
-        put_adaptation();
+    if (is_due_each_second() && ++learnt_age_s_ >= kLearntEvery_s) {
+        learnt_age_s_ = 0;
+        put_learnt();
     }
 }
 
@@ -290,10 +289,10 @@ void Loop::leave() {
 
 /// The outputs are safe: there is time to wait for the other thread now.
 void Loop::put_last() {
-    keep_adaptation();
-    bool is_put = !has_adaptation_;
+    keep_learnt();
+    bool is_put = !has_learnt_;
     for (int i = 0; i < kLastAttempts && !is_put; ++i) {
-        is_put = exchange_.adaptation.put(adaptation_);
+        is_put = exchange_.learnt.put(learnt_);
         sleep_ms(is_put ? 0 : 1);
     }
     is_put = false;

@@ -24,7 +24,7 @@ class Loop {
     Loop &operator=(const Loop &) = delete;
 
     /// Puts back what law phase has learnt, and logs whether it is used.
-    void use_adaptation(const quiesce_adaptation_t &adaptation);
+    void use_learnt(const quiesce_learnt_t &learnt);
 
     /// Runs until a stop is requested or, where ticks is not 0, for so many ticks; then safe
     /// current, output off, lines inactive, farewell on the bus.
@@ -39,14 +39,14 @@ class Loop {
     void take_new_params();
     void use_params(const quiesce_params_t &params);
     void answer_store();
-    void keep_adaptation();
+    void keep_learnt();
     void prepare_apply();
     void after_restart();
     void send();
     void report(std::int64_t now_ns);
     Snapshot snapshot() const;
     void put_snapshot();
-    void put_adaptation();
+    void put_learnt();
     void put_params();
     void leave();
     bool say_farewell(const can_frame_t &frame);
@@ -71,11 +71,11 @@ class Loop {
 
     std::uint32_t rate_Hz_ = 0;
     std::uint32_t restarts_ = 0;
-    std::uint32_t adaptation_age_s_ = 0;
+    std::uint32_t learnt_age_s_ = 0;
     bool store_is_pending_ = false;
     bool has_new_params_ = false; ///< that the other thread does not know yet
-    quiesce_adaptation_t adaptation_{};
-    bool has_adaptation_ = false;
+    quiesce_learnt_t learnt_{};
+    bool has_learnt_ = false;
 };
 
 } // namespace quiesced

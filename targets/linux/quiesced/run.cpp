@@ -107,8 +107,8 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const StateStore store(config.state.folder);
     std::string params_note;
     const quiesce_params_t params = start_params(config, store, params_note);
-    std::string adaptation_note;
-    const auto adaptation = store.load_adaptation(adaptation_note);
+    std::string learnt_note;
+    const auto learnt = store.load_learnt(learnt_note);
     std::string fault_note;
     exchange->latched_fault.store(FaultStore(config.state.folder).load(fault_note));
 
@@ -123,10 +123,10 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const auto loop = std::make_unique<Loop>(config, params, *exchange, bus.get(), watchdog.get());
     log_start(config, params, exchange->log);
     log_note(params_note, exchange->log);
-    log_note(adaptation_note, exchange->log);
+    log_note(learnt_note, exchange->log);
     log_kept_fault(fault_note, exchange->log);
-    if (adaptation) {
-        loop->use_adaptation(*adaptation);
+    if (learnt) {
+        loop->use_learnt(*learnt);
     }
     loop->run(ticks);
     return 0;

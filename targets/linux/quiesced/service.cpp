@@ -185,22 +185,21 @@ void Service::keep_params() {
 }
 
 /// Spares the disk what it has already.
-void Service::store_adaptation() {
-    quiesce_adaptation_t adaptation;
-    if (!exchange_.adaptation.take(adaptation) ||
-        (stored_adaptation_ &&
-         std::memcmp(&*stored_adaptation_, &adaptation, sizeof adaptation) == 0)) {
+void Service::store_learnt() {
+    quiesce_learnt_t learnt;
+    if (!exchange_.learnt.take(learnt) ||
+        (stored_learnt_ && std::memcmp(&*stored_learnt_, &learnt, sizeof learnt) == 0)) {
         return;
     }
-    const std::string error = store_.save_adaptation(adaptation);
-    adaptation_trouble_.note(error, sink_);
+    const std::string error = store_.save_learnt(learnt);
+    learnt_trouble_.note(error, sink_);
     if (error.empty()) {
-        stored_adaptation_ = adaptation;
+        stored_learnt_ = learnt;
     }
 }
 
 void Service::write_files() {
-    store_adaptation();
+    store_learnt();
     if (exchange_.snapshot.take(last_)) {
         status_trouble_.note(replace_file(store_.status_file(), status_json(last_)), sink_);
         manager_.send("STATUS=" + status_line(last_));

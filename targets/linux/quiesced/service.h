@@ -47,7 +47,7 @@ class Service {
     void finish_reload();
     void look_after_devices();
     void write_files();
-    void store_adaptation();
+    void store_learnt();
     void store_params();
     void store_fault(std::int64_t now_ns);
     void keep_params();
@@ -64,10 +64,10 @@ class Service {
     quiesce_params_t configured_; ///< what [parameters] says, last time that it was read
 
     Snapshot last_{};
-    std::uint32_t stored_fault_;                            ///< as on the disk
-    std::optional<quiesce_adaptation_t> stored_adaptation_; ///< by this run
+    std::uint32_t stored_fault_;                    ///< as on the disk
+    std::optional<quiesce_learnt_t> stored_learnt_; ///< by this run
     Trouble status_trouble_{"status file"};
-    Trouble adaptation_trouble_{"what was learnt"};
+    Trouble learnt_trouble_{"what was learnt"};
     Trouble fault_trouble_{"latched fault"};
     Trouble params_trouble_{"parameters for --make-safe"};
     std::uint32_t told_dropped_ = 0;

@@ -5,7 +5,7 @@ namespace quiesced {
 namespace {
 
 constexpr const char *kParamKind = "param";
-constexpr const char *kAdaptationKind = "adapt";
+constexpr const char *kLearntKind = "learnt";
 constexpr std::uint32_t kVersion = 1;
 
 /// On the disk: of another number of parameters is of another length, and damaged.
@@ -54,14 +54,14 @@ std::string StateStore::save_params(const quiesce_params_t &configured,
                : error.text;
 }
 
-std::optional<quiesce_adaptation_t> StateStore::load_adaptation(std::string &note) const {
-    quiesce_adaptation_t adaptation{};
+std::optional<quiesce_learnt_t> StateStore::load_learnt(std::string &note) const {
+    quiesce_learnt_t learnt{};
     linux_error_t error{};
     note.clear();
-    const nvm_verdict_t verdict = nvm_file_read(adaptation_file().c_str(), kAdaptationKind,
-                                                kVersion, &adaptation, sizeof adaptation, &error);
+    const nvm_verdict_t verdict =
+        nvm_file_read(learnt_file().c_str(), kLearntKind, kVersion, &learnt, sizeof learnt, &error);
     if (verdict == NVM_OK) {
-        return adaptation;
+        return learnt;
     }
     if (verdict != NVM_MISSING) {
         note = std::string("what was learnt is not used: ") + error.text;
@@ -69,10 +69,10 @@ std::optional<quiesce_adaptation_t> StateStore::load_adaptation(std::string &not
     return std::nullopt;
 }
 
-std::string StateStore::save_adaptation(const quiesce_adaptation_t &adaptation) {
+std::string StateStore::save_learnt(const quiesce_learnt_t &learnt) {
     linux_error_t error{};
-    return nvm_file_write(adaptation_file().c_str(), kAdaptationKind, kVersion, &adaptation,
-                          sizeof adaptation, &error)
+    return nvm_file_write(learnt_file().c_str(), kLearntKind, kVersion, &learnt, sizeof learnt,
+                          &error)
                ? ""
                : error.text;
 }

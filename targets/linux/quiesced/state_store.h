@@ -1,5 +1,5 @@
-/// What outlives the program, as files of the state folder: parameters saved over CAN and what law
-/// phase has learnt. All of it blocks on the disk: never call it from the control loop.
+/// What outlives the program, as files of the state folder: parameters saved over CAN and what the
+/// law has learnt. All of it blocks on the disk: never call it from the control loop.
 #ifndef QUIESCED_STATE_STORE_H
 #define QUIESCED_STATE_STORE_H
 
@@ -23,11 +23,11 @@ class StateStore {
     std::string save_params(const quiesce_params_t &configured, const quiesce_params_t &params);
 
     /// Nothing where there is none; *note says why where it is damaged.
-    std::optional<quiesce_adaptation_t> load_adaptation(std::string &note) const;
-    std::string save_adaptation(const quiesce_adaptation_t &adaptation);
+    std::optional<quiesce_learnt_t> load_learnt(std::string &note) const;
+    std::string save_learnt(const quiesce_learnt_t &learnt);
 
     std::string params_file() const { return folder_ + "/parameters.bin"; }
-    std::string adaptation_file() const { return folder_ + "/adaptation.bin"; }
+    std::string learnt_file() const { return folder_ + "/learnt.bin"; }
     std::string status_file() const { return folder_ + "/state.json"; }
 
   private:

@@ -76,12 +76,12 @@ def test_what_was_learnt_outlives_a_restart(quiesced: Quiesced) -> None:
     quiesced.write_config("law = 'phase'\n")
     start_running(quiesced)
     assert quiesced.stop() == 0
-    assert (quiesced.state / "adaptation.bin").exists()
+    assert (quiesced.state / "learnt.bin").exists()
     quiesced.start()
     assert quiesced.stop() == 0
     assert "what was learnt before is used" in quiesced.log_text()
 
-    (quiesced.state / "adaptation.bin").write_bytes(b"damaged")
+    (quiesced.state / "learnt.bin").write_bytes(b"damaged")
     quiesced.start()
     assert quiesced.stop() == 0
     assert "what was learnt is not used: " in quiesced.log_text()

@@ -7,12 +7,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "input_error.h"
 #include "plant_file.h"
 #include "reply_fields.h"
 #include "scripted_link.h"
+#include "tick_columns.h"
 
 namespace {
 
@@ -27,15 +29,6 @@ std::string read(const std::string &file) {
     std::ostringstream text;
     text << in.rdbuf();
     return text.str();
-}
-
-std::size_t column_of(const std::string &name) {
-    const auto &fields = quiesce::telemetry_fields();
-    std::size_t i = 0;
-    while (fields.at(i).name != name) {
-        ++i;
-    }
-    return i;
 }
 
 TEST(Trace, is_a_json_line_and_rows_of_float64) {
@@ -61,30 +54,57 @@ TEST(Trace, cannot_be_written_into_a_folder_that_is_not_there) {
     EXPECT_FALSE(std::filesystem::exists("no"));
 }
 
-TEST(Trace, telemetry_keeps_signs_and_large_words) {
-    quiesce::Trace trace(quiesce::with_telemetry_columns({}));
-    quiesce_telemetry_t telemetry{};
-    telemetry.tick = 0xFFFFFFFFu;
-    telemetry.accel_um_s2 = -7;
-    telemetry.current_cmd_mA = 4321;
-    telemetry.lock_is_on = 1;
-    telemetry.adapt_trials = 0x80000000u;
-    telemetry.trim_on_mdeg = -45000;
-    telemetry.trim_level_q15 = -16384;
-    trace.put_telemetry(telemetry);
-    const std::string file = temporary("telemetry");
+/// The only row of a trace with these columns, by name.
+std::map<std::string, double> row_of(const quiesce::TickColumns &columns,
+                                     std::initializer_list<double> own,
+                                     const lockstep_reply_t &reply) {
+    quiesce::Trace trace(columns.names());
+    columns.put(own, reply, trace);
+    const std::string file = temporary("row");
     trace.write(file);
     const std::string bytes = read(file);
     std::filesystem::remove(file);
-    std::vector<double> row(quiesce::telemetry_fields().size());
-    std::memcpy(row.data(), bytes.data() + bytes.find('\n') + 1, row.size() * sizeof(double));
-    EXPECT_EQ(row.front(), 4294967295.0);
-    EXPECT_EQ(row[5], -7.0);
-    EXPECT_EQ(row[column_of("current_cmd_mA")], 4321.0);
-    EXPECT_EQ(row[column_of("lock_is_on")], 1.0);
-    EXPECT_EQ(row[column_of("adapt_trials")], 2147483648.0);
-    EXPECT_EQ(row[column_of("trim_on_mdeg")], -45000.0);
-    EXPECT_EQ(row[column_of("trim_level_q15")], -16384.0);
+    const std::vector<std::string> names = columns.names();
+    std::vector<double> values(names.size());
+    std::memcpy(values.data(), bytes.data() + bytes.find('\n') + 1, values.size() * sizeof(double));
+    std::map<std::string, double> row;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        row[names[i]] = values[i];
+    }
+    EXPECT_EQ(row.size(), names.size()) << "a name twice";
+    return row;
+}
+
+TEST(TickColumns, telemetry_keeps_signs_and_large_words) {
+    lockstep_reply_t reply{};
+    reply.telemetry.tick = 0xFFFFFFFFu;
+    reply.telemetry.accel_um_s2 = -7;
+    reply.telemetry.current_cmd_mA = 4321;
+    reply.telemetry.lock_is_on = 1;
+    const quiesce::TickColumns columns({"own"}, QUIESCE_LAW_OFF, std::nullopt);
+    const auto row = row_of(columns, {2.5}, reply);
+    EXPECT_EQ(row.at("own"), 2.5);
+    EXPECT_EQ(row.at("tick"), 4294967295.0);
+    EXPECT_EQ(row.at("accel_um_s2"), -7.0);
+    EXPECT_EQ(row.at("current_cmd_mA"), 4321.0);
+    EXPECT_EQ(row.at("lock_is_on"), 1.0);
+}
+
+TEST(TickColumns, what_a_law_reports_has_its_own_names) {
+    lockstep_reply_t reply{};
+    for (int i = 0; i < QUIESCE_REPORT_WORDS; ++i) {
+        reply.report[i] = 100 - 50 * i;
+    }
+    const quiesce::TickColumns phase({}, QUIESCE_LAW_PHASE, std::nullopt);
+    const auto row = row_of(phase, {}, reply);
+    EXPECT_EQ(row.at("adapt_state"), 100.0);
+    EXPECT_EQ(row.at("trim_on_mdeg"), -50.0);
+    EXPECT_EQ(row.at("trim_is_whole"), -200.0);
+    EXPECT_EQ(row.count("rules_fired"), 0u);
+    const quiesce::TickColumns fuzzy({}, QUIESCE_LAW_FUZZY, "rules_fired,current_fuzzy_mA");
+    EXPECT_EQ(row_of(fuzzy, {}, reply),
+              (std::map<std::string, double>{{"rules_fired", 50.0}, {"current_fuzzy_mA", 100.0}}));
+    EXPECT_THROW(quiesce::TickColumns({}, QUIESCE_LAW_OFF, "rules_fired"), quiesce::InputError);
 }
 
 TEST(ReplyFields, name_the_words_where_they_are) {
@@ -93,8 +113,8 @@ TEST(ReplyFields, name_the_words_where_they_are) {
     reply.telemetry.freq_uHz = 12;
     reply.telemetry.peaks[2].amp_um_s2 = 13;
     reply.telemetry.current_cmd_mA = 14;
-    reply.telemetry.adapt_state = 15;
-    reply.telemetry.trim_off_mdeg = 16;
+    reply.telemetry.lock_is_on = 15;
+    reply.report[7] = 16;
     const auto &fields = quiesce::reply_fields();
     ASSERT_EQ(fields.size() * 4, sizeof reply);
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -104,8 +124,8 @@ TEST(ReplyFields, name_the_words_where_they_are) {
         EXPECT_EQ(word == 12, name == "freq_uHz") << name;
         EXPECT_EQ(word == 13, name == "peak2_amp_um_s2") << name;
         EXPECT_EQ(word == 14, name == "current_cmd_mA") << name;
-        EXPECT_EQ(word == 15, name == "adapt_state") << name;
-        EXPECT_EQ(word == 16, name == "trim_off_mdeg") << name;
+        EXPECT_EQ(word == 15, name == "lock_is_on") << name;
+        EXPECT_EQ(word == 16, name == "report7") << name;
     }
 }
 

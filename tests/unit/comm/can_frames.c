@@ -11,6 +11,7 @@
 static can_node_t node;
 static quiesce_out_t out;
 static can_node_tick_t tick;
+static quiesce_t controller;
 
 static uint32_t next_random(uint32_t *seed) {
     *seed = *seed * 1664525u + 1013904223u;
@@ -66,7 +67,7 @@ static void run(const int32_t *value, uint32_t *seed) {
         }
         can_node_answer(&node, (can_node_result_t)(i % 9u), next_random(seed));
         fill_all(value, seed);
-        const uint32_t count = can_node_tick(&node, &tick, &out, frames);
+        const uint32_t count = can_node_tick(&node, &tick, &out, &controller, frames);
         for (uint32_t k = 0; k < count; k++) {
             print_frame(&frames[k]);
         }
@@ -79,6 +80,7 @@ int main(void) {
     uint32_t seed = 1;
     quiesce_params_default(&params);
     can_node_init(&node, &params);
+    (void)quiesce_init(&controller, &params);
     for (uint32_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
         run(&ends[i], &seed);
     }

@@ -12,11 +12,13 @@ static can_node_t node;
 static quiesce_params_t params;
 static quiesce_out_t out;
 static can_node_tick_t tick;
+static quiesce_t controller;
 static can_frame_t frames[CAN_NODE_MAX_FRAMES];
 
 void setUp(void) {
     quiesce_params_default(&params);
     can_node_init(&node, &params);
+    (void)quiesce_init(&controller, &params);
     memset(&out, 0, sizeof out);
     memset(&tick, 0, sizeof tick);
 }
@@ -30,7 +32,7 @@ static void request(uint32_t operation, uint32_t index, int32_t value, uint8_t a
 
 // The reply of the next tick, if there is one.
 static bool next_reply(struct quiesce_can_service_reply_t *reply) {
-    const uint32_t count = can_node_tick(&node, &tick, &out, frames);
+    const uint32_t count = can_node_tick(&node, &tick, &out, &controller, frames);
     const can_frame_t *last = &frames[count - 1u];
     if (message_of(last) != QUIESCE_CAN_AT_SERVICE_REPLY) {
         return false;

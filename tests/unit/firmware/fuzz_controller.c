@@ -209,8 +209,7 @@ static void check_signals(const fuzz_t *fuzz, const quiesce_telemetry_t *t) {
     REQUIRE(t->freq_is_valid == 0u || t->freq_window_ms >= SHORTEST_WINDOW_ms);
     REQUIRE(t->displacement_amp_nm >= 0 && t->velocity_rms_um_s >= 0);
     REQUIRE(t->displacement_nm != INT32_MIN);
-    REQUIRE(t->rules_fired < UINT32_C(1) << 16);
-    REQUIRE(t->current_fuzzy_mA >= 0 && t->current_law_mA >= 0);
+    REQUIRE(t->current_law_mA >= 0);
     check_component(fuzz, &dominant);
     for (uint32_t i = 0; i < QUIESCE_PEAKS; i++) {
         check_component(fuzz, &t->peaks[i]);

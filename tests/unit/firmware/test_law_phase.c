@@ -1,8 +1,8 @@
-#include "law_phase.h"
-
 #include <stddef.h>
+#include <string.h>
 
-#include "law_state.h"
+#include "law.h"
+#include "phase_state.h"
 #include "pulse_words.h"
 #include "test_signal.h"
 #include "unity.h"
@@ -19,45 +19,62 @@ static const phase_point_t balanced[POINTS] = {
 };
 
 static uint32_t words[PHASE_TABLE_MAX_WORDS];
-static quiesce_params_t params;
-static law_state_t state;
-static law_in_t in;
+static law_setup_t setup;
+static quiesce_params_t *const params = &setup.params;
+static phase_t state;
+static view_t view;
+static view_tone_t *const tone = &view.tone;
 static harmonic_sums_t half;
+
+extern const law_t law_phase;
+
+static void set_lock(bool is_on) {
+    view.valid = VIEW_RMS | (is_on ? VIEW_LOCK : 0);
+}
 
 static void start(void) {
     pulse_words_make(words, displacement, POINTS, balanced, POINTS);
     TEST_ASSERT_EQUAL(PHASE_TABLE_OK, phase_table_check(words, words[2]));
-    law_state_init(&state, &params, words);
+    setup.table = words;
+    memset(&state, 0, sizeof state);
+    law_phase.init(&state, &setup);
 }
 
 void setUp(void) {
-    quiesce_params_default(&params);
-    params.tick_rate_Hz = RATE_Hz;
-    params.unlock_current_mA = UNLOCK_mA;
-    params.phase_setting = QUIESCE_PHASE_SETTING_DISPLACEMENT;
-    params.phase_blend_ms = 0;
-    params.adapt = QUIESCE_ADAPT_OFF;
-    in = (law_in_t){.lock = {.is_on = true}, .is_output_on = true};
+    quiesce_params_default(params);
+    params->tick_rate_Hz = RATE_Hz;
+    params->unlock_current_mA = UNLOCK_mA;
+    params->phase_setting = QUIESCE_PHASE_SETTING_DISPLACEMENT;
+    params->phase_blend_ms = 0;
+    params->adapt = QUIESCE_ADAPT_OFF;
+    view = (view_t){.is_output_on = true, .may_learn = true};
+    set_lock(true);
     start();
 }
 void tearDown(void) {}
 
+static int32_t request(void) {
+    law_demand_t demand;
+    TEST_ASSERT_TRUE(law_phase.step(&state, &setup, &view, &demand));
+    return demand.value[0];
+}
+
 static void lock_at(uint32_t freq_mHz) {
-    in.lock.step_turn = (uint32_t)(((uint64_t)freq_mHz << 32) / (1000u * RATE_Hz));
+    tone->step_turn = (uint32_t)(((uint64_t)freq_mHz << 32) / (1000u * RATE_Hz));
 }
 
 // Half a cycle of a steady vibration ends where twice the phase wraps.
 static int32_t tick(void) {
-    const uint32_t before = in.lock.phase_turn << 1;
-    in.lock.phase_turn += in.lock.step_turn;
-    const uint32_t ticks = (UINT32_C(1) << 31) / in.lock.step_turn;
+    const uint32_t before = tone->phase_turn << 1;
+    tone->phase_turn += tone->step_turn;
+    const uint32_t ticks = (UINT32_C(1) << 31) / tone->step_turn;
     half = (harmonic_sums_t){
         .ticks = ticks,
         .product = {INT64_C(1000000) * 16384 * ticks},
         .square = UINT64_C(500000000000) / 4096u * ticks,
     };
-    in.lock.half = in.lock.phase_turn << 1 < before ? &half : NULL;
-    return law_phase.step(&state, &params, &in);
+    tone->half = tone->phase_turn << 1 < before ? &half : NULL;
+    return request();
 }
 
 static void run(uint32_t ticks) {
@@ -68,9 +85,9 @@ static void run(uint32_t ticks) {
 
 // The request at a phase of the next tick's beginning, modulo half a turn.
 static int32_t request_at(uint32_t phase_q16) {
-    in.lock.phase_turn = (phase_q16 << 15) - in.lock.step_turn;
-    in.lock.half = NULL;
-    return law_phase.step(&state, &params, &in);
+    tone->phase_turn = (phase_q16 << 15) - tone->step_turn;
+    tone->half = NULL;
+    return request();
 }
 
 // Where a request rises from floor to level and falls again, to a 512th of half a turn.
@@ -87,7 +104,7 @@ static shape_t shape_of_request(void) {
         shape.lowest_mA = current_mA < shape.lowest_mA ? current_mA : shape.lowest_mA;
     }
     const int32_t middle_mA = (shape.highest_mA + shape.lowest_mA) / 2;
-    const uint32_t half_tick_q16 = in.lock.step_turn >> 16; // a tick's middle, of half a turn
+    const uint32_t half_tick_q16 = tone->step_turn >> 16; // a tick's middle, of half a turn
     for (uint32_t q16 = 0; q16 < HALF_TURN_q16; q16 += 128u) {
         const bool is_on = request_at(q16) > middle_mA;
         const bool was_on = request_at(q16 - 128u) > middle_mA;
@@ -105,12 +122,12 @@ static void assert_edge(uint32_t expected_q16, uint32_t q16) {
 
 static void test_law_phase_unlocked_requests_its_constant(void) {
     lock_at(5000);
-    in.lock.is_on = false;
+    set_lock(false);
     for (uint32_t i = 0; i < 300u; i++) {
         TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, tick());
     }
-    in.lock.is_on = true;
-    in.is_output_on = false;
+    set_lock(true);
+    view.is_output_on = false;
     for (uint32_t i = 0; i < 300u; i++) {
         TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, tick());
     }
@@ -135,11 +152,11 @@ static void test_law_phase_requests_the_tables_pulse(void) {
 
 // As where a table is exchanged while the lock is on.
 static void test_law_phase_first_tick_with_a_lock_has_its_pulse(void) {
-    params.phase_setting = QUIESCE_PHASE_SETTING_BALANCED;
+    params->phase_setting = QUIESCE_PHASE_SETTING_BALANCED;
     start();
     lock_at(5000);
     TEST_ASSERT_EQUAL_INT32(1500, tick());
-    TEST_ASSERT_EQUAL_UINT32(4999, state.phase.freq_mHz);
+    TEST_ASSERT_EQUAL_UINT32(4999, state.freq_mHz);
 }
 
 static void test_law_phase_follows_the_frequency_between_points(void) {
@@ -176,7 +193,7 @@ static void test_law_phase_mean_current_is_the_pulses(void) {
 }
 
 static void test_law_phase_uses_its_setting(void) {
-    params.phase_setting = QUIESCE_PHASE_SETTING_BALANCED;
+    params->phase_setting = QUIESCE_PHASE_SETTING_BALANCED;
     start();
     lock_at(7500);
     run(300);
@@ -188,8 +205,8 @@ static void test_law_phase_uses_its_setting(void) {
 // --- blend
 
 static void test_law_phase_fades_in_and_lets_go_at_once(void) {
-    params.phase_setting = QUIESCE_PHASE_SETTING_BALANCED; // constant: 1500 mA
-    params.phase_blend_ms = 200;
+    params->phase_setting = QUIESCE_PHASE_SETTING_BALANCED; // constant: 1500 mA
+    params->phase_blend_ms = 200;
     start();
     lock_at(5000);
     for (uint32_t round = 0; round < 3u; round++) {
@@ -203,28 +220,29 @@ static void test_law_phase_fades_in_and_lets_go_at_once(void) {
         tick();
         TEST_ASSERT_EQUAL_INT32(1500, tick());
         // Once by the lock, once by the guard.
-        law_in_t lost = in;
-        lost.lock.is_on = round == 1u;
-        lost.is_output_on = round != 1u;
-        TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, law_phase.step(&state, &params, &lost));
+        set_lock(round == 1u);
+        view.is_output_on = round != 1u;
+        TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, request());
+        set_lock(true);
+        view.is_output_on = true;
     }
 }
 
 static void test_law_phase_fades_in_as_long_at_any_tick_rate(void) {
     const int32_t rates_Hz[] = {500, 1000, 2000, 4000};
-    params.phase_setting = QUIESCE_PHASE_SETTING_BALANCED;
+    params->phase_setting = QUIESCE_PHASE_SETTING_BALANCED;
     for (uint32_t i = 0; i < 4u; i++) {
         const int32_t blends_ms[] = {20, 500, 10000};
         for (uint32_t k = 0; k < 3u; k++) {
-            params.tick_rate_Hz = rates_Hz[i];
-            params.phase_blend_ms = blends_ms[k];
+            params->tick_rate_Hz = rates_Hz[i];
+            params->phase_blend_ms = blends_ms[k];
             start();
             lock_at(1000);
             const int32_t ticks = blends_ms[k] * rates_Hz[i] / 1000;
             run((uint32_t)(ticks * 8 / 10)); // its step is rounded up: 8.2 s for 10 s at 4 kHz
-            TEST_ASSERT_LESS_THAN_UINT32(65536, state.phase.blend_q16);
+            TEST_ASSERT_LESS_THAN_UINT32(65536, state.blend_q16);
             run((uint32_t)(ticks / 5 + 2));
-            TEST_ASSERT_EQUAL_UINT32(65536, state.phase.blend_q16);
+            TEST_ASSERT_EQUAL_UINT32(65536, state.blend_q16);
         }
     }
 }
@@ -233,7 +251,7 @@ static void test_law_phase_fades_in_as_long_at_any_tick_rate(void) {
 
 static void learn(int32_t on_q16, int32_t off_q16, int32_t level_q15) {
     for (uint32_t i = 0; i < POINTS; i++) {
-        state.phase.adapt.trim[i] =
+        state.adapt.trim[i] =
             (adapt_trim_t){{(int16_t)on_q16, (int16_t)off_q16, (int16_t)level_q15}};
     }
 }
@@ -241,13 +259,13 @@ static void learn(int32_t on_q16, int32_t off_q16, int32_t level_q15) {
 static bool has_trim(void) {
     bool has = false;
     for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
-        has = has || state.phase.trim.value[i] != 0;
+        has = has || state.trim.value[i] != 0;
     }
     return has;
 }
 
 static shape_t shape_with(int32_t on_q16, int32_t off_q16, int32_t level_q15) {
-    params.adapt = QUIESCE_ADAPT_FROZEN;
+    params->adapt = QUIESCE_ADAPT_FROZEN;
     start();
     learn(on_q16, off_q16, level_q15);
     lock_at(5000);
@@ -289,10 +307,10 @@ static void test_law_phase_pulse_closes_and_opens_fully(void) {
 }
 
 static void test_law_phase_without_a_gap(void) {
-    params.adapt = QUIESCE_ADAPT_FROZEN;
+    params->adapt = QUIESCE_ADAPT_FROZEN;
     start();
     for (uint32_t i = 0; i < POINTS; i++) {
-        state.phase.adapt.trim[i] = (adapt_trim_t){{9000, -9000, -8192, 1}};
+        state.adapt.trim[i] = (adapt_trim_t){{9000, -9000, -8192, 1}};
     }
     lock_at(5000);
     run(300);
@@ -304,10 +322,10 @@ static void test_law_phase_without_a_gap(void) {
 // --- adaptation
 
 static void make_adapt_quick(int32_t mode) {
-    params.adapt = mode;
-    params.adapt_start_ms = 100;
-    params.adapt_settle_ms = 50;
-    params.adapt_measure_ms = 50;
+    params->adapt = mode;
+    params->adapt_start_ms = 100;
+    params->adapt_settle_ms = 50;
+    params->adapt_measure_ms = 50;
     start();
 }
 
@@ -316,7 +334,7 @@ static void test_law_phase_adapt_off_ignores_what_was_learnt(void) {
     learn(4000, 4000, -8192);
     lock_at(5000);
     run(3000);
-    TEST_ASSERT_EQUAL(ADAPT_WAITING, state.phase.adapt.state);
+    TEST_ASSERT_EQUAL(ADAPT_WAITING, state.adapt.state);
     TEST_ASSERT_FALSE(has_trim());
     const shape_t shape = shape_of_request();
     assert_edge(16384, shape.on_q16);
@@ -329,11 +347,11 @@ static void assert_only_uses_what_it_has_learnt(void) {
     lock_at(5000);
     for (uint32_t i = 0; i < 3000u; i++) {
         tick();
-        TEST_ASSERT_EQUAL(ADAPT_WAITING, state.phase.adapt.state);
+        TEST_ASSERT_EQUAL(ADAPT_WAITING, state.adapt.state);
     }
-    TEST_ASSERT_EQUAL_UINT32(0, state.phase.adapt.trials);
+    TEST_ASSERT_EQUAL_UINT32(0, state.adapt.trials);
     const adapt_trim_t expected = {{4000, -4000, -8192}};
-    TEST_ASSERT_EQUAL_INT16_ARRAY(expected.value, state.phase.trim.value, ADAPT_COORDINATES);
+    TEST_ASSERT_EQUAL_INT16_ARRAY(expected.value, state.trim.value, ADAPT_COORDINATES);
     TEST_ASSERT_INT32_WITHIN(1, 3000, shape_of_request().highest_mA);
 }
 
@@ -341,7 +359,7 @@ static void test_law_phase_adapt_frozen_tries_nothing(void) {
     make_adapt_quick(QUIESCE_ADAPT_FROZEN);
     assert_only_uses_what_it_has_learnt();
     make_adapt_quick(QUIESCE_ADAPT_ON);
-    state.phase.is_frozen = true;
+    view.may_learn = false;
     assert_only_uses_what_it_has_learnt();
 }
 
@@ -354,12 +372,12 @@ static void test_law_phase_adapt_on_tries(void) {
         has_tried = has_tried || has_trim();
     }
     TEST_ASSERT_TRUE(has_tried);
-    TEST_ASSERT_GREATER_THAN_UINT32(2, state.phase.adapt.trials);
-    TEST_ASSERT_EQUAL_UINT32(0, state.phase.adapt.gains); // nothing that it did mattered
+    TEST_ASSERT_GREATER_THAN_UINT32(2, state.adapt.trials);
+    TEST_ASSERT_EQUAL_UINT32(0, state.adapt.gains); // nothing that it did mattered
 }
 
 static void run_to_a_trial(void) {
-    for (uint32_t i = 0; i < 3000u && state.phase.adapt.state != ADAPT_TRYING; i++) {
+    for (uint32_t i = 0; i < 3000u && state.adapt.state != ADAPT_TRYING; i++) {
         tick();
     }
     run(150); // the next half cycle takes the change
@@ -368,17 +386,17 @@ static void run_to_a_trial(void) {
 static void test_law_phase_lost_lock_or_fault_undoes_the_trial(void) {
     for (uint32_t i = 0; i < 2u; i++) {
         make_adapt_quick(QUIESCE_ADAPT_ON);
-        params.adapt_settle_ms = 1000;
+        params->adapt_settle_ms = 1000;
         start();
         lock_at(5000);
         run_to_a_trial();
         TEST_ASSERT_TRUE(has_trim());
-        in.lock.is_on = i == 1u;
-        in.is_output_on = i == 0;
+        set_lock(i == 1u);
+        view.is_output_on = i == 0;
         tick();
-        TEST_ASSERT_EQUAL(ADAPT_WAITING, state.phase.adapt.state);
-        in.lock.is_on = true;
-        in.is_output_on = true;
+        TEST_ASSERT_EQUAL(ADAPT_WAITING, state.adapt.state);
+        set_lock(true);
+        view.is_output_on = true;
         tick();
         TEST_ASSERT_FALSE(has_trim());
         assert_edge(16384, shape_of_request().on_q16);
@@ -387,13 +405,13 @@ static void test_law_phase_lost_lock_or_fault_undoes_the_trial(void) {
 
 static void test_law_phase_does_not_try_while_it_fades_in(void) {
     make_adapt_quick(QUIESCE_ADAPT_ON);
-    params.phase_blend_ms = 2000;
+    params->phase_blend_ms = 2000;
     start();
     lock_at(5000);
     run(1950);
-    TEST_ASSERT_EQUAL(ADAPT_WAITING, state.phase.adapt.state);
+    TEST_ASSERT_EQUAL(ADAPT_WAITING, state.adapt.state);
     run(52);
-    TEST_ASSERT_EQUAL(ADAPT_MEASURING, state.phase.adapt.state);
+    TEST_ASSERT_EQUAL(ADAPT_MEASURING, state.adapt.state);
 }
 
 // Whatever phase, frequency and sums it is told: between the lowest and the highest of all.
@@ -403,17 +421,17 @@ static void test_law_phase_request_is_bounded_for_any_input(void) {
     lock_at(5000);
     for (uint32_t i = 0; i < 30000u; i++) {
         const int32_t kind = abs_i32(signal_noise(&seed, 2000));
-        in.lock.is_on = kind != 0;
-        in.is_output_on = kind != 1;
+        set_lock(kind != 0);
+        view.is_output_on = kind != 1;
         if (kind < 20) {
             lock_at(1000u + (uint32_t)abs_i32(signal_noise(&seed, 59000)));
-            in.lock.phase_turn = seed;
+            tone->phase_turn = seed;
         }
         const int32_t current_mA = tick();
         TEST_ASSERT_TRUE(current_mA >= 200 && current_mA <= 4000);
-        TEST_ASSERT_TRUE(adapt_is_allowed(&state.phase.adapt.cfg, &state.phase.trim));
+        TEST_ASSERT_TRUE(adapt_is_allowed(&state.adapt.cfg, &state.trim));
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(0, state.phase.adapt.trials);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, state.adapt.trials);
 }
 
 int main(void) {

@@ -5,12 +5,19 @@
 namespace quiesce {
 namespace {
 
+/// Without the report, which costs what the law makes of it.
+lockstep_stimulus_t plain_stimulus(std::uint32_t tick) {
+    lockstep_stimulus_t stimulus = varied_stimulus(tick);
+    stimulus.flags &= ~LOCKSTEP_REPORT;
+    return stimulus;
+}
+
 InstructionCounts counts_of(const QemuOptions &options, std::uint32_t ticks) {
     QemuShmLink target(options);
     lockstep_reply_t reply;
     target.start(default_params());
     for (std::uint32_t tick = 0; tick < ticks; ++tick) {
-        target.exchange(varied_stimulus(tick), reply);
+        target.exchange(plain_stimulus(tick), reply);
     }
     return target.finish().value();
 }
@@ -41,7 +48,7 @@ TEST(instruction_counter, both_links_count_the_same_tick) {
     lockstep_reply_t reply;
     uart.start(default_params());
     for (std::uint32_t tick = 0; tick < 300; ++tick) {
-        uart.exchange(varied_stimulus(tick), reply);
+        uart.exchange(plain_stimulus(tick), reply);
     }
     const InstructionCounts over_uart = uart.finish().value();
     const InstructionCounts over_shm = counts_of(options_for(kShmImage), 300);

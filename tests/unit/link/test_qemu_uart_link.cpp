@@ -44,7 +44,7 @@ TEST(qemu_uart_link, full_telemetry_answers_like_the_host_through_stop_and_resta
 }
 
 TEST(qemu_uart_link, decimated_telemetry_still_brings_every_command) {
-    constexpr std::uint32_t kRound = 10 * sizeof(quiesce_telemetry_t) / sizeof(std::uint32_t);
+    constexpr std::uint32_t kRound = 10 * QUIESCE_CAN_TELEMETRY_WORDS;
     InProcessLink host;
     QemuUartLink target(options_for(kUartImage), {10, 1});
     host.start(default_params());

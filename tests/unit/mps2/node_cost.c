@@ -28,7 +28,8 @@ typedef struct {
 
 static void tick_messages(rig_t *rig) {
     can_node_inputs(&rig->node.can, 1, &rig->node.bus);
-    (void)can_node_tick(&rig->node.can, &rig->tick, &rig->node.out, rig->frames);
+    (void)can_node_tick(&rig->node.can, &rig->tick, &rig->node.out, &rig->node.controller,
+                        rig->frames);
 }
 
 static void tick_node(rig_t *rig) {

@@ -22,7 +22,9 @@ def parameters() -> tuple[dict[str, Any], ...]:
 
 
 def parameter_of(index: int, row: dict[str, Any]) -> dict[str, Any]:
-    return {"choices": None, "labels": None, **row, "index": index}
+    """One with labels takes their numbers."""
+    numbers = {"min": 0, "max": len(row["labels"]) - 1} if "labels" in row else {}
+    return {"choices": None, "labels": None, **numbers, **row, "index": index}
 
 
 def name_of(index: int) -> str:

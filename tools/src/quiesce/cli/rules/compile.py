@@ -18,7 +18,7 @@ from quiesce.rules.integers.table import table_words
 EPILOG = f"""{FORMATS_HELP}
 written, into --out:
   NAME.h, NAME.c   the table NAME_table, and NAME(), straight-line C, where the base has that form
-  NAME.words       the table as hexadecimal words: for quiesce_rules_use(), `quiesce_bench run
+  NAME.words       the table as hexadecimal words: for quiesce_table_use(), `quiesce_bench run
                    --rules` and other loaders
   fuzzy*.[ch], fixq.h, crc32.[ch]   the engine that the table needs; NAME() needs only the headers
 All compile as C11 without a library, heap or floating point: cc -c *.c

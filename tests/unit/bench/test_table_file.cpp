@@ -1,5 +1,5 @@
 /// --rules: rule tables from files, and what a user reads where one is not good.
-#include "rule_file.h"
+#include "table_file.h"
 
 #include <gtest/gtest.h>
 
@@ -156,9 +156,9 @@ const Damage kDamages[] = {
     {"one_word", [] { return hex({shipped()[kMagic]}); }, "it is shorter than it says"},
     {"cut", without_last_word, "it is shorter than it says, or too long"},
     {"size", [] { return changed(kSize, 70000); }, "it is shorter than it says, or too long"},
-    {"magic", [] { return changed(kMagic, 0x12345678); }, "it is not a rule table"},
+    {"magic", [] { return changed(kMagic, 0x12345678); }, "it is not a table for this law"},
     {"crc", [] { return changed(kCrc, 0); }, "its checksum is wrong: it is damaged"},
-    {"shape", [] { return changed(kShape, 0); }, "its numbers of inputs, outputs or rules"},
+    {"shape", [] { return changed(kShape, 0); }, "its numbers of inputs, outputs, rules or points"},
     {"cell", [] { return changed(kAxis, 0); }, "a membership is out of range"},
     {"rule", [] { return changed(kRules, 16u << 16); }, "a rule names what is not there"},
     {"output", [] { return changed(kOrigin, 1); }, "a term is out of range"},
@@ -223,20 +223,20 @@ TEST(RuleFile, the_table_is_what_the_controller_runs) {
     EXPECT_NEAR(out["mean_current_A"].get<double>(), 1.5, 0.01);
 }
 
-TEST(UseRules, refuses_with_the_reason_alone) {
+TEST(UseTable, refuses_with_the_reason_alone) {
     quiesce_params_t params;
     quiesce_params_default(&params);
     const auto controller = std::make_unique<quiesce_t>();
     ASSERT_TRUE(quiesce_init(controller.get(), &params));
     Words words = shipped();
-    EXPECT_NO_THROW(quiesce::use_rules(*controller, words));
+    EXPECT_NO_THROW(quiesce::use_table(*controller, words));
     words[kCrc]++;
     try {
-        quiesce::use_rules(*controller, words);
+        quiesce::use_table(*controller, words);
         FAIL() << "accepted";
     } catch (const InputError &error) {
-        EXPECT_STREQ(error.what(), "the controller refuses the rule table: its checksum is wrong: "
-                                   "it is damaged");
+        EXPECT_STREQ(error.what(), "the controller refuses the table: its checksum is wrong: it is "
+                                   "damaged");
     }
 }
 

@@ -1,0 +1,56 @@
+#include "quiesce.h"
+
+#include <stddef.h>
+
+#define SHIPPED 2u
+
+static uint32_t spare_of(const quiesce_table_store_t *store) {
+    return store->in_use == 0 ? 1u : 0;
+}
+
+void quiesce_table_store_init(quiesce_table_store_t *store) {
+    store->filled = 0;
+    store->in_use = SHIPPED;
+    store->previous = SHIPPED;
+}
+
+bool quiesce_table_store_write(quiesce_table_store_t *store, uint32_t offset, const uint32_t *words,
+                               uint32_t count) {
+    if ((offset != 0 && offset != store->filled) || count > QUIESCE_TABLE_WORDS ||
+        offset > QUIESCE_TABLE_WORDS - count) {
+        return false;
+    }
+    const uint32_t spare = spare_of(store);
+    if (store->previous == spare) {
+        store->previous = store->in_use;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        store->words[spare][offset + i] = words[i];
+    }
+    store->filled = offset + count;
+    return true;
+}
+
+static quiesce_table_verdict_t use_slot(quiesce_table_store_t *store, quiesce_t *self,
+                                        uint32_t slot, uint32_t count) {
+    const uint32_t *words = slot == SHIPPED ? NULL : store->words[slot];
+    return quiesce_table_use(self, words, count);
+}
+
+quiesce_table_verdict_t quiesce_table_store_commit(quiesce_table_store_t *store, quiesce_t *self) {
+    const uint32_t spare = spare_of(store);
+    const quiesce_table_verdict_t verdict = use_slot(store, self, spare, store->filled);
+    store->filled = 0;
+    if (verdict == QUIESCE_TABLE_OK) {
+        store->previous = store->in_use;
+        store->in_use = spare;
+    }
+    return verdict;
+}
+
+void quiesce_table_store_revert(quiesce_table_store_t *store, quiesce_t *self) {
+    store->filled = 0; // the other slot is the spare one from now on
+    if (use_slot(store, self, store->previous, QUIESCE_TABLE_WORDS) == QUIESCE_TABLE_OK) {
+        store->in_use = store->previous;
+    }
+}

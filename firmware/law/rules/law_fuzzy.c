@@ -1,0 +1,32 @@
+// The paper's first stage: the rule base's current as it is.
+#include "rule_base.h"
+
+#include <stddef.h>
+
+static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
+    const int32_t base_mA = rule_base_step(state, setup->table, &view->tone);
+    law_demand_all(out, rule_base_or_unlock_mA(setup, view, base_mA));
+    return true;
+}
+
+// What the rules said last is forgotten: the same words may hold another table by now.
+static void retable(void *state, const law_setup_t *setup) {
+    (void)setup;
+    ((rule_base_t *)state)->is_known = false;
+}
+
+static void report(const void *state, const law_setup_t *setup, int32_t *word) {
+    rule_base_report(state, setup->table, word);
+}
+
+extern const law_t law_fuzzy;
+const law_t law_fuzzy = {
+    .name = "fuzzy",
+    .needs = VIEW_RMS,
+    .kind = &rule_base_kind,
+    .state_bytes = sizeof(rule_base_t),
+    .reports = rule_base_reports,
+    .retable = retable,
+    .step = step,
+    .report = report,
+};

@@ -1,0 +1,127 @@
+#include "table_file.h"
+
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+const char *reason(quiesce_table_verdict_t verdict) {
+    switch (verdict) {
+    case QUIESCE_TABLE_OK:
+        return "accepted";
+    case QUIESCE_TABLE_SIZE:
+        return "it is shorter than it says, or too long";
+    case QUIESCE_TABLE_MAGIC:
+        return "it is not a table for this law, or one of another version";
+    case QUIESCE_TABLE_CRC:
+        return "its checksum is wrong: it is damaged";
+    case QUIESCE_TABLE_SHAPE:
+        return "its numbers of inputs, outputs, rules or points are out of range";
+    case QUIESCE_TABLE_CELL:
+        return "a membership is out of range";
+    case QUIESCE_TABLE_RULE:
+        return "a rule names what is not there";
+    case QUIESCE_TABLE_OUTPUT:
+        return "a term is out of range";
+    case QUIESCE_TABLE_FIT:
+        return "the controller's rules have two inputs, frequency in uHz and RMS acceleration in "
+               "um/s2, and one output, current in mA; compile them with --controller";
+    case QUIESCE_TABLE_POINT:
+        return "its frequencies do not rise, or a floor is above its level";
+    }
+    return "unknown reason";
+}
+
+std::uint32_t word_of(const std::string &text, const std::string &place) {
+    std::size_t used = 0;
+    unsigned long value = 0;
+    try {
+        value = std::stoul(text, &used, 16);
+    } catch (const std::exception &) {
+        used = 0;
+    }
+    if (used != text.size() || text.empty() || text[0] == '-' || value > UINT32_MAX) {
+        throw InputError(place + ": '" + text.substr(0, 20) +
+                         "' is no 32-bit hexadecimal number; quiesce rules compile --words "
+                         "writes such files");
+    }
+    return static_cast<std::uint32_t>(value);
+}
+
+constexpr std::size_t kWordBytes = 4;
+
+std::uint32_t word_at(const std::vector<char> &bytes, std::size_t offset) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < kWordBytes; ++i) {
+        word |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[offset + i]))
+                << (8U * i);
+    }
+    return word;
+}
+
+/// What a controller with this law says of them.
+void try_table(const std::string &file, std::int32_t law, const std::vector<std::uint32_t> &words) {
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    params.law = law;
+    const auto controller = std::make_unique<quiesce_t>();
+    quiesce_init(controller.get(), &params);
+    try {
+        use_table(*controller, words);
+    } catch (const InputError &error) {
+        throw InputError(file + ": " + error.what());
+    }
+}
+
+} // namespace
+
+void use_table(quiesce_t &controller, const std::vector<std::uint32_t> &words) {
+    const quiesce_table_verdict_t verdict =
+        quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
+    if (verdict != QUIESCE_TABLE_OK) {
+        throw InputError(std::string("the controller refuses the table: ") + reason(verdict));
+    }
+}
+
+std::vector<std::uint32_t> load_rules(const std::string &file) {
+    std::ifstream stream(file);
+    if (!stream) {
+        throw InputError(file + ": cannot be read");
+    }
+    std::vector<std::uint32_t> words;
+    std::string text;
+    while (stream >> text) {
+        words.push_back(word_of(text, file + ", word " + std::to_string(words.size() + 1)));
+    }
+    if (words.empty()) {
+        throw InputError(file + ": holds no words of a rule table");
+    }
+    try_table(file, QUIESCE_LAW_FUZZY, words);
+    return words;
+}
+
+std::vector<std::uint32_t> load_pulses(const std::string &file) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)),
+                                  std::istreambuf_iterator<char>());
+    if (!stream || bytes.empty()) {
+        throw InputError(file + ": cannot be read, or is empty");
+    }
+    if (bytes.size() % kWordBytes != 0) {
+        throw InputError(file + ": " + std::to_string(bytes.size()) +
+                         " bytes are no whole 32-bit words; quiesce tune writes such files");
+    }
+    std::vector<std::uint32_t> words;
+    for (std::size_t offset = 0; offset < bytes.size(); offset += kWordBytes) {
+        words.push_back(word_at(bytes, offset));
+    }
+    try_table(file, QUIESCE_LAW_PHASE, words);
+    return words;
+}
+
+} // namespace quiesce

@@ -1,0 +1,27 @@
+/// Tables for the controller's laws, from files: rules as `quiesce rules compile` writes them,
+/// pulses as `quiesce tune` does.
+#ifndef QUIESCE_TABLE_FILE_H
+#define QUIESCE_TABLE_FILE_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware.h"
+
+namespace quiesce {
+
+/// Words of a file with one hexadecimal number a line. Throws InputError where the file cannot be
+/// read, holds anything else or nothing, or where the fuzzy laws refuse the table.
+std::vector<std::uint32_t> load_rules(const std::string &file);
+
+/// Words of a binary file, little-endian. Throws InputError where the file cannot be read, does not
+/// hold whole words, or where law phase refuses the table.
+std::vector<std::uint32_t> load_pulses(const std::string &file);
+
+/// Makes a controller use them. Throws InputError where its law refuses.
+void use_table(quiesce_t &controller, const std::vector<std::uint32_t> &words);
+
+} // namespace quiesce
+
+#endif
