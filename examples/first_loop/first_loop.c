@@ -29,8 +29,8 @@ int main(void) {
         v_m_s += 1e-3 * a_m_s2;
         x_m += 1e-3 * v_m_s;
         // One tick of the controller: a sample in, a current out.
-        quiesce_in_t in = {.tick = tick, .accel_is_fresh = true, .enable = tick >= 2000};
-        in.accel_counts = (int32_t)lround(1e9 * a_m_s2 / params.accel_scale_nm_s2);
+        quiesce_in_t in = {.tick = tick, .sensor[0].is_fresh = true, .enable = tick >= 2000};
+        in.sensor[0].counts = (int32_t)lround(1e9 * a_m_s2 / params.accel_scale_nm_s2);
         quiesce_step(&controller, &in, &out);
         if (tick % 500 == 499)
             printf("%.1f s: %.2f Hz, %.2f m/s2, %" PRId32 " mA\n", 1e-3 * (tick + 1),

@@ -87,7 +87,7 @@ static quiesce_fault_t latched_fault(const quiesce_in_t *in, current_verdict_t v
     if (in->estop) {
         return QUIESCE_FAULT_ESTOP;
     }
-    return in->driver_has_failed ? QUIESCE_FAULT_DRIVER_FAILED : (quiesce_fault_t)fault_of[verdict];
+    return in->driver[0].has_failed ? QUIESCE_FAULT_DRIVER_FAILED : (quiesce_fault_t)fault_of[verdict];
 }
 
 static bool is_tick_lost(controller_t *self, uint32_t tick) {
@@ -100,7 +100,7 @@ static bool is_tick_lost(controller_t *self, uint32_t tick) {
 static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample,
                       bool has_gap) {
     const current_verdict_t verdict = current_monitor_step(
-        &self->monitor, self->last_command_mA, in->current_meas_mA, in->current_is_measured);
+        &self->monitor, self->last_command_mA, in->driver[0].current_mA, in->driver[0].is_measured);
     const quiesce_fault_t lost = has_gap ? QUIESCE_FAULT_TICK_LOST : QUIESCE_FAULT_NONE;
     const quiesce_fault_t sensor = sensor_fault(sample);
     const supervisor_in_t events = {
@@ -155,8 +155,8 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     quiesce_telemetry_t *t = &out->telemetry;
 
     const signal_chain_in_t signal_in = {
-        .accel_counts = in->accel_counts,
-        .is_fresh = in->accel_is_fresh,
+        .accel_counts = in->sensor[0].counts,
+        .is_fresh = in->sensor[0].is_fresh,
         .has_gap = is_tick_lost(c, in->tick),
         .wants_lock = c->control.law->wants_lock,
     };

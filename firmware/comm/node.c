@@ -45,19 +45,19 @@ static bool is_enabled(const node_t *node, const node_inputs_t *board) {
 }
 
 static void take_sample(node_t *node, const node_inputs_t *board) {
-    quiesce_in_t *const in = &node->in;
     const bool is_on_bus = node->from.accel_is_on_bus;
-    in->accel_is_fresh = is_on_bus ? node->bus.accel_is_fresh : board->accel_is_fresh;
-    if (in->accel_is_fresh) {
-        in->accel_counts = is_on_bus ? node->bus.accel_counts : board->accel_counts;
+    quiesce_sample_t *const sample = &node->in.sensor[0];
+    sample->is_fresh = is_on_bus ? node->bus.accel_is_fresh : board->accel_is_fresh;
+    if (sample->is_fresh) {
+        sample->counts = is_on_bus ? node->bus.accel_counts : board->accel_counts;
     }
 }
 
 static void take_current(node_t *node, const node_inputs_t *board) {
-    quiesce_in_t *const in = &node->in;
-    in->current_is_measured = board->current_is_measured || node->bus.current_is_measured;
-    if (in->current_is_measured) {
-        in->current_meas_mA =
+    quiesce_driver_t *const driver = &node->in.driver[0];
+    driver->is_measured = board->current_is_measured || node->bus.current_is_measured;
+    if (driver->is_measured) {
+        driver->current_mA =
             board->current_is_measured ? board->current_meas_mA : node->bus.current_meas_mA;
     }
 }
@@ -68,7 +68,7 @@ static void take_inputs(node_t *node, const node_inputs_t *board) {
     in->enable = is_enabled(node, board);
     in->estop = board->estop || node->bus.estop;
     in->fault_reset = board->fault_reset || node->bus.fault_reset;
-    in->driver_has_failed = board->driver_has_failed || node->bus.driver_has_failed;
+    in->driver[0].has_failed = board->driver_has_failed || node->bus.driver_has_failed;
     take_sample(node, board);
     take_current(node, board);
 }
@@ -78,10 +78,10 @@ static void note(node_t *node, const node_inputs_t *board) {
     node->said = (can_node_tick_t){
         .enable = node->in.enable,
         .estop = node->in.estop,
-        .accel_counts = node->in.accel_counts,
-        .accel_is_fresh = node->in.accel_is_fresh,
-        .current_meas_mA = node->in.current_meas_mA,
-        .current_is_measured = node->in.current_is_measured,
+        .accel_counts = node->in.sensor[0].counts,
+        .accel_is_fresh = node->in.sensor[0].is_fresh,
+        .current_meas_mA = node->in.driver[0].current_mA,
+        .current_is_measured = node->in.driver[0].is_measured,
         .overruns = board->overruns,
         .lateness_us = board->lateness_us,
         .work_us = board->work_us,

@@ -46,17 +46,27 @@ typedef enum {
     QUIESCE_FAULT_COUNT
 } quiesce_fault_t;
 
+/// What a sensor delivered in a tick.
+typedef struct {
+    int32_t counts; ///< raw ADC counts; ignored unless is_fresh
+    bool is_fresh;  ///< a sample arrived since the last tick
+} quiesce_sample_t;
+
+/// What a damper's current driver said in a tick.
+typedef struct {
+    int32_t current_mA; ///< measured coil current; ignored unless is_measured
+    bool is_measured;   ///< a measurement arrived
+    bool has_failed;    ///< it reports a fault, or cannot be told its current
+} quiesce_driver_t;
+
 /// One tick's input.
 typedef struct {
-    uint32_t tick;            ///< number of this tick; the last one + 1 (wraps)
-    int32_t accel_counts;     ///< raw ADC counts; ignored unless accel_is_fresh
-    int32_t current_meas_mA;  ///< measured coil current; ignored unless current_is_measured
-    bool accel_is_fresh;      ///< a sample arrived since the last tick
-    bool current_is_measured; ///< a current measurement arrived
-    bool enable;              ///< operator enables the output
-    bool estop;               ///< emergency stop
-    bool fault_reset;         ///< operator acknowledges a latched fault (acts on its rising edge)
-    bool driver_has_failed;   ///< the current driver reports a fault, or cannot be told its current
+    uint32_t tick; ///< number of this tick; the last one + 1 (wraps)
+    quiesce_sample_t sensor[QUIESCE_SENSORS];
+    quiesce_driver_t driver[QUIESCE_DAMPERS];
+    bool enable;      ///< operator enables the output
+    bool estop;       ///< emergency stop
+    bool fault_reset; ///< operator acknowledges a latched fault (acts on its rising edge)
 } quiesce_in_t;
 
 /// One sinusoidal component of the acceleration: amp x cos(phase).

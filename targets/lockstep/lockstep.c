@@ -8,10 +8,10 @@ bool lockstep_start(lockstep_t *server, const quiesce_params_t *params) {
 static void take(quiesce_in_t *in, const lockstep_stimulus_t *stimulus) {
     const uint32_t flags = stimulus->flags;
     in->tick++;
-    in->accel_counts = stimulus->accel_counts;
-    in->current_meas_mA = stimulus->current_meas_mA;
-    in->accel_is_fresh = (flags & LOCKSTEP_FRESH) != 0;
-    in->current_is_measured = (flags & LOCKSTEP_HAS_CURRENT) != 0;
+    in->sensor[0].counts = stimulus->accel_counts;
+    in->driver[0].current_mA = stimulus->current_meas_mA;
+    in->sensor[0].is_fresh = (flags & LOCKSTEP_FRESH) != 0;
+    in->driver[0].is_measured = (flags & LOCKSTEP_HAS_CURRENT) != 0;
     in->enable = (flags & LOCKSTEP_ENABLE) != 0;
     in->estop = (flags & LOCKSTEP_ESTOP) != 0;
     in->fault_reset = (flags & LOCKSTEP_FAULT_RESET) != 0;

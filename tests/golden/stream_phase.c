@@ -105,8 +105,8 @@ void stream_phase_cases(stream_t *self) {
             if (draw_one_in(&self->seed, 6000)) {
                 operate(self, &one);
             }
-            self->in.accel_counts = damped_sample(self, &one);
-            self->in.accel_is_fresh = !draw_one_in(&self->seed, 3000);
+            self->in.sensor[0].counts = damped_sample(self, &one);
+            self->in.sensor[0].is_fresh = !draw_one_in(&self->seed, 3000);
             stream_step(self);
         }
         save(self, &one);

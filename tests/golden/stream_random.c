@@ -21,10 +21,10 @@ static void draw_input(stream_t *self) {
                                                             &self->vibration);
         in->tick += draw_one_in(seed, 6) ? 7u : 0u; // lost ticks
     }
-    in->accel_counts = draw_sample(seed, &self->vibration);
-    in->accel_is_fresh = !draw_one_in(seed, 200);
-    in->current_meas_mA = draw_between(seed, -6000, 6000);
-    in->current_is_measured = draw_one_in(seed, 2);
+    in->sensor[0].counts = draw_sample(seed, &self->vibration);
+    in->sensor[0].is_fresh = !draw_one_in(seed, 200);
+    in->driver[0].current_mA = draw_between(seed, -6000, 6000);
+    in->driver[0].is_measured = draw_one_in(seed, 2);
     in->enable = !draw_one_in(seed, 1500);
     in->estop = draw_one_in(seed, 6000);
     in->fault_reset = draw_one_in(seed, 100);

@@ -78,7 +78,7 @@ void stream_rules_cases(stream_t *self) {
         self->params.selftune_deadband_um_s2 = number < 3 ? 0 : 50000;
         stream_start(self);
         quiesce_table_store_init(&store);
-        self->in = (quiesce_in_t){.accel_is_fresh = true, .enable = true};
+        self->in = (quiesce_in_t){.sensor = {{.is_fresh = true}}, .enable = true};
         while (self->tick < TICKS) {
             if (self->vibration.left_ticks == 0) {
                 draw_steady(&self->seed, RATE_Hz, &self->vibration);
@@ -87,7 +87,7 @@ void stream_rules_cases(stream_t *self) {
             if (draw_one_in(&self->seed, 150)) {
                 operate(self);
             }
-            self->in.accel_counts = draw_sample(&self->seed, &self->vibration);
+            self->in.sensor[0].counts = draw_sample(&self->seed, &self->vibration);
             stream_step(self);
         }
         stream_close(self);

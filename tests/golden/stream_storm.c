@@ -126,27 +126,27 @@ static void sense(stream_t *self, const storm_t *s) {
     const int32_t side = draw_one_in(seed, 2) ? 1 : -1;
     quiesce_in_t *in = &self->in;
     const int32_t counts = draw_sample(seed, &self->vibration);
-    in->accel_is_fresh = true;
+    in->sensor[0].is_fresh = true;
     switch (s->sense) {
     case SENSE_LOST:
-        in->accel_is_fresh = false;
+        in->sensor[0].is_fresh = false;
         break;
     case SENSE_FULL:
-        in->accel_counts = side * (full_scale - draw_between(seed, 0, 7) / 7);
+        in->sensor[0].counts = side * (full_scale - draw_between(seed, 0, 7) / 7);
         break;
     case SENSE_BEYOND:
         // One count below the negative end is still the end.
-        in->accel_counts =
+        in->sensor[0].counts =
             draw_one_in(seed, 2) ? -full_scale - 1 : side * (full_scale + draw_between(seed, 0, 3));
         break;
     case SENSE_STUCK: // keeps what it was
         break;
     case SENSE_PATCHY:
-        in->accel_is_fresh = !draw_one_in(seed, 4);
-        in->accel_counts = counts;
+        in->sensor[0].is_fresh = !draw_one_in(seed, 4);
+        in->sensor[0].counts = counts;
         break;
     default:
-        in->accel_counts = s->quiet_ticks > 0 ? quiet_sample(self, s) : counts;
+        in->sensor[0].counts = s->quiet_ticks > 0 ? quiet_sample(self, s) : counts;
         break;
     }
 }
@@ -157,8 +157,8 @@ static void measure(stream_t *self, storm_t *s) {
     const int32_t lag_ticks = self->params.current_lag_ms * self->params.tick_rate_Hz / 1000;
     s->coil_mA_q8 += (command_mA * 256 - s->coil_mA_q8) / (1 + lag_ticks);
     const int32_t coil_mA = s->coil_mA_q8 / 256;
-    self->in.current_is_measured = s->coil != COIL_UNKNOWN;
-    self->in.current_meas_mA = s->coil == COIL_OPEN     ? open_coil_mA(self)
+    self->in.driver[0].is_measured = s->coil != COIL_UNKNOWN;
+    self->in.driver[0].current_mA = s->coil == COIL_OPEN     ? open_coil_mA(self)
                                : s->coil == COIL_OFF_BY ? coil_mA + s->off_by_mA
                                                         : coil_mA;
 }
@@ -172,7 +172,7 @@ static void draw_input(stream_t *self, storm_t *s) {
     measure(self, s);
     self->in.enable = s->idle_ticks == 0;
     self->in.estop = s->estop_ticks > 0;
-    self->in.driver_has_failed = s->failed_ticks > 0;
+    self->in.driver[0].has_failed = s->failed_ticks > 0;
     self->in.fault_reset = s->reset_ticks > 0;
     if (draw_one_in(&self->seed, 800)) {
         self->in.tick += (uint32_t)draw_between(&self->seed, -2, 9); // lost, repeated, or neither

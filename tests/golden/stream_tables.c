@@ -51,11 +51,11 @@ static void refusal_case(stream_t *self) {
         record_word(&self->record, (uint32_t)quiesce_params_safe_current_mA(&self->params));
         stream_start(self);
         for (uint32_t tick = 0; tick < REFUSED_TICKS; tick++) {
-            self->in.accel_counts = draw_between(&self->seed, -1000, 1000);
-            self->in.accel_is_fresh = true;
+            self->in.sensor[0].counts = draw_between(&self->seed, -1000, 1000);
+            self->in.sensor[0].is_fresh = true;
             self->in.enable = true;
             self->in.estop = tick == 7;
-            self->in.driver_has_failed = tick == 12;
+            self->in.driver[0].has_failed = tick == 12;
             self->in.fault_reset = tick % 5 == 3;
             stream_step(self);
         }

@@ -124,7 +124,7 @@ static void test_accel_counts_keep_their_sign_and_all_24_bits(void) {
     (void)start(0, 0);
     for (uint8_t i = 0; i < 5; i++) {
         TEST_ASSERT_EQUAL_UINT32(1, send_stimulus(edges[i], i));
-        TEST_ASSERT_EQUAL_INT32(edges[i], server.server.in.accel_counts);
+        TEST_ASSERT_EQUAL_INT32(edges[i], server.server.in.sensor[0].counts);
     }
 }
 
@@ -213,13 +213,13 @@ static void test_current_reaches_its_own_stimulus_only(void) {
     (void)start(0, 0);
     TEST_ASSERT_EQUAL_UINT32(0, send_current(-5, 0));
     (void)send_stimulus(1, 0);
-    TEST_ASSERT_TRUE(server.server.in.current_is_measured);
-    TEST_ASSERT_EQUAL_INT32(-5, server.server.in.current_meas_mA);
+    TEST_ASSERT_TRUE(server.server.in.driver[0].is_measured);
+    TEST_ASSERT_EQUAL_INT32(-5, server.server.in.driver[0].current_mA);
     (void)send_stimulus(1, 1);
-    TEST_ASSERT_FALSE(server.server.in.current_is_measured);
+    TEST_ASSERT_FALSE(server.server.in.driver[0].is_measured);
     TEST_ASSERT_EQUAL_UINT32(0, send_current(7, 1)); // late
     (void)send_stimulus(1, 2);
-    TEST_ASSERT_FALSE(server.server.in.current_is_measured);
+    TEST_ASSERT_FALSE(server.server.in.driver[0].is_measured);
     TEST_ASSERT_EQUAL_UINT16(1, server.sequence_errors);
 }
 

@@ -220,28 +220,28 @@ static void run_without_a_board(void) {
 static void test_bus_sample_is_there_for_its_tick(void) {
     TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.accel_is_on_bus = true}));
     run_without_a_board();
-    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
-    TEST_ASSERT_FALSE(node.in.current_is_measured);
+    TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
+    TEST_ASSERT_FALSE(node.in.driver[0].is_measured);
     receive(make_accel(-4321, false, false, 0));
     receive(make_current(-99, 0));
     run_without_a_board();
-    TEST_ASSERT_TRUE(node.in.accel_is_fresh);
-    TEST_ASSERT_TRUE(node.in.current_is_measured);
-    TEST_ASSERT_EQUAL_INT32(-4321, node.in.accel_counts);
-    TEST_ASSERT_EQUAL_INT32(-99, node.in.current_meas_mA);
+    TEST_ASSERT_TRUE(node.in.sensor[0].is_fresh);
+    TEST_ASSERT_TRUE(node.in.driver[0].is_measured);
+    TEST_ASSERT_EQUAL_INT32(-4321, node.in.sensor[0].counts);
+    TEST_ASSERT_EQUAL_INT32(-99, node.in.driver[0].current_mA);
     run_without_a_board();
-    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
-    TEST_ASSERT_EQUAL_INT32(-4321, node.in.accel_counts);
-    TEST_ASSERT_TRUE(node.in.current_is_measured);
+    TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
+    TEST_ASSERT_EQUAL_INT32(-4321, node.in.sensor[0].counts);
+    TEST_ASSERT_TRUE(node.in.driver[0].is_measured);
 }
 
 static void test_the_sensor_is_where_it_was_set_up(void) {
     receive(make_accel(-4321, false, false, 0));
     run_without_a_board(); // a sample on the bus is no sample of the board's sensor
-    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
+    TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
     TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.accel_is_on_bus = true}));
     run(1);
-    TEST_ASSERT_FALSE(node.in.accel_is_fresh);
+    TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
 }
 
 static void test_the_boards_measurement_goes_before_the_buss(void) {
@@ -249,18 +249,18 @@ static void test_the_boards_measurement_goes_before_the_buss(void) {
     board.current_meas_mA = 77;
     receive(make_current(-99, 0));
     run(1);
-    TEST_ASSERT_EQUAL_INT32(77, node.in.current_meas_mA);
+    TEST_ASSERT_EQUAL_INT32(77, node.in.driver[0].current_mA);
     board.current_is_measured = false;
     run(1);
-    TEST_ASSERT_TRUE(node.in.current_is_measured);
-    TEST_ASSERT_EQUAL_INT32(-99, node.in.current_meas_mA);
+    TEST_ASSERT_TRUE(node.in.driver[0].is_measured);
+    TEST_ASSERT_EQUAL_INT32(-99, node.in.driver[0].current_mA);
 }
 
 static void test_raw_stream_has_the_samples_that_the_controller_got(void) {
     struct quiesce_can_raw_sample_t raw;
     (void)ask(OP(RAW_STREAM), 0, 10);
     for (uint32_t i = 0; i < 100; i++) {
-        const int32_t last = node.in.accel_counts;
+        const int32_t last = node.in.sensor[0].counts;
         if (i % 3u == 0) {
             board.accel_counts = 0;
             board.accel_is_fresh = false;

@@ -216,14 +216,29 @@ static void check_signals(const fuzz_t *fuzz, const quiesce_telemetry_t *t) {
     }
 }
 
+// Words without a name are 0; rules and their current stay in their ranges.
+static void check_report(const fuzz_t *fuzz) {
+    const int32_t law = fuzz->is_accepted ? fuzz->params.law : QUIESCE_LAW_FUZZY;
+    const quiesce_word_t *names = quiesce_report_words(law);
+    int32_t word[QUIESCE_REPORT_WORDS];
+    memset(word, 0xA5, sizeof word);
+    quiesce_report(fuzz->controller, word);
+    for (uint32_t i = 0; i < QUIESCE_REPORT_WORDS; i++) {
+        REQUIRE(names[i].name != NULL || word[i] == 0);
+    }
+    if (law == QUIESCE_LAW_FUZZY || law == QUIESCE_LAW_FUZZY_SELFTUNE) {
+        REQUIRE(word[0] >= 0 && (uint32_t)word[1] < UINT32_C(1) << 16);
+    }
+}
+
 static void step(fuzz_t *fuzz, const stretch_t *stretch) {
     const quiesce_in_t in = {
         .tick = fuzz->tick,
-        .accel_counts = counts_at(fuzz, stretch),
-        .current_meas_mA = fuzz->last.current_cmd_mA + signal_noise(&fuzz->seed, stretch->noise),
-        .accel_is_fresh =
+        .sensor[0].counts = counts_at(fuzz, stretch),
+        .driver[0].current_mA = fuzz->last.current_cmd_mA + signal_noise(&fuzz->seed, stretch->noise),
+        .sensor[0].is_fresh =
             (stretch->flags & FLAG_DROPOUTS) == 0 || signal_noise(&fuzz->seed, 1000) > 0,
-        .current_is_measured = (stretch->flags & FLAG_CURRENT) != 0,
+        .driver[0].is_measured = (stretch->flags & FLAG_CURRENT) != 0,
         .enable = (stretch->flags & FLAG_ENABLE) != 0,
         .estop = (stretch->flags & FLAG_ESTOP) != 0,
         .fault_reset = (stretch->flags & FLAG_RESET) != 0,
@@ -233,6 +248,7 @@ static void step(fuzz_t *fuzz, const stretch_t *stretch) {
     quiesce_step(fuzz->controller, &in, &out);
     check_output(fuzz, &out);
     check_signals(fuzz, &out.telemetry);
+    check_report(fuzz);
     check_order(&out.telemetry, &fuzz->last.telemetry);
     fuzz->last = out;
     fuzz->tick++;

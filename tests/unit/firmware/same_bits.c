@@ -105,6 +105,7 @@ static lockstep_stimulus_t draw_stimulus(uint32_t *seed, uint32_t tick, uint32_t
     in.flags |= random_below(seed, 5000) == 0 ? LOCKSTEP_ESTOP : 0u;
     in.flags |= random_below(seed, 100) == 0 ? LOCKSTEP_FAULT_RESET : 0u;
     in.flags |= random_below(seed, 2) == 0 ? LOCKSTEP_HAS_CURRENT : 0u;
+    in.flags |= LOCKSTEP_REPORT;
     return in;
 }
 
@@ -125,6 +126,9 @@ static uint32_t run_case(lockstep_t *server, uint32_t number) {
         lockstep_reply_t reply;
         lockstep_exchange(server, &in, &reply);
         append_telemetry(&digest, &reply.telemetry);
+        for (uint32_t i = 0; i < QUIESCE_REPORT_WORDS; i++) {
+            digest.crc = word_crc_append(digest.crc, (uint32_t)reply.report[i]);
+        }
     }
     return ~digest.crc;
 }

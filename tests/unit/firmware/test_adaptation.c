@@ -43,8 +43,8 @@ static bool vibrate(uint32_t count) {
     for (; count > 0; count--) {
         const quiesce_in_t in = {
             .tick = ticks,
-            .accel_counts = signal_sine(5195, 10000, ticks, 1000) + signal_noise(&seed, 147),
-            .accel_is_fresh = true,
+            .sensor[0].counts = signal_sine(5195, 10000, ticks, 1000) + signal_noise(&seed, 147),
+            .sensor[0].is_fresh = true,
             .enable = true,
         };
         quiesce_step(&controller, &in, &out);

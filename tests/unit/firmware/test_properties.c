@@ -46,8 +46,8 @@ static void start(int32_t rate_Hz) {
 static void step(side_t *side, int32_t counts, bool is_fresh) {
     const quiesce_in_t in = {
         .tick = side->tick++,
-        .accel_counts = side->gain * counts,
-        .accel_is_fresh = is_fresh,
+        .sensor[0].counts = side->gain * counts,
+        .sensor[0].is_fresh = is_fresh,
         .enable = true,
     };
     quiesce_step(&side->controller, &in, &side->out);

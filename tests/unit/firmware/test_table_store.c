@@ -29,7 +29,7 @@ void setUp(void) {
 void tearDown(void) {}
 
 static quiesce_out_t step(void) {
-    const quiesce_in_t in = {.tick = ticks++, .accel_is_fresh = true, .enable = true};
+    const quiesce_in_t in = {.tick = ticks++, .sensor[0].is_fresh = true, .enable = true};
     quiesce_out_t out;
     quiesce_step(&controller, &in, &out);
     return out;

@@ -65,8 +65,8 @@ static void control(rig_t *rig) {
     quiesce_in_t *const in = &rig->node.in;
     in->tick++;
     in->enable = true;
-    in->accel_counts = rig->board.accel_counts;
-    in->accel_is_fresh = rig->board.accel_is_fresh;
+    in->sensor[0].counts = rig->board.accel_counts;
+    in->sensor[0].is_fresh = rig->board.accel_is_fresh;
     quiesce_step(&rig->node.controller, in, &rig->node.out);
     rig->tick.accel_is_fresh = rig->node.bus.accel_is_fresh;
 }

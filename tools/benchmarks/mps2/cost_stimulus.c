@@ -133,23 +133,23 @@ static void disturb(cost_stimulus_t *self, quiesce_in_t *in) {
     const uint32_t third = 3u * self->tick_in_segment / self->segment_ticks;
     switch (segments[self->segment].disturbance) {
     case DROPS:
-        in->accel_is_fresh = random_below(self, 20) != 0;
+        in->sensor[0].is_fresh = random_below(self, 20) != 0;
         break;
     case DROPOUT:
-        in->accel_is_fresh = third != 1u;
+        in->sensor[0].is_fresh = third != 1u;
         break;
     case STUCK:
         self->held_counts =
-            2u * self->tick_in_segment < self->segment_ticks ? in->accel_counts : self->held_counts;
-        in->accel_counts = self->held_counts;
+            2u * self->tick_in_segment < self->segment_ticks ? in->sensor[0].counts : self->held_counts;
+        in->sensor[0].counts = self->held_counts;
         break;
     case RANGE:
         if (third == 1u) {
-            in->accel_counts = random_below(self, 2) == 0 ? INT32_MAX : INT32_MIN;
+            in->sensor[0].counts = random_below(self, 2) == 0 ? INT32_MAX : INT32_MIN;
         }
         break;
     case GLITCH:
-        in->accel_counts = random_below(self, 50) == 0 ? FULL_SCALE_COUNTS : in->accel_counts;
+        in->sensor[0].counts = random_below(self, 50) == 0 ? FULL_SCALE_COUNTS : in->sensor[0].counts;
         break;
     case GAPS:
         self->tick += random_below(self, 150) == 0 ? 3u : 0u;
@@ -170,8 +170,8 @@ void cost_stimulus_next(cost_stimulus_t *self, quiesce_in_t *in) {
     evolve(self);
     *in = (quiesce_in_t){
         .tick = self->tick,
-        .accel_counts = vibration(self),
-        .accel_is_fresh = true,
+        .sensor[0].counts = vibration(self),
+        .sensor[0].is_fresh = true,
         .enable = true,
     };
     disturb(self, in);

@@ -60,8 +60,8 @@ static void run(const order_t *order, signal_chain_t *chain, watch_t *watch) {
         signal_chain_out_t out;
         cost_stimulus_next(&stimulus, &in);
         const signal_chain_in_t chain_in = {
-            .accel_counts = in.accel_counts,
-            .is_fresh = in.accel_is_fresh,
+            .accel_counts = in.sensor[0].counts,
+            .is_fresh = in.sensor[0].is_fresh,
             .has_gap = in.tick != last_tick + 1u,
         };
         counted_call((counted_function_t)signal_chain_step, (uintptr_t)chain, (uintptr_t)&chain_in,
