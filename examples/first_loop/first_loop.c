@@ -24,7 +24,7 @@ int main(void) {
     double x_m = 0.0, v_m_s = 0.0;
     for (uint32_t tick = 0; tick < 4000; tick++) {
         // A toy structure, and a damper that stiffens with the current.
-        const double damping_per_s = 4.0 + 2e-3 * out.current_cmd_mA;
+        const double damping_per_s = 4.0 + 2e-3 * out.damper[0].current_cmd_mA;
         const double a_m_s2 = sin(62.8e-3 * tick) - damping_per_s * v_m_s - 3948.0 * x_m;
         v_m_s += 1e-3 * a_m_s2;
         x_m += 1e-3 * v_m_s;
@@ -35,7 +35,7 @@ int main(void) {
         if (tick % 500 == 499)
             printf("%.1f s: %.2f Hz, %.2f m/s2, %" PRId32 " mA\n", 1e-3 * (tick + 1),
                    1e-6 * out.telemetry.freq_uHz, 1e-6 * out.telemetry.rms_um_s2,
-                   out.current_cmd_mA);
+                   out.damper[0].current_cmd_mA);
     }
     return 0;
 }

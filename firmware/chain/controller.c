@@ -87,7 +87,8 @@ static quiesce_fault_t latched_fault(const quiesce_in_t *in, current_verdict_t v
     if (in->estop) {
         return QUIESCE_FAULT_ESTOP;
     }
-    return in->driver[0].has_failed ? QUIESCE_FAULT_DRIVER_FAILED : (quiesce_fault_t)fault_of[verdict];
+    return in->driver[0].has_failed ? QUIESCE_FAULT_DRIVER_FAILED
+                                    : (quiesce_fault_t)fault_of[verdict];
 }
 
 static bool is_tick_lost(controller_t *self, uint32_t tick) {
@@ -171,20 +172,20 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     control_step(&c->control, &c->view, &request);
 
     supervise(c, in, &signal.sample, signal_in.has_gap);
-    out->current_cmd_mA =
+    out->damper[0].current_cmd_mA =
         guard_step(&c->guard, request.value[0], supervisor_allows_output(&c->supervisor));
-    out->driver_enable = supervisor_allows_driver(&c->supervisor);
+    out->damper[0].driver_enable = supervisor_allows_driver(&c->supervisor);
     // A driver that is switched off is expected to carry nothing.
-    c->last_command_mA = out->driver_enable ? out->current_cmd_mA : 0;
+    c->last_command_mA = out->damper[0].driver_enable ? out->damper[0].current_cmd_mA : 0;
 
     report(c, t);
     t->tick = in->tick;
-    t->accel_um_s2 = signal.sample.accel_um_s2;
+    t->accel_um_s2 = signal.sample.value;
     t->displacement_nm = signal.displacement_nm;
     t->velocity_um_s = motion_velocity_um_s(signal.velocity_um_s_q32);
     t->rms_um_s2 = signal.rms_um_s2;
     t->current_law_mA = request.value[0];
-    t->current_cmd_mA = out->current_cmd_mA;
+    t->current_cmd_mA = out->damper[0].current_cmd_mA;
 }
 
 static control_t *control_of(quiesce_t *self) {

@@ -15,7 +15,10 @@ void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
     condition_init(&self->condition, &(condition_cfg_t){
                                          .tick_rate_Hz = rate_Hz,
-                                         .scale_nm_s2 = p->accel_scale_nm_s2,
+                                         .scale = p->accel_scale_nm_s2,
+                                         .limit = CONDITION_ACCEL_LIMIT_um_s2,
+                                         .period_ticks = 1,
+                                         .max_lost_pct = 100,
                                          .offset_counts = p->accel_offset_counts,
                                          .polarity = p->accel_polarity,
                                          .full_scale_counts = p->accel_full_scale_counts,
@@ -70,7 +73,7 @@ static void load_displacement(signal_chain_t *self) {
 
 static int32_t follow(signal_chain_t *self, const condition_out_t *sample, bool has_gap) {
     estimator_step(&self->estimator, &(estimator_in_t){
-                                         .accel_um_s2 = sample->raw_um_s2,
+                                         .accel_um_s2 = sample->raw,
                                          .is_good = sample->flag == CONDITION_GOOD,
                                          .is_lost = sample->is_fault || has_gap,
                                      });
@@ -86,7 +89,7 @@ static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {
 
 static void lock_on(signal_chain_t *self, const condition_out_t *sample, uint32_t phase_turn,
                     uint32_t step_turn) {
-    lock_in_acquire(&self->lock, phase_turn, step_turn, sample->raw_um_s2 - sample->accel_um_s2);
+    lock_in_acquire(&self->lock, phase_turn, step_turn, sample->raw - sample->value);
 }
 
 // Until the estimator knows more: a few half cycles that are alike.
@@ -109,7 +112,7 @@ static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool ha
         lock_in_release(&self->lock);
         half_cycles_reset(&self->half_cycles);
     }
-    lock_in_step(&self->lock, sample->raw_um_s2, sample->flag == CONDITION_GOOD);
+    lock_in_step(&self->lock, sample->raw, sample->flag == CONDITION_GOOD);
     look_for_lock(self, out);
     if (estimator->has_published && estimator_is_valid(estimator) &&
         is_elsewhere(&self->lock, tone->step_turn)) {
@@ -137,8 +140,8 @@ static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out,
 }
 
 static void show(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
-    view->valid = self->condition.has_dc ? VIEW_ACCEL | VIEW_VELOCITY | VIEW_RMS : 0;
-    view->body[0].accel_um_s2 = out->sample.accel_um_s2;
+    view->valid = self->condition.has_value ? VIEW_ACCEL | VIEW_VELOCITY | VIEW_RMS : 0;
+    view->body[0].accel_um_s2 = out->sample.value;
     view->body[0].velocity_um_s = velocity_away_um_s(out->velocity_um_s_q32);
     show_tone(self, out, view);
 }
@@ -151,9 +154,9 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t
         rms_reset(&self->rms);
         motion_reset(&self->motion);
     }
-    out->rms_um_s2 = rms_step(&self->rms, out->sample.accel_um_s2);
+    out->rms_um_s2 = rms_step(&self->rms, out->sample.value);
     out->displacement_nm = follow(self, &out->sample, in->has_gap);
-    out->velocity_um_s_q32 = motion_step(&self->motion, out->sample.accel_um_s2);
+    out->velocity_um_s_q32 = motion_step(&self->motion, out->sample.value);
     if (in->wants_lock) {
         hold_on(self, out, in->has_gap);
     }

@@ -56,7 +56,7 @@ static void remember(can_freeze_t *self, const quiesce_out_t *out) {
     self->state = out->telemetry.state;
     self->fault = out->telemetry.fault;
     self->fault_count = out->telemetry.fault_count;
-    self->current_cmd_mA = out->current_cmd_mA;
+    self->current_cmd_mA = out->damper[0].current_cmd_mA;
     self->current_law_mA = out->telemetry.current_law_mA;
 }
 

@@ -7,11 +7,11 @@ static bool start(node_t *node) {
     const int32_t safe_mA = quiesce_params_safe_current_mA(&node->params);
     node->in = (quiesce_in_t){0};
     node->out = (quiesce_out_t){
-        .current_cmd_mA = safe_mA,
+        .damper[0].current_cmd_mA = safe_mA,
         .telemetry = {.current_cmd_mA = safe_mA},
     };
-    node->out.driver_enable = quiesce_init(&node->controller, &node->params);
-    return node->out.driver_enable;
+    node->out.damper[0].driver_enable = quiesce_init(&node->controller, &node->params);
+    return node->out.damper[0].driver_enable;
 }
 
 bool node_init(node_t *node, const quiesce_params_t *params, node_sources_t from) {

@@ -102,10 +102,15 @@ typedef struct {
     uint32_t lock_is_on;                 ///< law phase has locked on to the dominant component
 } quiesce_telemetry_t;
 
-/// One tick's output.
+/// For a damper's current driver.
 typedef struct {
     int32_t current_cmd_mA; ///< 0 .. max_current_mA
     bool driver_enable;     ///< false only in FAULT after ESTOP, PARAMETER or DRIVER_FAILED
+} quiesce_command_t;
+
+/// One tick's output.
+typedef struct {
+    quiesce_command_t damper[QUIESCE_DAMPERS];
     quiesce_telemetry_t telemetry;
 } quiesce_out_t;
 

@@ -9,11 +9,12 @@ void condition_init(condition_t *self, const condition_cfg_t *cfg) {
     const int64_t one_q32 = INT64_C(1) << 32;
     *self = (condition_t){
         .cfg = *cfg,
-        .scale = scale_from_ratio((uint32_t)cfg->scale_nm_s2, 1000u),
+        .scale = scale_from_ratio((uint32_t)cfg->scale, 1000u),
         // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.
         .dc_gain_q32 = omega_q32 - ((omega_q32 * omega_q32) / one_q32),
         .last_counts = INT32_MIN, // no ADC reports it
-        .noise = {.limit = 2u * cfg->min_noise_counts, .window_samples = cfg->tick_rate_Hz},
+        .noise = {.limit = 2u * cfg->min_noise_counts,
+                  .window_samples = cfg->tick_rate_Hz / cfg->period_ticks},
     };
 }
 
@@ -59,63 +60,86 @@ static condition_flag_t classify(condition_t *self, int32_t counts, bool is_fres
     return is_quiet(&self->noise, counts) ? CONDITION_QUIET : CONDITION_GOOD;
 }
 
-static int32_t scaled_um_s2(const condition_t *self, int32_t counts) {
+static int32_t scaled(const condition_t *self, int32_t counts) {
     // Both are at most 2^23 in magnitude here, their difference 2^24.
     const int32_t offset_free = (counts - self->cfg.offset_counts) * self->cfg.polarity;
-    return scale_apply(self->scale, offset_free, CONDITION_LIMIT_um_s2);
+    return scale_apply(self->scale, offset_free, self->cfg.limit);
 }
 
 static void take_good_sample(condition_t *self, int32_t counts) {
-    self->held_um_s2 = scaled_um_s2(self, counts);
+    self->held = scaled(self, counts);
     self->bad_ticks = 0;
     self->good_ticks = increment_sat_u32(self->good_ticks);
-    if (!self->has_dc) {
-        self->has_dc = true;
-        self->dc_q32 = (int64_t)self->held_um_s2 * (INT64_C(1) << 32);
+    if (!self->has_value) {
+        self->has_value = true;
+        self->dc_q32 = (int64_t)self->held * (INT64_C(1) << 32);
         self->mean_samples = 1;
     }
 }
 
-static void follow_dc(condition_t *self, int32_t rest_um_s2) {
+static void follow_dc(condition_t *self, int32_t rest) {
     // Until the plain mean of all samples so far would be slower, the mean is the better start: a
     // record that begins in full swing must not ring through the DC removal.
     const int64_t mean_gain_q32 = UINT32_MAX / self->mean_samples;
     const bool is_start = mean_gain_q32 > self->dc_gain_q32;
     self->mean_samples += is_start ? 1u : 0u;
-    self->dc_q32 += rest_um_s2 * (is_start ? mean_gain_q32 : self->dc_gain_q32);
+    self->dc_q32 += rest * (is_start ? mean_gain_q32 : self->dc_gain_q32);
 }
 
 // The held sample without its DC part; 0 while there is none to trust.
 static int32_t without_dc(condition_t *self, condition_flag_t flag) {
-    if (!self->has_dc) {
-        return 0;
+    if (!self->has_value || self->cfg.dc_cutoff_mHz == 0) {
+        return self->has_value ? self->held : 0;
     }
-    const int32_t rest_um_s2 = self->held_um_s2 - (int32_t)(self->dc_q32 >> 32);
+    const int32_t rest = self->held - (int32_t)(self->dc_q32 >> 32);
     if (flag == CONDITION_GOOD) {
-        follow_dc(self, rest_um_s2);
+        follow_dc(self, rest);
     }
-    return clamp_i32(rest_um_s2, -CONDITION_LIMIT_um_s2, CONDITION_LIMIT_um_s2);
+    return clamp_i32(rest, -self->cfg.limit, self->cfg.limit);
+}
+
+// Whether a sample came, or one is missing.
+static bool is_due(condition_t *self, bool is_fresh) {
+    self->waited_ticks = is_fresh ? 0 : increment_sat_u32(self->waited_ticks);
+    return is_fresh || self->waited_ticks >= self->cfg.period_ticks;
+}
+
+// An average over some 256 samples, floor.
+static bool is_over_budget(condition_t *self, bool is_lost) {
+    if (self->cfg.max_lost_pct >= 100u) {
+        return false;
+    }
+    self->lost_q16 += is_lost ? (65536u - self->lost_q16) / 256u : 0u;
+    self->lost_q16 -= is_lost ? 0u : (self->lost_q16 + 255u) / 256u;
+    return self->lost_q16 > self->cfg.max_lost_pct * 65536u / 100u;
+}
+
+static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
+    if (flag == CONDITION_GOOD) {
+        take_good_sample(self, counts);
+        return;
+    }
+    self->bad_ticks = increment_sat_u32(self->bad_ticks);
+    // A single missing sample now and then is how a sensor's clock meets ours, no illness.
+    const bool is_slip = flag == CONDITION_LOST && self->bad_ticks == 1u;
+    self->good_ticks =
+        is_slip && self->good_ticks > SLIP_COSTS_TICKS ? self->good_ticks - SLIP_COSTS_TICKS : 0u;
 }
 
 void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_out_t *out) {
-    out->flag = classify(self, counts, is_fresh);
-    if (out->flag == CONDITION_GOOD) {
-        take_good_sample(self, counts);
-    } else {
-        self->bad_ticks = increment_sat_u32(self->bad_ticks);
-        // A single missing sample now and then is how a sensor's clock meets ours, no illness.
-        const bool is_slip = out->flag == CONDITION_LOST && self->bad_ticks == 1u;
-        self->good_ticks = is_slip && self->good_ticks > SLIP_COSTS_TICKS
-                               ? self->good_ticks - SLIP_COSTS_TICKS
-                               : 0u;
+    if (is_due(self, is_fresh)) {
+        self->flag = classify(self, counts, is_fresh);
+        judge(self, counts, self->flag);
+        self->is_sparse = is_over_budget(self, self->flag == CONDITION_LOST);
     }
+    out->flag = self->is_sparse && self->flag == CONDITION_GOOD ? CONDITION_LOST : self->flag;
     const bool is_dead = out->flag == CONDITION_STUCK || out->flag == CONDITION_QUIET;
-    out->is_fault = is_dead || self->bad_ticks > self->cfg.max_age_ticks;
+    out->is_fault = is_dead || self->is_sparse || self->bad_ticks > self->cfg.max_age_ticks;
     if (out->is_fault) {
         // The sensor may come back with another offset: the DC part is learnt anew.
-        self->has_dc = false;
+        self->has_value = false;
     }
-    out->accel_um_s2 = without_dc(self, out->flag);
-    out->raw_um_s2 = self->held_um_s2;
+    out->value = without_dc(self, is_fresh ? out->flag : CONDITION_LOST);
+    out->raw = self->held;
     out->good_ticks = self->good_ticks;
 }

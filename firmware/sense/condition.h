@@ -1,9 +1,13 @@
-/// Conditioning of the accelerometer: plausibility, scale, polarity, removal of the DC part.
+/// Conditioning of a sensor: plausibility, scale, polarity; for an accelerometer, removal of the
+/// DC part.
 ///
 /// A bad sample never reaches the windows: the last good one is held, and the fault is reported
 /// once the bad run is longer than max_age_ticks; from then on the output is 0 and the DC part is
 /// learnt anew. (A stuck or quiet sensor is seen only in hindsight; its samples have been passed
-/// on.)
+/// on.) A sensor that is slower than the tick is held between its samples.
+///
+/// Lost: the share of lost samples is followed over some 256 of them; more than max_lost_pct is a
+/// fault until it is less again, however short each gap is.
 ///
 /// Quiet: a live sensor shows noise. The activity of a second of plausible samples is the mean of
 /// |x[n] - 2 x[n-1] + x[n-2]|, for white noise 1.95 times its RMS and for a vibration far below the
@@ -17,7 +21,7 @@
 #include "fixq.h"
 
 /// Conditioned accelerations saturate here (51 g), so that every later sum fits its word.
-#define CONDITION_LIMIT_um_s2 500000000
+#define CONDITION_ACCEL_LIMIT_um_s2 500000000
 
 /// Why the newest sample is bad; the value is held meanwhile.
 typedef enum {
@@ -31,14 +35,17 @@ typedef enum {
 
 typedef struct {
     uint32_t tick_rate_Hz;     ///< 500 .. 4000
-    int32_t scale_nm_s2;       ///< of one count, 1 .. 10^9
+    int32_t scale;             ///< thousandths of the unit a count, 1 .. 10^9
+    int32_t limit;             ///< values saturate here, > 0
+    uint32_t period_ticks;     ///< from one sample to the next, >= 1
+    uint32_t max_lost_pct;     ///< share of samples that may be lost; 100: no check
     int32_t offset_counts;     ///< at zero acceleration
     int32_t polarity;          ///< -1 or 1
     int32_t full_scale_counts; ///< > 0
     uint32_t max_age_ticks;    ///< longest hold
     uint32_t stuck_ticks;      ///< 0: no check
     uint32_t min_noise_counts; ///< RMS of white noise, at most 65535; 0: no check
-    int32_t dc_cutoff_mHz;     ///< 10 .. 1000
+    int32_t dc_cutoff_mHz;     ///< 10 .. 1000; 0: the DC part stays
 } condition_cfg_t;
 
 /// How lively the samples are.
@@ -54,23 +61,27 @@ typedef struct {
 
 typedef struct {
     condition_cfg_t cfg;
-    scale_t scale;         ///< um/s2 per count
-    int64_t dc_q32;        ///< um/s2 in Q32
+    scale_t scale;         ///< unit per count
+    int64_t dc_q32;        ///< in Q32
     int64_t dc_gain_q32;   ///< share of the error taken over each tick
-    bool has_dc;           ///< dc_q32 has been learnt since init or the last fault
+    bool has_value;        ///< a good sample since init or the last fault; dc_q32 is learnt
     uint32_t mean_samples; ///< samples that the starting mean holds, plus one
-    int32_t held_um_s2;    ///< last good sample, before DC removal
+    int32_t held;          ///< last good sample, before DC removal
     int32_t last_counts;
     uint32_t same_samples; ///< identical samples in a row, the first one included
     condition_noise_t noise;
-    uint32_t bad_ticks;  ///< bad samples in a row
-    uint32_t good_ticks; ///< good samples in a row, saturating; a single missing one takes
-                         ///< 4 off
+    condition_flag_t flag; ///< of the newest sample
+    bool is_sparse;        ///< more are lost than may be
+    uint32_t waited_ticks; ///< for a sample
+    uint32_t lost_q16;     ///< share of the samples, 65536 is 1
+    uint32_t bad_ticks;    ///< bad samples in a row
+    uint32_t good_ticks;   ///< good samples in a row, saturating; a single missing one takes
+                           ///< 4 off
 } condition_t;
 
 typedef struct {
-    int32_t accel_um_s2;   ///< DC removed; 0 while there is a fault; saturated to the limit
-    int32_t raw_um_s2;     ///< before DC removal: the newest good sample, 0 until there was one
+    int32_t value;         ///< DC removed; 0 while there is a fault; saturated to the limit
+    int32_t raw;           ///< before DC removal: the newest good sample, 0 until there was one
     condition_flag_t flag; ///< of this tick's sample
     bool is_fault;         ///< the bad run is older than max_age_ticks (stuck, quiet: at once)
     uint32_t good_ticks;   ///< good samples in a row, saturating; a single missing one takes

@@ -30,8 +30,8 @@ static void report(const lockstep_t *server, bool is_wanted, int32_t word[QUIESC
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out) {
     take(&server->in, in);
     quiesce_step(&server->controller, &server->in, &server->out);
-    out->current_cmd_mA = server->out.current_cmd_mA;
-    out->is_driver_enabled = server->out.driver_enable ? 1u : 0u;
+    out->current_cmd_mA = server->out.damper[0].current_cmd_mA;
+    out->is_driver_enabled = server->out.damper[0].driver_enable ? 1u : 0u;
     out->telemetry = server->out.telemetry;
     report(server, (in->flags & LOCKSTEP_REPORT) != 0, out->report);
 }

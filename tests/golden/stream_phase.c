@@ -34,7 +34,7 @@ static void draw_case(stream_t *self, uint32_t number) {
 static int32_t damped_sample(stream_t *self, phase_case_t *state) {
     const uint32_t best_turn = self->vibration.step_turn[0] * 97u;
     const int32_t effect = draw_sine(16384, self->vibration.phase_turn[0] * 2u + best_turn) + 16384;
-    const int32_t wanted_q15 = self->out.current_cmd_mA * effect / 10000;
+    const int32_t wanted_q15 = self->out.damper[0].current_cmd_mA * effect / 10000;
     state->damped_q15 += (wanted_q15 - state->damped_q15) / 64;
     self->vibration.step_turn[0] += self->vibration.step_turn[0] / 65536u * state->sweep;
     const int32_t counts = draw_sample(&self->seed, &self->vibration);

@@ -38,12 +38,12 @@ void Loop::write_current(std::int32_t current_mA, bool enable) {
 }
 
 void Loop::write_command() {
-    write_current(node_.out.current_cmd_mA, node_.out.driver_enable);
+    write_current(node_.out.damper[0].current_cmd_mA, node_.out.damper[0].driver_enable);
 }
 
 /// The driver has its safe current while the controller starts.
 void Loop::restart(const quiesce_params_t &params) {
-    write_current(quiesce_params_safe_current_mA(&params), node_.out.driver_enable);
+    write_current(quiesce_params_safe_current_mA(&params), node_.out.damper[0].driver_enable);
     node_restart(&node_, &params);
     axis_ = static_cast<hal_axis_t>(node_.params.accel_axis);
     write_command();
@@ -147,8 +147,8 @@ void Loop::receive() {
 }
 
 bool Loop::is_safe_command() const {
-    return node_.out.current_cmd_mA == quiesce_params_safe_current_mA(&node_.params) &&
-           !node_.out.driver_enable;
+    return node_.out.damper[0].current_cmd_mA == quiesce_params_safe_current_mA(&node_.params) &&
+           !node_.out.damper[0].driver_enable;
 }
 
 void Loop::send() {
@@ -161,7 +161,7 @@ void Loop::send() {
 Snapshot Loop::snapshot() const {
     Snapshot snapshot{};
     snapshot.telemetry = node_.out.telemetry;
-    snapshot.is_driver_enabled = node_.out.driver_enable;
+    snapshot.is_driver_enabled = node_.out.damper[0].driver_enable;
     snapshot.is_enabled = node_.in.enable;
     snapshot.is_estop = node_.in.estop;
     snapshot.kept_fault = latch_.held();
@@ -228,7 +228,7 @@ void Loop::tick(std::uint32_t elapsed) {
         restart(*params);
     }
     send();
-    board_.write_lines(node_.out.driver_enable, node_.out.telemetry.fault != QUIESCE_FAULT_NONE,
+    board_.write_lines(node_.out.damper[0].driver_enable, node_.out.telemetry.fault != QUIESCE_FAULT_NONE,
                        is_due_each_second());
     latch_.after_tick(node_);
     after_restart();

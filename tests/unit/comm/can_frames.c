@@ -29,8 +29,8 @@ static void fill_all(const int32_t *value, uint32_t *seed) {
     uint32_t other[8];
     fill((uint32_t *)(void *)&out.telemetry, sizeof out.telemetry / 4u, value, seed);
     fill(other, 8, value, seed);
-    out.current_cmd_mA = (int32_t)other[0];
-    out.driver_enable = (other[0] & 1u) != 0;
+    out.damper[0].current_cmd_mA = (int32_t)other[0];
+    out.damper[0].driver_enable = (other[0] & 1u) != 0;
     tick = (can_node_tick_t){
         .enable = (other[0] & 2u) != 0,
         .estop = (other[0] & 4u) != 0,

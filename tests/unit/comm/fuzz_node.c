@@ -54,8 +54,8 @@ static bool is_command(const can_frame_t *frame) {
         return true;
     }
     (void)quiesce_can_current_demand_unpack(&wire, frame->data, frame->length);
-    return wire.current_cmd_mA == node.out.current_cmd_mA &&
-           wire.driver_is_enabled == (node.out.driver_enable ? 1u : 0u);
+    return wire.current_cmd_mA == node.out.damper[0].current_cmd_mA &&
+           wire.driver_is_enabled == (node.out.damper[0].driver_enable ? 1u : 0u);
 }
 
 static void tick(uint8_t flags) {
@@ -74,7 +74,7 @@ static void tick(uint8_t flags) {
         require(is_well_made(&frames[i]));
         require(i == 0 || frames[i].id > frames[i - 1u].id);
     }
-    require(node.out.current_cmd_mA >= 0);
+    require(node.out.damper[0].current_cmd_mA >= 0);
     require(count == 0 || is_command(&frames[0]));
 }
 

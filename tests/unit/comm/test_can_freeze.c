@@ -51,7 +51,7 @@ static void fill_healthy_tick(void) {
 }
 
 static void fill_faulty_tick(void) {
-    out.current_cmd_mA = 250;
+    out.damper[0].current_cmd_mA = 250;
     out.telemetry.state = QUIESCE_STATE_SAFE;
     out.telemetry.current_law_mA = 1;
     out.telemetry.accel_um_s2 = -1234567;
@@ -91,7 +91,7 @@ static void test_pages_have_the_tick_before_and_the_tick_of_the_fault(void) {
 
 static void test_negative_currents_are_0(void) {
     struct quiesce_can_fault_freeze_t p[CAN_FREEZE_PAGES];
-    out.current_cmd_mA = INT32_MIN;
+    out.damper[0].current_cmd_mA = INT32_MIN;
     out.telemetry.current_law_mA = -1;
     watch(QUIESCE_FAULT_NONE, 0);
     tick.accel_counts = INT32_MIN;

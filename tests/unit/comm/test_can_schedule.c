@@ -259,8 +259,8 @@ static void test_farewell_is_a_demand_of_the_safe_current_with_the_output_off(vo
     struct quiesce_can_current_demand_t demand;
     can_frame_t frame;
     start(1000);
-    out.current_cmd_mA = 3000;
-    out.driver_enable = true;
+    out.damper[0].current_cmd_mA = 3000;
+    out.damper[0].driver_enable = true;
     (void)can_node_tick(&node, &tick, &out, &controller, frames);
     can_node_farewell(&node, 250, &frame);
     TEST_ASSERT_TRUE(is_well_made(&frame));

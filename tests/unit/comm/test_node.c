@@ -26,7 +26,7 @@ static uint32_t seed;
 static uint8_t operator_alive;
 
 static void write_command(void) {
-    driver = (driver_t){node.out.current_cmd_mA, node.out.driver_enable};
+    driver = (driver_t){node.out.damper[0].current_cmd_mA, node.out.damper[0].driver_enable};
 }
 
 static void start(node_enable_t enable) {
@@ -356,12 +356,12 @@ static void test_task_hands_parameters_over_before_anything_restarts(void) {
     TEST_ASSERT_EQUAL_INT32(300, quiesce_params_safe_current_mA(other));
     TEST_ASSERT_EQUAL_UINT32(0, node.restarts);
     TEST_ASSERT_EQUAL_MEMORY(&params, &node.params, sizeof params);
-    TEST_ASSERT_EQUAL_INT32(1500, node.out.current_cmd_mA);
+    TEST_ASSERT_EQUAL_INT32(1500, node.out.damper[0].current_cmd_mA);
     TEST_ASSERT_NULL(node_task(&node));
     node_restart(&node, other);
     TEST_ASSERT_EQUAL_UINT32(1, node.restarts);
-    TEST_ASSERT_EQUAL_INT32(300, node.out.current_cmd_mA);
-    TEST_ASSERT_TRUE(node.out.driver_enable);
+    TEST_ASSERT_EQUAL_INT32(300, node.out.damper[0].current_cmd_mA);
+    TEST_ASSERT_TRUE(node.out.damper[0].driver_enable);
 }
 
 static void test_tick_is_all_three_parts(void) {
@@ -378,8 +378,8 @@ static void test_tick_is_all_three_parts(void) {
         TEST_ASSERT_EQUAL_MEMORY(&node.out.telemetry, &other.out.telemetry,
                                  sizeof node.out.telemetry);
         TEST_ASSERT_EQUAL_MEMORY(&node.params, &other.params, sizeof node.params);
-        TEST_ASSERT_EQUAL_INT32(node.out.current_cmd_mA, other.out.current_cmd_mA);
-        TEST_ASSERT_EQUAL(node.out.driver_enable, other.out.driver_enable);
+        TEST_ASSERT_EQUAL_INT32(node.out.damper[0].current_cmd_mA, other.out.damper[0].current_cmd_mA);
+        TEST_ASSERT_EQUAL(node.out.damper[0].driver_enable, other.out.damper[0].driver_enable);
         TEST_ASSERT_EQUAL_UINT32(node.restarts, other.restarts);
         for (uint32_t k = 0; k < frame_count; k++) {
             TEST_ASSERT_EQUAL_HEX32(frames[k].id, others[k].id);

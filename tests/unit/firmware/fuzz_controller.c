@@ -165,14 +165,14 @@ static void check_output(const fuzz_t *fuzz, const quiesce_out_t *out) {
     REQUIRE(t->tick == fuzz->tick);
     REQUIRE(t->state <= QUIESCE_STATE_FAULT && t->fault < QUIESCE_FAULT_COUNT);
     REQUIRE(is_faulted(t->state) == (t->fault != QUIESCE_FAULT_NONE));
-    REQUIRE(out->current_cmd_mA == t->current_cmd_mA);
+    REQUIRE(out->damper[0].current_cmd_mA == t->current_cmd_mA);
     if (t->state == QUIESCE_STATE_RUN) {
-        REQUIRE(out->current_cmd_mA >= 0 && out->current_cmd_mA <= fuzz->params.max_current_mA);
+        REQUIRE(out->damper[0].current_cmd_mA >= 0 && out->damper[0].current_cmd_mA <= fuzz->params.max_current_mA);
     } else {
-        REQUIRE(out->current_cmd_mA == safe_mA);
+        REQUIRE(out->damper[0].current_cmd_mA == safe_mA);
     }
     const bool is_off = t->fault == QUIESCE_FAULT_ESTOP || t->fault == QUIESCE_FAULT_PARAMETER;
-    REQUIRE(out->driver_enable == !is_off);
+    REQUIRE(out->damper[0].driver_enable == !is_off);
     if (!fuzz->is_accepted) {
         REQUIRE(t->state == QUIESCE_STATE_FAULT && t->fault == QUIESCE_FAULT_PARAMETER);
     }
@@ -235,7 +235,7 @@ static void step(fuzz_t *fuzz, const stretch_t *stretch) {
     const quiesce_in_t in = {
         .tick = fuzz->tick,
         .sensor[0].counts = counts_at(fuzz, stretch),
-        .driver[0].current_mA = fuzz->last.current_cmd_mA + signal_noise(&fuzz->seed, stretch->noise),
+        .driver[0].current_mA = fuzz->last.damper[0].current_cmd_mA + signal_noise(&fuzz->seed, stretch->noise),
         .sensor[0].is_fresh =
             (stretch->flags & FLAG_DROPOUTS) == 0 || signal_noise(&fuzz->seed, 1000) > 0,
         .driver[0].is_measured = (stretch->flags & FLAG_CURRENT) != 0,

@@ -7,7 +7,10 @@ static condition_out_t out;
 
 static const condition_cfg_t config = {
     .tick_rate_Hz = 1000,
-    .scale_nm_s2 = 57751,
+    .scale = 57751,
+    .limit = CONDITION_ACCEL_LIMIT_um_s2,
+    .period_ticks = 1,
+    .max_lost_pct = 100,
     .offset_counts = 0,
     .polarity = 1,
     .full_scale_counts = 8388607,
@@ -35,7 +38,7 @@ static void step_good(uint32_t ticks) {
 static void test_scale_and_polarity(void) {
     step(0);
     step(1000000);
-    const int32_t plain_um_s2 = out.accel_um_s2;
+    const int32_t plain_um_s2 = out.value;
     TEST_ASSERT_INT32_WITHIN(1, 57751000, plain_um_s2);
 
     condition_cfg_t inverted = config;
@@ -43,13 +46,13 @@ static void test_scale_and_polarity(void) {
     condition_init(&condition, &inverted);
     step(0);
     step(1000000);
-    TEST_ASSERT_INT32_WITHIN(1, -plain_um_s2, out.accel_um_s2);
+    TEST_ASSERT_INT32_WITHIN(1, -plain_um_s2, out.value);
 }
 
 static void test_gravity_is_gone_from_the_second_sample_on(void) {
     for (uint32_t i = 0; i < 3000; i++) {
         step(170000 + (i % 2 ? 1 : -1)); // 1 g
-        TEST_ASSERT_INT32_WITHIN(i == 0 ? 10000000 : 60000, 0, out.accel_um_s2);
+        TEST_ASSERT_INT32_WITHIN(i == 0 ? 10000000 : 60000, 0, out.value);
     }
 }
 
@@ -57,8 +60,8 @@ static void test_offset_follows_slowly_and_a_tone_passes(void) {
     int32_t peak = 0;
     for (uint32_t i = 0; i < 6000; i++) {
         step(signal_sine(100000, 5000, i, 1000) + 3000000);
-        if (i > 4000 && out.accel_um_s2 > peak) {
-            peak = out.accel_um_s2;
+        if (i > 4000 && out.value > peak) {
+            peak = out.value;
         }
     }
     TEST_ASSERT_INT32_WITHIN(5775100 / 100, 5775100, peak);
@@ -66,13 +69,13 @@ static void test_offset_follows_slowly_and_a_tone_passes(void) {
 
 static void test_full_scale_saturates_at_the_limit(void) {
     condition_cfg_t coarse = config;
-    coarse.scale_nm_s2 = 1000000000;
+    coarse.scale = 1000000000;
     condition_init(&condition, &coarse);
     step(0);
     step(8388606);
-    TEST_ASSERT_EQUAL_INT32(CONDITION_LIMIT_um_s2, out.accel_um_s2);
+    TEST_ASSERT_EQUAL_INT32(CONDITION_ACCEL_LIMIT_um_s2, out.value);
     step(-8388606);
-    TEST_ASSERT_EQUAL_INT32(-CONDITION_LIMIT_um_s2, out.accel_um_s2);
+    TEST_ASSERT_EQUAL_INT32(-CONDITION_ACCEL_LIMIT_um_s2, out.value);
 }
 
 static void test_dropout_holds_the_last_sample_then_faults_after_the_age_limit(void) {
@@ -83,7 +86,7 @@ static void test_dropout_holds_the_last_sample_then_faults_after_the_age_limit(v
         TEST_ASSERT_EQUAL(CONDITION_LOST, out.flag);
         TEST_ASSERT_EQUAL(i > config.max_age_ticks, out.is_fault);
         // Held without moving the DC part; nothing once it is a fault.
-        TEST_ASSERT_INT32_WITHIN(30000, out.is_fault ? 0 : 7129707, out.accel_um_s2);
+        TEST_ASSERT_INT32_WITHIN(30000, out.is_fault ? 0 : 7129707, out.value);
         TEST_ASSERT_EQUAL_UINT32(i == 1u ? 997 : 0, out.good_ticks);
     }
     step(1);
@@ -181,7 +184,7 @@ static void test_a_few_repeating_values_are_quiet_until_the_noise_is_back(void) 
     }
     TEST_ASSERT_EQUAL_UINT32(1000, first_fault);
     TEST_ASSERT_EQUAL(CONDITION_QUIET, out.flag);
-    TEST_ASSERT_EQUAL_INT32(0, out.accel_um_s2);
+    TEST_ASSERT_EQUAL_INT32(0, out.value);
     TEST_ASSERT_EQUAL_UINT32(0, out.good_ticks);
     TEST_ASSERT_UINT32_WITHIN(60, 300, step_noisy(147, 900)); // each counts 2 to 4 limits
     TEST_ASSERT_FALSE(out.is_fault);
@@ -216,37 +219,37 @@ static void test_offset_is_learnt_anew_after_a_fault(void) {
     TEST_ASSERT_TRUE(out.is_fault);
     for (uint32_t i = 0; i < 300; i++) {
         step(i % 2 ? 170100 : 169900); // back, with 1 g on it
-        TEST_ASSERT_INT32_WITHIN(20000, 0, out.accel_um_s2);
+        TEST_ASSERT_INT32_WITHIN(20000, 0, out.value);
     }
 }
 
 static void test_raw_keeps_the_dc_part_holds_and_saturates(void) {
     condition_step(&condition, 5000, false, &out);
-    TEST_ASSERT_EQUAL_INT32(0, out.raw_um_s2); // nothing measured yet
+    TEST_ASSERT_EQUAL_INT32(0, out.raw); // nothing measured yet
     step(170000);
-    TEST_ASSERT_EQUAL_INT32(9817670, out.raw_um_s2); // 170000 x 57751 nm/s2
+    TEST_ASSERT_EQUAL_INT32(9817670, out.raw); // 170000 x 57751 nm/s2
     for (uint32_t i = 0; i < 20; i++) {
         condition_step(&condition, 5000, i % 2 == 1, &out);
-        TEST_ASSERT_EQUAL_INT32(i == 0 ? 9817670 : 288755, out.raw_um_s2);
+        TEST_ASSERT_EQUAL_INT32(i == 0 ? 9817670 : 288755, out.raw);
     }
     step(8388607); // full scale: a bad sample
-    TEST_ASSERT_EQUAL_INT32(288755, out.raw_um_s2);
+    TEST_ASSERT_EQUAL_INT32(288755, out.raw);
 
     condition_cfg_t inverted = config;
     inverted.polarity = -1;
-    inverted.scale_nm_s2 = 1000000000;
+    inverted.scale = 1000000000;
     condition_init(&condition, &inverted);
     step(8388606);
-    TEST_ASSERT_EQUAL_INT32(-CONDITION_LIMIT_um_s2, out.raw_um_s2);
+    TEST_ASSERT_EQUAL_INT32(-CONDITION_ACCEL_LIMIT_um_s2, out.raw);
 }
 
 static void test_silent_start_passes_nothing_on(void) {
     for (uint32_t i = 0; i < 500; i++) {
         condition_step(&condition, 0, false, &out);
-        TEST_ASSERT_EQUAL_INT32(0, out.accel_um_s2);
+        TEST_ASSERT_EQUAL_INT32(0, out.value);
     }
     step(170000);
-    TEST_ASSERT_EQUAL_INT32(0, out.accel_um_s2);
+    TEST_ASSERT_EQUAL_INT32(0, out.value);
 }
 
 int main(void) {

@@ -167,7 +167,7 @@ static void test_a_table_of_absurd_currents_stays_within_the_limits(void) {
     for (uint32_t i = 0; i < 3000u; i++) {
         const quiesce_out_t out = step();
         TEST_ASSERT_EQUAL_INT32(1000000, rules_mA());
-        TEST_ASSERT_TRUE(out.current_cmd_mA >= 0 && out.current_cmd_mA <= 5000);
+        TEST_ASSERT_TRUE(out.damper[0].current_cmd_mA >= 0 && out.damper[0].current_cmd_mA <= 5000);
     }
 }
 

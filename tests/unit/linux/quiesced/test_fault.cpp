@@ -67,7 +67,7 @@ class Rig {
         can_frame_t frames[CAN_NODE_MAX_FRAMES];
         (void)node_tick(node.get(), &inputs, frames);
         latch->after_tick(*node);
-        is_driver_enabled = node->out.driver_enable;
+        is_driver_enabled = node->out.damper[0].driver_enable;
         return node->out.telemetry.state;
     }
 
