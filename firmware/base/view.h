@@ -17,16 +17,16 @@
 #define VIEW_ACCEL (UINT64_C(1) << 0)
 #define VIEW_VELOCITY (UINT64_C(1) << 4)
 #define VIEW_DISPLACEMENT (UINT64_C(1) << 8)
-#define VIEW_STROKE (UINT64_C(1) << 12)
-#define VIEW_STROKE_VELOCITY (UINT64_C(1) << 16)
-#define VIEW_FORCE (UINT64_C(1) << 20)
-#define VIEW_CURRENT (UINT64_C(1) << 24)
-#define VIEW_VOLTAGE (UINT64_C(1) << 28)
-#define VIEW_TEMPERATURE (UINT64_C(1) << 32)
-#define VIEW_SUPPLY (UINT64_C(1) << 36)
-#define VIEW_RMS (UINT64_C(1) << 37)  ///< of the sensor that is tracked
-#define VIEW_TONE (UINT64_C(1) << 38) ///< its dominant component is known, or was a moment ago
-#define VIEW_LOCK (UINT64_C(1) << 39) ///< and is locked on to
+#define VIEW_SUPPLY (UINT64_C(1) << 12)
+#define VIEW_RMS (UINT64_C(1) << 13)  ///< of the sensor that is tracked
+#define VIEW_TONE (UINT64_C(1) << 14) ///< its dominant component is known, or was a moment ago
+#define VIEW_LOCK (UINT64_C(1) << 15) ///< and is locked on to
+#define VIEW_STROKE (UINT64_C(1) << 16)
+#define VIEW_STROKE_VELOCITY (UINT64_C(1) << 20)
+#define VIEW_FORCE (UINT64_C(1) << 24)
+#define VIEW_CURRENT (UINT64_C(1) << 28)
+#define VIEW_VOLTAGE (UINT64_C(1) << 32)
+#define VIEW_TEMPERATURE (UINT64_C(1) << 36)
 /// The same quantity of every body or damper that the board has.
 #define VIEW_EACH(quantity) ((quantity)*UINT64_C(15))
 

@@ -11,12 +11,35 @@ static void start(control_t *self) {
     }
 }
 
-void control_init(control_t *self, const quiesce_params_t *params) {
+// A need of every body or damper is one of those that there are.
+static uint64_t limited(uint64_t needs, uint64_t quantity, uint32_t count) {
+    const uint64_t each = VIEW_EACH(quantity);
+    const uint64_t beyond = each & ~(quantity * ((UINT64_C(1) << count) - 1u));
+    return (needs & each) == each ? needs & ~beyond : needs;
+}
+
+uint64_t needs_there(uint64_t needs, const places_t *places) {
+    static const uint64_t of_bodies[] = {VIEW_ACCEL, VIEW_VELOCITY, VIEW_DISPLACEMENT};
+    static const uint64_t of_dampers[] = {VIEW_STROKE,  VIEW_STROKE_VELOCITY, VIEW_FORCE,
+                                          VIEW_CURRENT, VIEW_VOLTAGE,         VIEW_TEMPERATURE};
+    for (uint32_t i = 0; i < sizeof of_bodies / sizeof of_bodies[0]; i++) {
+        needs = limited(needs, of_bodies[i], places->bodies);
+    }
+    for (uint32_t i = 0; i < sizeof of_dampers / sizeof of_dampers[0]; i++) {
+        needs = limited(needs, of_dampers[i], places->dampers);
+    }
+    return needs;
+}
+
+void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
     self->law = law_find(params->law);
+    self->needs = needs_there(self->law->needs, places);
     self->setup = (law_setup_t){
         .params = *params,
         .table = self->law->kind != NULL ? self->law->kind->shipped : NULL,
     };
+    self->blind_ticks = 0;
+    self->blind_most_ticks = ticks_in_ms(CONTROL_BLIND_ms, params->tick_rate_Hz);
     start(self);
 }
 
@@ -39,12 +62,18 @@ quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint
     return QUIESCE_TABLE_OK;
 }
 
-void control_step(control_t *self, const view_t *view, law_demand_t *out) {
-    const law_t *law = self->law;
-    if ((view->valid & law->needs) != law->needs ||
-        !law->step(self->state, &self->setup, view, out)) {
-        law_demand_all(out, self->setup.params.unlock_current_mA);
+bool control_sees(const control_t *self, const view_t *view) {
+    return (view->valid & self->needs) == self->needs;
+}
+
+bool control_step(control_t *self, const view_t *view, law_demand_t *out) {
+    if (control_sees(self, view) && self->law->step(self->state, &self->setup, view, out)) {
+        self->blind_ticks = 0;
+        return true;
     }
+    law_demand_all(out, self->setup.params.unlock_current_mA);
+    self->blind_ticks = view->is_output_on ? increment_sat_u32(self->blind_ticks) : 0u;
+    return self->blind_ticks <= self->blind_most_ticks;
 }
 
 void control_report(const control_t *self, int32_t word[QUIESCE_REPORT_WORDS]) {

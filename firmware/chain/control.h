@@ -3,22 +3,35 @@
 #define CONTROL_H
 
 #include "law.h"
+#include "sensing.h"
+
+/// How long a law may be without what it needs, on the unlock current, before that is a fault.
+#define CONTROL_BLIND_ms 100
 
 typedef struct {
     const law_t *law;
+    uint64_t needs; ///< of those that there are
     law_setup_t setup;
+    uint32_t blind_ticks; ///< in a row, with the output on
+    uint32_t blind_most_ticks;
     uint64_t state[LAW_STATE_BYTES / sizeof(uint64_t)];
 } control_t;
 
 /// The law of the parameters, which have been checked, with the table that ships, from rest.
-void control_init(control_t *self, const quiesce_params_t *params);
+void control_init(control_t *self, const places_t *places, const quiesce_params_t *params);
+
+/// What a law needs where these bodies and dampers are: VIEW_EACH is each of them.
+uint64_t needs_there(uint64_t needs, const places_t *places);
 
 /// Another table; NULL: the one that ships. A table that is refused changes nothing.
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count);
 
+/// Whether the law sees what it needs.
+bool control_sees(const control_t *self, const view_t *view);
+
 /// Requests in mA for each damper. Where the law does not see what it needs, or has no demand: the
-/// unlock current.
-void control_step(control_t *self, const view_t *view, law_demand_t *out);
+/// unlock current. Returns false iff that has lasted for longer than it may.
+bool control_step(control_t *self, const view_t *view, law_demand_t *out);
 
 /// As quiesce_report, quiesce_learnt_save and quiesce_learnt_load.
 void control_report(const control_t *self, int32_t word[QUIESCE_REPORT_WORDS]);

@@ -4,21 +4,22 @@
 #include <stddef.h>
 
 #include "control.h"
-#include "current_monitor.h"
-#include "guard.h"
+#include "drive.h"
 #include "signal_chain.h"
 #include "supervisor.h"
 
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
+// No driver that we know takes more.
+enum { HIGHEST_CURRENT_mA = 20000 };
+
 typedef struct {
     signal_chain_t signal;
     view_t view;
     control_t control;
     uint32_t recover_ticks; ///< of good samples before the output may be enabled
     supervisor_t supervisor;
-    current_monitor_t monitor;
-    guard_t guard;
-    int32_t last_command_mA;
+    drive_t drive[QUIESCE_DAMPERS];
+    law_demand_t request; ///< of the last tick
     uint32_t last_tick;
     uint32_t bad_sample_count;
     bool has_ticked;
@@ -28,41 +29,107 @@ _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
 _Static_assert(QUIESCE_PEAKS == ESTIMATOR_TONES, "telemetry holds the estimator's components");
 
-static void init_output(controller_t *self, const quiesce_params_t *p, bool is_accepted) {
-    const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : 1000u;
-    guard_init(&self->guard, &(guard_cfg_t){
-                                 .max_mA = p->max_current_mA,
-                                 .safe_mA = quiesce_params_safe_current_mA(p),
-                                 .slew_mA_s = p->slew_mA_s,
-                                 .tick_rate_Hz = rate_Hz,
-                             });
-    self->last_command_mA = self->guard.cfg.safe_mA;
-    const current_monitor_cfg_t monitor = {
-        .is_on = is_accepted && p->current_check == QUIESCE_CURRENT_CHECK_ON,
-        .tick_rate_Hz = rate_Hz,
-        .error_mA = p->current_error_mA,
-        .lag_ms = is_accepted ? p->current_lag_ms : 0,
-        .fault_ticks = (uint32_t)p->current_fault_ticks,
-    };
-    current_monitor_init(&self->monitor, &monitor, self->last_command_mA);
+static uint32_t dampers_of(const controller_t *self) {
+    return QUIESCE_DAMPERS == 1 ? 1u : self->signal.sensing.places.dampers;
+}
+
+// What the parameters say of one accelerometer and one damper.
+static quiesce_board_t board_of(const quiesce_params_t *p) {
+    const int32_t tick_us = 1000000 / p->tick_rate_Hz;
+    quiesce_board_t board;
+    quiesce_board_default(&board);
+    quiesce_board_sensor_t *sensor = &board.sensor[0];
+    sensor->axis = p->accel_axis;
+    sensor->polarity = p->accel_polarity;
+    sensor->scale = p->accel_scale_nm_s2;
+    sensor->offset_counts = p->accel_offset_counts;
+    sensor->full_scale_counts = p->accel_full_scale_counts;
+    sensor->max_age_us = p->sensor_max_age_ticks * tick_us;
+    sensor->stuck_us = p->sensor_stuck_ticks * tick_us;
+    sensor->min_noise_counts = p->sensor_min_noise_counts;
+    quiesce_board_damper_t *damper = &board.damper[0];
+    damper->ceiling_mA = HIGHEST_CURRENT_mA;
+    damper->measures_current = p->current_check == QUIESCE_CURRENT_CHECK_ON;
+    damper->coil_lag_us = p->current_lag_ms * 1000;
+    return board;
+}
+
+static void init(controller_t *self, const quiesce_board_t *board, const quiesce_params_t *params,
+                 const quiesce_params_t *used, bool is_accepted) {
+    *self = (controller_t){.view.may_learn = true};
+    signal_chain_init(&self->signal, board, used, law_find(used->law)->needs);
+    control_init(&self->control, &self->signal.sensing.places, used);
+    self->recover_ticks = (uint32_t)used->sensor_recover_ticks;
+    for (uint32_t i = 0; i < dampers_of(self); i++) {
+        drive_init(&self->drive[i], &board->damper[i], params, is_accepted);
+    }
     supervisor_init(&self->supervisor, is_accepted ? QUIESCE_FAULT_NONE : QUIESCE_FAULT_PARAMETER);
 }
 
 bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
-    controller_t *c = (controller_t *)(void *)self->opaque;
     const bool is_accepted = quiesce_params_check(params, NULL);
-    *c = (controller_t){.view.may_learn = true};
     // Where they are refused the chain still runs, on defaults; the supervisor lets nothing of it
     // out.
     quiesce_params_t used = *params;
     if (!is_accepted) {
         quiesce_params_default(&used);
     }
-    signal_chain_init(&c->signal, &used);
-    control_init(&c->control, &used);
-    c->recover_ticks = (uint32_t)used.sensor_recover_ticks;
-    init_output(c, params, is_accepted);
+    quiesce_board_t board = board_of(&used);
+    board.damper[0].safe_mA = quiesce_params_safe_current_mA(params);
+    init((controller_t *)(void *)self->opaque, &board, params, &used, is_accepted);
     return is_accepted;
+}
+
+bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
+                        const quiesce_params_t *params) {
+    quiesce_board_t used_board = *board;
+    quiesce_params_t used = *params;
+    bool is_accepted = quiesce_params_check(params, NULL);
+    if (!is_accepted) {
+        quiesce_params_default(&used);
+    }
+    if (!quiesce_board_check(board, NULL)) {
+        quiesce_board_default(&used_board);
+        is_accepted = false;
+    }
+    quiesce_signal_t missing;
+    is_accepted = is_accepted && !quiesce_missing(&used_board, used.law, &missing);
+    init((controller_t *)(void *)self->opaque, &used_board, &used, &used, is_accepted);
+    return is_accepted;
+}
+
+static const struct {
+    uint64_t quantity;
+    const char *name;
+    bool is_one;
+} signals[] = {
+    {VIEW_ACCEL, "acceleration", false},
+    {VIEW_VELOCITY, "velocity", false},
+    {VIEW_DISPLACEMENT, "displacement", false},
+    {VIEW_STROKE, "stroke", false},
+    {VIEW_STROKE_VELOCITY, "stroke velocity", false},
+    {VIEW_FORCE, "force", false},
+    {VIEW_CURRENT, "current", false},
+    {VIEW_VOLTAGE, "coil voltage", false},
+    {VIEW_TEMPERATURE, "temperature", false},
+    {VIEW_SUPPLY, "supply voltage", true},
+};
+
+bool quiesce_missing(const quiesce_board_t *board, int32_t index, quiesce_signal_t *missing) {
+    const law_t *law = law_find(index);
+    places_t places;
+    places_init(&places, board);
+    const uint64_t lacking =
+        law == NULL ? 0 : needs_there(law->needs, &places) & ~places_provide(&places);
+    for (uint32_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
+        for (int32_t at = 0; at < (signals[i].is_one ? 1 : 4); at++) {
+            if ((lacking & signals[i].quantity << at) != 0) {
+                *missing = (quiesce_signal_t){signals[i].name, signals[i].is_one ? -1 : at};
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
@@ -77,18 +144,34 @@ static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
     return sample->is_fault ? (quiesce_fault_t)fault_of[sample->flag] : QUIESCE_FAULT_NONE;
 }
 
-static quiesce_fault_t latched_fault(const quiesce_in_t *in, current_verdict_t verdict) {
+// The first fault of any driver.
+static quiesce_fault_t watch_drives(controller_t *self, const quiesce_in_t *in) {
     static const uint8_t fault_of[] = {
         [CURRENT_OK] = QUIESCE_FAULT_NONE,
         [CURRENT_NOT_FOLLOWING] = QUIESCE_FAULT_DRIVER_NOT_FOLLOWING,
         [CURRENT_OPEN_COIL] = QUIESCE_FAULT_COIL_OPEN,
         [CURRENT_MISSING] = QUIESCE_FAULT_CURRENT_LOST,
     };
+    quiesce_fault_t found = QUIESCE_FAULT_NONE;
+    for (uint32_t i = 0; i < dampers_of(self); i++) {
+        current_verdict_t verdict;
+        self->view.damper[i].current_mA = drive_watch(&self->drive[i], &in->driver[i], &verdict);
+        found = found == QUIESCE_FAULT_NONE ? (quiesce_fault_t)fault_of[verdict] : found;
+    }
+    return found;
+}
+
+static quiesce_fault_t latched_fault(const controller_t *self, const quiesce_in_t *in,
+                                     quiesce_fault_t current_fault) {
     if (in->estop) {
         return QUIESCE_FAULT_ESTOP;
     }
-    return in->driver[0].has_failed ? QUIESCE_FAULT_DRIVER_FAILED
-                                    : (quiesce_fault_t)fault_of[verdict];
+    for (uint32_t i = 0; i < dampers_of(self); i++) {
+        if (in->driver[i].has_failed) {
+            return QUIESCE_FAULT_DRIVER_FAILED;
+        }
+    }
+    return current_fault;
 }
 
 static bool is_tick_lost(controller_t *self, uint32_t tick) {
@@ -98,21 +181,50 @@ static bool is_tick_lost(controller_t *self, uint32_t tick) {
     return is_lost;
 }
 
-static void supervise(controller_t *self, const quiesce_in_t *in, const condition_out_t *sample,
-                      bool has_gap) {
-    const current_verdict_t verdict = current_monitor_step(
-        &self->monitor, self->last_command_mA, in->driver[0].current_mA, in->driver[0].is_measured);
-    const quiesce_fault_t lost = has_gap ? QUIESCE_FAULT_TICK_LOST : QUIESCE_FAULT_NONE;
-    const quiesce_fault_t sensor = sensor_fault(sample);
+typedef struct {
+    const condition_out_t *sample;
+    quiesce_fault_t current_fault;
+    bool has_gap;
+    bool is_blind; ///< for longer than the law may be
+} findings_t;
+
+static quiesce_fault_t clearing_fault(const findings_t *found) {
+    const quiesce_fault_t sensor = sensor_fault(found->sample);
+    if (sensor != QUIESCE_FAULT_NONE) {
+        return sensor;
+    }
+    if (found->has_gap) {
+        return QUIESCE_FAULT_TICK_LOST;
+    }
+    return found->is_blind ? QUIESCE_FAULT_LAW_BLIND : QUIESCE_FAULT_NONE;
+}
+
+static void supervise(controller_t *self, const quiesce_in_t *in, const findings_t *found) {
     const supervisor_in_t events = {
-        .clearing_fault = sensor != QUIESCE_FAULT_NONE ? sensor : lost,
-        .latched_fault = latched_fault(in, verdict),
-        .is_ready = sample->good_ticks >= self->recover_ticks,
+        .clearing_fault = clearing_fault(found),
+        .latched_fault = latched_fault(self, in, found->current_fault),
+        .is_ready = found->sample->good_ticks >= self->recover_ticks &&
+                    (self->supervisor.state == QUIESCE_STATE_RUN ||
+                     control_sees(&self->control, &self->view)),
         .enable = in->enable,
         .fault_reset = in->fault_reset,
     };
     if (supervisor_step(&self->supervisor, &events)) {
-        current_monitor_reset(&self->monitor);
+        for (uint32_t i = 0; i < dampers_of(self); i++) {
+            current_monitor_reset(&self->drive[i].monitor);
+        }
+    }
+}
+
+static void command(controller_t *self, quiesce_out_t *out) {
+    const bool is_allowed = supervisor_allows_output(&self->supervisor);
+    const bool driver_enable = supervisor_allows_driver(&self->supervisor);
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        out->damper[i] = (quiesce_command_t){0};
+        if (i < dampers_of(self)) {
+            drive_command(&self->drive[i], self->request.value[i], is_allowed, driver_enable,
+                          &out->damper[i]);
+        }
     }
 }
 
@@ -156,35 +268,30 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     quiesce_telemetry_t *t = &out->telemetry;
 
     const signal_chain_in_t signal_in = {
-        .accel_counts = in->sensor[0].counts,
-        .is_fresh = in->sensor[0].is_fresh,
+        .samples = in->sensor,
         .has_gap = is_tick_lost(c, in->tick),
         .wants_lock = c->control.law->wants_lock,
     };
     signal_chain_out_t signal;
     signal_chain_step(&c->signal, &signal_in, &c->view, &signal);
-    if (signal.sample.flag != CONDITION_GOOD) {
+    if (signal.sample->flag != CONDITION_GOOD) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
 
-    law_demand_t request;
+    findings_t found = {.sample = signal.sample, .has_gap = signal_in.has_gap};
+    found.current_fault = watch_drives(c, in);
     c->view.is_output_on = supervisor_allows_output(&c->supervisor);
-    control_step(&c->control, &c->view, &request);
-
-    supervise(c, in, &signal.sample, signal_in.has_gap);
-    out->damper[0].current_cmd_mA =
-        guard_step(&c->guard, request.value[0], supervisor_allows_output(&c->supervisor));
-    out->damper[0].driver_enable = supervisor_allows_driver(&c->supervisor);
-    // A driver that is switched off is expected to carry nothing.
-    c->last_command_mA = out->damper[0].driver_enable ? out->damper[0].current_cmd_mA : 0;
+    found.is_blind = !control_step(&c->control, &c->view, &c->request);
+    supervise(c, in, &found);
+    command(c, out);
 
     report(c, t);
     t->tick = in->tick;
-    t->accel_um_s2 = signal.sample.value;
+    t->accel_um_s2 = signal.sample->value;
     t->displacement_nm = signal.displacement_nm;
     t->velocity_um_s = motion_velocity_um_s(signal.velocity_um_s_q32);
     t->rms_um_s2 = signal.rms_um_s2;
-    t->current_law_mA = request.value[0];
+    t->current_law_mA = c->request.value[0];
     t->current_cmd_mA = out->damper[0].current_cmd_mA;
 }
 
@@ -223,4 +330,29 @@ const quiesce_word_t *quiesce_report_words(int32_t index) {
 
 void quiesce_report(const quiesce_t *self, int32_t word[QUIESCE_REPORT_WORDS]) {
     control_report(known_of(self), word);
+}
+
+void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out) {
+    const controller_t *c = (const controller_t *)(const void *)self->opaque;
+    *out = (quiesce_picture_t){
+        .valid = {(uint32_t)c->view.valid, (uint32_t)(c->view.valid >> 32)},
+        .supply_mV = c->view.supply_mV,
+    };
+    for (uint32_t i = 0; i < QUIESCE_BODIES; i++) {
+        const view_body_t *body = &c->view.body[i];
+        out->body[i].accel_um_s2 = body->accel_um_s2;
+        out->body[i].velocity_um_s = body->velocity_um_s;
+        out->body[i].displacement_nm = body->displacement_nm;
+    }
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        const view_damper_t *damper = &c->view.damper[i];
+        out->damper[i].stroke_nm = damper->stroke_nm;
+        out->damper[i].velocity_um_s = damper->velocity_um_s;
+        out->damper[i].force_mN = damper->force_mN;
+        out->damper[i].current_mA = damper->current_mA;
+        out->damper[i].voltage_mV = damper->voltage_mV;
+        out->damper[i].temperature_mdegC = damper->temperature_mdegC;
+        out->damper[i].current_law_mA = c->request.value[i];
+        out->damper[i].current_cmd_mA = drive_current_cmd_mA(&c->drive[i]);
+    }
 }

@@ -11,22 +11,11 @@ static uint32_t step_turn_of(int32_t freq_mHz, uint32_t rate_Hz) {
     return (uint32_t)(((uint64_t)(uint32_t)freq_mHz << 32) / (1000u * rate_Hz));
 }
 
-void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
+void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
+                       const quiesce_params_t *p, uint64_t needs) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
-    condition_init(&self->condition, &(condition_cfg_t){
-                                         .tick_rate_Hz = rate_Hz,
-                                         .scale = p->accel_scale_nm_s2,
-                                         .limit = CONDITION_ACCEL_LIMIT_um_s2,
-                                         .period_ticks = 1,
-                                         .max_lost_pct = 100,
-                                         .offset_counts = p->accel_offset_counts,
-                                         .polarity = p->accel_polarity,
-                                         .full_scale_counts = p->accel_full_scale_counts,
-                                         .max_age_ticks = (uint32_t)p->sensor_max_age_ticks,
-                                         .stuck_ticks = (uint32_t)p->sensor_stuck_ticks,
-                                         .min_noise_counts = (uint32_t)p->sensor_min_noise_counts,
-                                         .dc_cutoff_mHz = p->dc_cutoff_mHz,
-                                     });
+    sensing_init(&self->sensing, board, p, needs);
+    self->tracked = (uint8_t)board->tracked;
     rms_init(&self->rms, rate_Hz, (uint32_t)p->rms_window_ms);
     estimator_init(&self->estimator, &(estimator_cfg_t){
                                          .tick_rate_Hz = rate_Hz,
@@ -41,7 +30,6 @@ void signal_chain_init(signal_chain_t *self, const quiesce_params_t *p) {
                                              },
                                      });
     displacement_reset(&self->displacement);
-    motion_init(&self->motion, rate_Hz, p->velocity_cutoff_mHz);
     lock_in_init(&self->lock, rate_Hz);
     half_cycles_reset(&self->half_cycles);
     self->lowest_step_turn = step_turn_of(p->band_low_mHz, rate_Hz);
@@ -99,13 +87,13 @@ static void look_for_lock(signal_chain_t *self, const signal_chain_out_t *out) {
     if (half_cycles_step(&self->half_cycles, velocity_um_s, &tone) && !self->lock.is_locked &&
         tone.step_turn >= self->lowest_step_turn && tone.step_turn <= self->highest_step_turn &&
         out->rms_um_s2 >= self->min_accel_um_s2) {
-        lock_on(self, &out->sample, tone.phase_turn, tone.step_turn);
+        lock_on(self, out->sample, tone.phase_turn, tone.step_turn);
     }
 }
 
 // Locks on to what the estimator trusts, or to what looks alike, and holds on to it by itself.
 static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool has_gap) {
-    const condition_out_t *sample = &out->sample;
+    const condition_out_t *sample = out->sample;
     const estimator_t *estimator = &self->estimator;
     const predictor_tone_t *tone = &estimator->predictor.tone[0];
     if (sample->is_fault || has_gap) {
@@ -120,9 +108,8 @@ static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool ha
     }
 }
 
-// um/s, away from 0: never 0 where the state is not.
-static int32_t velocity_away_um_s(int64_t velocity_um_s_q32) {
-    return motion_velocity_um_s(velocity_um_s_q32 + (velocity_um_s_q32 > 0 ? UINT32_MAX : 0));
+static uint32_t tracked_of(const signal_chain_t *self) {
+    return QUIESCE_SENSORS == 1 ? 0 : self->tracked;
 }
 
 static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
@@ -130,7 +117,10 @@ static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out,
     // A short doubt must not make the command jump: that would itself change the vibration.
     const bool is_known = self->estimator.age_ticks <= self->hold_ticks;
     view->valid |= (is_known ? VIEW_TONE : 0) | (lock->is_locked ? VIEW_LOCK : 0);
+    const uint8_t at = self->sensing.places.sensor[tracked_of(self)].at;
+    view->valid |= self->sensing.channel[tracked_of(self)].condition.has_value ? VIEW_RMS : 0;
     view->tone = (view_tone_t){
+        .body = QUIESCE_BODIES == 1 ? 0 : at,
         .rms_um_s2 = out->rms_um_s2,
         .freq_uHz = self->estimator.tone[0].freq_uHz,
         .phase_turn = lock->phase_turn,
@@ -139,26 +129,20 @@ static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out,
     };
 }
 
-static void show(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
-    view->valid = self->condition.has_value ? VIEW_ACCEL | VIEW_VELOCITY | VIEW_RMS : 0;
-    view->body[0].accel_um_s2 = out->sample.value;
-    view->body[0].velocity_um_s = velocity_away_um_s(out->velocity_um_s_q32);
-    show_tone(self, out, view);
-}
-
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t *view,
                        signal_chain_out_t *out) {
-    condition_step(&self->condition, in->accel_counts, in->is_fresh, &out->sample);
-    if (out->sample.is_fault) {
+    sensing_step(&self->sensing, in->samples, view);
+    const channel_t *channel = &self->sensing.channel[tracked_of(self)];
+    out->sample = &channel->sample;
+    out->velocity_um_s_q32 = channel->velocity_um_s_q32;
+    if (out->sample->is_fault) {
         // What was taken in before the fault was seen must not outlive it.
         rms_reset(&self->rms);
-        motion_reset(&self->motion);
     }
-    out->rms_um_s2 = rms_step(&self->rms, out->sample.value);
-    out->displacement_nm = follow(self, &out->sample, in->has_gap);
-    out->velocity_um_s_q32 = motion_step(&self->motion, out->sample.value);
+    out->rms_um_s2 = rms_step(&self->rms, out->sample->value);
+    out->displacement_nm = follow(self, out->sample, in->has_gap);
     if (in->wants_lock) {
         hold_on(self, out, in->has_gap);
     }
-    show(self, out, view);
+    show_tone(self, out, view);
 }

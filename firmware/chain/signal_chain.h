@@ -1,24 +1,23 @@
-/// The sensing half of the controller, wired: condition, rms, estimator, displacement, motion and,
-/// for laws that use it, the lock on the dominant component. It writes what laws see.
+/// The sensing half of the controller, wired: all sensors, and of the accelerometer that is tracked
+/// rms, estimator, displacement and, for laws that use it, the lock on the dominant component. It
+/// writes what laws see.
 #ifndef SIGNAL_CHAIN_H
 #define SIGNAL_CHAIN_H
 
-#include "condition.h"
 #include "displacement.h"
 #include "estimator.h"
 #include "half_cycles.h"
 #include "lock_in.h"
-#include "motion.h"
 #include "quiesce_params.h"
 #include "rms.h"
-#include "view.h"
+#include "sensing.h"
 
 typedef struct {
-    condition_t condition;
+    sensing_t sensing;
+    uint8_t tracked; ///< sensor
     rms_t rms;
     estimator_t estimator;
     displacement_t displacement;
-    motion_t motion;
     lock_in_t lock;
     half_cycles_t half_cycles;
     uint32_t lowest_step_turn; ///< of the band, a tick
@@ -28,24 +27,25 @@ typedef struct {
 } signal_chain_t;
 
 typedef struct {
-    int32_t accel_counts; ///< ignored unless is_fresh
-    bool is_fresh;
-    bool has_gap;    ///< ticks were lost before this one
-    bool wants_lock; ///< the dominant component is to be locked on to
+    const quiesce_sample_t *samples; ///< QUIESCE_SENSORS of them
+    bool has_gap;                    ///< ticks were lost before this one
+    bool wants_lock;                 ///< the dominant component is to be locked on to
 } signal_chain_in_t;
 
+/// Of the sensor that is tracked.
 typedef struct {
-    condition_out_t sample;
+    const condition_out_t *sample;
     int32_t rms_um_s2;
     int64_t velocity_um_s_q32;
     int32_t displacement_nm;
 } signal_chain_out_t;
 
-/// Starts from rest. The parameters have been checked.
-void signal_chain_init(signal_chain_t *self, const quiesce_params_t *params);
+/// Starts from rest. Board and parameters have been checked; needs: as in sensing_init.
+void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
+                       const quiesce_params_t *params, uint64_t needs);
 
 /// One tick. What is known of the components is read from self->estimator; of *view, all but
-/// is_output_on and may_learn is written.
+/// is_output_on, may_learn and the dampers' currents is written.
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t *view,
                        signal_chain_out_t *out);
 

@@ -3,7 +3,7 @@
 void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,
                           int32_t initial_mA) {
     // Backward Euler of the lag: 1 / (1 + lag in ticks).
-    const int64_t lag_milliticks = (int64_t)cfg->lag_ms * cfg->tick_rate_Hz;
+    const int64_t lag_milliticks = (int64_t)cfg->lag_us * cfg->tick_rate_Hz / 1000;
     *self = (current_monitor_t){
         .cfg = *cfg,
         .lag_gain_q16 = (int32_t)(INT64_C(65536000) / (1000 + lag_milliticks)),

@@ -20,7 +20,7 @@ typedef struct {
     bool is_on;
     uint32_t tick_rate_Hz;
     int32_t error_mA;
-    int32_t lag_ms;
+    int32_t lag_us;
     uint32_t fault_ticks;
 } current_monitor_cfg_t;
 
@@ -38,6 +38,11 @@ void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *
 /// Verdict after this tick's measurement. command_mA is the command that was in force up to now.
 current_verdict_t current_monitor_step(current_monitor_t *self, int32_t command_mA,
                                        int32_t measured_mA, bool is_measured);
+
+/// What should flow now, mA.
+static inline int32_t current_monitor_expected_mA(const current_monitor_t *self) {
+    return (int32_t)(self->expected_mA_q16 >> 16);
+}
 
 /// Forgets runs of deviations (a latched fault has been acknowledged).
 void current_monitor_reset(current_monitor_t *self);

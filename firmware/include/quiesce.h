@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "quiesce_board.h"
 #include "quiesce_params.h"
-#include "quiesce_size.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -43,6 +43,7 @@ typedef enum {
     QUIESCE_FAULT_ESTOP = 10,         ///< emergency stop (latched)
     QUIESCE_FAULT_SENSOR_QUIET = 11,  ///< less noise than sensor_min_noise_counts over a second
     QUIESCE_FAULT_DRIVER_FAILED = 12, ///< the current driver says so or takes no command (latched)
+    QUIESCE_FAULT_LAW_BLIND = 13,     ///< a signal that the law needs is not valid
     QUIESCE_FAULT_COUNT
 } quiesce_fault_t;
 
@@ -115,16 +116,52 @@ typedef struct {
 } quiesce_out_t;
 
 /// Controller state, owned by the caller; contents are private. Copying it copies the controller.
-#define QUIESCE_STATE_BYTES 12288
+#define QUIESCE_STATE_BYTES                                                                        \
+    (12288 + 512 * (QUIESCE_SENSORS - 1) + 64 * (QUIESCE_BODIES - 1) + 256 * (QUIESCE_DAMPERS - 1))
 typedef struct {
     uint64_t opaque[QUIESCE_STATE_BYTES / 8];
 } quiesce_t;
 
-/// Starts the controller from rest with a copy of the parameters.
+/// Starts the controller from rest with a copy of the parameters: one accelerometer and one damper
+/// to the ground, as they say (accel_*, sensor_*, safe_current_mA, current_*).
 /// Returns false iff quiesce_params_check refuses them; the controller is then in FAULT with
 /// QUIESCE_FAULT_PARAMETER and commands quiesce_params_safe_current_mA. Call it before the first
 /// step.
 bool quiesce_init(quiesce_t *self, const quiesce_params_t *params);
+
+/// The same with the sensors and dampers of a board, which take the place of those parameters.
+/// Returns false, with that fault, also where quiesce_board_check refuses the board, or where
+/// quiesce_missing names a signal; it then commands the board's safe currents.
+bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
+                        const quiesce_params_t *params);
+
+/// A signal, for a message.
+typedef struct {
+    const char *name; ///< "stroke", "force", ..
+    int32_t at;       ///< of which body or damper, from 0; -1: there is one only
+} quiesce_signal_t;
+
+/// The first signal that a law (by the value of its parameter) needs and no sensor of a board, which
+/// has been checked, provides. Returns false iff there is none.
+bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing);
+
+/// What the controller makes of its sensors: all bodies and dampers that there can be, so that the
+/// layout is the same in every build. 32-bit words only.
+typedef struct {
+    uint32_t valid[2]; ///< bits of VIEW_ in firmware/base/view.h, low word first
+    int32_t supply_mV;
+    struct {
+        int32_t accel_um_s2, velocity_um_s, displacement_nm;
+    } body[QUIESCE_MAX_BODIES];
+    struct {
+        int32_t stroke_nm, velocity_um_s, force_mN, current_mA, voltage_mV, temperature_mdegC;
+        int32_t current_law_mA; ///< what the law requests
+        int32_t current_cmd_mA; ///< what leaves the guard
+    } damper[QUIESCE_MAX_DAMPERS];
+} quiesce_picture_t;
+
+/// Of the last step. Made when it is asked for, some 200 instructions.
+void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out);
 
 /// One control tick. Bounded; safe in an interrupt. Writes all of *out.
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);

@@ -100,18 +100,20 @@ static int32_t without_dc(condition_t *self, condition_flag_t flag) {
 
 // Whether a sample came, or one is missing.
 static bool is_due(condition_t *self, bool is_fresh) {
-    self->waited_ticks = is_fresh ? 0 : increment_sat_u32(self->waited_ticks);
-    return is_fresh || self->waited_ticks >= self->cfg.period_ticks;
+    if (is_fresh || self->cfg.period_ticks == 1u) {
+        self->waited_ticks = 0;
+        return true;
+    }
+    self->waited_ticks = increment_sat_u32(self->waited_ticks);
+    return self->waited_ticks >= self->cfg.period_ticks;
 }
 
 // An average over some 256 samples, floor.
-static bool is_over_budget(condition_t *self, bool is_lost) {
-    if (self->cfg.max_lost_pct >= 100u) {
-        return false;
-    }
+static void follow_losses(condition_t *self) {
+    const bool is_lost = self->flag == CONDITION_LOST;
     self->lost_q16 += is_lost ? (65536u - self->lost_q16) / 256u : 0u;
     self->lost_q16 -= is_lost ? 0u : (self->lost_q16 + 255u) / 256u;
-    return self->lost_q16 > self->cfg.max_lost_pct * 65536u / 100u;
+    self->is_sparse = self->lost_q16 > self->cfg.max_lost_pct * 65536u / 100u;
 }
 
 static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
@@ -130,7 +132,9 @@ void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_
     if (is_due(self, is_fresh)) {
         self->flag = classify(self, counts, is_fresh);
         judge(self, counts, self->flag);
-        self->is_sparse = is_over_budget(self, self->flag == CONDITION_LOST);
+        if (self->cfg.max_lost_pct < 100u) {
+            follow_losses(self);
+        }
     }
     out->flag = self->is_sparse && self->flag == CONDITION_GOOD ? CONDITION_LOST : self->flag;
     const bool is_dead = out->flag == CONDITION_STUCK || out->flag == CONDITION_QUIET;

@@ -11,7 +11,7 @@ static supervisor_t supervisor;
 static const guard_cfg_t guard_cfg = {
     .max_mA = 5000, .safe_mA = 700, .slew_mA_s = 1000000, .tick_rate_Hz = 1000};
 static const current_monitor_cfg_t monitor_cfg = {
-    .is_on = true, .tick_rate_Hz = 1000, .error_mA = 500, .lag_ms = 5, .fault_ticks = 20};
+    .is_on = true, .tick_rate_Hz = 1000, .error_mA = 500, .lag_us = 5000, .fault_ticks = 20};
 
 void setUp(void) {
     guard_init(&guard, &guard_cfg);

@@ -1,0 +1,65 @@
+/// All sensors of a board, each tick: their samples conditioned, velocity and displacement from
+/// accelerations, strokes from bodies, everything with its bit of validity in the view.
+///
+/// What is measured takes the place of what would be computed. With one sensor, body and damper in
+/// the build all loops vanish.
+#ifndef SENSING_H
+#define SENSING_H
+
+#include "condition.h"
+#include "motion.h"
+#include "position.h"
+#include "quiesce.h"
+#include "quiesce_board.h"
+#include "view.h"
+
+/// A sensor; motion and position of an accelerometer only.
+typedef struct {
+    condition_t condition;
+    condition_out_t sample;    ///< of this tick
+    int64_t velocity_um_s_q32; ///< likewise
+    motion_t motion;
+    position_t position;
+} channel_t;
+
+/// Where a sensor measures what; between which bodies a damper is.
+typedef struct {
+    uint8_t sense; ///< quiesce_sense_t
+    uint8_t at;
+} sensor_place_t;
+
+typedef struct {
+    uint8_t end_a;
+    uint8_t end_b; ///< or QUIESCE_GROUND
+} damper_place_t;
+
+typedef struct {
+    sensor_place_t sensor[QUIESCE_SENSORS];
+    damper_place_t damper[QUIESCE_DAMPERS];
+    uint8_t sensors; ///< in use
+    uint8_t bodies;
+    uint8_t dampers;
+} places_t;
+
+typedef struct {
+    places_t places;
+    bool has_strokes; ///< strokes and displacements are computed
+    channel_t channel[QUIESCE_SENSORS];
+} sensing_t;
+
+/// Of a board that has been checked.
+void places_init(places_t *self, const quiesce_board_t *board);
+
+/// What sensors there can provide: the bits that can ever be valid, those of tone, RMS, lock and
+/// currents included.
+uint64_t places_provide(const places_t *self);
+
+/// Starts from rest. Board and parameters have been checked. needs: VIEW_ bits; with a single body
+/// displacement and stroke are computed only where there is one of them among these.
+void sensing_init(sensing_t *self, const quiesce_board_t *board, const quiesce_params_t *params,
+                  uint64_t needs);
+
+/// One tick: writes bodies, dampers but for their currents, supply, and all their bits.
+void sensing_step(sensing_t *self, const quiesce_sample_t samples[QUIESCE_SENSORS], view_t *view);
+
+#endif
