@@ -211,5 +211,8 @@ bool quiesce_board_check(const quiesce_board_t *board, quiesce_board_error_t *er
         board->sensor[board->tracked].sense != QUIESCE_SENSE_ACCEL) {
         return refuse(at, "tracked", "names no accelerometer");
     }
+    if (board->sensor[board->tracked].period_us != 0) {
+        return refuse(at, "tracked", "names a sensor without a sample every tick");
+    }
     return true;
 }

@@ -121,9 +121,12 @@ static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
         take_good_sample(self, counts);
         return;
     }
-    self->bad_ticks = increment_sat_u32(self->bad_ticks);
     // A single missing sample now and then is how a sensor's clock meets ours, no illness.
-    const bool is_slip = flag == CONDITION_LOST && self->bad_ticks == 1u;
+    const bool is_slip = flag == CONDITION_LOST && self->bad_ticks == 0u;
+    self->bad_ticks = increment_sat_u32(self->bad_ticks);
+    if (self->bad_ticks < self->waited_ticks) {
+        self->bad_ticks = self->waited_ticks; // the age of what is held
+    }
     self->good_ticks =
         is_slip && self->good_ticks > SLIP_COSTS_TICKS ? self->good_ticks - SLIP_COSTS_TICKS : 0u;
 }

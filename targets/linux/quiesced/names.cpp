@@ -27,7 +27,8 @@ constexpr std::array<const char *, 13> kFaults = {"NONE",
                                                   "TICK_LOST",
                                                   "ESTOP",
                                                   "SENSOR_QUIET",
-                                                  "DRIVER_FAILED"};
+                                                  "DRIVER_FAILED",
+                                                  "LAW_BLIND"};
 static_assert(kFaults.size() == QUIESCE_FAULT_COUNT, "every fault has a name");
 
 template <std::size_t Count>

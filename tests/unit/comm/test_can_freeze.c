@@ -43,7 +43,7 @@ static uint32_t drop_pages(void) {
 }
 
 static void fill_healthy_tick(void) {
-    out = (quiesce_out_t){.current_cmd_mA = 2100, .driver_enable = true};
+    out = (quiesce_out_t){.damper = {{.current_cmd_mA = 2100, .driver_enable = true}}};
     out.telemetry.state = QUIESCE_STATE_RUN;
     out.telemetry.tick = 70000;
     out.telemetry.current_law_mA = 2500;

@@ -158,7 +158,7 @@ static can_frame_t next(uint32_t message) {
 }
 
 static void fill(int32_t word) {
-    out = (quiesce_out_t){.current_cmd_mA = word, .driver_enable = true};
+    out = (quiesce_out_t){.damper = {{.current_cmd_mA = word, .driver_enable = true}}};
     uint32_t *words = (uint32_t *)(void *)&out.telemetry;
     for (uint32_t i = 0; i < sizeof out.telemetry / 4u; i++) {
         words[i] = (uint32_t)word;
