@@ -15,7 +15,7 @@ namespace quiesced {
 namespace {
 
 constexpr std::array<const char *, 5> kStates = {"INIT", "IDLE", "RUN", "SAFE", "FAULT"};
-constexpr std::array<const char *, 13> kFaults = {"NONE",
+constexpr std::array<const char *, 14> kFaults = {"NONE",
                                                   "PARAMETER",
                                                   "SENSOR_LOST",
                                                   "SENSOR_SATURATED",
