@@ -101,7 +101,8 @@ static bool pack(can_node_t *self, uint32_t message, const can_node_tick_t *tick
     const bool is_streaming = self->service.raw_ms > 0u;
     switch (message) {
     case QUIESCE_CAN_AT_CURRENT_DEMAND:
-        can_pack_demand(t->state, out->damper[0].current_cmd_mA, out->damper[0].driver_enable, frame);
+        can_pack_demand(t->state, out->damper[0].current_cmd_mA, out->damper[0].driver_enable,
+                        frame);
         return true;
     case QUIESCE_CAN_AT_STATUS:
         can_pack_status(tick, t, is_streaming, frame);

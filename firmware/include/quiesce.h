@@ -141,8 +141,8 @@ typedef struct {
     int32_t at;       ///< of which body or damper, from 0; -1: there is one only
 } quiesce_signal_t;
 
-/// The first signal that a law (by the value of its parameter) needs and no sensor of a board, which
-/// has been checked, provides. Returns false iff there is none.
+/// The first signal that a law (by the value of its parameter) needs and no sensor of a board,
+/// which has been checked, provides. Returns false iff there is none.
 bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing);
 
 /// What the controller makes of its sensors: all bodies and dampers that there can be, so that the

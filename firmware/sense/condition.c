@@ -109,8 +109,7 @@ static bool is_due(condition_t *self, bool is_fresh) {
 }
 
 // An average over some 256 samples, floor.
-static void follow_losses(condition_t *self) {
-    const bool is_lost = self->flag == CONDITION_LOST;
+static void follow_losses(condition_t *self, bool is_lost) {
     self->lost_q16 += is_lost ? (65536u - self->lost_q16) / 256u : 0u;
     self->lost_q16 -= is_lost ? 0u : (self->lost_q16 + 255u) / 256u;
     self->is_sparse = self->lost_q16 > self->cfg.max_lost_pct * 65536u / 100u;
@@ -132,21 +131,26 @@ static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
 }
 
 void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_out_t *out) {
+    condition_flag_t flag = self->flag;
     if (is_due(self, is_fresh)) {
-        self->flag = classify(self, counts, is_fresh);
-        judge(self, counts, self->flag);
+        flag = classify(self, counts, is_fresh);
+        judge(self, counts, flag);
+        self->flag = flag;
         if (self->cfg.max_lost_pct < 100u) {
-            follow_losses(self);
+            follow_losses(self, flag == CONDITION_LOST);
         }
     }
-    out->flag = self->is_sparse && self->flag == CONDITION_GOOD ? CONDITION_LOST : self->flag;
-    const bool is_dead = out->flag == CONDITION_STUCK || out->flag == CONDITION_QUIET;
-    out->is_fault = is_dead || self->is_sparse || self->bad_ticks > self->cfg.max_age_ticks;
+    if (self->is_sparse && flag == CONDITION_GOOD) {
+        flag = CONDITION_LOST;
+    }
+    const bool is_dead = flag == CONDITION_STUCK || flag == CONDITION_QUIET || self->is_sparse;
+    out->flag = flag;
+    out->is_fault = is_dead || self->bad_ticks > self->cfg.max_age_ticks;
     if (out->is_fault) {
         // The sensor may come back with another offset: the DC part is learnt anew.
         self->has_value = false;
     }
-    out->value = without_dc(self, is_fresh ? out->flag : CONDITION_LOST);
+    out->value = without_dc(self, is_fresh ? flag : CONDITION_LOST);
     out->raw = self->held;
     out->good_ticks = self->good_ticks;
 }

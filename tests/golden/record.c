@@ -6,8 +6,8 @@
 
 // Every field by its name, in this order whatever the layout of the structure.
 #define RECORD_FIELDS(X)                                                                           \
-    X(out_current_cmd_mA, out->damper[0].current_cmd_mA)                                                     \
-    X(out_driver_enable, out->damper[0].driver_enable)                                                       \
+    X(out_current_cmd_mA, out->damper[0].current_cmd_mA)                                           \
+    X(out_driver_enable, out->damper[0].driver_enable)                                             \
     X(tick, t->tick)                                                                               \
     X(state, t->state)                                                                             \
     X(fault, t->fault)                                                                             \

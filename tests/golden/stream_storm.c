@@ -153,14 +153,15 @@ static void sense(stream_t *self, const storm_t *s) {
 
 // The coil follows what was commanded a tick ago.
 static void measure(stream_t *self, storm_t *s) {
-    const int32_t command_mA = self->out.damper[0].driver_enable ? self->out.damper[0].current_cmd_mA : 0;
+    const int32_t command_mA =
+        self->out.damper[0].driver_enable ? self->out.damper[0].current_cmd_mA : 0;
     const int32_t lag_ticks = self->params.current_lag_ms * self->params.tick_rate_Hz / 1000;
     s->coil_mA_q8 += (command_mA * 256 - s->coil_mA_q8) / (1 + lag_ticks);
     const int32_t coil_mA = s->coil_mA_q8 / 256;
     self->in.driver[0].is_measured = s->coil != COIL_UNKNOWN;
     self->in.driver[0].current_mA = s->coil == COIL_OPEN     ? open_coil_mA(self)
-                               : s->coil == COIL_OFF_BY ? coil_mA + s->off_by_mA
-                                                        : coil_mA;
+                                    : s->coil == COIL_OFF_BY ? coil_mA + s->off_by_mA
+                                                             : coil_mA;
 }
 
 static void draw_input(stream_t *self, storm_t *s) {

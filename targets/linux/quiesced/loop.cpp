@@ -228,8 +228,8 @@ void Loop::tick(std::uint32_t elapsed) {
         restart(*params);
     }
     send();
-    board_.write_lines(node_.out.damper[0].driver_enable, node_.out.telemetry.fault != QUIESCE_FAULT_NONE,
-                       is_due_each_second());
+    board_.write_lines(node_.out.damper[0].driver_enable,
+                       node_.out.telemetry.fault != QUIESCE_FAULT_NONE, is_due_each_second());
     latch_.after_tick(node_);
     after_restart();
     board_.look_after(rate_Hz_, is_due_each_second(), changes_);

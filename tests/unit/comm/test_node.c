@@ -378,7 +378,8 @@ static void test_tick_is_all_three_parts(void) {
         TEST_ASSERT_EQUAL_MEMORY(&node.out.telemetry, &other.out.telemetry,
                                  sizeof node.out.telemetry);
         TEST_ASSERT_EQUAL_MEMORY(&node.params, &other.params, sizeof node.params);
-        TEST_ASSERT_EQUAL_INT32(node.out.damper[0].current_cmd_mA, other.out.damper[0].current_cmd_mA);
+        TEST_ASSERT_EQUAL_INT32(node.out.damper[0].current_cmd_mA,
+                                other.out.damper[0].current_cmd_mA);
         TEST_ASSERT_EQUAL(node.out.damper[0].driver_enable, other.out.damper[0].driver_enable);
         TEST_ASSERT_EQUAL_UINT32(node.restarts, other.restarts);
         for (uint32_t k = 0; k < frame_count; k++) {

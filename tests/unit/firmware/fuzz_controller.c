@@ -167,7 +167,8 @@ static void check_output(const fuzz_t *fuzz, const quiesce_out_t *out) {
     REQUIRE(is_faulted(t->state) == (t->fault != QUIESCE_FAULT_NONE));
     REQUIRE(out->damper[0].current_cmd_mA == t->current_cmd_mA);
     if (t->state == QUIESCE_STATE_RUN) {
-        REQUIRE(out->damper[0].current_cmd_mA >= 0 && out->damper[0].current_cmd_mA <= fuzz->params.max_current_mA);
+        REQUIRE(out->damper[0].current_cmd_mA >= 0 &&
+                out->damper[0].current_cmd_mA <= fuzz->params.max_current_mA);
     } else {
         REQUIRE(out->damper[0].current_cmd_mA == safe_mA);
     }
@@ -235,7 +236,8 @@ static void step(fuzz_t *fuzz, const stretch_t *stretch) {
     const quiesce_in_t in = {
         .tick = fuzz->tick,
         .sensor[0].counts = counts_at(fuzz, stretch),
-        .driver[0].current_mA = fuzz->last.damper[0].current_cmd_mA + signal_noise(&fuzz->seed, stretch->noise),
+        .driver[0].current_mA =
+            fuzz->last.damper[0].current_cmd_mA + signal_noise(&fuzz->seed, stretch->noise),
         .sensor[0].is_fresh =
             (stretch->flags & FLAG_DROPOUTS) == 0 || signal_noise(&fuzz->seed, 1000) > 0,
         .driver[0].is_measured = (stretch->flags & FLAG_CURRENT) != 0,

@@ -46,7 +46,8 @@ static void test_board_good_ones(void) {
     TEST_ASSERT_TRUE(quiesce_board_check(&board, NULL));
 }
 
-#define FIELD(type, name, low, high) {offsetof(type, name), #name, low, high}
+#define FIELD(type, name, low, high)                                                               \
+    { offsetof(type, name), #name, low, high }
 
 typedef struct {
     size_t offset;

@@ -1,5 +1,5 @@
-// The controller with more than one sensor, body and damper, as a build for 8, 4 and 4 has it. A law
-// of the test's own takes the place of the others: it needs the strokes of all dampers.
+// The controller with more than one sensor, body and damper, as a build for 8, 4 and 4 has it. A
+// law of the test's own takes the place of the others: it needs the strokes of all dampers.
 #include <stddef.h>
 #include <string.h>
 
@@ -30,7 +30,7 @@ static bool step_law(void *state, const law_setup_t *setup, const view_t *view, 
 
 static void report_law(const void *state, const law_setup_t *setup, int32_t *word) {
     (void)setup;
-    word[0] = (int32_t)*(const uint32_t *)state;
+    word[0] = (int32_t) * (const uint32_t *)state;
 }
 
 static law_t test_law = {
@@ -97,9 +97,8 @@ static void tick(void) {
     in.tick++;
     in.sensor[0] = (quiesce_sample_t){
         signal_sine(17316, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20), true};
-    in.sensor[1] =
-        (quiesce_sample_t){signal_sine(20000, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20),
-                           true};
+    in.sensor[1] = (quiesce_sample_t){
+        signal_sine(20000, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20), true};
     in.sensor[2] = (quiesce_sample_t){signal_sine(3000, 5000, in.tick, RATE_Hz), true};
     quiesce_step(&controller, &in, &out);
     quiesce_picture(&controller, &picture);
@@ -228,7 +227,7 @@ static void test_many_a_blind_law_falls_back_then_faults_and_comes_back(void) {
     int32_t later[QUIESCE_REPORT_WORDS];
     quiesce_report(&controller, later);
     TEST_ASSERT_EQUAL_INT32(steps[0], later[0]); // not stepped once
-    lose_the_stroke(1000); // neither idle nor running by itself
+    lose_the_stroke(1000);                       // neither idle nor running by itself
     TEST_ASSERT_EQUAL_UINT32(1, out.telemetry.fault_count);
     TEST_ASSERT_EQUAL_INT32(250, out.damper[0].current_cmd_mA);
     run(1000);

@@ -139,8 +139,8 @@ static void disturb(cost_stimulus_t *self, quiesce_in_t *in) {
         in->sensor[0].is_fresh = third != 1u;
         break;
     case STUCK:
-        self->held_counts =
-            2u * self->tick_in_segment < self->segment_ticks ? in->sensor[0].counts : self->held_counts;
+        self->held_counts = 2u * self->tick_in_segment < self->segment_ticks ? in->sensor[0].counts
+                                                                             : self->held_counts;
         in->sensor[0].counts = self->held_counts;
         break;
     case RANGE:
@@ -149,7 +149,8 @@ static void disturb(cost_stimulus_t *self, quiesce_in_t *in) {
         }
         break;
     case GLITCH:
-        in->sensor[0].counts = random_below(self, 50) == 0 ? FULL_SCALE_COUNTS : in->sensor[0].counts;
+        in->sensor[0].counts =
+            random_below(self, 50) == 0 ? FULL_SCALE_COUNTS : in->sensor[0].counts;
         break;
     case GAPS:
         self->tick += random_below(self, 150) == 0 ? 3u : 0u;
