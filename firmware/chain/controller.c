@@ -54,8 +54,9 @@ static quiesce_board_t board_of(const quiesce_params_t *p) {
     return board;
 }
 
-static void init(controller_t *self, const quiesce_board_t *board, const quiesce_params_t *params,
-                 const quiesce_params_t *used, bool is_accepted) {
+static void start_all(controller_t *self, const quiesce_board_t *board,
+                      const quiesce_params_t *params, const quiesce_params_t *used,
+                      bool is_accepted) {
     *self = (controller_t){.view.may_learn = true};
     signal_chain_init(&self->signal, board, used, law_find(used->law)->needs);
     control_init(&self->control, &self->signal.sensing.places, used);
@@ -76,7 +77,7 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
     }
     quiesce_board_t board = board_of(&used);
     board.damper[0].safe_mA = quiesce_params_safe_current_mA(params);
-    init((controller_t *)(void *)self->opaque, &board, params, &used, is_accepted);
+    start_all((controller_t *)(void *)self->opaque, &board, params, &used, is_accepted);
     return is_accepted;
 }
 
@@ -94,7 +95,7 @@ bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
     }
     quiesce_signal_t missing;
     is_accepted = is_accepted && !quiesce_missing(&used_board, used.law, &missing);
-    init((controller_t *)(void *)self->opaque, &used_board, &used, &used, is_accepted);
+    start_all((controller_t *)(void *)self->opaque, &used_board, &used, &used, is_accepted);
     return is_accepted;
 }
 

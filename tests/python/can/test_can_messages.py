@@ -35,12 +35,14 @@ def enum_values(prefix: str) -> dict[int, str]:
     return {int(number): label for label, number in rows}
 
 
-def test_telemetry_messages_are_the_words_of_the_telemetry_struct():
+def test_telemetry_messages_are_the_words_of_the_telemetry_struct_and_the_report():
     messages = [m for m in DATABASE.messages if m.name.startswith("Telemetry")]
     first = messages[0].frame_id
     assert [m.frame_id for m in messages] == list(range(first, first + len(messages)))
     signals = [m.signals[0] for m in messages]
-    assert [(s.name, s.is_signed) for s in signals] == struct_words("quiesce_telemetry_t")
+    report = [(f"report{i}", True) for i in range(8)]
+    words = struct_words("quiesce_telemetry_t") + report
+    assert [(s.name, s.is_signed) for s in signals] == words
     assert all(s.start == 0 and s.length == 32 for s in signals)
 
 

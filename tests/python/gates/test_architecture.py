@@ -227,7 +227,7 @@ def test_checker_sees_the_sources(tree, package) -> None:
     graph = call_graph(tree)
     step = graph["firmware/chain/controller.c: quiesce_step"]
     called = {callee.split(": ")[1] for callee in step}
-    assert {"signal_chain_step", "guard_step", "supervise"} <= called
+    assert {"signal_chain_step", "command", "supervise"} <= called
     assert len(graph) > 100
     assert len(package.modules) > 400
     assert "quiesce.engine.bench" in package.imports["quiesce.hil.runs"]
