@@ -122,6 +122,10 @@ bool quiesce_missing(const quiesce_board_t *board, int32_t index, quiesce_signal
     places_init(&places, board);
     const uint64_t lacking =
         law == NULL ? 0 : needs_there(law->needs, &places) & ~places_provide(&places);
+    if (law != NULL && law->demands != LAW_DEMANDS_CURRENT) {
+        *missing = (quiesce_signal_t){"tracker of a force", -1};
+        return true;
+    }
     for (uint32_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
         for (int32_t at = 0; at < (signals[i].is_one ? 1 : 4); at++) {
             if ((lacking & signals[i].quantity << at) != 0) {

@@ -142,7 +142,8 @@ typedef struct {
 } quiesce_signal_t;
 
 /// The first signal that a law (by the value of its parameter) needs and no sensor of a board,
-/// which has been checked, provides. Returns false iff there is none.
+/// which has been checked, provides; or that it demands forces, which nothing here makes currents.
+/// Returns false iff there is none.
 bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing);
 
 /// What the controller makes of its sensors: all bodies and dampers that there can be, so that the

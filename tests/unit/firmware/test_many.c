@@ -276,6 +276,13 @@ static void test_many_a_law_that_needs_what_is_not_there_is_refused_by_name(void
     TEST_ASSERT_FALSE(quiesce_missing(&board, 0, &missing));
 }
 
+// Its newtons must not be taken for milliamperes.
+static void test_many_a_law_that_demands_a_force_is_refused(void) {
+    test_law.demands = LAW_DEMANDS_FORCE;
+    assert_missing(0, "tracker of a force", -1);
+    test_law.demands = LAW_DEMANDS_CURRENT;
+}
+
 // Every kind of sensor, at its place, in its unit.
 static void test_many_measured_quantities_arrive(void) {
     quiesce_board_default(&board);
@@ -385,6 +392,7 @@ int main(void) {
     RUN_TEST(test_many_a_blind_law_falls_back_then_faults_and_comes_back);
     RUN_TEST(test_many_a_sensor_that_nobody_needs_may_fail);
     RUN_TEST(test_many_a_law_that_needs_what_is_not_there_is_refused_by_name);
+    RUN_TEST(test_many_a_law_that_demands_a_force_is_refused);
     RUN_TEST(test_many_measured_quantities_arrive);
     RUN_TEST(test_many_a_slow_sensor_is_held);
     RUN_TEST(test_many_a_budget_of_lost_samples);
