@@ -116,13 +116,13 @@ static const struct {
     {VIEW_SUPPLY, "supply voltage", true},
 };
 
-bool quiesce_missing(const quiesce_board_t *board, int32_t index, quiesce_signal_t *missing) {
-    const law_t *law = law_find(index);
+bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing) {
+    const law_t *asked = law_find(law);
     places_t places;
     places_init(&places, board);
     const uint64_t lacking =
-        law == NULL ? 0 : needs_there(law->needs, &places) & ~places_provide(&places);
-    if (law != NULL && law->demands != LAW_DEMANDS_CURRENT) {
+        asked == NULL ? 0 : needs_there(asked->needs, &places) & ~places_provide(&places);
+    if (asked != NULL && asked->demands != LAW_DEMANDS_CURRENT) {
         *missing = (quiesce_signal_t){"tracker of a force", -1};
         return true;
     }
@@ -324,13 +324,13 @@ void quiesce_learnt_freeze(quiesce_t *self, bool is_frozen) {
     ((controller_t *)(void *)self->opaque)->view.may_learn = !is_frozen;
 }
 
-const quiesce_word_t *quiesce_report_words(int32_t index) {
+const quiesce_word_t *quiesce_report_words(int32_t law) {
     static const quiesce_word_t none[QUIESCE_REPORT_WORDS] = {{NULL, NULL}};
-    const law_t *law = law_find(index);
-    if (law == NULL) {
+    const law_t *asked = law_find(law);
+    if (asked == NULL) {
         return NULL;
     }
-    return law->reports != NULL ? law->reports : none;
+    return asked->reports != NULL ? asked->reports : none;
 }
 
 void quiesce_report(const quiesce_t *self, int32_t word[QUIESCE_REPORT_WORDS]) {

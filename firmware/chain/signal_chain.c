@@ -117,10 +117,9 @@ static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out,
     // A short doubt must not make the command jump: that would itself change the vibration.
     const bool is_known = self->estimator.age_ticks <= self->hold_ticks;
     view->valid |= (is_known ? VIEW_TONE : 0) | (lock->is_locked ? VIEW_LOCK : 0);
-    const uint8_t at = self->sensing.places.sensor[tracked_of(self)].at;
     view->valid |= self->sensing.channel[tracked_of(self)].condition.has_value ? VIEW_RMS : 0;
     view->tone = (view_tone_t){
-        .body = QUIESCE_BODIES == 1 ? 0 : at,
+        .body = QUIESCE_BODIES == 1 ? 0 : self->sensing.places.sensor[tracked_of(self)].at,
         .rms_um_s2 = out->rms_um_s2,
         .freq_uHz = self->estimator.tone[0].freq_uHz,
         .phase_turn = lock->phase_turn,
