@@ -1,6 +1,7 @@
 #include "lockstep_can.h"
 #include "unity.h"
 
+#include <stddef.h>
 #include <string.h>
 
 static lockstep_can_t server;
@@ -226,16 +227,19 @@ static void test_current_reaches_its_own_stimulus_only(void) {
 static void test_full_telemetry_carries_every_word_then_the_command(void) {
     (void)start(1, QUIESCE_CAN_TELEMETRY_WORDS);
     TEST_ASSERT_EQUAL_UINT32(LOCKSTEP_CAN_MAX_REPLIES, send_stimulus(-4321, 0));
-    quiesce_telemetry_t telemetry;
+    uint32_t words[QUIESCE_CAN_TELEMETRY_WORDS];
     for (uint32_t i = 0; i < QUIESCE_CAN_TELEMETRY_WORDS; i++) {
         TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_TELEMETRY_FIRST_ID + i, replies[i].id);
         TEST_ASSERT_EQUAL_UINT8(4, replies[i].length);
         const uint8_t *d = replies[i].data;
-        const uint32_t word =
+        words[i] =
             (uint32_t)d[0] | (uint32_t)d[1] << 8 | (uint32_t)d[2] << 16 | (uint32_t)d[3] << 24;
-        memcpy((uint8_t *)&telemetry + 4u * i, &word, sizeof word);
     }
-    TEST_ASSERT_EQUAL_MEMORY(&server.reply.telemetry, &telemetry, sizeof telemetry);
+    // The report follows the telemetry.
+    TEST_ASSERT_EQUAL_size_t(sizeof words,
+                             sizeof server.reply - offsetof(lockstep_reply_t, telemetry));
+    TEST_ASSERT_EQUAL_MEMORY((const uint8_t *)&server.reply + offsetof(lockstep_reply_t, telemetry),
+                             words, sizeof words);
     (void)get_command(&replies[QUIESCE_CAN_TELEMETRY_WORDS]);
 }
 
