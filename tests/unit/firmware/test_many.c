@@ -48,7 +48,7 @@ const law_t *law_find(int32_t index) {
 static void add_sensor(quiesce_sense_t sense, int32_t at, int32_t scale) {
     quiesce_board_sensor_t *sensor = &board.sensor[board.sensors++];
     *sensor = board.sensor[0];
-    sensor->sense = sense;
+    sensor->sense = (int32_t)sense;
     sensor->at = at;
     sensor->scale = scale;
     sensor->full_scale_counts = 100000;
