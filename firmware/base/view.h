@@ -9,24 +9,25 @@
 
 #include "harmonics.h"
 #include "quiesce_size.h"
+#include "quiesce_valid.h"
 
 #define VIEW_LIMIT ((1 << 30) - 1)
 
 /// Bits of validity, and of what a law needs: of a quantity for one body or damper its first bit
 /// shifted by the number of the body or damper.
-#define VIEW_ACCEL (UINT64_C(1) << 0)
-#define VIEW_VELOCITY (UINT64_C(1) << 4)
-#define VIEW_DISPLACEMENT (UINT64_C(1) << 8)
-#define VIEW_SUPPLY (UINT64_C(1) << 12)
-#define VIEW_RMS (UINT64_C(1) << 13)  ///< of the sensor that is tracked
-#define VIEW_TONE (UINT64_C(1) << 14) ///< its dominant component is known, or was a moment ago
-#define VIEW_LOCK (UINT64_C(1) << 15) ///< and is locked on to
-#define VIEW_STROKE (UINT64_C(1) << 16)
-#define VIEW_STROKE_VELOCITY (UINT64_C(1) << 20)
-#define VIEW_FORCE (UINT64_C(1) << 24)
-#define VIEW_CURRENT (UINT64_C(1) << 28)
-#define VIEW_VOLTAGE (UINT64_C(1) << 32)
-#define VIEW_TEMPERATURE (UINT64_C(1) << 36)
+#define VIEW_ACCEL (UINT64_C(1) << QUIESCE_VALID_ACCEL)
+#define VIEW_VELOCITY (UINT64_C(1) << QUIESCE_VALID_VELOCITY)
+#define VIEW_DISPLACEMENT (UINT64_C(1) << QUIESCE_VALID_DISPLACEMENT)
+#define VIEW_SUPPLY (UINT64_C(1) << QUIESCE_VALID_SUPPLY)
+#define VIEW_RMS (UINT64_C(1) << QUIESCE_VALID_RMS)
+#define VIEW_TONE (UINT64_C(1) << QUIESCE_VALID_TONE)
+#define VIEW_LOCK (UINT64_C(1) << QUIESCE_VALID_LOCK)
+#define VIEW_STROKE (UINT64_C(1) << QUIESCE_VALID_STROKE)
+#define VIEW_STROKE_VELOCITY (UINT64_C(1) << QUIESCE_VALID_STROKE_VELOCITY)
+#define VIEW_FORCE (UINT64_C(1) << QUIESCE_VALID_FORCE)
+#define VIEW_CURRENT (UINT64_C(1) << QUIESCE_VALID_CURRENT)
+#define VIEW_VOLTAGE (UINT64_C(1) << QUIESCE_VALID_VOLTAGE)
+#define VIEW_TEMPERATURE (UINT64_C(1) << QUIESCE_VALID_TEMPERATURE)
 /// The same quantity of every body or damper that the board has.
 #define VIEW_EACH(quantity) ((quantity)*UINT64_C(15))
 

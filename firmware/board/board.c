@@ -5,9 +5,9 @@
 
 #define HIGHEST_COUNTS 8388607 // 24 bits
 #define HIGHEST_SCALE 1000000000
-#define HIGHEST_CURRENT_mA 20000
 #define LONGEST_us 100000000
 #define SCALES_PER_UNIT 1000
+#define SLOWEST_NOISE_us 100000
 #define HIGHEST_VALUE ((1 << 30) - 1)
 
 static const quiesce_board_sensor_t accelerometer = {
@@ -73,10 +73,10 @@ static const range_t sensor_ranges[] = {
 static const range_t damper_ranges[] = {
     DAMPER(end_a, 0, QUIESCE_MAX_BODIES - 1),
     DAMPER(end_b, 0, QUIESCE_GROUND),
-    DAMPER(ceiling_mA, 1, HIGHEST_CURRENT_mA),
-    DAMPER(safe_mA, 0, HIGHEST_CURRENT_mA),
-    DAMPER(continuous_mA, 1, HIGHEST_CURRENT_mA),
-    DAMPER(trip_mA, 0, 2 * HIGHEST_CURRENT_mA),
+    DAMPER(ceiling_mA, 1, QUIESCE_HIGHEST_CURRENT_mA),
+    DAMPER(safe_mA, 0, QUIESCE_HIGHEST_CURRENT_mA),
+    DAMPER(continuous_mA, 1, QUIESCE_HIGHEST_CURRENT_mA),
+    DAMPER(trip_mA, 0, 2 * QUIESCE_HIGHEST_CURRENT_mA),
     DAMPER(trip_us, 0, 10000000),
     DAMPER(measures_current, 0, 1),
     DAMPER(coil_lag_us, 0, 1000000),
@@ -134,6 +134,9 @@ static bool check_sensor(place_t at, const quiesce_board_t *board,
     const int64_t reach = (int64_t)sensor->full_scale_counts * sensor->scale / SCALES_PER_UNIT;
     if (reach > HIGHEST_VALUE && sensor->sense != QUIESCE_SENSE_ACCEL) {
         return refuse(at, "scale", "full scale is beyond 2^30 units");
+    }
+    if (sensor->min_noise_counts != 0 && sensor->period_us > SLOWEST_NOISE_us) {
+        return refuse(at, "min_noise_counts", "needs ten samples a second, or 0");
     }
     if (sensor->max_age_us < sensor->period_us) {
         return refuse(at, "max_age_us", "below period_us: it would be too old between two samples");

@@ -11,24 +11,62 @@ static void start(control_t *self) {
     }
 }
 
-// A need of every body or damper is one of those that there are.
-static uint64_t limited(uint64_t needs, uint64_t quantity, uint32_t count) {
-    const uint64_t each = VIEW_EACH(quantity);
-    const uint64_t beyond = each & ~(quantity * ((UINT64_C(1) << count) - 1u));
-    return (needs & each) == each ? needs & ~beyond : needs;
-}
+typedef enum { OF_BODIES, OF_DAMPERS, OF_BOARD } owner_t;
 
-uint64_t needs_there(uint64_t needs, const places_t *places) {
-    static const uint64_t of_bodies[] = {VIEW_ACCEL, VIEW_VELOCITY, VIEW_DISPLACEMENT};
-    static const uint64_t of_dampers[] = {VIEW_STROKE,  VIEW_STROKE_VELOCITY, VIEW_FORCE,
-                                          VIEW_CURRENT, VIEW_VOLTAGE,         VIEW_TEMPERATURE};
-    for (uint32_t i = 0; i < sizeof of_bodies / sizeof of_bodies[0]; i++) {
-        needs = limited(needs, of_bodies[i], places->bodies);
-    }
-    for (uint32_t i = 0; i < sizeof of_dampers / sizeof of_dampers[0]; i++) {
-        needs = limited(needs, of_dampers[i], places->dampers);
+static const struct {
+    uint64_t quantity;
+    const char *name;
+    owner_t owner;
+} signals[] = {
+    {VIEW_ACCEL, "acceleration", OF_BODIES},
+    {VIEW_VELOCITY, "velocity", OF_BODIES},
+    {VIEW_DISPLACEMENT, "displacement", OF_BODIES},
+    {VIEW_STROKE, "stroke", OF_DAMPERS},
+    {VIEW_STROKE_VELOCITY, "stroke velocity", OF_DAMPERS},
+    {VIEW_FORCE, "force", OF_DAMPERS},
+    {VIEW_CURRENT, "current", OF_DAMPERS},
+    {VIEW_VOLTAGE, "coil voltage", OF_DAMPERS},
+    {VIEW_TEMPERATURE, "temperature", OF_DAMPERS},
+    {VIEW_SUPPLY, "supply voltage", OF_BOARD},
+};
+
+#define SIGNALS (sizeof signals / sizeof signals[0])
+
+// What a law needs where these bodies and dampers are: VIEW_EACH is each of them.
+static uint64_t needs_there(uint64_t needs, const places_t *places) {
+    for (uint32_t i = 0; i < SIGNALS; i++) {
+        const uint64_t each = VIEW_EACH(signals[i].quantity);
+        const uint32_t count = signals[i].owner == OF_BODIES ? places->bodies : places->dampers;
+        const uint64_t present = signals[i].quantity * ((UINT64_C(1) << count) - 1u);
+        if (signals[i].owner != OF_BOARD && (needs & each) == each) {
+            needs &= ~each | present;
+        }
     }
     return needs;
+}
+
+bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing) {
+    const law_t *asked = law_find(law);
+    places_t places;
+    if (asked == NULL) {
+        return false;
+    }
+    if (asked->demands != LAW_DEMANDS_CURRENT) {
+        *missing = (quiesce_signal_t){"tracker of a force", -1};
+        return true;
+    }
+    places_init(&places, board);
+    const uint64_t lacking = needs_there(asked->needs, &places) & ~places_provide(&places);
+    for (uint32_t i = 0; i < SIGNALS; i++) {
+        const bool is_one = signals[i].owner == OF_BOARD;
+        for (int32_t at = 0; at < (is_one ? 1 : 4); at++) {
+            if ((lacking & signals[i].quantity << at) != 0) {
+                *missing = (quiesce_signal_t){signals[i].name, is_one ? -1 : at};
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {

@@ -20,9 +20,6 @@ typedef struct {
 /// The law of the parameters, which have been checked, with the table that ships, from rest.
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params);
 
-/// What a law needs where these bodies and dampers are: VIEW_EACH is each of them.
-uint64_t needs_there(uint64_t needs, const places_t *places);
-
 /// Another table; NULL: the one that ships. A table that is refused changes nothing.
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count);
 

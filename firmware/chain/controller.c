@@ -9,9 +9,6 @@
 #include "supervisor.h"
 
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
-// No driver that we know takes more.
-enum { HIGHEST_CURRENT_mA = 20000 };
-
 typedef struct {
     signal_chain_t signal;
     view_t view;
@@ -48,7 +45,7 @@ static quiesce_board_t board_of(const quiesce_params_t *p) {
     sensor->stuck_us = p->sensor_stuck_ticks * tick_us;
     sensor->min_noise_counts = p->sensor_min_noise_counts;
     quiesce_board_damper_t *damper = &board.damper[0];
-    damper->ceiling_mA = HIGHEST_CURRENT_mA;
+    damper->ceiling_mA = QUIESCE_HIGHEST_CURRENT_mA;
     damper->measures_current = p->current_check == QUIESCE_CURRENT_CHECK_ON;
     damper->coil_lag_us = p->current_lag_ms * 1000;
     return board;
@@ -97,44 +94,6 @@ bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
     is_accepted = is_accepted && !quiesce_missing(&used_board, used.law, &missing);
     start_all((controller_t *)(void *)self->opaque, &used_board, &used, &used, is_accepted);
     return is_accepted;
-}
-
-static const struct {
-    uint64_t quantity;
-    const char *name;
-    bool is_one;
-} signals[] = {
-    {VIEW_ACCEL, "acceleration", false},
-    {VIEW_VELOCITY, "velocity", false},
-    {VIEW_DISPLACEMENT, "displacement", false},
-    {VIEW_STROKE, "stroke", false},
-    {VIEW_STROKE_VELOCITY, "stroke velocity", false},
-    {VIEW_FORCE, "force", false},
-    {VIEW_CURRENT, "current", false},
-    {VIEW_VOLTAGE, "coil voltage", false},
-    {VIEW_TEMPERATURE, "temperature", false},
-    {VIEW_SUPPLY, "supply voltage", true},
-};
-
-bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing) {
-    const law_t *asked = law_find(law);
-    places_t places;
-    places_init(&places, board);
-    const uint64_t lacking =
-        asked == NULL ? 0 : needs_there(asked->needs, &places) & ~places_provide(&places);
-    if (asked != NULL && asked->demands != LAW_DEMANDS_CURRENT) {
-        *missing = (quiesce_signal_t){"tracker of a force", -1};
-        return true;
-    }
-    for (uint32_t i = 0; i < sizeof signals / sizeof signals[0]; i++) {
-        for (int32_t at = 0; at < (signals[i].is_one ? 1 : 4); at++) {
-            if ((lacking & signals[i].quantity << at) != 0) {
-                *missing = (quiesce_signal_t){signals[i].name, signals[i].is_one ? -1 : at};
-                return true;
-            }
-        }
-    }
-    return false;
 }
 
 static quiesce_fault_t sensor_fault(const condition_out_t *sample) {

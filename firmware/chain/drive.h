@@ -6,6 +6,7 @@
 #include "guard.h"
 #include "quiesce.h"
 #include "quiesce_board.h"
+#include "view.h"
 
 typedef struct {
     guard_t guard;
@@ -19,12 +20,13 @@ void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quies
                 bool is_accepted);
 
 /// A tick's measurement against the command that was in force. Returns the current in the coil, mA:
-/// measured, else as command and lag say.
+/// measured, within VIEW_LIMIT, else as command and lag say.
 static inline int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver,
                                   current_verdict_t *verdict) {
     *verdict = current_monitor_step(&self->monitor, self->last_command_mA, driver->current_mA,
                                     driver->is_measured);
-    return driver->is_measured ? driver->current_mA : current_monitor_expected_mA(&self->monitor);
+    return driver->is_measured ? clamp_i32(driver->current_mA, -VIEW_LIMIT, VIEW_LIMIT)
+                               : current_monitor_expected_mA(&self->monitor);
 }
 
 /// The command: what is requested, limited, where it is allowed, else the safe current. Whatever

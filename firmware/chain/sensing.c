@@ -36,6 +36,11 @@ static uint32_t at_least_one(uint32_t value) {
     return value > 0 ? value : 1u;
 }
 
+// A time that is shorter than a sample must not switch the check off.
+static uint32_t stuck_samples(int32_t stuck_us, int32_t tick_rate_Hz, uint32_t period_ticks) {
+    return stuck_us == 0 ? 0 : at_least_one(ticks_in_us(stuck_us, tick_rate_Hz) / period_ticks);
+}
+
 static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
                          const quiesce_params_t *p, bool is_accel) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
@@ -52,7 +57,7 @@ static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
             .polarity = sensor->polarity,
             .full_scale_counts = sensor->full_scale_counts,
             .max_age_ticks = at_least_one(ticks_in_us(sensor->max_age_us, p->tick_rate_Hz)),
-            .stuck_ticks = ticks_in_us(sensor->stuck_us, p->tick_rate_Hz) / period,
+            .stuck_ticks = stuck_samples(sensor->stuck_us, p->tick_rate_Hz, period),
             .min_noise_counts = (uint32_t)sensor->min_noise_counts,
             .dc_cutoff_mHz = is_accel ? p->dc_cutoff_mHz : 0,
         });
@@ -125,14 +130,19 @@ static void show_acceleration(channel_t *self, int32_t at, view_t *view) {
     }
 }
 
+static bool is_of_body(sensor_place_t sensor) {
+    return sensor.sense <= QUIESCE_SENSE_DISPLACEMENT;
+}
+
 typedef struct {
     uint64_t quantity; ///< its first bit
     int32_t *value;
 } place_t;
 
 static place_t place_of(sensor_place_t sensor, view_t *view) {
-    view_body_t *body = &view->body[sensor.at];
-    view_damper_t *damper = &view->damper[sensor.at];
+    // A build may have fewer bodies than dampers, or the other way round.
+    view_body_t *body = &view->body[is_of_body(sensor) ? sensor.at : 0];
+    view_damper_t *damper = &view->damper[is_of_body(sensor) ? 0 : sensor.at];
     switch (sensor.sense) {
     case QUIESCE_SENSE_VELOCITY:
         return (place_t){VIEW_VELOCITY, &body->velocity_um_s};
@@ -187,10 +197,6 @@ static void show_stroke(damper_place_t damper, int32_t i, view_t *view) {
         (has_stroke && is_inside(out->stroke_nm, VIEW_LIMIT) ? bit(VIEW_STROKE, i) : 0) |
         (has_velocity && is_inside(out->velocity_um_s, VIEW_LIMIT) ? bit(VIEW_STROKE_VELOCITY, i)
                                                                    : 0);
-}
-
-static bool is_of_body(sensor_place_t sensor) {
-    return sensor.sense <= QUIESCE_SENSE_DISPLACEMENT;
 }
 
 static void show_all_measured(const sensing_t *self, bool of_bodies, view_t *view) {

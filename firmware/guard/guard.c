@@ -1,14 +1,13 @@
 #include "guard.h"
 
-// No driver that we know takes more; it also keeps uA inside 32 bits.
-enum { HIGHEST_CURRENT_mA = 20000 };
+#include "quiesce_board.h"
 
 void guard_init(guard_t *self, const guard_cfg_t *cfg) {
     self->cfg = *cfg;
-    self->cfg.max_mA = clamp_i32(cfg->max_mA, 0, HIGHEST_CURRENT_mA);
+    self->cfg.max_mA = clamp_i32(cfg->max_mA, 0, QUIESCE_HIGHEST_CURRENT_mA);
     self->cfg.safe_mA = clamp_i32(cfg->safe_mA, 0, self->cfg.max_mA);
     const int64_t slew_uA = (int64_t)cfg->slew_mA_s * 1000 / cfg->tick_rate_Hz;
-    self->slew_uA = (int32_t)clamp_i64(slew_uA, 1, HIGHEST_CURRENT_mA * INT64_C(1000));
+    self->slew_uA = (int32_t)clamp_i64(slew_uA, 1, QUIESCE_HIGHEST_CURRENT_mA * INT64_C(1000));
     self->last_uA = self->cfg.safe_mA * 1000;
 }
 

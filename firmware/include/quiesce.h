@@ -11,6 +11,7 @@
 
 #include "quiesce_board.h"
 #include "quiesce_params.h"
+#include "quiesce_valid.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -131,7 +132,8 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params);
 
 /// The same with the sensors and dampers of a board, which take the place of those parameters.
 /// Returns false, with that fault, also where quiesce_board_check refuses the board, or where
-/// quiesce_missing names a signal; it then commands the board's safe currents.
+/// quiesce_missing names a signal; it then commands the board's safe currents, 0 where the board is
+/// the one that is refused.
 bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
                         const quiesce_params_t *params);
 
@@ -149,7 +151,7 @@ bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t
 /// What the controller makes of its sensors: all bodies and dampers that there can be, so that the
 /// layout is the same in every build. 32-bit words only.
 typedef struct {
-    uint32_t valid[2]; ///< bits of VIEW_ in firmware/base/view.h, low word first
+    uint32_t valid[2]; ///< bits QUIESCE_VALID_x, low word first
     int32_t supply_mV;
     struct {
         int32_t accel_um_s2, velocity_um_s, displacement_nm;

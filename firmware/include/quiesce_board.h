@@ -17,6 +17,9 @@ extern "C" {
 /// The end of a damper that does not move.
 #define QUIESCE_GROUND 255
 
+/// No driver that we know takes more; it also keeps uA inside 32 bits.
+#define QUIESCE_HIGHEST_CURRENT_mA 20000
+
 /// What a sensor measures, in the unit of its samples after scaling.
 typedef enum {
     QUIESCE_SENSE_ACCEL = 0,           ///< of a body, um/s2

@@ -9,7 +9,7 @@
 #include "quiesce.h"
 #include "view.h"
 
-/// Bytes for the state of the law that runs.
+/// Bytes for the state of the law that runs; its file asserts that they are enough.
 #define LAW_STATE_BYTES 1024u
 
 /// What a law works with; lives beside its state.
@@ -35,11 +35,10 @@ static inline void law_demand_all(law_demand_t *out, int32_t value) {
     }
 }
 
-/// One kind of table. Its words begin with magic (kind and version), CRC-32 and their number.
+/// One kind of table. Its words begin with magic (kind and version), CRC-32 and their number; its
+/// check knows them.
 typedef struct {
-    uint32_t magic;
     const uint32_t *shipped; ///< used until another one is; NULL: none ships
-    uint32_t shipped_words;
     quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
 } law_table_kind_t;
 
@@ -47,7 +46,6 @@ typedef struct {
     const char *name;              ///< value of parameter law
     uint64_t needs;                ///< VIEW_ bits; while they are not all valid it is not stepped
     const law_table_kind_t *kind;  ///< of its table; NULL: it has none
-    uint16_t state_bytes;          ///< <= LAW_STATE_BYTES
     uint8_t demands;               ///< law_demand_kind_t
     bool wants_lock;               ///< the dominant component is to be locked on to
     const quiesce_word_t *reports; ///< QUIESCE_REPORT_WORDS of them, the last ones without a name

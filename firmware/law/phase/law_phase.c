@@ -30,9 +30,7 @@ static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
 }
 
 static const law_table_kind_t pulses = {
-    .magic = PHASE_TABLE_MAGIC,
     .shipped = plant_pulses_table,
-    .shipped_words = sizeof plant_pulses_table / sizeof plant_pulses_table[0],
     .check = check,
 };
 
@@ -179,7 +177,6 @@ const law_t law_phase = {
     .name = "phase",
     .needs = VIEW_RMS,
     .kind = &pulses,
-    .state_bytes = sizeof(phase_t),
     .wants_lock = true,
     .reports = reports,
     .init = init,

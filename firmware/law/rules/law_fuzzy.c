@@ -3,6 +3,8 @@
 
 #include <stddef.h>
 
+_Static_assert(sizeof(rule_base_t) <= LAW_STATE_BYTES, "the arena is too small");
+
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
     const int32_t base_mA = rule_base_step(state, setup->table, &view->tone);
     law_demand_all(out, rule_base_or_unlock_mA(setup, view, base_mA));
@@ -24,7 +26,6 @@ const law_t law_fuzzy = {
     .name = "fuzzy",
     .needs = VIEW_RMS,
     .kind = &rule_base_kind,
-    .state_bytes = sizeof(rule_base_t),
     .reports = rule_base_reports,
     .retable = retable,
     .step = step,

@@ -71,7 +71,6 @@ const law_t law_fuzzy_selftune = {
     .name = "fuzzy_selftune",
     .needs = VIEW_RMS,
     .kind = &rule_base_kind,
-    .state_bytes = sizeof(selftune_t),
     .reports = rule_base_reports,
     .retable = retable,
     .step = step,

@@ -130,6 +130,10 @@ static void test_board_sensors_contradict(void) {
     assert_refused("sensor", 2, "scale", "2^30");
     board.sensor[2].period_us = 20000;
     assert_refused("sensor", 2, "max_age_us", "period_us");
+    board.sensor[2].period_us = 200000;
+    board.sensor[2].max_age_us = 400000;
+    board.sensor[2].min_noise_counts = 5;
+    assert_refused("sensor", 2, "min_noise_counts", "ten samples");
     board.tracked = 2;
     assert_refused("board", 0, "tracked", "no accelerometer");
     board.tracked = 3;

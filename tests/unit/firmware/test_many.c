@@ -36,7 +36,6 @@ static void report_law(const void *state, const law_setup_t *setup, int32_t *wor
 static law_t test_law = {
     .name = "test",
     .needs = VIEW_EACH(VIEW_STROKE),
-    .state_bytes = sizeof(uint32_t),
     .step = step_law,
     .report = report_law,
 };

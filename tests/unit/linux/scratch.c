@@ -12,7 +12,7 @@
 
 #define BUFFERS 8u
 
-static char root[] = "/tmp/quiesce-XXXXXX";
+static char root[SCRATCH_BYTES];
 
 static char *next_buffer(void) {
     static char buffers[BUFFERS][SCRATCH_BYTES];
@@ -22,7 +22,8 @@ static char *next_buffer(void) {
 }
 
 void scratch_make(void) {
-    memcpy(root, "/tmp/quiesce-XXXXXX", sizeof root);
+    const char *const folder = getenv("TMPDIR");
+    (void)snprintf(root, sizeof root, "%s/quiesce-XXXXXX", folder != NULL ? folder : P_tmpdir);
     TEST_ASSERT_NOT_NULL(mkdtemp(root));
 }
 
