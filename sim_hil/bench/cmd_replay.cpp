@@ -76,8 +76,9 @@ Plan plan_from(const Arguments &arguments, std::int32_t law, std::size_t ticks) 
 /// What the sensor delivers for one count of the file.
 lockstep_stimulus_t stimulus_of(std::int32_t counts) {
     const bool is_missing = counts == kNoSample;
-    return {is_missing ? 0 : counts,
-            LOCKSTEP_ENABLE | LOCKSTEP_REPORT | (is_missing ? 0u : LOCKSTEP_FRESH), 0};
+    return {LOCKSTEP_ENABLE | LOCKSTEP_REPORT | (is_missing ? 0u : LOCKSTEP_FRESH),
+            {is_missing ? 0 : counts},
+            {0}};
 }
 
 void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t tick_rate_Hz,
@@ -90,8 +91,8 @@ void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t ti
         out.digest.add(reply);
         if (tick == next_row) {
             plan.columns.put({static_cast<double>(tick) / tick_rate_Hz,
-                              static_cast<double>(stimulus.accel_counts),
-                              static_cast<double>(stimulus.flags & ~LOCKSTEP_REPORT)},
+                              static_cast<double>(stimulus.counts[0]),
+                              static_cast<double>(traced_flags(stimulus.flags))},
                              reply, out.trace);
             next_row += plan.every;
         }
@@ -104,7 +105,7 @@ void replay(const std::vector<std::int32_t> &counts, const Plan &plan,
             const quiesce_params_t &params, ControllerLink &link, Replay &out) {
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t first = 0; first < counts.size(); first += plan.record_ticks) {
-        if (!link.start(params)) {
+        if (!link.start(nullptr, params)) {
             throw InputError("the controller on target " + link.target() +
                              " refuses its parameters");
         }

@@ -26,7 +26,8 @@ constexpr std::uint16_t kTelemetryTicks = 20;
 
 lockstep_stimulus_t stimulus_of(std::int64_t tick) {
     const double counts = 50000.0 * std::sin(0.0628 * static_cast<double>(tick)); // 10 Hz
-    return {static_cast<std::int32_t>(std::lround(counts)), LOCKSTEP_FRESH | LOCKSTEP_ENABLE, 0};
+    return {
+        LOCKSTEP_FRESH | LOCKSTEP_ENABLE, {static_cast<std::int32_t>(std::lround(counts))}, {0}};
 }
 
 double run_protocol(QemuUartLink &link, std::int64_t first_tick, std::int64_t count) {
@@ -109,7 +110,7 @@ int cmd_uart_rate(const std::vector<std::string> &words) {
     QemuUartLink link(image(arguments, "image"), {kTelemetryTicks, 1});
     quiesce_params_t params;
     quiesce_params_default(&params);
-    link.start(params);
+    link.start(nullptr, params);
     run_protocol(link, 0, kBlockExchanges);
     link.uart().pause();
     QemuUart echo(echo_options);

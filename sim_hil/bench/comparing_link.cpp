@@ -21,11 +21,13 @@ void copy_words(const lockstep_reply_t &from, const ReplyWords &words, lockstep_
 
 } // namespace
 
-bool ComparingLink::start(const quiesce_params_t &params) {
-    const bool is_accepted = reference_.start(params);
-    if (checked_.start(params) != is_accepted) {
+bool ComparingLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
+    const bool is_accepted = reference_.start(board, params);
+    if (checked_.start(board, params) != is_accepted) {
         throw InputError("targets " + reference_.target() + " and " + checked_.target() +
-                         " disagree on whether the parameters are allowed; rebuild both");
+                         " disagree on whether parameters and board are allowed; rebuild both, for "
+                         "as many sensors "
+                         "and dampers");
     }
     ++runs_;
     tick_ = 0;

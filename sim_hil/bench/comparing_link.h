@@ -12,7 +12,7 @@ namespace quiesce {
 struct FirstMismatch {
     std::uint64_t run; ///< number of the start, from 0
     std::int64_t tick; ///< within the run, from 0
-    const char *field; ///< name of the word
+    std::string field; ///< name of the word
 };
 
 /// Whose command the plant gets.
@@ -31,7 +31,7 @@ class ComparingLink final : public ControllerLink {
     std::string target() const override { return checked_.target(); }
 
     /// Throws InputError when one accepts the parameters and the other does not.
-    bool start(const quiesce_params_t &params) override;
+    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     std::optional<InstructionCounts> finish() override { return checked_.finish(); }
 

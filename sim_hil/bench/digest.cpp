@@ -15,8 +15,8 @@ void DigestObserver::add(const lockstep_reply_t &reply) {
             faults_seen_.insert(last_fault_);
         }
     }
-    if (reply.current_cmd_mA != last_command_mA_) {
-        last_command_mA_ = reply.current_cmd_mA;
+    if (reply.current_cmd_mA[0] != last_command_mA_) {
+        last_command_mA_ = reply.current_cmd_mA[0];
         commands_.insert(last_command_mA_);
     }
 }

@@ -47,7 +47,7 @@ void FaultInjector::apply(double time_s, lockstep_stimulus_t &stimulus) {
             apply(fault->kind, stimulus);
         }
     }
-    last_counts_ = stimulus.accel_counts;
+    last_counts_ = stimulus.counts[0];
 }
 
 void FaultInjector::apply(FaultKind kind, lockstep_stimulus_t &stimulus) const {
@@ -56,13 +56,13 @@ void FaultInjector::apply(FaultKind kind, lockstep_stimulus_t &stimulus) const {
         stimulus.flags &= ~LOCKSTEP_FRESH;
         break;
     case FaultKind::stuck:
-        stimulus.accel_counts = last_counts_;
+        stimulus.counts[0] = last_counts_;
         break;
     case FaultKind::saturate:
-        stimulus.accel_counts = full_scale_counts_;
+        stimulus.counts[0] = full_scale_counts_;
         break;
     case FaultKind::range:
-        stimulus.accel_counts = 2 * full_scale_counts_;
+        stimulus.counts[0] = 2 * full_scale_counts_;
         break;
     case FaultKind::estop:
         stimulus.flags |= LOCKSTEP_ESTOP;

@@ -20,7 +20,7 @@ class InProcessLink final : public ControllerLink {
     explicit InProcessLink(std::vector<Words> tables) : tables_(std::move(tables)) {}
 
     std::string target() const override { return "host"; }
-    bool start(const quiesce_params_t &params) override;
+    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     std::optional<InstructionCounts> finish() override { return std::nullopt; }
 

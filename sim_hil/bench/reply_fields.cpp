@@ -9,7 +9,12 @@ namespace {
 constexpr bool kUnsigned = false;
 constexpr bool kSigned = true;
 
-constexpr WordField kTelemetry[] = {
+struct NamedWord {
+    const char *name;
+    bool is_signed;
+};
+
+constexpr NamedWord kTelemetry[] = {
     {"tick", kUnsigned},
     {"state", kUnsigned},
     {"fault", kUnsigned},
@@ -43,21 +48,47 @@ constexpr WordField kTelemetry[] = {
 };
 static_assert(sizeof kTelemetry / sizeof kTelemetry[0] * 4 == sizeof(quiesce_telemetry_t));
 static_assert(QUIESCE_PEAKS == 3);
-static_assert(offsetof(lockstep_reply_t, telemetry) == 8);
+static_assert(offsetof(lockstep_reply_t, telemetry) == 4 * (QUIESCE_MAX_DAMPERS + 1));
 
-constexpr WordField kReport[] = {
-    {"report0", kSigned}, {"report1", kSigned}, {"report2", kSigned}, {"report3", kSigned},
-    {"report4", kSigned}, {"report5", kSigned}, {"report6", kSigned}, {"report7", kSigned},
-};
-static_assert(std::size(kReport) == QUIESCE_REPORT_WORDS);
 static_assert(offsetof(lockstep_reply_t, report) ==
               offsetof(lockstep_reply_t, telemetry) + sizeof(quiesce_telemetry_t));
 
+constexpr const char *kOfBody[] = {"accel_um_s2", "velocity_um_s", "displacement_nm"};
+constexpr const char *kOfDamper[] = {"stroke_nm",      "velocity_um_s", "force_mN",
+                                     "current_mA",     "voltage_mV",    "temperature_mdegC",
+                                     "current_law_mA", "current_cmd_mA"};
+static_assert(sizeof(quiesce_picture_t) == 4 * (3 + std::size(kOfBody) * QUIESCE_MAX_BODIES +
+                                                std::size(kOfDamper) * QUIESCE_MAX_DAMPERS));
+
+template <std::size_t Count>
+void append(const std::string &owner, std::size_t owners, const char *const (&names)[Count],
+            std::vector<WordField> &out) {
+    for (std::size_t i = 0; i < owners; ++i) {
+        for (const char *name : names) {
+            out.push_back({owner + std::to_string(i) + "_" + name, kSigned});
+        }
+    }
+}
+
+void append_numbered(const std::string &name, std::size_t count, std::vector<WordField> &out) {
+    for (std::size_t i = 0; i < count; ++i) {
+        out.push_back({name + std::to_string(i), kSigned});
+    }
+}
+
 std::vector<WordField> all_fields() {
-    std::vector<WordField> fields = {{"reply_current_cmd_mA", kSigned},
-                                     {"reply_is_driver_enabled", kUnsigned}};
-    fields.insert(fields.end(), std::begin(kTelemetry), std::end(kTelemetry));
-    fields.insert(fields.end(), std::begin(kReport), std::end(kReport));
+    std::vector<WordField> fields;
+    append_numbered("reply_current_cmd_mA", QUIESCE_MAX_DAMPERS, fields);
+    fields.push_back({"reply_drivers_enabled", kUnsigned});
+    for (const NamedWord &word : kTelemetry) {
+        fields.push_back({word.name, word.is_signed});
+    }
+    append_numbered("report", QUIESCE_REPORT_WORDS, fields);
+    fields.push_back({"valid_low", kUnsigned});
+    fields.push_back({"valid_high", kUnsigned});
+    fields.push_back({"supply_mV", kSigned});
+    append("body", QUIESCE_MAX_BODIES, kOfBody, fields);
+    append("damper", QUIESCE_MAX_DAMPERS, kOfDamper, fields);
     return fields;
 }
 

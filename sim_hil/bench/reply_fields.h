@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "firmware.h"
@@ -12,11 +13,12 @@
 namespace quiesce {
 
 struct WordField {
-    const char *name;
+    std::string name;
     bool is_signed;
 };
 
-/// Every 32-bit word of lockstep_reply_t in memory order; telemetry and report come last.
+/// Every 32-bit word of lockstep_reply_t in memory order. What there is several of has its number
+/// at the end of its name: current_cmd_mA1, body0_accel_um_s2.
 const std::vector<WordField> &reply_fields();
 
 /// Word number index (< sizeof object / 4) of a structure of 32-bit words.

@@ -24,7 +24,8 @@ class Loop {
     void tick(std::int64_t tick, const std::vector<TickObserver *> &observers) {
         const double time_s = static_cast<double>(tick) / setup_.params.tick_rate_Hz;
         // What the controller answered one tick ago acts from here on.
-        const double command_A = reply_.is_driver_enabled != 0 ? 1e-3 * reply_.current_cmd_mA : 0.0;
+        const double command_A =
+            (reply_.drivers_enabled & 1u) != 0 ? 1e-3 * reply_.current_cmd_mA[0] : 0.0;
         plant_.command(command_A, injector_.actuator(time_s));
         sense(time_s);
         link_.exchange(stimulus_, reply_);
@@ -39,12 +40,13 @@ class Loop {
 
   private:
     void sense(double time_s) {
-        stimulus_ = {sensor_.sample_counts(plant_.truth().accel_m_s2),
-                     LOCKSTEP_FRESH | LOCKSTEP_ENABLE, 0};
+        stimulus_ = {LOCKSTEP_FRESH | LOCKSTEP_ENABLE,
+                     {sensor_.sample_counts(plant_.truth().accel_m_s2)},
+                     {0}};
         stimulus_.flags |= setup_.wants_report ? LOCKSTEP_REPORT : 0u;
         if (setup_.scenario.feed_current) {
             stimulus_.flags |= LOCKSTEP_HAS_CURRENT;
-            stimulus_.current_meas_mA =
+            stimulus_.current_meas_mA[0] =
                 static_cast<std::int32_t>(std::lround(1e3 * plant_.truth().coil_A));
         }
         injector_.apply(time_s, stimulus_);
@@ -68,7 +70,7 @@ std::int64_t RunSetup::tick_count() const {
 
 RunTiming run_scenario(const RunSetup &setup, ControllerLink &link,
                        const std::vector<TickObserver *> &observers) {
-    if (!link.start(setup.params)) {
+    if (!link.start(nullptr, setup.params)) {
         throw InputError("the controller on target " + link.target() + " refuses its parameters");
     }
     Loop loop(setup, link);

@@ -35,11 +35,17 @@ double value_of(const lockstep_reply_t &reply, std::size_t index) {
 
 } // namespace
 
+std::uint32_t traced_flags(std::uint32_t flags) {
+    constexpr std::uint32_t kInputs = LOCKSTEP_ENABLE | LOCKSTEP_ESTOP | LOCKSTEP_FAULT_RESET;
+    return (flags & kInputs) | ((flags & LOCKSTEP_FRESH) != 0 ? 1u : 0u) |
+           ((flags & LOCKSTEP_HAS_CURRENT) != 0 ? 16u : 0u);
+}
+
 TickColumns::TickColumns(std::vector<std::string> own, std::int32_t law,
                          const std::optional<std::string> &list)
     : own_count_(own.size()), all_names_(std::move(own)) {
     for (std::size_t i = kTelemetryWord; i < kReportWord; ++i) {
-        all_names_.emplace_back(reply_fields()[i].name);
+        all_names_.push_back(reply_fields()[i].name);
         words_.push_back(i);
     }
     const quiesce_word_t *reports = quiesce_report_words(law);

@@ -12,6 +12,10 @@
 
 namespace quiesce {
 
+/// What the column "flags" of a trace says of a tick: bit 0 a fresh sample of the first sensor, 1
+/// enable, 2 emergency stop, 3 fault reset, 4 a measured current of the first damper.
+std::uint32_t traced_flags(std::uint32_t flags);
+
 class TickColumns {
   public:
     /// own: names of the columns before the telemetry. law: that runs; its report has names of its

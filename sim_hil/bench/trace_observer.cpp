@@ -14,8 +14,8 @@ void TraceObserver::on_tick(const TickRecord &record) {
     }
     const PlantTruth &truth = record.truth;
     columns_.put({record.time_s, 1e6 * truth.displacement_m, 1e3 * truth.accel_m_s2, truth.coil_A,
-                  1e3 * truth.damper_force_N, static_cast<double>(record.stimulus.accel_counts),
-                  static_cast<double>(record.stimulus.flags & ~LOCKSTEP_REPORT)},
+                  1e3 * truth.damper_force_N, static_cast<double>(record.stimulus.counts[0]),
+                  static_cast<double>(traced_flags(record.stimulus.flags))},
                  record.reply, trace_);
 }
 

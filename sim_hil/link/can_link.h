@@ -23,9 +23,10 @@ class CanLink final : public ControllerLink {
     std::string target() const override { return "linux"; }
 
     /// The first start waits for the target.
-    bool start(const quiesce_params_t &params) override;
+    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     bool is_complete() const override { return is_complete_; }
+    bool has_picture() const override { return false; }
     ReplyWords received() const override { return client_.received(); }
 
     /// The target is left running, for the next bench: it is a service, no child of this one.

@@ -32,16 +32,19 @@ class ControllerLink {
     /// Name of the target, as --target takes it.
     virtual std::string target() const = 0;
 
-    /// (Re)starts the controller from rest. Returns false iff it refuses a parameter; the
-    /// controller then stays in its latched fault state and still answers. May be called again for
-    /// a new run.
-    virtual bool start(const quiesce_params_t &params) = 0;
+    /// (Re)starts the controller from rest. board: what is wired to it; null: as the parameters
+    /// say. Returns false iff it refuses one of them; the controller then stays in its latched
+    /// fault state and still answers. May be called again for a new run.
+    virtual bool start(const quiesce_board_t *board, const quiesce_params_t &params) = 0;
 
-    /// One control tick. Writes all of reply. Only after start.
+    /// One control tick. Writes all of reply, 0 where nothing was asked for. Only after start.
     virtual void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) = 0;
 
     /// False iff a reply may hold words that are older than its tick.
     virtual bool is_complete() const { return true; }
+
+    /// False iff a picture that is asked for stays 0.
+    virtual bool has_picture() const { return true; }
 
     /// Words of the reply that the last exchange brought from the target; the others are what it
     /// sent last, or 0. All of them unless the link says otherwise.

@@ -5,13 +5,14 @@
 #include <cstddef>
 #include <string>
 
+#include "firmware.h"
 #include "firmware_comm.h"
 #include "link_clock.h"
 
 namespace quiesce {
 
-/// Most frames of one send.
-constexpr std::size_t kMaxBurstFrames = 2;
+/// Most frames of one send: all currents and samples of a tick.
+constexpr std::size_t kMaxBurstFrames = QUIESCE_MAX_DAMPERS + QUIESCE_MAX_SENSORS;
 
 /// Not thread-safe; closed by its destructor. Every function throws InputError, one line with the
 /// name, when the other side or the bus is gone.

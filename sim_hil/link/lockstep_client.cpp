@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "input_error.h"
+#include "lockstep_can.h"
 
 namespace quiesce {
 
@@ -29,11 +30,14 @@ constexpr std::size_t reply_word(std::size_t telemetry_offset) {
     return (offsetof(lockstep_reply_t, telemetry) + telemetry_offset) / kWord;
 }
 
-/// Words that every LockstepCommand brings.
+/// Words that every LockstepCommand, and what comes with it, brings.
 ReplyWords command_words() {
     ReplyWords words;
-    words.set(offsetof(lockstep_reply_t, current_cmd_mA) / kWord);
-    words.set(offsetof(lockstep_reply_t, is_driver_enabled) / kWord);
+    constexpr std::size_t kFirst = offsetof(lockstep_reply_t, current_cmd_mA) / kWord;
+    for (std::size_t i = 0; i < QUIESCE_MAX_DAMPERS; ++i) {
+        words.set(kFirst + i);
+    }
+    words.set(offsetof(lockstep_reply_t, drivers_enabled) / kWord);
     words.set(reply_word(offsetof(quiesce_telemetry_t, state)));
     words.set(reply_word(offsetof(quiesce_telemetry_t, fault)));
     words.set(reply_word(offsetof(quiesce_telemetry_t, current_cmd_mA)));
@@ -140,13 +144,17 @@ void LockstepClient::pass_fence() {
     fail("the target answers, but not what it is asked" + options_.silence_hint);
 }
 
-bool LockstepClient::start(const quiesce_params_t &params) {
+bool LockstepClient::start(const quiesce_board_t *board, const quiesce_params_t &params) {
     for (std::uint32_t index = 0; index < QUIESCE_PARAM_COUNT; ++index) {
         std::int32_t value = 0;
         quiesce_param_get(&params, index, &value);
         write_parameter(index, value);
     }
-    send_control(QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_CHOICE);
+    if (board != nullptr) {
+        write_board(*board);
+    }
+    send_control(board != nullptr ? QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_BOARD_CHOICE
+                                  : QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_CHOICE);
     const auto status = receive_status();
     if (status.param_count != QUIESCE_PARAM_COUNT ||
         status.telemetry_words != QUIESCE_CAN_TELEMETRY_WORDS) {
@@ -155,7 +163,15 @@ bool LockstepClient::start(const quiesce_params_t &params) {
     sequence_ = 0;
     reply_ = lockstep_reply_t{};
     refused_index_ = status.refused_index;
-    return status.param_is_refused == 0;
+    return status.param_is_refused == 0 && status.board_is_refused == 0;
+}
+
+void LockstepClient::write_board(const quiesce_board_t &board) {
+    std::array<std::int32_t, LOCKSTEP_CAN_BOARD_WORDS> words;
+    std::memcpy(words.data(), &board, sizeof board);
+    for (std::uint32_t i = 0; i < words.size(); ++i) {
+        write_parameter(LOCKSTEP_CAN_BOARD_INDEX + i, words[i]);
+    }
 }
 
 void LockstepClient::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {
@@ -167,6 +183,10 @@ void LockstepClient::exchange(const lockstep_stimulus_t &stimulus, lockstep_repl
     std::size_t telemetry_frames = 0;
     for (;;) {
         const can_frame_t frame = receive();
+        if (frame.id == QUIESCE_CAN_LOCKSTEP_DAMPER_FRAME_ID) {
+            take_damper(frame);
+            continue;
+        }
         if (frame.id == QUIESCE_CAN_LOCKSTEP_COMMAND_FRAME_ID) {
             take_command(frame);
             if (!has_flag(stimulus, LOCKSTEP_REPORT)) {
@@ -254,45 +274,89 @@ quiesce_can_lockstep_status_t LockstepClient::receive_status() {
     return status;
 }
 
-/// Returns the number of frames: the measured current goes before the stimulus it belongs to.
-std::size_t LockstepClient::put_stimulus(const lockstep_stimulus_t &stimulus,
-                                         can_frame_t *frames) const {
-    std::size_t count = 0;
-    require_24_bit(stimulus.accel_counts, "accel_counts");
-    if (has_flag(stimulus, LOCKSTEP_HAS_CURRENT)) {
-        require_24_bit(stimulus.current_meas_mA, "current_meas_mA");
-        quiesce_can_lockstep_current_t current{};
-        current.current_meas_mA = stimulus.current_meas_mA;
-        current.sequence = sequence_;
-        can_frame_t &frame = frames[count++];
-        frame =
-            make_frame(QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CURRENT_LENGTH);
-        quiesce_can_lockstep_current_pack(frame.data, &current, sizeof frame.data);
-    }
+can_frame_t LockstepClient::current_frame(const lockstep_stimulus_t &stimulus,
+                                          std::uint8_t damper) const {
+    require_24_bit(stimulus.current_meas_mA[damper], "current_meas_mA");
+    quiesce_can_lockstep_current_t current{};
+    current.current_meas_mA = stimulus.current_meas_mA[damper];
+    current.damper_number = damper;
+    current.sequence = sequence_;
+    can_frame_t frame =
+        make_frame(QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CURRENT_LENGTH);
+    quiesce_can_lockstep_current_pack(frame.data, &current, sizeof frame.data);
+    return frame;
+}
+
+can_frame_t LockstepClient::sensor_frame(const lockstep_stimulus_t &stimulus,
+                                         std::uint8_t number) const {
+    require_24_bit(stimulus.counts[number], "counts");
+    quiesce_can_lockstep_sensor_t sensor{};
+    sensor.sample_counts = stimulus.counts[number];
+    sensor.sensor_number = number;
+    sensor.sequence = sequence_;
+    can_frame_t frame =
+        make_frame(QUIESCE_CAN_LOCKSTEP_SENSOR_FRAME_ID, QUIESCE_CAN_LOCKSTEP_SENSOR_LENGTH);
+    quiesce_can_lockstep_sensor_pack(frame.data, &sensor, sizeof frame.data);
+    return frame;
+}
+
+can_frame_t LockstepClient::stimulus_frame(const lockstep_stimulus_t &stimulus) const {
+    require_24_bit(stimulus.counts[0], "counts");
     quiesce_can_lockstep_stimulus_t message{};
-    message.accel_counts = stimulus.accel_counts;
+    message.accel_counts = stimulus.counts[0];
     message.accel_is_fresh = has_flag(stimulus, LOCKSTEP_FRESH);
     message.enable = has_flag(stimulus, LOCKSTEP_ENABLE);
     message.estop = has_flag(stimulus, LOCKSTEP_ESTOP);
     message.fault_reset = has_flag(stimulus, LOCKSTEP_FAULT_RESET);
     message.sequence = sequence_;
-    can_frame_t &frame = frames[count++];
-    frame =
+    can_frame_t frame =
         make_frame(QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_LENGTH);
     quiesce_can_lockstep_stimulus_pack(frame.data, &message, sizeof frame.data);
+    return frame;
+}
+
+/// Returns the number of frames: what belongs to a stimulus goes before it.
+std::size_t LockstepClient::put_stimulus(const lockstep_stimulus_t &stimulus,
+                                         can_frame_t *frames) const {
+    std::size_t count = 0;
+    for (std::uint8_t i = 0; i < QUIESCE_MAX_DAMPERS; ++i) {
+        if (has_flag(stimulus, LOCKSTEP_HAS_CURRENT << i)) {
+            frames[count++] = current_frame(stimulus, i);
+        }
+    }
+    for (std::uint8_t i = 1; i < QUIESCE_MAX_SENSORS; ++i) {
+        if (has_flag(stimulus, LOCKSTEP_FRESH << i)) {
+            frames[count++] = sensor_frame(stimulus, i);
+        }
+    }
+    frames[count++] = stimulus_frame(stimulus);
     return count;
+}
+
+void LockstepClient::set_enabled(std::uint32_t damper, bool is_enabled) {
+    reply_.drivers_enabled &= ~(1u << damper);
+    reply_.drivers_enabled |= (is_enabled ? 1u : 0u) << damper;
+}
+
+void LockstepClient::take_damper(const can_frame_t &frame) {
+    quiesce_can_lockstep_damper_t command{};
+    require_in_sequence(frame.length == QUIESCE_CAN_LOCKSTEP_DAMPER_LENGTH &&
+                        quiesce_can_lockstep_damper_unpack(&command, frame.data, frame.length) ==
+                            0 &&
+                        command.sequence == sequence_);
+    reply_.current_cmd_mA[command.damper_number] = command.current_cmd_mA;
+    set_enabled(command.damper_number, command.driver_is_enabled != 0);
 }
 
 void LockstepClient::take_command(const can_frame_t &frame) {
     quiesce_can_lockstep_command_t command{};
-    if (frame.length != QUIESCE_CAN_LOCKSTEP_COMMAND_LENGTH ||
-        quiesce_can_lockstep_command_unpack(&command, frame.data, frame.length) != 0 ||
-        command.sequence != sequence_) {
-        fail("answers out of sequence; has it lost a frame, or does a second bench talk to it?");
-    }
+    require_in_sequence(frame.length == QUIESCE_CAN_LOCKSTEP_COMMAND_LENGTH &&
+                        quiesce_can_lockstep_command_unpack(&command, frame.data, frame.length) ==
+                            0 &&
+                        command.sequence == sequence_);
     sequence_ = static_cast<std::uint8_t>((sequence_ + 1) & kSequenceMask);
-    reply_.current_cmd_mA = command.current_cmd_mA;
-    reply_.is_driver_enabled = command.driver_is_enabled;
+    reply_.current_cmd_mA[0] = command.current_cmd_mA;
+    set_enabled(0, command.driver_is_enabled != 0);
     reply_.telemetry.state = command.state;
     reply_.telemetry.fault = command.fault;
     reply_.telemetry.current_cmd_mA = command.current_cmd_mA;
@@ -315,6 +379,12 @@ void LockstepClient::forget_report() {
     for (std::size_t i = 0; i < QUIESCE_REPORT_WORDS; ++i) {
         received_.reset(kFirst + i);
         reply_.report[i] = 0;
+    }
+}
+
+void LockstepClient::require_in_sequence(bool is_answer) const {
+    if (!is_answer) {
+        fail("answers out of sequence; has it lost a frame, or does a second bench talk to it?");
     }
 }
 

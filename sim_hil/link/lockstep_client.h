@@ -47,8 +47,9 @@ class LockstepClient {
     /// than the bench, or that an earlier bench has left in mid-tick.
     void greet(std::chrono::milliseconds time);
 
-    /// Writes every parameter by its index, then starts. Returns false iff one is refused.
-    bool start(const quiesce_params_t &params);
+    /// Writes every parameter by its index, and the words of the board where there is one (null:
+    /// none), then starts. Returns false iff one is refused.
+    bool start(const quiesce_board_t *board, const quiesce_params_t &params);
 
     /// One tick. With less than full telemetry reply holds, of each word, the last value received;
     /// state, fault and command come every tick in any case. Throws InputError, too, where a value
@@ -75,9 +76,16 @@ class LockstepClient {
     void pass_fence();
     void write_parameter(std::uint32_t index, std::int32_t value);
     std::size_t put_stimulus(const lockstep_stimulus_t &stimulus, can_frame_t *frames) const;
+    can_frame_t current_frame(const lockstep_stimulus_t &stimulus, std::uint8_t damper) const;
+    can_frame_t sensor_frame(const lockstep_stimulus_t &stimulus, std::uint8_t number) const;
+    can_frame_t stimulus_frame(const lockstep_stimulus_t &stimulus) const;
+    void write_board(const quiesce_board_t &board);
+    void set_enabled(std::uint32_t damper, bool is_enabled);
+    void take_damper(const can_frame_t &frame);
     void take_command(const can_frame_t &frame);
     void take_telemetry(const can_frame_t &frame);
     void forget_report();
+    void require_in_sequence(bool is_answer) const;
     [[noreturn]] void fail(const std::string &what) const;
 
     FrameChannel &channel_;

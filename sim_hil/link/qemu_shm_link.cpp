@@ -65,8 +65,11 @@ QemuShmLink::QemuShmLink(const QemuOptions &options)
       process_(options.image_path, qemu_arguments(mailbox_, counter_),
                inherited(mailbox_, counter_)) {}
 
-bool QemuShmLink::start(const quiesce_params_t &params) {
+bool QemuShmLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
     mailbox_->params = params;
+    mailbox_->has_board = board != nullptr ? 1u : 0u;
+    mailbox_->board = board != nullptr ? *board : quiesce_board_t{};
+    mailbox_->reply = lockstep_reply_t{};
     request(MAILBOX_START);
     check_layout();
     return mailbox_->status == 1u;
@@ -76,6 +79,9 @@ void QemuShmLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t
     mailbox_->stimulus = stimulus;
     request(MAILBOX_STEP);
     reply = mailbox_->reply;
+    if ((stimulus.flags & LOCKSTEP_PICTURE) == 0) {
+        reply.picture = quiesce_picture_t{};
+    }
 }
 
 std::optional<InstructionCounts> QemuShmLink::finish() {

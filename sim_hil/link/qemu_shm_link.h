@@ -31,7 +31,7 @@ class QemuShmLink final : public ControllerLink {
     explicit QemuShmLink(const QemuOptions &options);
 
     std::string target() const override { return "mps2"; }
-    bool start(const quiesce_params_t &params) override;
+    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     std::optional<InstructionCounts> finish() override;
 

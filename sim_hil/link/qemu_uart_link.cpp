@@ -6,12 +6,12 @@ QemuUartLink::QemuUartLink(const QemuOptions &options, TelemetryRate telemetry)
     : uart_(options), channel_(uart_),
       client_(channel_, {telemetry, options.answer_time, kUartSilenceHint}) {}
 
-bool QemuUartLink::start(const quiesce_params_t &params) {
+bool QemuUartLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
     if (!is_greeted_) {
         uart_.await_greeting();
         is_greeted_ = true;
     }
-    return client_.start(params);
+    return client_.start(board, params);
 }
 
 void QemuUartLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {

@@ -13,26 +13,29 @@ extern "C" {
 #endif
 
 /// lockstep_stimulus_t.flags
-#define LOCKSTEP_FRESH 1u        ///< accel_counts is a new sample
-#define LOCKSTEP_ENABLE 2u       ///< operator enables the output
-#define LOCKSTEP_ESTOP 4u        ///< emergency stop pressed
-#define LOCKSTEP_FAULT_RESET 8u  ///< operator acknowledges a latched fault
-#define LOCKSTEP_HAS_CURRENT 16u ///< current_meas_mA is a measurement
-#define LOCKSTEP_REPORT 32u      ///< the law's report is wanted; without it its words are 0
+#define LOCKSTEP_ENABLE 2u              ///< operator enables the output
+#define LOCKSTEP_ESTOP 4u               ///< emergency stop pressed
+#define LOCKSTEP_FAULT_RESET 8u         ///< operator acknowledges a latched fault
+#define LOCKSTEP_REPORT 32u             ///< the law's report is wanted; without it its words are 0
+#define LOCKSTEP_PICTURE 64u            ///< the picture is wanted; without it it is left as it is
+#define LOCKSTEP_FRESH (1u << 8)        ///< counts[0] is a new sample; << i: counts[i]
+#define LOCKSTEP_HAS_CURRENT (1u << 16) ///< current_meas_mA[0] is a measurement; << i: of damper i
 
-/// What a target sees in one tick. Words only: the same layout on every target.
+/// What a target sees in one tick: of all sensors and dampers that there can be, so that one layout
+/// serves every build. Words only.
 typedef struct {
-    int32_t accel_counts;
     uint32_t flags;
-    int32_t current_meas_mA;
+    int32_t counts[QUIESCE_MAX_SENSORS];
+    int32_t current_meas_mA[QUIESCE_MAX_DAMPERS];
 } lockstep_stimulus_t;
 
-/// What it answers.
+/// What it answers. What the target's build has no damper for is left as it is.
 typedef struct {
-    int32_t current_cmd_mA;
-    uint32_t is_driver_enabled;
+    int32_t current_cmd_mA[QUIESCE_MAX_DAMPERS];
+    uint32_t drivers_enabled; ///< a bit for each damper
     quiesce_telemetry_t telemetry;
     int32_t report[QUIESCE_REPORT_WORDS];
+    quiesce_picture_t picture;
 } lockstep_reply_t;
 
 typedef struct {
@@ -41,9 +44,11 @@ typedef struct {
     quiesce_out_t out; ///< of the last tick
 } lockstep_t;
 
-/// (Re)starts the controller from rest. Returns false iff a parameter is refused; the controller is
-/// then in its latched fault state and keeps commanding the safe current.
-bool lockstep_start(lockstep_t *server, const quiesce_params_t *params);
+/// (Re)starts the controller from rest. board: NULL where the parameters say what is wired. Returns
+/// false iff a parameter or the board is refused, or the law lacks a signal; the controller is then
+/// in its latched fault state and keeps commanding the safe current.
+bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
+                    const quiesce_params_t *params);
 
 /// One control tick.
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out);

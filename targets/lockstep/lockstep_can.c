@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-_Static_assert(sizeof(lockstep_reply_t) - offsetof(lockstep_reply_t, telemetry) ==
+_Static_assert(offsetof(lockstep_reply_t, picture) - offsetof(lockstep_reply_t, telemetry) ==
                    4u * QUIESCE_CAN_TELEMETRY_WORDS,
                "quiesce.dbc has one telemetry message a word");
 _Static_assert(QUIESCE_PARAM_COUNT <= UINT8_MAX, "indices fit LockstepStatus");
@@ -23,6 +23,7 @@ static void put_status(const lockstep_can_t *self, can_frame_t *out) {
     const struct quiesce_can_lockstep_status_t status = {
         .is_started = self->is_started,
         .param_is_refused = self->param_is_refused,
+        .board_is_refused = self->board_is_refused,
         .refused_index = self->refused_index,
         .param_count = QUIESCE_PARAM_COUNT,
         .telemetry_words = QUIESCE_CAN_TELEMETRY_WORDS,
@@ -37,16 +38,21 @@ static void put_status(const lockstep_can_t *self, can_frame_t *out) {
 }
 
 static void start(lockstep_can_t *self, const struct quiesce_can_lockstep_control_t *control) {
+    const bool has_board =
+        control->operation == QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_BOARD_CHOICE;
     quiesce_param_error_t error;
     self->param_is_refused = !quiesce_params_check(&self->params, &error);
     self->refused_index = self->param_is_refused ? (uint8_t)error.index : 0u;
-    (void)lockstep_start(&self->server, &self->params);
+    const bool is_accepted =
+        lockstep_start(&self->server, has_board ? &self->board : NULL, &self->params);
+    self->board_is_refused = !is_accepted && !self->param_is_refused;
+    self->dampers = has_board && is_accepted ? (uint32_t)self->board.dampers : 1u;
     self->telemetry_every_ticks = control->telemetry_every_ticks;
     self->telemetry_frames = control->telemetry_frames;
     self->ticks_to_burst = control->telemetry_every_ticks;
     self->telemetry_word = 0;
     self->sequence = 0;
-    self->has_current = false;
+    self->pending = (lockstep_stimulus_t){0};
     self->is_started = true;
 }
 
@@ -58,6 +64,7 @@ static uint32_t handle_control(lockstep_can_t *self, const can_frame_t *frame, c
     }
     switch (control.operation) {
     case QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_CHOICE:
+    case QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_BOARD_CHOICE:
         start(self, &control);
         break;
     case QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_STOP_CHOICE:
@@ -73,11 +80,24 @@ static uint32_t handle_control(lockstep_can_t *self, const can_frame_t *frame, c
     return 1;
 }
 
+// A parameter, or a word of the board.
+static bool store(lockstep_can_t *self, uint32_t index, int32_t value) {
+    if (index < LOCKSTEP_CAN_BOARD_INDEX) {
+        return quiesce_param_set(&self->params, index, value);
+    }
+    const uint32_t word = index - LOCKSTEP_CAN_BOARD_INDEX;
+    if (word >= LOCKSTEP_CAN_BOARD_WORDS) {
+        return false;
+    }
+    memcpy((uint8_t *)&self->board + sizeof value * word, &value, sizeof value);
+    return true;
+}
+
 static uint32_t handle_param_write(lockstep_can_t *self, const can_frame_t *frame,
                                    can_frame_t *out) {
     struct quiesce_can_lockstep_param_write_t write;
     (void)quiesce_can_lockstep_param_write_unpack(&write, frame->data, frame->length);
-    const bool is_stored = quiesce_param_set(&self->params, write.param_index, write.param_value);
+    const bool is_stored = store(self, write.param_index, write.param_value);
     const struct quiesce_can_lockstep_param_ack_t ack = {
         .param_index = write.param_index,
         .param_value = is_stored ? write.param_value : 0,
@@ -91,33 +111,52 @@ static uint32_t handle_param_write(lockstep_can_t *self, const can_frame_t *fram
     return 1;
 }
 
+// Whether what comes before a stimulus is for the next one.
+static bool is_next(lockstep_can_t *self, uint8_t sequence) {
+    if (!self->is_started) {
+        (void)reject(self);
+        return false;
+    }
+    if (sequence != self->sequence) {
+        count_up(&self->sequence_errors);
+        return false;
+    }
+    return true;
+}
+
 static uint32_t handle_current(lockstep_can_t *self, const can_frame_t *frame, can_frame_t *out) {
     struct quiesce_can_lockstep_current_t current;
     (void)out;
     (void)quiesce_can_lockstep_current_unpack(&current, frame->data, frame->length);
-    if (!self->is_started) {
+    if (is_next(self, current.sequence)) {
+        self->pending.current_meas_mA[current.damper_number] = current.current_meas_mA;
+        self->pending.flags |= LOCKSTEP_HAS_CURRENT << current.damper_number;
+    }
+    return 0;
+}
+
+static uint32_t handle_sensor(lockstep_can_t *self, const can_frame_t *frame, can_frame_t *out) {
+    struct quiesce_can_lockstep_sensor_t sensor;
+    (void)out;
+    (void)quiesce_can_lockstep_sensor_unpack(&sensor, frame->data, frame->length);
+    if (sensor.sensor_number == 0) { // its sample is in the stimulus
         return reject(self);
     }
-    if (current.sequence != self->sequence) {
-        count_up(&self->sequence_errors);
-        return 0;
+    if (is_next(self, sensor.sequence)) {
+        self->pending.counts[sensor.sensor_number] = sensor.sample_counts;
+        self->pending.flags |= LOCKSTEP_FRESH << sensor.sensor_number;
     }
-    self->current_meas_mA = current.current_meas_mA;
-    self->has_current = true;
     return 0;
 }
 
 static void run_tick(lockstep_can_t *self, const struct quiesce_can_lockstep_stimulus_t *wire) {
-    const lockstep_stimulus_t stimulus = {
-        .accel_counts = wire->accel_counts,
-        .flags = (wire->accel_is_fresh ? LOCKSTEP_FRESH : 0u) |
-                 (wire->enable ? LOCKSTEP_ENABLE : 0u) | (wire->estop ? LOCKSTEP_ESTOP : 0u) |
-                 (wire->fault_reset ? LOCKSTEP_FAULT_RESET : 0u) |
-                 (self->ticks_to_burst == 1u ? LOCKSTEP_REPORT : 0u) |
-                 (self->has_current ? LOCKSTEP_HAS_CURRENT : 0u),
-        .current_meas_mA = self->has_current ? self->current_meas_mA : 0,
-    };
-    self->has_current = false;
+    lockstep_stimulus_t stimulus = self->pending;
+    stimulus.counts[0] = wire->accel_counts;
+    stimulus.flags |= (wire->accel_is_fresh ? LOCKSTEP_FRESH : 0u) |
+                      (wire->enable ? LOCKSTEP_ENABLE : 0u) | (wire->estop ? LOCKSTEP_ESTOP : 0u) |
+                      (wire->fault_reset ? LOCKSTEP_FAULT_RESET : 0u) |
+                      (self->ticks_to_burst == 1u ? LOCKSTEP_REPORT : 0u);
+    self->pending = (lockstep_stimulus_t){0};
     self->sequence = (uint8_t)((self->sequence + 1u) % LOCKSTEP_CAN_SEQUENCE_PERIOD);
     lockstep_exchange(&self->server, &stimulus, &self->reply);
 }
@@ -146,13 +185,32 @@ static uint32_t put_due_telemetry(lockstep_can_t *self, can_frame_t *out) {
     return self->telemetry_frames;
 }
 
+static bool is_enabled(const lockstep_can_t *self, uint32_t damper) {
+    return (self->reply.drivers_enabled >> damper & 1u) != 0;
+}
+
+static void put_damper(const lockstep_can_t *self, uint32_t damper, uint8_t sequence,
+                       can_frame_t *out) {
+    const struct quiesce_can_lockstep_damper_t command = {
+        .current_cmd_mA = (uint16_t)self->reply.current_cmd_mA[damper],
+        .damper_number = (uint8_t)damper,
+        .driver_is_enabled = is_enabled(self, damper),
+        .sequence = sequence,
+    };
+    *out = (can_frame_t){
+        .id = QUIESCE_CAN_LOCKSTEP_DAMPER_FRAME_ID,
+        .length = QUIESCE_CAN_LOCKSTEP_DAMPER_LENGTH,
+    };
+    (void)quiesce_can_lockstep_damper_pack(out->data, &command, sizeof out->data);
+}
+
 static void put_command(const lockstep_can_t *self, uint8_t sequence, can_frame_t *out) {
     const quiesce_telemetry_t *telemetry = &self->reply.telemetry;
     const struct quiesce_can_lockstep_command_t command = {
-        .current_cmd_mA = (uint16_t)self->reply.current_cmd_mA,
+        .current_cmd_mA = (uint16_t)self->reply.current_cmd_mA[0],
         .fault = (uint8_t)telemetry->fault,
         .state = (uint8_t)telemetry->state,
-        .driver_is_enabled = self->reply.is_driver_enabled != 0u,
+        .driver_is_enabled = is_enabled(self, 0),
         .sequence = sequence,
     };
     *out = (can_frame_t){
@@ -165,17 +223,16 @@ static void put_command(const lockstep_can_t *self, uint8_t sequence, can_frame_
 static uint32_t handle_stimulus(lockstep_can_t *self, const can_frame_t *frame, can_frame_t *out) {
     struct quiesce_can_lockstep_stimulus_t wire;
     (void)quiesce_can_lockstep_stimulus_unpack(&wire, frame->data, frame->length);
-    if (!self->is_started) {
-        return reject(self);
-    }
-    if (wire.sequence != self->sequence) {
-        count_up(&self->sequence_errors);
+    if (!is_next(self, wire.sequence)) {
         return 0;
     }
     run_tick(self, &wire);
-    const uint32_t count = put_due_telemetry(self, out);
-    put_command(self, wire.sequence, &out[count]);
-    return count + 1u;
+    uint32_t count = put_due_telemetry(self, out);
+    for (uint32_t i = 1; i < self->dampers; i++) {
+        put_damper(self, i, wire.sequence, &out[count++]);
+    }
+    put_command(self, wire.sequence, &out[count++]);
+    return count;
 }
 
 typedef struct {
@@ -187,6 +244,7 @@ typedef struct {
 static const handler_t handlers[] = {
     {QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_LENGTH, handle_stimulus},
     {QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CURRENT_LENGTH, handle_current},
+    {QUIESCE_CAN_LOCKSTEP_SENSOR_FRAME_ID, QUIESCE_CAN_LOCKSTEP_SENSOR_LENGTH, handle_sensor},
     {QUIESCE_CAN_LOCKSTEP_CONTROL_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CONTROL_LENGTH, handle_control},
     {QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_FRAME_ID, QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_LENGTH,
      handle_param_write},
@@ -195,6 +253,7 @@ static const handler_t handlers[] = {
 void lockstep_can_init(lockstep_can_t *self) {
     memset(self, 0, sizeof *self);
     quiesce_params_default(&self->params);
+    quiesce_board_default(&self->board);
 }
 
 void lockstep_can_greet(const lockstep_can_t *self, can_frame_t *out) {

@@ -1,10 +1,12 @@
 /// Lock-step server over CAN frames: the protocol between a bench and a target (quiesce.dbc).
 ///
-/// Pure: one frame in, its replies out; it knows no bus. The bench writes parameters, starts, then
-/// sends one LockstepStimulus a tick (before it, where there is one, the LockstepCurrent of the
-/// same sequence number) and gets, in this order, the telemetry frames that are due and one
-/// LockstepCommand. A frame that is unknown, of the wrong length, out of place or of the wrong
-/// sequence number is counted and never acted on.
+/// Pure: one frame in, its replies out; it knows no bus. The bench writes parameters and, word by
+/// word, the board, starts with or without that board, then sends one LockstepStimulus a tick.
+/// Before it, with the same sequence number: a LockstepSensor for each new sample of the sensors
+/// beyond the first, a LockstepCurrent for each measured current. It gets, in this order, the
+/// telemetry frames that are due, a LockstepDamper for each damper of the board beyond the first,
+/// and one LockstepCommand. A frame that is unknown, of the wrong length, out of place or of the
+/// wrong sequence number is counted and never acted on.
 #ifndef LOCKSTEP_CAN_H
 #define LOCKSTEP_CAN_H
 
@@ -12,8 +14,12 @@
 #include "lockstep.h"
 #include "quiesce_can.h"
 
-/// Most frames that one frame is answered with: all telemetry words and the command.
-#define LOCKSTEP_CAN_MAX_REPLIES (QUIESCE_CAN_TELEMETRY_WORDS + 1u)
+/// Most frames that one frame is answered with: all telemetry words and the commands.
+#define LOCKSTEP_CAN_MAX_REPLIES (QUIESCE_CAN_TELEMETRY_WORDS + QUIESCE_MAX_DAMPERS)
+
+/// LockstepParamWrite: index of the first of the words of quiesce_board_t, in memory order.
+#define LOCKSTEP_CAN_BOARD_INDEX 0x4000u
+#define LOCKSTEP_CAN_BOARD_WORDS (sizeof(quiesce_board_t) / sizeof(int32_t))
 
 /// Sequence numbers run from 0, modulo this.
 #define LOCKSTEP_CAN_SEQUENCE_PERIOD 16u
@@ -22,22 +28,24 @@ typedef struct {
     lockstep_t server;
     lockstep_reply_t reply;  ///< of the last tick
     quiesce_params_t params; ///< for the next start
+    quiesce_board_t board;   ///< likewise, where it asks for a board
+    uint32_t dampers;        ///< that this start has
     uint32_t telemetry_every_ticks;
     uint32_t telemetry_frames;
     uint32_t telemetry_word; ///< next one to send
     uint32_t ticks_to_burst;
-    int32_t current_meas_mA; ///< pending measurement, for the next stimulus
-    uint8_t sequence;        ///< of the next stimulus
+    lockstep_stimulus_t pending; ///< samples and currents for the next stimulus
+    uint8_t sequence;            ///< of the next stimulus
     uint8_t refused_index;
-    bool has_current;
     bool is_started;
     bool is_stopped; ///< the bench asked the target to end
     bool param_is_refused;
+    bool board_is_refused;
     uint16_t unknown_frames;  ///< saturating
     uint16_t sequence_errors; ///< saturating
 } lockstep_can_t;
 
-/// Not started, every parameter at its default.
+/// Not started, every parameter and the board at its default.
 void lockstep_can_init(lockstep_can_t *self);
 
 /// The LockstepStatus with which a target says, once, that it listens from now on.

@@ -12,7 +12,7 @@
 #define MAILBOX_BASE 0x21000000u
 #define MAILBOX_BYTES (16u * 1024u * 1024u)
 
-#define MAILBOX_START 1u ///< params -> status 1 accepted, 0 refused
+#define MAILBOX_START 1u ///< params, board -> status 1 accepted, 0 refused
 #define MAILBOX_STEP 2u  ///< stimulus -> reply
 #define MAILBOX_STOP 3u  ///< stack_used_bytes; the image ends
 
@@ -26,6 +26,8 @@ typedef struct {
     lockstep_stimulus_t stimulus;
     lockstep_reply_t reply;
     quiesce_params_t params;
+    uint32_t has_board; ///< 0: the parameters say what is wired
+    quiesce_board_t board;
 } mailbox_t;
 
 #endif

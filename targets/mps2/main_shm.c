@@ -3,6 +3,8 @@
 #include "nap.h"
 #include "stack.h"
 
+#include <stddef.h>
+
 /// Polls of the request before the image naps: far longer than a bench takes that has a processor.
 #define POLLS_BEFORE_NAP 10000u
 #define NAP_US 50u
@@ -28,7 +30,9 @@ static void serve(mailbox_t *box, lockstep_t *server) {
         lockstep_exchange(server, &box->stimulus, &box->reply);
         break;
     case MAILBOX_START:
-        box->status = lockstep_start(server, &box->params) ? 1u : 0u;
+        box->status = lockstep_start(server, box->has_board != 0 ? &box->board : NULL, &box->params)
+                          ? 1u
+                          : 0u;
         break;
     case MAILBOX_STOP:
         box->stack_used_bytes = stack_high_water_bytes();

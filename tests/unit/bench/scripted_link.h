@@ -17,11 +17,13 @@ class ScriptedLink final : public ControllerLink {
     explicit ScriptedLink(Script script) : script_(std::move(script)) {}
 
     std::string target() const override { return "scripted"; }
-    bool start(const quiesce_params_t & /*params*/) override { return true; }
+    bool start(const quiesce_board_t * /*board*/, const quiesce_params_t & /*params*/) override {
+        return true;
+    }
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override {
         reply = lockstep_reply_t{};
-        reply.current_cmd_mA = script_(stimulus);
-        reply.is_driver_enabled = 1;
+        reply.current_cmd_mA[0] = script_(stimulus);
+        reply.drivers_enabled = 1;
     }
     std::optional<InstructionCounts> finish() override { return std::nullopt; }
 

@@ -250,8 +250,8 @@ TEST(CommandLine, replay_takes_the_least_count_for_a_missing_sample) {
     const CountsFile file(counts);
     ASSERT_EQ(file.replay("--columns flags,bad_sample_count").exit_code, 0);
     const std::vector<double> values = file.values();
-    const double missing = LOCKSTEP_ENABLE;
-    const double fresh = LOCKSTEP_ENABLE | LOCKSTEP_FRESH;
+    const double missing = 2; // enabled
+    const double fresh = 3;   // and a sample
     EXPECT_EQ(values[2 * 19], fresh);
     EXPECT_EQ(values[2 * 20], missing);
     EXPECT_EQ(values[2 * 21], missing);

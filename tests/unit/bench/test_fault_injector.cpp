@@ -11,7 +11,7 @@ using quiesce::FaultKind;
 constexpr std::int32_t kFullScale = 2047;
 
 lockstep_stimulus_t applied(FaultInjector &injector, double time_s, std::int32_t counts) {
-    lockstep_stimulus_t stimulus = {counts, LOCKSTEP_FRESH | LOCKSTEP_ENABLE, 0};
+    lockstep_stimulus_t stimulus = {LOCKSTEP_FRESH | LOCKSTEP_ENABLE, {counts}, {0}};
     injector.apply(time_s, stimulus);
     return stimulus;
 }
@@ -24,9 +24,9 @@ lockstep_stimulus_t during(FaultKind kind) {
 
 TEST(FaultInjector, each_kind_shows_in_the_stimulus) {
     EXPECT_EQ(during(FaultKind::dropout).flags, LOCKSTEP_ENABLE);
-    EXPECT_EQ(during(FaultKind::stuck).accel_counts, 11);
-    EXPECT_EQ(during(FaultKind::saturate).accel_counts, kFullScale);
-    EXPECT_GT(during(FaultKind::range).accel_counts, kFullScale);
+    EXPECT_EQ(during(FaultKind::stuck).counts[0], 11);
+    EXPECT_EQ(during(FaultKind::saturate).counts[0], kFullScale);
+    EXPECT_GT(during(FaultKind::range).counts[0], kFullScale);
     EXPECT_NE(during(FaultKind::estop).flags & LOCKSTEP_ESTOP, 0u);
     EXPECT_NE(during(FaultKind::fault_reset).flags & LOCKSTEP_FAULT_RESET, 0u);
     EXPECT_EQ(during(FaultKind::disable).flags, LOCKSTEP_FRESH);
@@ -48,9 +48,9 @@ TEST(FaultInjector, is_present_from_its_start_until_its_end) {
 TEST(FaultInjector, stuck_sample_stays_for_the_whole_fault) {
     FaultInjector injector({{FaultKind::stuck, 1.0, 1.0}}, kFullScale);
     applied(injector, 0.9, 5);
-    EXPECT_EQ(applied(injector, 1.1, 6).accel_counts, 5);
-    EXPECT_EQ(applied(injector, 1.9, 7).accel_counts, 5);
-    EXPECT_EQ(applied(injector, 2.1, 8).accel_counts, 8);
+    EXPECT_EQ(applied(injector, 1.1, 6).counts[0], 5);
+    EXPECT_EQ(applied(injector, 1.9, 7).counts[0], 5);
+    EXPECT_EQ(applied(injector, 2.1, 8).counts[0], 8);
 }
 
 TEST(FaultInjector, actuator_faults_reach_the_actuator) {
@@ -74,7 +74,7 @@ TEST(FaultInjector, order_and_overlap_do_not_matter) {
         EXPECT_EQ((found.flags & LOCKSTEP_ESTOP) != 0, tick >= 5000 && tick < 6000) << tick;
         EXPECT_EQ((found.flags & LOCKSTEP_ENABLE) == 0, tick < 4000) << tick;
         EXPECT_EQ((found.flags & LOCKSTEP_FRESH) == 0, tick >= 1000 && tick < 1100) << tick;
-        EXPECT_EQ(found.accel_counts == kFullScale, tick >= 2000 && tick < 2500) << tick;
+        EXPECT_EQ(found.counts[0] == kFullScale, tick >= 2000 && tick < 2500) << tick;
     }
 }
 

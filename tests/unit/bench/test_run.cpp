@@ -72,8 +72,8 @@ TEST(Run, same_seed_same_samples_other_seed_others) {
     const Recorder other = recorded(setup, link);
     std::size_t equal = 0;
     for (std::size_t i = 0; i < first.stimuli.size(); ++i) {
-        ASSERT_EQ(first.stimuli[i].accel_counts, again.stimuli[i].accel_counts);
-        equal += first.stimuli[i].accel_counts == other.stimuli[i].accel_counts ? 1u : 0u;
+        ASSERT_EQ(first.stimuli[i].counts[0], again.stimuli[i].counts[0]);
+        equal += first.stimuli[i].counts[0] == other.stimuli[i].counts[0] ? 1u : 0u;
     }
     EXPECT_LT(equal, first.stimuli.size() / 4);
 }
@@ -85,7 +85,7 @@ TEST(Run, measured_current_is_fed_back_only_when_asked_for) {
     setup.scenario.feed_current = true;
     const lockstep_stimulus_t last = recorded(setup, link).stimuli.back();
     EXPECT_NE(last.flags & LOCKSTEP_HAS_CURRENT, 0u);
-    EXPECT_NEAR(last.current_meas_mA, 3000, 2);
+    EXPECT_NEAR(last.current_meas_mA[0], 3000, 2);
 }
 
 TEST(Run, an_open_coil_is_measured_as_no_current) {
@@ -94,20 +94,23 @@ TEST(Run, an_open_coil_is_measured_as_no_current) {
     setup.scenario.faults = {{FaultKind::coil_open, 0.2, 0.1}};
     quiesce::ScriptedLink link = quiesce::constant_link(3000);
     const Recorder seen = recorded(setup, link);
-    EXPECT_NEAR(seen.stimuli[199].current_meas_mA, 3000, 2);
-    EXPECT_EQ(seen.stimuli[200].current_meas_mA, 0);
-    EXPECT_EQ(seen.stimuli[299].current_meas_mA, 0);
-    EXPECT_GT(seen.stimuli[320].current_meas_mA, 2500);
+    EXPECT_NEAR(seen.stimuli[199].current_meas_mA[0], 3000, 2);
+    EXPECT_EQ(seen.stimuli[200].current_meas_mA[0], 0);
+    EXPECT_EQ(seen.stimuli[299].current_meas_mA[0], 0);
+    EXPECT_GT(seen.stimuli[320].current_meas_mA[0], 2500);
 }
 
 TEST(Run, a_disabled_driver_gives_no_current) {
     class Disabled final : public quiesce::ControllerLink {
       public:
         std::string target() const override { return "disabled"; }
-        bool start(const quiesce_params_t & /*params*/) override { return true; }
+        bool start(const quiesce_board_t * /*board*/,
+                   const quiesce_params_t & /*params*/) override {
+            return true;
+        }
         void exchange(const lockstep_stimulus_t & /*in*/, lockstep_reply_t &reply) override {
             reply = lockstep_reply_t{};
-            reply.current_cmd_mA = 5000;
+            reply.current_cmd_mA[0] = 5000;
         }
         std::optional<quiesce::InstructionCounts> finish() override { return std::nullopt; }
     };

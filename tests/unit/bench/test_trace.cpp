@@ -109,7 +109,7 @@ TEST(TickColumns, what_a_law_reports_has_its_own_names) {
 
 TEST(ReplyFields, name_the_words_where_they_are) {
     lockstep_reply_t reply{};
-    reply.current_cmd_mA = 11;
+    reply.current_cmd_mA[0] = 11;
     reply.telemetry.freq_uHz = 12;
     reply.telemetry.peaks[2].amp_um_s2 = 13;
     reply.telemetry.current_cmd_mA = 14;
@@ -120,7 +120,7 @@ TEST(ReplyFields, name_the_words_where_they_are) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
         const std::string name = fields[i].name;
         const std::uint32_t word = quiesce::word_of(reply, i);
-        EXPECT_EQ(word == 11, name == "reply_current_cmd_mA") << name;
+        EXPECT_EQ(word == 11, name == "reply_current_cmd_mA0") << name;
         EXPECT_EQ(word == 12, name == "freq_uHz") << name;
         EXPECT_EQ(word == 13, name == "peak2_amp_um_s2") << name;
         EXPECT_EQ(word == 14, name == "current_cmd_mA") << name;

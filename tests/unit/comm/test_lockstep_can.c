@@ -56,7 +56,7 @@ static uint32_t send_stimulus(int32_t accel_counts, uint8_t sequence) {
 }
 
 static uint32_t send_current(int32_t current_meas_mA, uint8_t sequence) {
-    const struct quiesce_can_lockstep_current_t current = {current_meas_mA, sequence};
+    const struct quiesce_can_lockstep_current_t current = {current_meas_mA, sequence, 0};
     can_frame_t frame =
         make_frame(QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CURRENT_LENGTH);
     (void)quiesce_can_lockstep_current_pack(frame.data, &current, sizeof frame.data);
@@ -101,19 +101,19 @@ static void test_replies_equal_the_server_called_directly(void) {
     static lockstep_t direct;
     quiesce_params_t params;
     quiesce_params_default(&params);
-    TEST_ASSERT_TRUE(lockstep_start(&direct, &params));
+    TEST_ASSERT_TRUE(lockstep_start(&direct, NULL, &params));
     (void)start(0, 0);
     uint32_t seed = 5;
     for (uint32_t tick = 0; tick < 500; tick++) {
         seed = seed * 1664525u + 1013904223u;
         const int32_t counts = (int32_t)(seed >> 16) - 32768;
-        const lockstep_stimulus_t stimulus = {counts, LOCKSTEP_FRESH | LOCKSTEP_ENABLE, 0};
-        lockstep_reply_t expected;
+        const lockstep_stimulus_t stimulus = {LOCKSTEP_FRESH | LOCKSTEP_ENABLE, {counts}, {0}};
+        lockstep_reply_t expected = {0};
         lockstep_exchange(&direct, &stimulus, &expected);
         TEST_ASSERT_EQUAL_UINT32(1, send_stimulus(counts, (uint8_t)(tick % 16u)));
         const struct quiesce_can_lockstep_command_t command = get_command(&replies[0]);
-        TEST_ASSERT_EQUAL_INT32(expected.current_cmd_mA, command.current_cmd_mA);
-        TEST_ASSERT_EQUAL_UINT32(expected.is_driver_enabled, command.driver_is_enabled);
+        TEST_ASSERT_EQUAL_INT32(expected.current_cmd_mA[0], command.current_cmd_mA);
+        TEST_ASSERT_EQUAL_UINT32(expected.drivers_enabled, command.driver_is_enabled);
         TEST_ASSERT_EQUAL_UINT32(expected.telemetry.state, command.state);
         TEST_ASSERT_EQUAL_UINT32(expected.telemetry.fault, command.fault);
         TEST_ASSERT_EQUAL_MEMORY(&expected, &server.reply, sizeof expected);
@@ -210,6 +210,102 @@ static void test_start_names_the_refused_parameter(void) {
     }
 }
 
+static bool send_board_word(uint32_t word, int32_t value) {
+    struct quiesce_can_lockstep_param_ack_t ack;
+    TEST_ASSERT_EQUAL_UINT32(1, send_param((uint16_t)(LOCKSTEP_CAN_BOARD_INDEX + word), value));
+    (void)quiesce_can_lockstep_param_ack_unpack(&ack, replies[0].data, replies[0].length);
+    return ack.is_stored != 0;
+}
+
+static void send_board(const quiesce_board_t *board) {
+    for (uint32_t i = 0; i < LOCKSTEP_CAN_BOARD_WORDS; i++) {
+        int32_t value;
+        memcpy(&value, (const uint8_t *)board + 4u * i, sizeof value);
+        TEST_ASSERT_TRUE(send_board_word(i, value));
+    }
+}
+
+static uint32_t start_board(void) {
+    return send_control(QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_BOARD_CHOICE, 0, 0);
+}
+
+// Two storeys: an accelerometer on each, a damper below each.
+static quiesce_board_t two_storeys(void) {
+    quiesce_board_t board;
+    quiesce_board_default(&board);
+    board.sensors = board.bodies = board.dampers = 2;
+    board.sensor[1] = board.sensor[0];
+    board.sensor[1].at = 1;
+    board.damper[1] = board.damper[0];
+    board.damper[1].end_a = 1;
+    board.damper[1].end_b = 0;
+    board.damper[1].safe_mA = 321;
+    return board;
+}
+
+static void test_a_board_gets_there_word_by_word(void) {
+    const quiesce_board_t board = two_storeys();
+    send_board(&board);
+    TEST_ASSERT_EQUAL_MEMORY(&board, &server.board, sizeof board);
+    TEST_ASSERT_FALSE(send_board_word(LOCKSTEP_CAN_BOARD_WORDS, 1));
+    TEST_ASSERT_EQUAL_UINT32(1, start_board());
+    // A build for one of each says that it is too small.
+    TEST_ASSERT_EQUAL_UINT8(QUIESCE_SENSORS == 1, get_status().board_is_refused);
+    TEST_ASSERT_EQUAL_UINT8(0, get_status().param_is_refused);
+}
+
+static void test_a_board_that_is_refused_commands_nothing(void) {
+    quiesce_board_t board;
+    quiesce_board_default(&board);
+    board.damper[0].safe_mA = 700;
+    board.damper[0].ceiling_mA = 600;
+    send_board(&board);
+    (void)start_board();
+    TEST_ASSERT_EQUAL_UINT8(1, get_status().board_is_refused);
+    TEST_ASSERT_EQUAL_UINT32(1, send_stimulus(1, 0));
+    const struct quiesce_can_lockstep_command_t command = get_command(&replies[0]);
+    TEST_ASSERT_EQUAL_INT32(0, command.current_cmd_mA);
+    TEST_ASSERT_EQUAL_UINT32(0, command.driver_is_enabled);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_PARAMETER, command.fault);
+}
+
+#if QUIESCE_SENSORS > 1 && QUIESCE_DAMPERS > 1
+static uint32_t send_sample(int32_t counts, uint8_t number, uint8_t sequence) {
+    const struct quiesce_can_lockstep_sensor_t sample = {counts, number, sequence};
+    can_frame_t frame =
+        make_frame(QUIESCE_CAN_LOCKSTEP_SENSOR_FRAME_ID, QUIESCE_CAN_LOCKSTEP_SENSOR_LENGTH);
+    (void)quiesce_can_lockstep_sensor_pack(frame.data, &sample, sizeof frame.data);
+    return lockstep_can_receive(&server, &frame, replies);
+}
+
+static void test_samples_and_commands_of_further_sensors_and_dampers(void) {
+    const quiesce_board_t board = two_storeys();
+    send_board(&board);
+    (void)start_board();
+    TEST_ASSERT_EQUAL_UINT32(0, send_sample(-77, 1, 0));
+    TEST_ASSERT_EQUAL_UINT32(2, send_stimulus(5, 0));
+    TEST_ASSERT_EQUAL_INT32(-77, server.server.in.sensor[1].counts);
+    TEST_ASSERT_TRUE(server.server.in.sensor[1].is_fresh);
+    struct quiesce_can_lockstep_damper_t damper;
+    TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_LOCKSTEP_DAMPER_FRAME_ID, replies[0].id);
+    (void)quiesce_can_lockstep_damper_unpack(&damper, replies[0].data, replies[0].length);
+    TEST_ASSERT_EQUAL_UINT8(1, damper.damper_number);
+    TEST_ASSERT_EQUAL_UINT16(321, damper.current_cmd_mA);
+    TEST_ASSERT_EQUAL_UINT8(1, damper.driver_is_enabled);
+    TEST_ASSERT_EQUAL_UINT8(0, damper.sequence);
+    (void)get_command(&replies[1]);
+    // Not twice, not of another tick, not the first sensor's.
+    (void)send_stimulus(5, 1);
+    TEST_ASSERT_FALSE(server.server.in.sensor[1].is_fresh);
+    TEST_ASSERT_EQUAL_UINT32(0, send_sample(1, 1, 7));
+    TEST_ASSERT_EQUAL_UINT16(1, server.sequence_errors);
+    TEST_ASSERT_EQUAL_UINT32(0, send_sample(1, 0, 2));
+    TEST_ASSERT_EQUAL_UINT16(1, server.unknown_frames);
+    (void)send_stimulus(5, 2);
+    TEST_ASSERT_FALSE(server.server.in.sensor[1].is_fresh);
+}
+#endif
+
 static void test_current_reaches_its_own_stimulus_only(void) {
     (void)start(0, 0);
     TEST_ASSERT_EQUAL_UINT32(0, send_current(-5, 0));
@@ -226,7 +322,7 @@ static void test_current_reaches_its_own_stimulus_only(void) {
 
 static void test_full_telemetry_carries_every_word_then_the_command(void) {
     (void)start(1, QUIESCE_CAN_TELEMETRY_WORDS);
-    TEST_ASSERT_EQUAL_UINT32(LOCKSTEP_CAN_MAX_REPLIES, send_stimulus(-4321, 0));
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_CAN_TELEMETRY_WORDS + 1u, send_stimulus(-4321, 0));
     uint32_t words[QUIESCE_CAN_TELEMETRY_WORDS];
     for (uint32_t i = 0; i < QUIESCE_CAN_TELEMETRY_WORDS; i++) {
         TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_TELEMETRY_FIRST_ID + i, replies[i].id);
@@ -236,8 +332,8 @@ static void test_full_telemetry_carries_every_word_then_the_command(void) {
             (uint32_t)d[0] | (uint32_t)d[1] << 8 | (uint32_t)d[2] << 16 | (uint32_t)d[3] << 24;
     }
     // The report follows the telemetry.
-    TEST_ASSERT_EQUAL_size_t(sizeof words,
-                             sizeof server.reply - offsetof(lockstep_reply_t, telemetry));
+    TEST_ASSERT_EQUAL_size_t(sizeof words, offsetof(lockstep_reply_t, picture) -
+                                               offsetof(lockstep_reply_t, telemetry));
     TEST_ASSERT_EQUAL_MEMORY((const uint8_t *)&server.reply + offsetof(lockstep_reply_t, telemetry),
                              words, sizeof words);
     (void)get_command(&replies[QUIESCE_CAN_TELEMETRY_WORDS]);
@@ -295,6 +391,11 @@ int main(void) {
     RUN_TEST(test_counters_saturate);
     RUN_TEST(test_parameters_are_stored_and_acknowledged);
     RUN_TEST(test_start_names_the_refused_parameter);
+    RUN_TEST(test_a_board_gets_there_word_by_word);
+    RUN_TEST(test_a_board_that_is_refused_commands_nothing);
+#if QUIESCE_SENSORS > 1 && QUIESCE_DAMPERS > 1
+    RUN_TEST(test_samples_and_commands_of_further_sensors_and_dampers);
+#endif
     RUN_TEST(test_current_reaches_its_own_stimulus_only);
     RUN_TEST(test_full_telemetry_carries_every_word_then_the_command);
     RUN_TEST(test_decimated_telemetry_goes_round_all_words);

@@ -97,8 +97,8 @@ static lockstep_stimulus_t draw_stimulus(uint32_t *seed, uint32_t tick, uint32_t
                                          const stretch_t *stretch) {
     const int32_t tone = signal_sine(stretch->amplitude, stretch->freq_mHz, tick, rate_Hz);
     lockstep_stimulus_t in = {
-        .accel_counts = tone + signal_noise(seed, stretch->noise) + stretch->offset,
-        .current_meas_mA = signal_noise(seed, 6000),
+        .counts = {tone + signal_noise(seed, stretch->noise) + stretch->offset},
+        .current_meas_mA = {signal_noise(seed, 6000)},
     };
     in.flags = random_below(seed, 1000) >= stretch->dropouts ? LOCKSTEP_FRESH : 0u;
     in.flags |= random_below(seed, 1000) != 0 ? LOCKSTEP_ENABLE : 0u;
@@ -115,7 +115,7 @@ static uint32_t run_case(lockstep_t *server, uint32_t number) {
     quiesce_params_t params;
     stretch_t stretch = {0};
     draw_params(&seed, number, &params);
-    (void)lockstep_start(server, &params);
+    (void)lockstep_start(server, NULL, &params);
     for (uint32_t tick = 0; tick < TICKS; tick++, stretch.left_ticks--) {
         if (stretch.left_ticks == 0) {
             stretch = draw_stretch(&seed);
@@ -168,9 +168,9 @@ static int run_file(lockstep_t *server, const char *path) {
     digest_t digest = {WORD_CRC_START};
     quiesce_params_t params;
     quiesce_params_default(&params);
-    (void)lockstep_start(server, &params);
+    (void)lockstep_start(server, NULL, &params);
     lockstep_stimulus_t in = {.flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE};
-    while (read_count(file, &in.accel_counts)) {
+    while (read_count(file, &in.counts[0])) {
         lockstep_reply_t reply;
         lockstep_exchange(server, &in, &reply);
         append_telemetry(&digest, &reply.telemetry);

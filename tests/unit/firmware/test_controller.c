@@ -17,7 +17,7 @@ static void start(void) {
     flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE;
     time_ticks = 0;
     noise_seed = 1;
-    TEST_ASSERT_TRUE(lockstep_start(&server, &params));
+    TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params));
 }
 
 void setUp(void) {
@@ -26,7 +26,7 @@ void setUp(void) {
 void tearDown(void) {}
 
 static void tick(int32_t accel_counts, int32_t current_mA) {
-    const lockstep_stimulus_t in = {accel_counts, flags, current_mA};
+    const lockstep_stimulus_t in = {flags, {accel_counts}, {current_mA}};
     lockstep_exchange(&server, &in, &reply);
     time_ticks++;
 }
@@ -43,7 +43,7 @@ static void assert_state(quiesce_state_t state, quiesce_fault_t fault) {
     TEST_ASSERT_EQUAL_UINT32(state, reply.telemetry.state);
     TEST_ASSERT_EQUAL_UINT32(fault, reply.telemetry.fault);
     if (state != QUIESCE_STATE_RUN) {
-        TEST_ASSERT_EQUAL_INT32(params.safe_current_mA, reply.current_cmd_mA);
+        TEST_ASSERT_EQUAL_INT32(params.safe_current_mA, reply.current_cmd_mA[0]);
     }
 }
 
@@ -54,14 +54,14 @@ static void test_chain_reaches_the_rule_bases_current(void) {
     assert_state(QUIESCE_STATE_INIT, QUIESCE_FAULT_NONE);
     vibrate(10000, 300);
     assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
-    TEST_ASSERT_EQUAL_INT32(5000, reply.current_cmd_mA); // unlock_current_mA
+    TEST_ASSERT_EQUAL_INT32(5000, reply.current_cmd_mA[0]); // unlock_current_mA
     vibrate(10000, 1000);
     TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.freq_is_valid);
     TEST_ASSERT_INT32_WITHIN(5000, 10000000, reply.telemetry.freq_uHz);
     TEST_ASSERT_INT32_WITHIN(3000, 212000, reply.telemetry.rms_um_s2);
-    TEST_ASSERT_INT32_WITHIN(5, 5000, reply.current_cmd_mA);
+    TEST_ASSERT_INT32_WITHIN(5, 5000, reply.current_cmd_mA[0]);
     vibrate(5000, 1500);
-    TEST_ASSERT_INT32_WITHIN(20, 0, reply.current_cmd_mA);
+    TEST_ASSERT_INT32_WITHIN(20, 0, reply.current_cmd_mA[0]);
 }
 
 static void test_unlock_current_is_not_the_safe_current(void) {
@@ -72,17 +72,17 @@ static void test_unlock_current_is_not_the_safe_current(void) {
     vibrate(10000, 100);
     assert_state(QUIESCE_STATE_INIT, QUIESCE_FAULT_NONE);
     vibrate(10000, 400);
-    TEST_ASSERT_EQUAL_INT32(3210, reply.current_cmd_mA);
+    TEST_ASSERT_EQUAL_INT32(3210, reply.current_cmd_mA[0]);
 }
 
 static void test_refused_parameter_latches_and_keeps_the_safe_current(void) {
     params.safe_current_mA = 400;
     params.law = 99;
-    TEST_ASSERT_FALSE(lockstep_start(&server, &params));
+    TEST_ASSERT_FALSE(lockstep_start(&server, NULL, &params));
     flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | LOCKSTEP_FAULT_RESET;
     vibrate(10000, 600);
     assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_PARAMETER);
-    TEST_ASSERT_EQUAL_UINT32(0, reply.is_driver_enabled);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.drivers_enabled);
 }
 
 static void bad_samples(quiesce_fault_t fault, int32_t counts, bool is_fresh, uint32_t ticks) {
@@ -90,7 +90,7 @@ static void bad_samples(quiesce_fault_t fault, int32_t counts, bool is_fresh, ui
     start();
     vibrate(10000, 1500);
     assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
-    TEST_ASSERT_EQUAL_INT32(5000, reply.current_cmd_mA);
+    TEST_ASSERT_EQUAL_INT32(5000, reply.current_cmd_mA[0]);
     flags = LOCKSTEP_ENABLE | (is_fresh ? LOCKSTEP_FRESH : 0);
     for (uint32_t i = 0; i < ticks; i++) {
         tick(counts, 0);
@@ -146,7 +146,7 @@ static void test_emergency_stop_latches_within_its_tick(void) {
     flags |= LOCKSTEP_ESTOP;
     vibrate(10000, 1);
     assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_ESTOP);
-    TEST_ASSERT_EQUAL_UINT32(0, reply.is_driver_enabled);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.drivers_enabled);
     flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE;
     vibrate(10000, 500);
     assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_ESTOP);
@@ -175,7 +175,7 @@ static void run_coil(int32_t share_percent, bool is_measured, uint32_t ticks) {
         flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | measured;
         const int32_t noise = signal_noise(&noise_seed, 147);
         tick(signal_sine(5195, 10000, time_ticks, 1000) + noise, (int32_t)(coil_uA / 1000));
-        coil_uA += ((int64_t)reply.current_cmd_mA * 10 * share_percent - coil_uA) / 6;
+        coil_uA += ((int64_t)reply.current_cmd_mA[0] * 10 * share_percent - coil_uA) / 6;
     }
 }
 
@@ -256,10 +256,10 @@ static void test_two_controllers_do_not_share_state(void) {
     static lockstep_reply_t other_reply;
     params.law = QUIESCE_LAW_FUZZY;
     start();
-    TEST_ASSERT_TRUE(lockstep_start(&other, &params));
+    TEST_ASSERT_TRUE(lockstep_start(&other, NULL, &params));
     for (uint32_t i = 0; i < 1500; i++) {
         vibrate(10000, 1);
-        const lockstep_stimulus_t in = {signal_sine(5195, 20000, i, 1000), flags, 0};
+        const lockstep_stimulus_t in = {flags, {signal_sine(5195, 20000, i, 1000)}, {0}};
         lockstep_exchange(&other, &in, &other_reply);
     }
     TEST_ASSERT_INT32_WITHIN(5000, 10000000, reply.telemetry.freq_uHz);
@@ -274,13 +274,15 @@ static void test_arbitrary_input_never_drives_the_command_out_of_range(void) {
     start();
     for (uint32_t i = 0; i < 20000; i++) {
         const lockstep_stimulus_t in = {
-            .accel_counts = (int32_t)((uint32_t)signal_noise(&seed, INT32_MAX) >> (i / 640)),
-            .flags = (uint32_t)signal_noise(&seed, INT32_MAX) | (i & 1u),
-            .current_meas_mA = signal_noise(&seed, INT32_MAX),
+            .counts = {(int32_t)((uint32_t)signal_noise(&seed, INT32_MAX) >> (i / 640))},
+            .flags =
+                (uint32_t)signal_noise(&seed, INT32_MAX) | ((i & 1u) != 0 ? LOCKSTEP_FRESH : 0u),
+            .current_meas_mA = {signal_noise(&seed, INT32_MAX)},
         };
         lockstep_exchange(&server, &in, &reply);
-        TEST_ASSERT_TRUE(reply.current_cmd_mA >= 0 && reply.current_cmd_mA <= 5000);
-        TEST_ASSERT_TRUE(reply.telemetry.state == QUIESCE_STATE_RUN || reply.current_cmd_mA == 0);
+        TEST_ASSERT_TRUE(reply.current_cmd_mA[0] >= 0 && reply.current_cmd_mA[0] <= 5000);
+        TEST_ASSERT_TRUE(reply.telemetry.state == QUIESCE_STATE_RUN ||
+                         reply.current_cmd_mA[0] == 0);
     }
 }
 
@@ -288,13 +290,13 @@ static void run_wildly(uint32_t ticks) {
     uint32_t seed = 17;
     for (uint32_t i = 0; i < ticks; i++) {
         const lockstep_stimulus_t in = {
-            .accel_counts = signal_noise(&seed, 8388606),
+            .counts = {signal_noise(&seed, 8388606)},
             .flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | LOCKSTEP_HAS_CURRENT,
-            .current_meas_mA = signal_noise(&seed, 20000),
+            .current_meas_mA = {signal_noise(&seed, 20000)},
         };
         lockstep_exchange(&server, &in, &reply);
-        TEST_ASSERT_TRUE(reply.current_cmd_mA >= 0);
-        TEST_ASSERT_TRUE(reply.current_cmd_mA <= params.max_current_mA);
+        TEST_ASSERT_TRUE(reply.current_cmd_mA[0] >= 0);
+        TEST_ASSERT_TRUE(reply.current_cmd_mA[0] <= params.max_current_mA);
     }
 }
 
@@ -310,7 +312,7 @@ static void test_every_accepted_extreme_runs(void) {
             params.current_check = (int32_t)(k % 2);
             quiesce_param_set(&params, i / 2, i % 2 ? info->max : info->min);
             if (quiesce_params_check(&params, NULL)) {
-                TEST_ASSERT_TRUE(lockstep_start(&server, &params));
+                TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params));
                 run_wildly(700);
             }
         }
@@ -331,7 +333,7 @@ static void test_all_parameters_at_their_ends_together_run(void) {
         params.current_error_mA = 10;
         params.safe_current_mA = 0;
         params.unlock_current_mA = 0;
-        TEST_ASSERT_TRUE(lockstep_start(&server, &params));
+        TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params));
         run_wildly(20000);
     }
 }

@@ -15,10 +15,10 @@ class FaultyLink final : public ControllerLink {
     FaultyLink(int run, int tick, std::size_t word) : bad_run_(run), bad_tick_(tick), word_(word) {}
 
     std::string target() const override { return "faulty"; }
-    bool start(const quiesce_params_t &params) override {
+    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override {
         ++run_;
         tick_ = 0;
-        return host_.start(params) && accepts;
+        return host_.start(board, params) && accepts;
     }
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override {
         host_.exchange(stimulus, reply);
@@ -41,7 +41,7 @@ class FaultyLink final : public ControllerLink {
 
 void run_twice(ComparingLink &link) {
     for (int run = 0; run < 2; ++run) {
-        link.start(default_params());
+        link.start(nullptr, default_params());
         for (std::uint32_t tick = 0; tick < 100; ++tick) {
             lockstep_reply_t reply;
             link.exchange(varied_stimulus(tick), reply);
@@ -67,7 +67,7 @@ TEST(comparing_link, one_wrong_bit_in_any_word_is_found_and_named) {
         ASSERT_TRUE(link.first_mismatch());
         EXPECT_EQ(link.first_mismatch()->run, 1u);
         EXPECT_EQ(link.first_mismatch()->tick, 42);
-        EXPECT_STRNE(link.first_mismatch()->field, "");
+        EXPECT_NE(link.first_mismatch()->field, "");
     }
 }
 
@@ -76,8 +76,8 @@ TEST(comparing_link, the_plant_sees_the_reference) {
     FaultyLink faulty(0, 0, 0);
     ComparingLink link(host, faulty);
     lockstep_reply_t expected, actual;
-    link.start(default_params());
-    alone.start(default_params());
+    link.start(nullptr, default_params());
+    alone.start(nullptr, default_params());
     link.exchange(varied_stimulus(0), actual);
     alone.exchange(varied_stimulus(0), expected);
     EXPECT_EQ(std::memcmp(&expected, &actual, sizeof expected), 0);
@@ -88,7 +88,7 @@ TEST(comparing_link, disagreement_on_parameters_is_an_error) {
     FaultyLink faulty(0, 0, 0);
     faulty.accepts = false;
     ComparingLink link(host, faulty);
-    expect_contains(error_of([&] { link.start(default_params()); }), "disagree");
+    expect_contains(error_of([&] { link.start(nullptr, default_params()); }), "disagree");
 }
 
 } // namespace

@@ -35,8 +35,7 @@ TEST(linux_target, compare_finds_every_word_equal) {
     const auto json = json_of("compare " + kScenario + "--seeds 1 " + target.options);
     EXPECT_EQ(json["mismatches"], 0) << json;
     EXPECT_EQ(json["targets"], nlohmann::json({"host", "linux"}));
-    EXPECT_EQ(json["compared_words"],
-              json["ticks"].get<std::size_t>() * (sizeof(lockstep_reply_t) / 4));
+    EXPECT_EQ(json["compared_words"], json["ticks"].get<std::size_t>() * kWordsOverCan);
     EXPECT_FALSE(json["faults_seen"].empty());
     EXPECT_TRUE(json["instr_median"].is_null());
 }
@@ -47,7 +46,7 @@ TEST(linux_target, compare_with_less_telemetry_counts_what_it_compared) {
         json_of("compare " + kScenario + "--seeds 1,2 --telemetry-every 100 " + target.options);
     const std::size_t ticks = json["ticks"];
     EXPECT_EQ(json["mismatches"], 0) << json;
-    EXPECT_EQ(json["compared_words"], ticks / 100 * (99 * 5 + sizeof(lockstep_reply_t) / 4));
+    EXPECT_EQ(json["compared_words"], ticks / 100 * (99 * kCommandWords + kWordsOverCan));
 }
 
 TEST(linux_target, run_equals_the_host_with_any_telemetry) {

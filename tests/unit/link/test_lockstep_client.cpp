@@ -57,7 +57,7 @@ std::string error_on_third_tick(const Tamper &tamper) {
                                                            : std::optional<std::string>("");
         },
         impatient_options());
-    rig.link->start(default_params());
+    rig.link->start(nullptr, default_params());
     lockstep_reply_t reply;
     rig.link->exchange(varied_stimulus(0), reply);
     rig.link->exchange(varied_stimulus(1), reply);
@@ -67,21 +67,46 @@ std::string error_on_third_tick(const Tamper &tamper) {
 void expect_equal_to_host(CanLink &link, const std::string &rubbish_name = "") {
     InProcessLink host;
     ComparingLink comparing(host, link);
-    ASSERT_TRUE(comparing.start(default_params())) << rubbish_name;
+    ASSERT_TRUE(comparing.start(nullptr, default_params())) << rubbish_name;
     lockstep_reply_t reply;
     for (std::uint32_t tick = 1600; tick < 1900; ++tick) { // estop and reset are in here
         comparing.exchange(varied_stimulus(tick), reply);
     }
     EXPECT_EQ(comparing.mismatches(), 0u) << rubbish_name;
-    EXPECT_GE(comparing.compared_words(), 300u * 5u);
+    EXPECT_GE(comparing.compared_words(), 300u * kCommandWords);
 }
 
 TEST(lockstep_client, full_telemetry_equals_the_host_through_a_restart) {
     const Rig rig;
     expect_equal_to_host(*rig.link);
     expect_equal_to_host(*rig.link);
-    EXPECT_TRUE(rig.link->received().all());
+    EXPECT_EQ(rig.link->received().count(), kWordsOverCan);
     EXPECT_TRUE(rig.link->is_complete());
+}
+
+TEST(lockstep_client, eight_sensors_and_four_dampers_equal_the_host) {
+    const quiesce_board_t board = largest_board();
+    const Rig rig;
+    InProcessLink host;
+    ComparingLink comparing(host, *rig.link);
+    ASSERT_TRUE(comparing.start(&board, default_params()));
+    lockstep_reply_t reply;
+    for (std::uint32_t tick = 1000; tick < 1900; ++tick) {
+        comparing.exchange(varied_stimulus(tick), reply);
+    }
+    EXPECT_EQ(comparing.mismatches(), 0u);
+    EXPECT_EQ(comparing.compared_words(), 900u * kWordsOverCan);
+    // And back to one of each.
+    expect_equal_to_host(*rig.link);
+}
+
+TEST(lockstep_client, refused_board_is_refused_on_both_sides) {
+    quiesce_board_t board = largest_board();
+    board.damper[3].safe_mA = 20001;
+    const Rig rig;
+    InProcessLink host;
+    ComparingLink comparing(host, *rig.link);
+    EXPECT_FALSE(comparing.start(&board, default_params()));
 }
 
 TEST(lockstep_client, less_telemetry_says_which_words_are_of_this_tick) {
@@ -91,14 +116,14 @@ TEST(lockstep_client, less_telemetry_says_which_words_are_of_this_tick) {
     EXPECT_FALSE(rig.link->is_complete());
     InProcessLink host;
     ComparingLink comparing(host, *rig.link);
-    comparing.start(default_params());
+    comparing.start(nullptr, default_params());
     lockstep_reply_t reply;
     for (std::uint32_t tick = 0; tick < 100; ++tick) {
         comparing.exchange(varied_stimulus(tick), reply);
-        EXPECT_EQ(rig.link->received().count(), tick % 10 == 9 ? sizeof reply / 4 : 5u);
+        EXPECT_EQ(rig.link->received().count(), tick % 10 == 9 ? kWordsOverCan : kCommandWords);
     }
     EXPECT_EQ(comparing.mismatches(), 0u);
-    EXPECT_EQ(comparing.compared_words(), 90u * 5u + 10u * sizeof reply / 4);
+    EXPECT_EQ(comparing.compared_words(), 90u * kCommandWords + 10u * kWordsOverCan);
 }
 
 TEST(lockstep_client, refused_parameter_is_named_by_its_index) {
@@ -110,7 +135,7 @@ TEST(lockstep_client, refused_parameter_is_named_by_its_index) {
     const LockstepPeer peer(std::move(ends.second));
     const auto channel = channel_on(std::move(ends.first));
     LockstepClient client(*channel, {});
-    EXPECT_FALSE(client.start(params));
+    EXPECT_FALSE(client.start(nullptr, params));
     EXPECT_EQ(client.refused_index(), error.index);
 }
 
@@ -145,7 +170,7 @@ TEST(lockstep_client, what_an_earlier_bench_left_under_way_does_not_disturb) {
     {
         const auto channel = channel_on(std::move(ends.first));
         LockstepClient earlier(*channel, {});
-        ASSERT_TRUE(earlier.start(default_params()));
+        ASSERT_TRUE(earlier.start(nullptr, default_params()));
         lockstep_reply_t reply;
         earlier.exchange(varied_stimulus(0), reply);
         const std::string last = "t60340000001F\rt60140"; // a tick nobody waits for, half a line
@@ -177,7 +202,7 @@ TEST(lockstep_client, rubbish_and_other_traffic_between_the_answers_are_passed_o
 TEST(lockstep_client, nobody_answers) {
     auto ends = socket_pair(SOCK_STREAM);
     CanLink link(channel_on(std::move(ends.first)), impatient_options());
-    EXPECT_EQ(error_of([&] { link.start(default_params()); }),
+    EXPECT_EQ(error_of([&] { link.start(nullptr, default_params()); }),
               "line: no target answers within 150 ms; is quiesced --lockstep running at the other "
               "end?");
 }
@@ -248,7 +273,8 @@ TEST(lockstep_client, other_traffic_without_end_is_no_answer) {
     });
     {
         CanLink link(channel_on(std::move(ends.first)), impatient_options());
-        expect_contains(error_of([&] { link.start(default_params()); }), "no target answers");
+        expect_contains(error_of([&] { link.start(nullptr, default_params()); }),
+                        "no target answers");
         is_over = true;
     }
     flood.join();
@@ -261,7 +287,7 @@ TEST(lockstep_client, bench_that_hears_itself) {
         }
         return std::optional<std::string>("");
     });
-    expect_contains(error_of([&] { rig.link->start(default_params()); }),
+    expect_contains(error_of([&] { rig.link->start(nullptr, default_params()); }),
                     "line: answers with message 0x601 of 6 bytes instead of 0x609");
 }
 
@@ -272,7 +298,7 @@ TEST(lockstep_client, target_that_was_built_from_other_sources) {
         }
         return std::optional<std::string>("");
     });
-    expect_contains(error_of([&] { rig.link->start(default_params()); }),
+    expect_contains(error_of([&] { rig.link->start(nullptr, default_params()); }),
                     "line: the target was built from other sources");
 }
 
@@ -283,7 +309,7 @@ TEST(lockstep_client, target_that_stores_another_value) {
         }
         return std::optional<std::string>("");
     });
-    expect_contains(error_of([&] { rig.link->start(default_params()); }),
+    expect_contains(error_of([&] { rig.link->start(nullptr, default_params()); }),
                     "line: the target does not store parameter 0; rebuild it");
 }
 
@@ -300,7 +326,7 @@ TEST(lockstep_client, mismatch_in_a_word_of_the_tick_is_found_and_an_older_word_
         options);
     InProcessLink host;
     ComparingLink comparing(host, *rig.link, Answer::Checked);
-    comparing.start(default_params());
+    comparing.start(nullptr, default_params());
     for (std::uint32_t tick = 0; tick < 30; ++tick) {
         lockstep_reply_t reply;
         comparing.exchange(varied_stimulus(tick), reply);
@@ -309,22 +335,22 @@ TEST(lockstep_client, mismatch_in_a_word_of_the_tick_is_found_and_an_older_word_
     EXPECT_EQ(comparing.mismatches(), 1u);
     ASSERT_TRUE(comparing.first_mismatch());
     EXPECT_EQ(comparing.first_mismatch()->tick, 19);
-    EXPECT_STREQ(comparing.first_mismatch()->field, "accel_um_s2");
+    EXPECT_EQ(comparing.first_mismatch()->field, "accel_um_s2");
 }
 
 TEST(lockstep_client, values_that_do_not_fit_their_signal_are_refused) {
     const Rig rig;
     lockstep_reply_t reply;
-    rig.link->start(default_params());
+    rig.link->start(nullptr, default_params());
     expect_contains(error_of([&] {
-                        rig.link->exchange({1 << 23, LOCKSTEP_FRESH, 0}, reply);
+                        rig.link->exchange({LOCKSTEP_FRESH, {1 << 23}, {0}}, reply);
                     }),
-                    "accel_counts 8388608: does not fit");
+                    "counts 8388608: does not fit");
     expect_contains(error_of([&] {
-                        rig.link->exchange({0, LOCKSTEP_HAS_CURRENT, -(1 << 23) - 1}, reply);
+                        rig.link->exchange({LOCKSTEP_HAS_CURRENT, {0}, {-(1 << 23) - 1}}, reply);
                     }),
                     "current_meas_mA -8388609: does not fit");
-    rig.link->exchange({-(1 << 23), LOCKSTEP_FRESH, 0}, reply);
+    rig.link->exchange({LOCKSTEP_FRESH, {-(1 << 23)}, {0}}, reply);
     EXPECT_EQ(reply.telemetry.tick, 1u);
 }
 
