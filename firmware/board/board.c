@@ -92,7 +92,15 @@ typedef struct {
 
 static bool refuse(place_t at, const char *name, const char *reason) {
     if (at.error != NULL) {
-        *at.error = (quiesce_board_error_t){at.part, at.number, name, reason};
+        *at.error = (quiesce_board_error_t){at.part, at.number, name, reason, 0, 0};
+    }
+    return false;
+}
+
+static bool refuse_range(place_t at, const range_t *range) {
+    if (at.error != NULL) {
+        *at.error = (quiesce_board_error_t){at.part,        at.number,  range->name,
+                                            "out of range", range->min, range->max};
     }
     return false;
 }
@@ -103,7 +111,7 @@ static bool are_in_range(place_t at, const void *part, const range_t *ranges, si
         const int32_t value =
             *(const int32_t *)(const void *)((const uint8_t *)part + ranges[i].offset);
         if (value < ranges[i].min || value > ranges[i].max) {
-            return refuse(at, ranges[i].name, "out of range");
+            return refuse_range(at, &ranges[i]);
         }
     }
     return true;

@@ -45,6 +45,20 @@ static uint64_t needs_there(uint64_t needs, const places_t *places) {
     return needs;
 }
 
+// The signal of bit number index among those that are set. Returns false iff there are fewer.
+static bool find_signal(uint64_t bits, uint32_t index, quiesce_signal_t *found) {
+    for (uint32_t i = 0; i < SIGNALS; i++) {
+        const bool is_one = signals[i].owner == OF_BOARD;
+        for (int32_t at = 0; at < (is_one ? 1 : 4); at++) {
+            if ((bits & signals[i].quantity << at) != 0 && index-- == 0) {
+                *found = (quiesce_signal_t){signals[i].name, is_one ? -1 : at};
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing) {
     const law_t *asked = law_find(law);
     places_t places;
@@ -56,17 +70,13 @@ bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t
         return true;
     }
     places_init(&places, board);
-    const uint64_t lacking = needs_there(asked->needs, &places) & ~places_provide(&places);
-    for (uint32_t i = 0; i < SIGNALS; i++) {
-        const bool is_one = signals[i].owner == OF_BOARD;
-        for (int32_t at = 0; at < (is_one ? 1 : 4); at++) {
-            if ((lacking & signals[i].quantity << at) != 0) {
-                *missing = (quiesce_signal_t){signals[i].name, is_one ? -1 : at};
-                return true;
-            }
-        }
-    }
-    return false;
+    return find_signal(needs_there(asked->needs, &places) & ~places_provide(&places), 0, missing);
+}
+
+bool quiesce_provided(const quiesce_board_t *board, uint32_t index, quiesce_signal_t *provided) {
+    places_t places;
+    places_init(&places, board);
+    return find_signal(places_provide(&places), index, provided);
 }
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {

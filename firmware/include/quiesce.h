@@ -148,6 +148,10 @@ typedef struct {
 /// Returns false iff there is none.
 bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing);
 
+/// The signals that laws see with the sensors of a board, which has been checked: index 0, 1, ..
+/// until it returns false.
+bool quiesce_provided(const quiesce_board_t *board, uint32_t index, quiesce_signal_t *provided);
+
 /// What the controller makes of its sensors: all bodies and dampers that there can be, so that the
 /// layout is the same in every build. 32-bit words only.
 typedef struct {

@@ -82,6 +82,7 @@ typedef struct {
     int32_t number;     ///< of the sensor or damper, from 0
     const char *name;   ///< of the field
     const char *reason; ///< what is wrong, in words
+    int32_t min, max;   ///< what is allowed, where it is out of range; else 0
 } quiesce_board_error_t;
 
 /// Returns false iff a value is outside its range, two contradict each other, or the build is too
