@@ -1,6 +1,7 @@
 #include "toml_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -46,6 +47,13 @@ std::string shown(const toml::node &node) {
     return out.str();
 }
 
+/// What a file has in its texts and keys must not break the line, nor steer a terminal.
+std::string on_one_line(std::string message) {
+    std::replace_if(
+        message.begin(), message.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    return message;
+}
+
 std::string expected_number(const Range &range) {
     std::ostringstream out;
     out << "expected a number in " << range.min << " .. " << range.max << " (" << range.unit << ")";
@@ -65,7 +73,7 @@ std::string TomlTable::message(const std::string &key, const std::string &what) 
     const toml::node *node = read_table(table_).get(key);
     const auto line = (node != nullptr ? *node : read(*table_)).source().begin.line;
     const std::string where = line > 0 ? ":" + std::to_string(line) : "";
-    return file_ + where + ": " + full_key(key) + ": " + what;
+    return on_one_line(file_ + where + ": " + full_key(key) + ": " + what);
 }
 
 void TomlTable::fail(const std::string &key, const std::string &message) const {
@@ -169,6 +177,22 @@ std::string TomlTable::choice(const std::string &key, const std::vector<std::str
         fail(key, expected + "; found " + shown(node));
     }
     return value;
+}
+
+std::vector<std::string> TomlTable::texts(const std::string &key) {
+    const std::string expected = "expected an array of texts in quotes";
+    const toml::node &node = read(require(key, expected));
+    if (!node.is_array()) {
+        fail(key, expected + ", found " + shown(node));
+    }
+    std::vector<std::string> out;
+    for (const toml::node &element : *node.as_array()) {
+        if (!element.is_string() || element.as_string()->get().empty()) {
+            fail(key, expected + ", found " + shown(element));
+        }
+        out.push_back(element.as_string()->get());
+    }
+    return out;
 }
 
 std::vector<double> TomlTable::row(const std::string &key, const TomlNode &opaque_node,
@@ -276,7 +300,7 @@ TomlFile::TomlFile(const std::string &file) : file_(file) {
     } catch (const toml::parse_error &error) {
         const auto line = error.source().begin.line;
         const std::string where = line > 0 ? ":" + std::to_string(line) : "";
-        throw InputError(file + where + ": " + std::string(error.description()));
+        throw InputError(on_one_line(file + where + ": " + std::string(error.description())));
     }
 }
 

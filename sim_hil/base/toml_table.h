@@ -44,6 +44,9 @@ class TomlTable {
     std::string text(const std::string &key);
     std::string choice(const std::string &key, const std::vector<std::string> &choices);
 
+    /// An array of texts, none of them empty.
+    std::vector<std::string> texts(const std::string &key);
+
     /// An array of numbers with this length (any length >= 1 where it is 0).
     std::vector<double> numbers(const std::string &key, std::size_t length);
     /// An array of count arrays of count numbers.
