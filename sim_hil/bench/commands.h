@@ -11,6 +11,8 @@ namespace quiesce {
 /// throws InputError for what the user can put right.
 using Command = int (*)(const std::vector<std::string> &words);
 
+int cmd_board_check(const std::vector<std::string> &words);
+int cmd_board_keys(const std::vector<std::string> &words);
 int cmd_compare(const std::vector<std::string> &words);
 int cmd_count(const std::vector<std::string> &words);
 int cmd_fuzzy_surface(const std::vector<std::string> &words);

@@ -13,6 +13,8 @@ struct Entry {
 };
 
 const Entry kCommands[] = {
+    {"board-check", "FILE", quiesce::cmd_board_check},
+    {"board-keys", "", quiesce::cmd_board_keys},
     {"compare",
      "--scenario FILE --law NAME --seeds N,N,... --target T [--image ELF] [--plugin SO] "
      "[--can CHANNEL] [--telemetry-every N] [--wait-s X] [--plant FILE] [--set NAME=VALUE]... "
