@@ -88,6 +88,10 @@ bool TomlTable::is_integer(const std::string &key) const {
     return has(key) && read_table(table_).get(key)->is_integer();
 }
 
+bool TomlTable::is_array(const std::string &key) const {
+    return has(key) && read_table(table_).get(key)->is_array();
+}
+
 const TomlNode *TomlTable::find(const std::string &key) {
     asked_.insert(key);
     return opaque(read_table(table_).get(key));
@@ -139,7 +143,7 @@ std::int64_t TomlTable::integer(const std::string &key, std::int64_t min, std::i
 
 std::vector<double> TomlTable::coefficients(const std::string &key, std::size_t most,
                                             const Range &range) {
-    if (!has(key) || !read_table(table_).get(key)->is_array()) {
+    if (!is_array(key)) {
         return {number(key, range)};
     }
     std::vector<double> values = numbers(key, 0);

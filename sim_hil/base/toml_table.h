@@ -32,6 +32,7 @@ class TomlTable {
 
     bool has(const std::string &key) const;
     bool is_integer(const std::string &key) const;
+    bool is_array(const std::string &key) const;
 
     double number(const std::string &key, const Range &range);
     double number(const std::string &key, const Range &range, double fallback);

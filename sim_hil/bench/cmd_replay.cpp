@@ -1,15 +1,19 @@
-/// replay: recorded accelerometer counts through the controller, without a plant: one record, or
-/// many short ones with a fresh controller each.
+/// replay: recorded counts through the controller, without a plant: one record, or many short ones
+/// with a fresh controller each. With a board a tick is a count of each of its sensors.
 #include <chrono>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <optional>
+#include <utility>
 
+#include "board_file.h"
 #include "commands.h"
 #include "digest.h"
 #include "input_error.h"
 #include "json.h"
 #include "param_options.h"
+#include "rig.h"
 #include "run_options.h"
 #include "tick_columns.h"
 #include "trace.h"
@@ -44,6 +48,8 @@ std::vector<std::int32_t> read_counts(const std::string &file) {
 
 /// One record after the other, all of the same length, and what of them is written.
 struct Plan {
+    std::optional<BoardFile> board;
+    std::size_t sensors; ///< counts in a tick
     std::size_t record_ticks;
     std::size_t from_tick; ///< first tick of each record that is written
     std::size_t every;     ///< ticks from one row to the next
@@ -59,26 +65,65 @@ struct Replay {
     double wall_s = 0.0;
 };
 
-Plan plan_from(const Arguments &arguments, std::int32_t law, std::size_t ticks) {
+/// The counts of one tick by the names of the sensors; one by its old name.
+std::vector<std::string> own_names(const std::optional<BoardFile> &board) {
+    std::vector<std::string> names = {"t_s", "accel_counts", "flags"};
+    for (std::size_t i = 0; board && i < board->sensors.size(); ++i) {
+        names.push_back(board->sensors[i] + "_counts");
+    }
+    return names;
+}
+
+std::size_t ticks_in(const std::vector<std::int32_t> &counts, std::size_t sensors) {
+    if (counts.size() % sensors != 0) {
+        throw InputError("--counts: " + std::to_string(counts.size()) +
+                         " counts are not a whole number of ticks of " + std::to_string(sensors) +
+                         " sensors");
+    }
+    return counts.size() / sensors;
+}
+
+Plan plan_from(const Arguments &arguments, std::optional<BoardFile> board, std::int32_t law,
+               const std::vector<std::int32_t> &counts) {
+    const std::size_t sensors = board ? board->sensors.size() : 1;
+    const std::size_t ticks = ticks_in(counts, sensors);
     const auto limit = static_cast<std::int64_t>(ticks);
     const std::int64_t record_ticks = arguments.integer("record-ticks", 1, limit).value_or(limit);
     if (limit % record_ticks != 0) {
         throw InputError("--record-ticks " + std::to_string(record_ticks) + ": " +
                          std::to_string(ticks) + " counts are not a whole number of records");
     }
+    TickColumns columns(own_names(board), controller_columns(law, board ? &*board : nullptr),
+                        arguments.text("columns"));
     return {
+        std::move(board),
+        sensors,
         static_cast<std::size_t>(record_ticks),
         static_cast<std::size_t>(arguments.integer("from-tick", 0, record_ticks - 1).value_or(0)),
         static_cast<std::size_t>(arguments.integer("every", 1, record_ticks).value_or(1)),
-        TickColumns({"t_s", "accel_counts", "flags"}, law, arguments.text("columns"))};
+        std::move(columns)};
 }
 
-/// What the sensor delivers for one count of the file.
-lockstep_stimulus_t stimulus_of(std::int32_t counts) {
-    const bool is_missing = counts == kNoSample;
-    return {LOCKSTEP_ENABLE | LOCKSTEP_REPORT | (is_missing ? 0u : LOCKSTEP_FRESH),
-            {is_missing ? 0 : counts},
-            {0}};
+/// What the sensors deliver for the counts of a tick.
+lockstep_stimulus_t stimulus_of(const std::int32_t *counts, const Plan &plan) {
+    lockstep_stimulus_t out = {LOCKSTEP_ENABLE | LOCKSTEP_REPORT, {0}, {0}};
+    out.flags |= plan.board ? LOCKSTEP_PICTURE : 0u;
+    for (std::size_t i = 0; i < plan.sensors; ++i) {
+        if (counts[i] != kNoSample) {
+            out.counts[i] = counts[i];
+            out.flags |= LOCKSTEP_FRESH << i;
+        }
+    }
+    return out;
+}
+
+std::vector<double> row_of(double time_s, const lockstep_stimulus_t &stimulus, const Plan &plan) {
+    std::vector<double> row = {time_s, static_cast<double>(stimulus.counts[0]),
+                               static_cast<double>(traced_flags(stimulus.flags))};
+    for (std::size_t i = 0; plan.board && i < plan.sensors; ++i) {
+        row.push_back(stimulus.counts[i]);
+    }
+    return row;
 }
 
 void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t tick_rate_Hz,
@@ -86,13 +131,11 @@ void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t ti
     lockstep_reply_t reply{};
     std::size_t next_row = plan.from_tick;
     for (std::size_t tick = 0; tick < plan.record_ticks; ++tick) {
-        const lockstep_stimulus_t stimulus = stimulus_of(counts[tick]);
+        const lockstep_stimulus_t stimulus = stimulus_of(&counts[tick * plan.sensors], plan);
         link.exchange(stimulus, reply);
         out.digest.add(reply);
         if (tick == next_row) {
-            plan.columns.put({static_cast<double>(tick) / tick_rate_Hz,
-                              static_cast<double>(stimulus.counts[0]),
-                              static_cast<double>(traced_flags(stimulus.flags))},
+            plan.columns.put(row_of(static_cast<double>(tick) / tick_rate_Hz, stimulus, plan),
                              reply, out.trace);
             next_row += plan.every;
         }
@@ -104,10 +147,12 @@ void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t ti
 void replay(const std::vector<std::int32_t> &counts, const Plan &plan,
             const quiesce_params_t &params, ControllerLink &link, Replay &out) {
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t first = 0; first < counts.size(); first += plan.record_ticks) {
-        if (!link.start(nullptr, params)) {
-            throw InputError("the controller on target " + link.target() +
-                             " refuses its parameters");
+    const std::size_t record_counts = plan.record_ticks * plan.sensors;
+    for (std::size_t first = 0; first < counts.size(); first += record_counts) {
+        if (!link.start(plan.board ? &plan.board->board : nullptr, params)) {
+            throw InputError(
+                "the controller on target " + link.target() +
+                (plan.board ? " refuses its parameters or its board" : " refuses its parameters"));
         }
         replay_record(&counts[first], plan, params.tick_rate_Hz, link, out);
     }
@@ -119,25 +164,33 @@ void replay(const std::vector<std::int32_t> &counts, const Plan &plan,
 int cmd_replay(const std::vector<std::string> &words) {
     const Arguments arguments("replay", words,
                               options({target_option_names(),
-                                       {"counts", "law", "set", "trace", "record-ticks",
+                                       {"counts", "board", "law", "set", "trace", "record-ticks",
                                         "from-tick", "every", "columns"}}));
     arguments.require_no_positional();
+    std::optional<BoardFile> board;
+    if (const auto file = arguments.text("board")) {
+        board = load_board(*file);
+    }
     quiesce_params_t params;
     quiesce_params_default(&params);
-    params = params_from(arguments, params);
+    params = board ? params_for_board(arguments, params) : params_from(arguments, params);
+    if (board) {
+        require_signals(*board, params.law);
+    }
     const std::vector<std::int32_t> counts = read_counts(arguments.required("counts"));
     const std::string trace_file = arguments.required("trace");
-    const Plan plan = plan_from(arguments, params.law, counts.size());
+    const Plan plan = plan_from(arguments, std::move(board), params.law, counts);
     const std::unique_ptr<ControllerLink> link = target_link(arguments);
     Replay result(plan.columns);
     replay(counts, plan, params, *link, result);
     link->finish();
     result.trace.write(trace_file);
-    const double duration_s = static_cast<double>(counts.size()) / params.tick_rate_Hz;
+    const std::size_t ticks = counts.size() / plan.sensors;
+    const double duration_s = static_cast<double>(ticks) / params.tick_rate_Hz;
     const Json out = {{"law", law_label(params)},
                       {"target", link->target()},
-                      {"ticks", counts.size()},
-                      {"records", counts.size() / plan.record_ticks},
+                      {"ticks", ticks},
+                      {"records", ticks / plan.record_ticks},
                       {"faults", result.faults},
                       {"faults_seen", result.digest.faults_seen()},
                       {"distinct_commands", result.digest.distinct_commands()},

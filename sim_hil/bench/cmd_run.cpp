@@ -10,6 +10,7 @@
 #include "json.h"
 #include "metrics.h"
 #include "param_options.h"
+#include "rig_metrics.h"
 #include "run_options.h"
 #include "trace_observer.h"
 
@@ -79,6 +80,35 @@ Json run_json(const RunSetup &setup, const std::string &target, const RunMetrics
     return out;
 }
 
+/// Of each body and damper of the board, by name, in each window.
+void add_rig(Json &out, const RunSetup &setup, const RigMetrics &metrics) {
+    std::vector<Json> windows;
+    for (const RigWindow &window : metrics.windows()) {
+        Json bodies(Json::object());
+        for (std::size_t i = 0; i < window.bodies.size(); ++i) {
+            const BodyMetrics &body = window.bodies[i];
+            bodies.set(setup.rig->file.bodies[i],
+                       {{"disp_rms_um", 1e6 * body.displacement_rms_m()},
+                        {"peak_disp_um", 1e6 * body.peak_m},
+                        {"accel_rms_mm_s2", 1e3 * body.accel_rms_m_s2()}});
+        }
+        Json dampers(Json::object());
+        for (std::size_t i = 0; i < window.dampers.size(); ++i) {
+            const DamperMetrics &damper = window.dampers[i];
+            dampers.set(setup.rig->file.dampers[i],
+                        {{"mean_current_A", damper.mean_current_A()},
+                         {"peak_force_N", damper.peak_force_N},
+                         {"peak_stroke_um", 1e6 * damper.peak_stroke_m}});
+        }
+        windows.push_back({{"start_s", window.window.start_s},
+                           {"end_s", window.window.end_s},
+                           {"bodies", bodies},
+                           {"dampers", dampers}});
+    }
+    out.set("board", setup.rig->file.name);
+    out.set("rig", windows);
+}
+
 void add_counts(Json &out, const std::optional<InstructionCounts> &counts) {
     out.set("instr_median", counts ? Json(counts->median) : Json());
     out.set("instr_worst", counts ? Json(counts->worst) : Json());
@@ -93,7 +123,11 @@ Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repe
     for (std::int64_t i = 0; i < repeat; ++i) {
         MetricsObserver metrics(setup);
         DigestObserver digest;
+        RigMetrics rig_metrics(setup);
         std::vector<TickObserver *> observers = {&metrics, &digest};
+        if (setup.rig) {
+            observers.push_back(&rig_metrics);
+        }
         if (trace != nullptr && i + 1 == repeat) {
             observers.push_back(trace);
         }
@@ -102,6 +136,9 @@ Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repe
             best = timing;
         }
         out = run_json(setup, link.target(), metrics.result(), digest);
+        if (setup.rig) {
+            add_rig(out, setup, rig_metrics);
+        }
     }
     out.set("ticks", best.ticks);
     out.set("wall_s", best.wall_s);
@@ -113,7 +150,7 @@ std::optional<TraceObserver> trace_from(const Arguments &arguments, const RunSet
     if (!arguments.text("trace")) {
         return std::nullopt;
     }
-    return TraceObserver(setup.params.law, arguments.text("columns"),
+    return TraceObserver(setup.params.law, setup.rig_or_null(), arguments.text("columns"),
                          arguments.integer("every", 1, setup.tick_count()).value_or(1));
 }
 
@@ -127,15 +164,17 @@ int cmd_run(const std::vector<std::string> &words) {
     arguments.require_no_positional();
     RunSetup setup = run_setup(arguments);
     setup.wants_report = arguments.text("trace").has_value();
+    setup.wants_picture = setup.wants_report && setup.rig.has_value();
     const std::int64_t repeat = arguments.integer("repeat", 1, 1000000).value_or(1);
     const std::unique_ptr<ControllerLink> link = target_link(arguments);
     // Words that the target does not send in a tick come from the host, which checks the others.
     InProcessLink host;
     ComparingLink checked(host, *link, Answer::Checked);
-    ControllerLink &driven = link->is_complete() ? *link : static_cast<ControllerLink &>(checked);
+    const bool is_complete = link->is_complete() && (link->has_picture() || !setup.wants_picture);
+    ControllerLink &driven = is_complete ? *link : static_cast<ControllerLink &>(checked);
     std::optional<TraceObserver> trace = trace_from(arguments, setup);
     Json out = repeated_run(setup, driven, repeat, trace ? &*trace : nullptr);
-    out.set("mismatches", link->is_complete() ? Json() : Json(checked.mismatches()));
+    out.set("mismatches", is_complete ? Json() : Json(checked.mismatches()));
     if (trace) {
         trace->trace().write(arguments.required("trace"));
     }

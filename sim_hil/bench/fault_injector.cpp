@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace quiesce {
 
@@ -17,14 +18,16 @@ bool is_active(const InjectedFault &fault, double time_s) {
 
 } // namespace
 
-FaultInjector::FaultInjector(const std::vector<InjectedFault> &faults,
-                             std::int32_t full_scale_counts)
-    : faults_(faults), full_scale_counts_(full_scale_counts) {
-    std::stable_sort(
-        faults_.begin(), faults_.end(),
-        [](const InjectedFault &a, const InjectedFault &b) { return a.start_s < b.start_s; });
+FaultInjector::FaultInjector(std::vector<PlacedFault> faults,
+                             std::vector<std::int32_t> full_scale_counts)
+    : faults_(std::move(faults)), full_scale_counts_(std::move(full_scale_counts)),
+      last_counts_(full_scale_counts_.size(), 0) {
+    std::stable_sort(faults_.begin(), faults_.end(),
+                     [](const PlacedFault &a, const PlacedFault &b) {
+                         return a.fault.start_s < b.fault.start_s;
+                     });
     double last_end_s = -std::numeric_limits<double>::infinity();
-    for (const InjectedFault &fault : faults_) {
+    for (const auto &[fault, sensor, damper] : faults_) {
         last_end_s = std::max(last_end_s, fault.start_s + fault.duration_s);
         last_end_s_.push_back(last_end_s);
     }
@@ -34,7 +37,7 @@ std::pair<FaultInjector::Position, FaultInjector::Position>
 FaultInjector::around(double time_s) const {
     const auto end = std::upper_bound(
         faults_.begin(), faults_.end(), time_s + kSlack_s,
-        [](double now_s, const InjectedFault &fault) { return now_s < fault.start_s; });
+        [](double now_s, const PlacedFault &placed) { return now_s < placed.fault.start_s; });
     const auto over = std::lower_bound(last_end_s_.begin(), last_end_s_.end(), time_s);
     const auto begin = faults_.begin() + (over - last_end_s_.begin());
     return {std::min<Position>(begin, end), end};
@@ -42,27 +45,27 @@ FaultInjector::around(double time_s) const {
 
 void FaultInjector::apply(double time_s, lockstep_stimulus_t &stimulus) {
     const auto [begin, end] = around(time_s);
-    for (auto fault = begin; fault != end; ++fault) {
-        if (is_active(*fault, time_s)) {
-            apply(fault->kind, stimulus);
+    for (auto placed = begin; placed != end; ++placed) {
+        if (is_active(placed->fault, time_s)) {
+            apply(placed->fault.kind, placed->sensor, stimulus);
         }
     }
-    last_counts_ = stimulus.counts[0];
+    std::copy_n(stimulus.counts, last_counts_.size(), last_counts_.begin());
 }
 
-void FaultInjector::apply(FaultKind kind, lockstep_stimulus_t &stimulus) const {
+void FaultInjector::apply(FaultKind kind, std::size_t sensor, lockstep_stimulus_t &stimulus) const {
     switch (kind) {
     case FaultKind::dropout:
-        stimulus.flags &= ~LOCKSTEP_FRESH;
+        stimulus.flags &= ~(LOCKSTEP_FRESH << sensor);
         break;
     case FaultKind::stuck:
-        stimulus.counts[0] = last_counts_;
+        stimulus.counts[sensor] = last_counts_[sensor];
         break;
     case FaultKind::saturate:
-        stimulus.counts[0] = full_scale_counts_;
+        stimulus.counts[sensor] = full_scale_counts_[sensor];
         break;
     case FaultKind::range:
-        stimulus.counts[0] = 2 * full_scale_counts_;
+        stimulus.counts[sensor] = 2 * full_scale_counts_[sensor];
         break;
     case FaultKind::estop:
         stimulus.flags |= LOCKSTEP_ESTOP;
@@ -79,17 +82,17 @@ void FaultInjector::apply(FaultKind kind, lockstep_stimulus_t &stimulus) const {
     }
 }
 
-ActuatorFault FaultInjector::actuator(double time_s) const {
+ActuatorFault FaultInjector::actuator(double time_s, std::size_t damper) const {
     ActuatorFault state = ActuatorFault::none;
     const auto [begin, end] = around(time_s);
-    for (auto fault = begin; fault != end; ++fault) {
-        if (!is_active(*fault, time_s)) {
+    for (auto placed = begin; placed != end; ++placed) {
+        if (placed->damper != damper || !is_active(placed->fault, time_s)) {
             continue;
         }
-        if (fault->kind == FaultKind::coil_open) {
+        if (placed->fault.kind == FaultKind::coil_open) {
             return ActuatorFault::coil_open;
         }
-        if (fault->kind == FaultKind::driver_stuck) {
+        if (placed->fault.kind == FaultKind::driver_stuck) {
             state = ActuatorFault::driver_stuck;
         }
     }

@@ -16,7 +16,8 @@ const Entry kCommands[] = {
     {"board-check", "FILE", quiesce::cmd_board_check},
     {"board-keys", "", quiesce::cmd_board_keys},
     {"compare",
-     "--scenario FILE --law NAME --seeds N,N,... --target T [--image ELF] [--plugin SO] "
+     "--scenario FILE --law NAME --seeds N,N,... --target T [--board FILE] [--image ELF] "
+     "[--plugin SO] "
      "[--can CHANNEL] [--telemetry-every N] [--wait-s X] [--plant FILE] [--set NAME=VALUE]... "
      "[--noise-mg X] [--dt-us N]",
      quiesce::cmd_compare},
@@ -26,11 +27,12 @@ const Entry kCommands[] = {
     {"params", "", quiesce::cmd_params},
     {"plant-check", "FILE", quiesce::cmd_plant_check},
     {"replay",
-     "--counts FILE --trace FILE [--law NAME] [--set NAME=VALUE]... [--target T] "
+     "--counts FILE --trace FILE [--board FILE] [--law NAME] [--set NAME=VALUE]... [--target T] "
      "[--record-ticks N] [--from-tick N] [--every N] [--columns NAME,NAME...]",
      quiesce::cmd_replay},
     {"run",
-     "--scenario FILE --law NAME [--plant FILE] [--set NAME=VALUE]... [--target T] [--image ELF] "
+     "--scenario FILE --law NAME [--plant FILE] [--board FILE] [--set NAME=VALUE]... [--target T] "
+     "[--image ELF] "
      "[--plugin SO] [--can CHANNEL] [--telemetry-every N] [--wait-s X] [--rules FILE] "
      "[--phase-table FILE] [--seed N] [--noise-mg X] [--dt-us N] "
      "[--trace FILE] "

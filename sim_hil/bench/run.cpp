@@ -2,14 +2,36 @@
 
 #include <chrono>
 #include <cmath>
+#include <deque>
 
-#include "accelerometer.h"
 #include "fault_injector.h"
 #include "input_error.h"
+#include "senses.h"
 
 namespace quiesce {
 
 namespace {
+
+/// Commands on their way to the drivers: a board's bus may take ticks.
+class CommandBus {
+  public:
+    explicit CommandBus(std::size_t latency_ticks) : on_the_way_(latency_ticks) {}
+
+    lockstep_reply_t pass(const lockstep_reply_t &reply) {
+        on_the_way_.push_back(reply);
+        const lockstep_reply_t out = on_the_way_.front();
+        on_the_way_.pop_front();
+        return out;
+    }
+
+  private:
+    std::deque<lockstep_reply_t> on_the_way_;
+};
+
+std::size_t bus_ticks(const RunSetup &setup) {
+    const double latency_us = setup.rig ? setup.rig->board().bus_latency_us : 0;
+    return static_cast<std::size_t>(std::llround(1e-6 * latency_us / setup.tick_s()));
+}
 
 /// One scenario in progress.
 class Loop {
@@ -18,19 +40,21 @@ class Loop {
         : setup_(setup), link_(link),
           excitation_(make_excitation(setup.scenario, setup.plant.shaker)),
           plant_(setup.plant, excitation_, setup.params.tick_rate_Hz),
-          sensor_(setup.plant.sensor, setup.seed),
-          injector_(setup.scenario.faults, sensor_.full_scale_counts()) {}
+          senses_(setup.plant.sensor, setup.rig_or_null(), setup.params.tick_rate_Hz, setup.seed),
+          injector_(place_faults(setup.scenario, setup.rig_or_null()), senses_.full_scales()),
+          bus_(bus_ticks(setup)) {
+        for (std::size_t i = 0; i < setup.plant.dampers.size(); ++i) {
+            damper_of_.push_back(setup.rig ? setup.rig->damper_of[i] : i);
+        }
+    }
 
     void tick(std::int64_t tick, const std::vector<TickObserver *> &observers) {
         const double time_s = static_cast<double>(tick) / setup_.params.tick_rate_Hz;
-        // What the controller answered one tick ago acts from here on.
-        const double command_A =
-            (reply_.drivers_enabled & 1u) != 0 ? 1e-3 * reply_.current_cmd_mA[0] : 0.0;
-        plant_.command(command_A, injector_.actuator(time_s));
-        sense(time_s);
+        command(time_s);
+        sense(tick, time_s);
         link_.exchange(stimulus_, reply_);
         for (TickObserver *observer : observers) {
-            observer->on_tick({tick, time_s, plant_.truth(), stimulus_, reply_});
+            observer->on_tick({tick, time_s, plant_.truth(), plant_, stimulus_, reply_});
         }
         const std::vector<PlantTruth> &steps = plant_.advance();
         for (TickObserver *observer : observers) {
@@ -39,25 +63,44 @@ class Loop {
     }
 
   private:
-    void sense(double time_s) {
-        stimulus_ = {LOCKSTEP_FRESH | LOCKSTEP_ENABLE,
-                     {sensor_.sample_counts(plant_.truth().accel_m_s2)},
-                     {0}};
+    /// What the controller answered one tick ago, and the bus's ticks before, acts from here on.
+    void command(double time_s) {
+        const lockstep_reply_t arrived = bus_.pass(reply_);
+        for (std::size_t i = 0; i < damper_of_.size(); ++i) {
+            const bool is_on = (arrived.drivers_enabled >> i & 1u) != 0;
+            plant_.command(damper_of_[i], is_on ? 1e-3 * arrived.current_cmd_mA[i] : 0.0,
+                           injector_.actuator(time_s, i));
+        }
+    }
+
+    void sense(std::int64_t tick, double time_s) {
+        stimulus_ = {LOCKSTEP_ENABLE, {0}, {0}};
         stimulus_.flags |= setup_.wants_report ? LOCKSTEP_REPORT : 0u;
-        if (setup_.scenario.feed_current) {
-            stimulus_.flags |= LOCKSTEP_HAS_CURRENT;
-            stimulus_.current_meas_mA[0] =
-                static_cast<std::int32_t>(std::lround(1e3 * plant_.truth().coil_A));
+        stimulus_.flags |= setup_.wants_picture ? LOCKSTEP_PICTURE : 0u;
+        senses_.read(plant_, tick, stimulus_);
+        for (std::size_t i = 0; i < damper_of_.size(); ++i) {
+            if (measures_current(i)) {
+                stimulus_.flags |= LOCKSTEP_HAS_CURRENT << i;
+                stimulus_.current_meas_mA[i] = static_cast<std::int32_t>(
+                    std::lround(1e3 * plant_.damper(damper_of_[i]).coil_A));
+            }
         }
         injector_.apply(time_s, stimulus_);
+    }
+
+    bool measures_current(std::size_t damper) const {
+        return setup_.rig ? setup_.rig->board().damper[damper].measures_current != 0
+                          : setup_.scenario.feed_current;
     }
 
     const RunSetup &setup_;
     ControllerLink &link_;
     Excitation excitation_;
     Plant plant_;
-    Accelerometer sensor_;
+    Senses senses_;
     FaultInjector injector_;
+    CommandBus bus_;
+    std::vector<std::size_t> damper_of_; ///< of the plant, for each of the controller's
     lockstep_stimulus_t stimulus_{};
     lockstep_reply_t reply_{};
 };
@@ -70,8 +113,12 @@ std::int64_t RunSetup::tick_count() const {
 
 RunTiming run_scenario(const RunSetup &setup, ControllerLink &link,
                        const std::vector<TickObserver *> &observers) {
-    if (!link.start(nullptr, setup.params)) {
-        throw InputError("the controller on target " + link.target() + " refuses its parameters");
+    if (!link.start(setup.board(), setup.params)) {
+        throw InputError("the controller on target " + link.target() +
+                         (setup.rig
+                              ? " refuses its parameters or its board; is it built for as many "
+                                "sensors and dampers?"
+                              : " refuses its parameters"));
     }
     Loop loop(setup, link);
     const std::int64_t ticks = setup.tick_count();

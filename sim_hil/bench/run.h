@@ -3,10 +3,12 @@
 #define QUIESCE_RUN_H
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "controller_link.h"
 #include "plant.h"
+#include "rig.h"
 #include "scenario.h"
 
 namespace quiesce {
@@ -15,9 +17,14 @@ namespace quiesce {
 struct RunSetup {
     PlantModel plant;
     Scenario scenario;
+    std::optional<Rig> rig; ///< none: the plant's one sensor and one damper, as parameters say
     quiesce_params_t params;
     std::uint64_t seed;
-    bool wants_report = false; ///< what the law reports, in every tick
+    bool wants_report = false;  ///< what the law reports, in every tick
+    bool wants_picture = false; ///< what the controller makes of its sensors, in every tick
+
+    const Rig *rig_or_null() const { return rig ? &*rig : nullptr; }
+    const quiesce_board_t *board() const { return rig ? &rig->board() : nullptr; }
 
     double tick_s() const { return 1.0 / static_cast<double>(params.tick_rate_Hz); }
     std::int64_t tick_count() const;
@@ -29,6 +36,7 @@ struct TickRecord {
     std::int64_t tick;
     double time_s;
     const PlantTruth &truth;
+    const Plant &plant; ///< at the same instant
     const lockstep_stimulus_t &stimulus;
     const lockstep_reply_t &reply;
 };

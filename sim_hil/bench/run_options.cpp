@@ -46,8 +46,8 @@ void require_base(const Scenario &scenario, const PlantModel &plant) {
 }
 
 const std::vector<std::string> &run_option_names() {
-    static const std::vector<std::string> names = {"scenario", "plant",    "law",  "set",
-                                                   "seed",     "noise-mg", "dt-us"};
+    static const std::vector<std::string> names = {"scenario", "plant", "board",    "law",
+                                                   "set",      "seed",  "noise-mg", "dt-us"};
     return names;
 }
 
@@ -81,15 +81,33 @@ quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base) 
     return base;
 }
 
+quiesce_params_t params_for_board(const Arguments &arguments, quiesce_params_t base) {
+    for (const std::string &assignment : arguments.all("set")) {
+        const std::string name = assignment.substr(0, assignment.find('='));
+        if (is_of_board(name)) {
+            throw InputError("--set " + assignment + ": " + name + " comes from the board file");
+        }
+    }
+    return params_from(arguments, base);
+}
+
 RunSetup run_setup(const Arguments &arguments) {
     RunSetup setup{};
     setup.scenario = load_scenario(arguments.required("scenario"));
     setup.plant = load_plant(arguments.text("plant").value_or(setup.scenario.plant_file));
     require_base(setup.scenario, setup.plant);
+    const std::string board = arguments.text("board").value_or(setup.scenario.board_file);
     quiesce_params_default(&setup.params);
-    fit_to_sensor(setup.params, setup.plant.sensor);
     arguments.required("law");
-    setup.params = params_from(arguments, setup.params);
+    if (board.empty()) {
+        require_one_damper(setup.plant);
+        fit_to_sensor(setup.params, setup.plant.sensor);
+        setup.params = params_from(arguments, setup.params);
+    } else {
+        setup.rig = make_rig(load_board(board), setup.plant);
+        setup.params = params_for_board(arguments, setup.params);
+        require_signals(setup.rig->file, setup.params.law);
+    }
     apply_overrides(arguments, setup);
     return setup;
 }

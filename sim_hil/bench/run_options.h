@@ -28,6 +28,9 @@ RunSetup run_setup(const Arguments &arguments);
 /// Defaults with --law and every --set applied and accepted. base: before those.
 quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base);
 
+/// The same for a board, which takes the place of some of them: those are refused.
+quiesce_params_t params_for_board(const Arguments &arguments, quiesce_params_t base);
+
 /// The link that the target options describe; the host without --target.
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments);
 

@@ -309,6 +309,16 @@ void Reader::refuse_tracked(const std::string &reason) const {
 
 } // namespace
 
+bool is_of_board(const std::string &parameter) {
+    static const Names replaced = {"accel_scale_nm_s2",  "accel_offset_counts",
+                                   "accel_polarity",     "accel_full_scale_counts",
+                                   "accel_axis",         "sensor_max_age_ticks",
+                                   "sensor_stuck_ticks", "sensor_min_noise_counts",
+                                   "safe_current_mA",    "current_check",
+                                   "current_lag_ms"};
+    return std::find(replaced.begin(), replaced.end(), parameter) != replaced.end();
+}
+
 std::string told(const BoardFile &file, const quiesce_signal_t &signal) {
     if (signal.at < 0) {
         return signal.name;

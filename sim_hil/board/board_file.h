@@ -19,6 +19,9 @@ struct BoardFile {
 /// Throws InputError: one line naming file, table, key, what is wrong and what is allowed.
 BoardFile load_board(const std::string &file);
 
+/// Whether a parameter says what a board file says, so that it means nothing beside one.
+bool is_of_board(const std::string &parameter);
+
 /// A signal of such a board, by names: "stroke of upper".
 std::string told(const BoardFile &file, const quiesce_signal_t &signal);
 

@@ -24,9 +24,9 @@ struct DamperChoice {
     bool is_usable = true; ///< false: published, but of no use (its file says why)
 };
 
-/// The damper that a plant's section describes, either by `model` and its keys or by `file`, a path
-/// from plant_file's folder. Models that ask for the acceleration get an estimate of it. Throws
-/// InputError naming the key that is wrong.
+/// The damper that a table of a plant describes, either by `model` and its keys or by `file`, a
+/// path from plant_file's folder. Models that ask for the acceleration get an estimate of it.
+/// Throws InputError naming the key that is wrong.
 DamperChoice read_damper(TomlTable section, const std::string &plant_file);
 
 /// The same from a damper file, as it is: without the estimate.

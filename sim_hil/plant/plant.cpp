@@ -21,22 +21,35 @@ Plant::Plant(const PlantModel &model, const Excitation &excitation, int tick_rat
     : equations_(model), excitation_(&excitation), driver_(model.driver),
       steps_(steps_per_tick(model, 1.0 / tick_rate_Hz)),
       step_rate_Hz_(static_cast<double>(tick_rate_Hz * steps_)), step_s_(1.0 / step_rate_Hz_),
-      half_step_coil_(model.coil, 0.5 * step_s_),
-      remanence_(model.coil.remanence * model.driver.max_current_A), rk4_(equations_.state_count()),
+      places_(model.places), dampers_(model.dampers), rk4_(equations_.state_count()),
       y_(equations_.state_count(), 0.0), k1_(y_.size(), 0.0), excitation_now_(excitation.at(0.0)),
       substeps_(static_cast<std::size_t>(steps_)) {
+    for (const PlantDamper &one : dampers_) {
+        actuators_.push_back({Coil(one.coil, 0.5 * step_s_),
+                              Remanence(one.coil.remanence * model.driver.max_current_A), 0.0});
+    }
     observe();
 }
 
-void Plant::command(double current_A, ActuatorFault fault) {
+void Plant::command(std::size_t damper, double current_A, ActuatorFault fault) {
+    Actuator &actuator = actuators_[damper];
     if (fault != ActuatorFault::driver_stuck) {
-        driver_A_ = fault == ActuatorFault::coil_open ? 0.0 : driver_.output_A(current_A);
+        actuator.driver_A = fault == ActuatorFault::coil_open ? 0.0 : driver_.output_A(current_A);
     }
-    if (fault == ActuatorFault::coil_open && coil_A_ != 0.0) {
-        coil_A_ = 0.0;
-        effective_A_ = remanence_.step(effective_A_, coil_A_);
+    if (fault == ActuatorFault::coil_open && coil_A_[damper] != 0.0) {
+        coil_A_[damper] = 0.0;
+        effective_A_[damper] = actuator.remanence.step(effective_A_[damper], coil_A_[damper]);
         observe();
     }
+}
+
+PlaceTruth Plant::place(std::size_t index) const {
+    return equations_.at(places_[index], y_, k1_, excitation_now_.base_accel_m_s2);
+}
+
+DamperTruth Plant::damper(std::size_t index) const {
+    return {equations_.stroke_m(index, y_), equations_.stroke_velocity_m_s(index, y_),
+            damper_force_N_[index], coil_A_[index]};
 }
 
 void Plant::observe() {
@@ -45,17 +58,21 @@ void Plant::observe() {
         equations_.rates(excitation_now_.force_N, effective_A_, y_, k1_, base_accel_m_s2);
     truth_ = {equations_.displacement_m(y_),
               equations_.accel_m_s2(k1_, base_accel_m_s2),
-              coil_A_,
-              damper_force_N_,
+              coil_A_[0],
+              damper_force_N_[0],
               excitation_now_.phase_cycles,
-              equations_.damper_velocity_m_s(y_)};
+              equations_.stroke_velocity_m_s(0, y_)};
 }
 
 /// Half a step later.
 Plant::Drive Plant::drive_after(const Drive &before, const Excitation::Sample &excitation) const {
-    const double coil_A = half_step_coil_.step(before.coil_A, driver_A_);
-    return {excitation.force_N, excitation.base_accel_m_s2, coil_A,
-            remanence_.step(before.effective_A, coil_A)};
+    Drive after{excitation.force_N, excitation.base_accel_m_s2, {}, {}};
+    for (std::size_t k = 0; k < actuators_.size(); ++k) {
+        const Actuator &actuator = actuators_[k];
+        after.coil_A[k] = actuator.half_step_coil.step(before.coil_A[k], actuator.driver_A);
+        after.effective_A[k] = actuator.remanence.step(before.effective_A[k], after.coil_A[k]);
+    }
+    return after;
 }
 
 void Plant::step() {
@@ -97,9 +114,11 @@ void Plant::check_motion() const {
         stop(now_s, "it diverged; choose a smaller integration.max_step_us in the plant file or "
                     "--dt-us");
     }
-    if (equations_.is_closed(y_)) {
-        stop(now_s, "the damper closed to the end of its range; reduce shaker.drive_V or check "
-                    "the damper's gap");
+    const std::size_t closed = equations_.closed_damper(y_);
+    if (closed < dampers_.size()) {
+        stop(now_s, "the " + label(dampers_[closed]) +
+                        " closed to the end of its range; reduce "
+                        "shaker.drive_V or check the damper's gap");
     }
 }
 

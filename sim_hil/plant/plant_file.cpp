@@ -2,7 +2,8 @@
 
 #include <sstream>
 
-#include "damper_section.h"
+#include "dampers_section.h"
+#include "place_section.h"
 #include "structure_section.h"
 #include "toml_table.h"
 
@@ -40,6 +41,18 @@ AccelerometerParams read_sensor(TomlTable section) {
     return params;
 }
 
+/// The bench knows which sensors there are.
+std::map<std::string, double> read_noise(TomlTable section) {
+    std::map<std::string, double> noise;
+    for (const std::string &name : section.keys()) {
+        if (!is_identifier(name)) {
+            section.fail(name, "expected a sensor's name: letters, digits and _");
+        }
+        noise[name] = section.number(name, {0.0, 1e9, "RMS per sample"});
+    }
+    return noise;
+}
+
 double read_max_step_s(TomlTable &root, const PlantModel &model) {
     constexpr double kDefault_us = 500.0;
     const double safe_us = 1e6 * longest_safe_step_s(model);
@@ -68,19 +81,16 @@ PlantModel load_plant(const std::string &file) {
     root.integer("version", 1, 1);
     PlantModel model{};
     model.name = root.text("name");
-    model.structure = read_structure(root.table("structure"));
-    const DamperChoice damper = read_damper(root.table("damper"), file);
-    model.damper = damper.damper;
+    StructureSection section = read_structure(root.table("structure"), has_damper_ends(root));
+    model.structure = std::move(section.structure);
+    model.places = read_places(root, model.structure);
     model.driver = read_driver(root.table("driver"));
-    if (damper.max_current_A && model.driver.max_current_A > 1.001 * *damper.max_current_A) {
-        std::ostringstream message;
-        message << model.driver.max_current_A << " is beyond the " << *damper.max_current_A
-                << " up to which the damper's file holds; lower it, or widen [valid] there";
-        root.table("driver").fail("max_current_A", message.str());
-    }
-    model.coil = damper.coil && !root.has("coil") ? *damper.coil : read_coil(root.table("coil"));
+    read_dampers(root, file, section.at_damper, model);
     model.shaker = read_shaker(root.table("shaker"));
     model.sensor = read_sensor(root.table("sensor"));
+    if (std::optional<TomlTable> noise = root.optional_table("noise")) {
+        model.noise = read_noise(*noise);
+    }
     model.max_step_s = read_max_step_s(root, model);
     root.reject_unknown_keys();
     return model;

@@ -3,22 +3,54 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input_error.h"
+
 namespace quiesce {
+
+namespace {
+
+/// What the dampers add to the fastest rates, at no or all current: whichever is more.
+struct Stiffest {
+    double slope_1_s = 0.0;
+    double omega2_rad2_s2 = 0.0;
+    double state_rate_1_s = 0.0;
+};
+
+Stiffest stiffest(const PlantModel &model) {
+    Stiffest out;
+    const double full_A = model.driver.max_current_A;
+    for (const PlantDamper &one : model.dampers) {
+        const Damper &damper = *one.damper;
+        const double shape2 = one.stroke.squaredNorm();
+        out.slope_1_s +=
+            std::max(damper.stiffest_N_s_m(0.0), damper.stiffest_N_s_m(full_A)) * shape2;
+        out.omega2_rad2_s2 +=
+            std::max(damper.stiffest_N_m(0.0), damper.stiffest_N_m(full_A)) * shape2;
+        out.state_rate_1_s = std::max(
+            {out.state_rate_1_s, damper.fastest_rate_1_s(0.0), damper.fastest_rate_1_s(full_A)});
+    }
+    return out;
+}
+
+} // namespace
+
+std::string label(const PlantDamper &damper) {
+    return damper.name == kOnlyDamper ? damper.name : "damper " + damper.name;
+}
+
+void require_one_damper(const PlantModel &model) {
+    if (model.dampers.size() > 1) {
+        throw InputError("plant " + model.name + " has " + std::to_string(model.dampers.size()) +
+                         " dampers; this works on plants with one");
+    }
+}
 
 double longest_safe_step_s(const PlantModel &model) {
     const Structure &structure = model.structure;
-    const double slope_N_s_m = std::max(model.damper->stiffest_N_s_m(0.0),
-                                        model.damper->stiffest_N_s_m(model.driver.max_current_A));
-    const double stiffness_N_m = std::max(model.damper->stiffest_N_m(0.0),
-                                          model.damper->stiffest_N_m(model.driver.max_current_A));
-    const double omega = std::sqrt(structure.omega2_rad2_s2.maxCoeff() +
-                                   stiffness_N_m * structure.at_damper.squaredNorm());
-    const double rate_1_s =
-        omega + structure.damping_1_s.norm() + slope_N_s_m * structure.at_damper.squaredNorm();
-    const double state_rate_1_s =
-        std::max(model.damper->fastest_rate_1_s(0.0),
-                 model.damper->fastest_rate_1_s(model.driver.max_current_A));
-    return std::min(0.9 / rate_1_s, 2.0 / std::max(state_rate_1_s, 1e-9));
+    const Stiffest dampers = stiffest(model);
+    const double omega = std::sqrt(structure.omega2_rad2_s2.maxCoeff() + dampers.omega2_rad2_s2);
+    const double rate_1_s = omega + structure.damping_1_s.norm() + dampers.slope_1_s;
+    return std::min(0.9 / rate_1_s, 2.0 / std::max(dampers.state_rate_1_s, 1e-9));
 }
 
 std::int64_t steps_per_tick(const PlantModel &model, double tick_s) {

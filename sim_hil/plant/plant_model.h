@@ -2,32 +2,60 @@
 #ifndef QUIESCE_PLANT_MODEL_H
 #define QUIESCE_PLANT_MODEL_H
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "accelerometer.h"
 #include "coil.h"
 #include "current_driver.h"
 #include "damper.h"
+#include "place.h"
 #include "shaker.h"
 #include "structure.h"
 
 namespace quiesce {
 
+constexpr std::size_t kMaxDampers = 4;
+constexpr std::size_t kMaxPlaces = 4;
+
+/// A value of each damper, in the order of the plant's; beyond the last one 0.
+using DamperValues = std::array<double, kMaxDampers>;
+
+/// Name of a plant's damper that has none, because it is the only one.
+inline const char *const kOnlyDamper = "damper";
+
+struct PlantDamper {
+    std::string name;
+    std::shared_ptr<const Damper> damper;
+    Eigen::VectorXd stroke; ///< that 1 of each mode gives, kg^-1/2: its end a less its end b
+    CoilParams coil;
+};
+
 struct PlantModel {
     std::string name;
     Structure structure;
-    std::shared_ptr<const Damper> damper;
-    CurrentDriverParams driver;
-    CoilParams coil;
+    std::vector<Place> places;        ///< 0 .. kMaxPlaces
+    std::vector<PlantDamper> dampers; ///< 1 .. kMaxDampers
+    CurrentDriverParams driver;       ///< of each of them
     ShakerParams shaker;
     AccelerometerParams sensor;
+    /// RMS of white noise in a sample of a board's sensor, by its name, in the unit of its samples.
+    std::map<std::string, double> noise;
     double max_step_s; ///< longest integration step
 };
 
+/// What people read: "damper", or "damper NAME" where it has one.
+std::string label(const PlantDamper &damper);
+
+/// Throws InputError where there are several: for what is made for plants with one.
+void require_one_damper(const PlantModel &model);
+
 /// Longest integration step that follows the model's fastest rate (undamped modes, damping, the
-/// damper's steepest slopes): a third of what keeps the method stable.
+/// dampers' steepest slopes): a third of what keeps the method stable.
 double longest_safe_step_s(const PlantModel &model);
 
 /// Integration steps in one tick of tick_s: the fewest that are no longer than max_step_s.

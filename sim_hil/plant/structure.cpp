@@ -49,16 +49,16 @@ Structure structure_from_modes(const std::vector<Mode> &modes) {
                   Eigen::VectorXd(count),
                   Eigen::VectorXd(count),
                   Eigen::VectorXd(count),
-                  Eigen::VectorXd(count),
                   1.0,
-                  true};
+                  true,
+                  Eigen::MatrixXd::Identity(count, count),
+                  {}};
     for (Eigen::Index i = 0; i < count; ++i) {
         const Mode &mode = modes[static_cast<std::size_t>(i)];
         const double omega = kTwoPi * mode.freq_Hz;
         out.omega2_rad2_s2(i) = omega * omega;
         out.damping_1_s(i, i) = 2.0 * mode.damping_ratio * omega;
         out.at_force(i) = mode.at_force;
-        out.at_damper(i) = mode.at_damper;
         out.at_sensor(i) = mode.at_sensor;
         out.base_participation(i) = mode.base_participation;
     }
@@ -81,11 +81,12 @@ Structure structure_from_matrices(const Matrices &matrices, Eigen::Index mode_co
     return {solver.eigenvalues().head(mode_count).cwiseMax(0.0),
             damping,
             shapes.transpose() * matrices.force,
-            shapes.transpose() * matrices.damper,
             shapes.transpose() * matrices.sensor,
             shapes.transpose() * matrices.mass_kg * matrices.base,
             matrices.sensor.dot(matrices.base),
-            is_diagonal(damping)};
+            is_diagonal(damping),
+            shapes,
+            matrices.base};
 }
 
 } // namespace quiesce

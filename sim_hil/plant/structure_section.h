@@ -7,8 +7,15 @@
 
 namespace quiesce {
 
-/// Throws InputError naming the key that is wrong.
-Structure read_structure(TomlTable section);
+struct StructureSection {
+    Structure structure;
+    /// Stroke that 1 of each mode gives the plant's only damper; empty where dampers have ends.
+    Eigen::VectorXd at_damper;
+};
+
+/// has_ends: the dampers say where they are, so the structure must not. Throws InputError naming
+/// the key that is wrong.
+StructureSection read_structure(TomlTable section, bool has_ends);
 
 } // namespace quiesce
 

@@ -51,8 +51,9 @@ PeriodicOrbit::PeriodicOrbit(const PlantModel &model, const OrbitCase &orbit_cas
     : equations_(model), case_(orbit_case), max_current_A_(model.driver.max_current_A),
       steps_(orbit_grid(model, orbit_case)),
       step_s_(1.0 / (orbit_case.freq_Hz * static_cast<double>(steps_))),
-      half_step_coil_(model.coil, 0.5 * step_s_), rk4_(equations_.state_count()),
+      half_step_coil_(model.dampers[0].coil, 0.5 * step_s_), rk4_(equations_.state_count()),
       force_N_(2 * steps_ + 1), coil_A_(2 * steps_ + 1) {
+    require_one_damper(model);
     if (equations_.is_sampled()) {
         throw InputError("the plant's damper model runs at a sample time of its own, so its motion "
                          "has no periodic solution; choose a model without delays");
@@ -98,12 +99,12 @@ PeriodicOrbit::Period PeriodicOrbit::run(const Eigen::VectorXd &start) {
     for (std::size_t k = 0; k < steps_; ++k) {
         const double *force_N = &force_N_[2 * k];
         const double *coil_A = &coil_A_[2 * k];
-        equations_.rates(force_N[0], coil_A[0], y, k1);
+        equations_.rates(force_N[0], {coil_A[0]}, y, k1);
         out.disp_m[static_cast<Eigen::Index>(k)] = equations_.displacement_m(y);
         out.accel_m_s2[static_cast<Eigen::Index>(k)] = equations_.accel_m_s2(k1);
         rk4_.step(y, k1, step_s_,
                   [&](int at, const std::vector<double> &from, std::vector<double> &rates) {
-                      equations_.rates(force_N[at], coil_A[at], from, rates);
+                      equations_.rates(force_N[at], {coil_A[at]}, from, rates);
                   });
         out.largest = out.largest.cwiseMax(state.cwiseAbs());
     }
@@ -197,7 +198,7 @@ void PeriodicOrbit::check_orbit() const {
         throw InputError(message.str());
     }
     std::vector<double> y(start_.data(), start_.data() + start_.size());
-    if (equations_.is_closed(y)) {
+    if (equations_.closed_damper(y) < equations_.damper_count()) {
         message << "the damper closes to the end of its range; reduce shaker.drive_V";
         throw InputError(message.str());
     }

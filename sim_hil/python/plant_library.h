@@ -1,6 +1,7 @@
 /// The simulated plant as a C library, which Python's quiesce.plant calls.
 ///
-/// A handle holds one plant file. Calls with it change nothing in it, so that threads may share it.
+/// A handle holds one plant file with one damper. Calls with it change nothing in it, so that
+/// threads may share it.
 /// Functions that can fail return 0 on success, else 1 with one line in error (cut to error_size).
 #ifndef QUIESCE_PLANT_LIBRARY_H
 #define QUIESCE_PLANT_LIBRARY_H
@@ -32,7 +33,7 @@ typedef struct {
     double at_sensor;
 } quiesce_plant_mode;
 
-/// NULL where the file cannot be read or is wrong.
+/// NULL where the file cannot be read or is wrong, or has several dampers.
 quiesce_plant *quiesce_plant_load(const char *file, char *error, size_t error_size);
 void quiesce_plant_free(quiesce_plant *plant);
 

@@ -60,7 +60,7 @@ void simulate(const PlantModel &model, const quiesce_drive &drive,
         if (response.coil_A != nullptr) {
             response.coil_A[tick] = truth.coil_A;
         }
-        plant.command(drive.command_A[tick], ActuatorFault::none);
+        plant.command(0, drive.command_A[tick], ActuatorFault::none);
         plant.advance();
     }
 }

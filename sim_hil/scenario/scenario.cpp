@@ -31,6 +31,9 @@ InjectedFault read_fault(TomlTable &table, double end_s) {
     fault.kind = read_fault_kind(table);
     fault.start_s = table.number("t_s", {0.0, end_s, "s"});
     fault.duration_s = table.number("duration_s", {1e-4, kLongest_s, "s"});
+    if (table.has("of")) {
+        fault.of = table.text("of");
+    }
     table.reject_unknown_keys();
     return fault;
 }
@@ -92,6 +95,10 @@ std::optional<Transient> read_transient(TomlTable &root, double end_s) {
 
 } // namespace
 
+bool befalls_damper(FaultKind kind) {
+    return kind == FaultKind::coil_open || kind == FaultKind::driver_stuck;
+}
+
 Scenario load_scenario(const std::string &file) {
     const TomlFile toml(file, "quiesce-scenario", 1);
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
@@ -101,6 +108,9 @@ Scenario load_scenario(const std::string &file) {
     Scenario scenario{};
     scenario.name = root.text("name");
     scenario.plant_file = (folder / root.text("plant")).lexically_normal().string();
+    if (root.has("board")) {
+        scenario.board_file = (folder / root.text("board")).lexically_normal().string();
+    }
     scenario.duration_s = root.number("duration_s", {0.1, kLongest_s, "s"});
     if (root.has("drive_V")) {
         scenario.drive_V = root.number("drive_V", {0.0, 1e6, "V"});

@@ -29,7 +29,12 @@ struct InjectedFault {
     FaultKind kind;
     double start_s;
     double duration_s;
+    std::string
+        of{}; ///< name of a board's sensor or damper; "": the tracked sensor, the first damper
 };
+
+/// Whether it befalls a damper; else a sensor, or nothing in particular.
+bool befalls_damper(FaultKind kind);
 
 /// A stretch of time in which steady state is measured.
 struct Window {
@@ -46,6 +51,7 @@ struct Transient {
 struct Scenario {
     std::string name;
     std::string plant_file; ///< relative paths resolved against the scenario's own folder
+    std::string board_file; ///< likewise; "": the plant's one sensor and one damper
     double duration_s;
     std::optional<double> drive_V; ///< in place of the plant's
     std::optional<double> noise_mg;

@@ -13,6 +13,7 @@ from quiesce.plant.variant import Variant, read_plant_data, write_variant
 
 PUBLISHED = ROOT / "sim_hil/data/plants/squeeze_2012.toml"
 SUSPENDED = ROOT / "sim_hil/data/plants/suspended_mass.toml"
+TWO_STOREYS = ROOT / "sim_hil/data/plants/two_storeys.toml"
 SCENARIO = ROOT / "sim_hil/data/scenarios/suspended_mass_step.toml"
 # A damper with memory, as strong as the published plant's own.
 BOUC_WEN = """schema = "quiesce-damper"
@@ -90,6 +91,21 @@ def test_variants_of_a_plant_hold_their_damper(build, small: Path, tmp_path: Pat
         nominal_m = solve(drive(Plant(small), 10.0), 5.0).amp_m
         assert (amp_m == nominal_m) == (variant.force == 1.0), variant.name
     assert read_plant_data(folder / "variant.toml")["damper"]["parameters"]["kw_N"] == [0.0, 0.0016]
+
+
+def test_check_describes_places_and_dampers(quiesce) -> None:
+    result = quiesce("plant", "check", TWO_STOREYS)
+    assert result.returncode == 0, result.stderr
+    for words in ("place floor", "place roof", "damper lower: at most", "damper upper: at most"):
+        assert words in result.stdout
+
+
+def test_several_dampers_are_refused_where_one_is_expected(build, refused) -> None:
+    with pytest.raises(UsageError, match="plant two_storeys has 2 dampers"):
+        Plant(TWO_STOREYS)
+    with pytest.raises(UsageError, match=r"two_storeys.toml: damper: \[\[damper\]\]; this works"):
+        read_plant_data(TWO_STOREYS)
+    assert "has 2 dampers" in refused("tune", TWO_STOREYS, "--quick", "--out", "out")
 
 
 def test_learned_model_on_a_base_has_no_factor(build) -> None:

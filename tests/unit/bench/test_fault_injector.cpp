@@ -10,6 +10,15 @@ using quiesce::FaultKind;
 
 constexpr std::int32_t kFullScale = 2047;
 
+/// Of the one sensor and the one damper.
+FaultInjector injector_of(const std::vector<quiesce::InjectedFault> &faults) {
+    std::vector<quiesce::PlacedFault> placed;
+    for (const quiesce::InjectedFault &fault : faults) {
+        placed.push_back({fault, 0, 0});
+    }
+    return {placed, {kFullScale}};
+}
+
 lockstep_stimulus_t applied(FaultInjector &injector, double time_s, std::int32_t counts) {
     lockstep_stimulus_t stimulus = {LOCKSTEP_FRESH | LOCKSTEP_ENABLE, {counts}, {0}};
     injector.apply(time_s, stimulus);
@@ -17,7 +26,7 @@ lockstep_stimulus_t applied(FaultInjector &injector, double time_s, std::int32_t
 }
 
 lockstep_stimulus_t during(FaultKind kind) {
-    FaultInjector injector({{kind, 1.0, 0.5}}, kFullScale);
+    FaultInjector injector = injector_of({{kind, 1.0, 0.5}});
     applied(injector, 0.999, 11);
     return applied(injector, 1.0, 12);
 }
@@ -34,7 +43,7 @@ TEST(FaultInjector, each_kind_shows_in_the_stimulus) {
 }
 
 TEST(FaultInjector, is_present_from_its_start_until_its_end) {
-    FaultInjector injector({{FaultKind::dropout, 0.003, 0.002}}, kFullScale);
+    FaultInjector injector = injector_of({{FaultKind::dropout, 0.003, 0.002}});
     int lost = 0;
     for (int tick = 0; tick < 10; ++tick) {
         const double time_s = static_cast<double>(tick) / 1000.0;
@@ -46,7 +55,7 @@ TEST(FaultInjector, is_present_from_its_start_until_its_end) {
 }
 
 TEST(FaultInjector, stuck_sample_stays_for_the_whole_fault) {
-    FaultInjector injector({{FaultKind::stuck, 1.0, 1.0}}, kFullScale);
+    FaultInjector injector = injector_of({{FaultKind::stuck, 1.0, 1.0}});
     applied(injector, 0.9, 5);
     EXPECT_EQ(applied(injector, 1.1, 6).counts[0], 5);
     EXPECT_EQ(applied(injector, 1.9, 7).counts[0], 5);
@@ -56,10 +65,10 @@ TEST(FaultInjector, stuck_sample_stays_for_the_whole_fault) {
 TEST(FaultInjector, actuator_faults_reach_the_actuator) {
     const FaultInjector injector(
         {{FaultKind::driver_stuck, 1.0, 2.0}, {FaultKind::coil_open, 2.0, 2.0}}, kFullScale);
-    EXPECT_EQ(injector.actuator(0.5), ActuatorFault::none);
-    EXPECT_EQ(injector.actuator(1.5), ActuatorFault::driver_stuck);
-    EXPECT_EQ(injector.actuator(2.5), ActuatorFault::coil_open);
-    EXPECT_EQ(injector.actuator(4.5), ActuatorFault::none);
+    EXPECT_EQ(injector.actuator(0.5, 0), ActuatorFault::none);
+    EXPECT_EQ(injector.actuator(1.5, 0), ActuatorFault::driver_stuck);
+    EXPECT_EQ(injector.actuator(2.5, 0), ActuatorFault::coil_open);
+    EXPECT_EQ(injector.actuator(4.5, 0), ActuatorFault::none);
 }
 
 TEST(FaultInjector, order_and_overlap_do_not_matter) {

@@ -110,7 +110,7 @@ TEST(FrequencyStep, settles_like_the_reference) {
 TEST(PaperSign, is_not_what_the_plant_uses) {
     // With the printed sign of the second mode's tip shape the 20 Hz reduction would be near 56 %.
     RunSetup setup = quiet_setup("sine_20Hz");
-    setup.plant.structure.at_damper[1] *= -1.0;
+    setup.plant.dampers[0].stroke[1] *= -1.0;
     setup.plant.structure.at_sensor[1] *= -1.0;
     EXPECT_NEAR(reductions(setup).amplitude_pct, 56.0, 1.5);
 }

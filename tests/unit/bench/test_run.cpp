@@ -44,7 +44,7 @@ Recorder recorded(const RunSetup &setup, quiesce::ControllerLink &link) {
 
 TEST(Run, a_command_acts_from_the_next_tick_on) {
     RunSetup setup = short_setup();
-    setup.plant.coil = {0.0, 0.0}; // the coil shows the driver's output at once
+    setup.plant.dampers[0].coil = {0.0, 0.0}; // the coil shows the driver's output at once
     int tick = 0;
     quiesce::ScriptedLink link(
         [&tick](const lockstep_stimulus_t &) { return tick++ == 10 ? 5000 : 0; });

@@ -230,8 +230,8 @@ TEST(PlantFile, the_frozen_plant_is_the_frozen_plant) {
     EXPECT_EQ(model.structure.base_participation[0], 0.190);
     EXPECT_EQ(model.structure.base_participation[1], 0.095);
     EXPECT_EQ(model.structure.base_at_sensor, 1.0);
-    EXPECT_NEAR(model.damper->stiffest_N_s_m(5.0), 15.3, 0.05);
-    EXPECT_NEAR(model.damper->stiffest_N_s_m(0.0), 4.6e-4, 0.05e-4);
+    EXPECT_NEAR(model.dampers[0].damper->stiffest_N_s_m(5.0), 15.3, 0.05);
+    EXPECT_NEAR(model.dampers[0].damper->stiffest_N_s_m(0.0), 4.6e-4, 0.05e-4);
     EXPECT_DOUBLE_EQ(model.max_step_s, 500e-6);
 }
 

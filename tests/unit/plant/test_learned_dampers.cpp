@@ -288,7 +288,7 @@ TEST(SampledNetwork, its_force_is_fed_back_and_held_between_samples) {
 
 quiesce::PlantModel plant_with(std::shared_ptr<const Damper> damper) {
     quiesce::PlantModel model = quiesce::load_plant("sim_hil/data/plants/squeeze_2012.toml");
-    model.damper = std::move(damper);
+    model.dampers[0].damper = std::move(damper);
     return model;
 }
 

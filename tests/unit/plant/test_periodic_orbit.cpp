@@ -68,7 +68,7 @@ LastPeriod long_run(const PlantModel &model, int freq_Hz, const std::vector<doub
     const int ticks = 20 * kTickRate_Hz;
     for (int tick = 0; tick < ticks; ++tick) {
         const auto interval = static_cast<std::size_t>(tick / ticks_each) % command_A.size();
-        plant.command(command_A[interval], quiesce::ActuatorFault::none);
+        plant.command(0, command_A[interval], quiesce::ActuatorFault::none);
         for (const quiesce::PlantTruth &now : plant.advance()) {
             if (tick >= ticks - kTickRate_Hz / freq_Hz) {
                 last.add(now);
@@ -108,7 +108,7 @@ TEST(PeriodicOrbit, equals_long_runs_with_a_pulse_above_resonance) {
 
 TEST(PeriodicOrbit, equals_long_runs_with_a_coil_that_falls_slowly) {
     PlantModel model = published_plant();
-    model.coil = {0.004, 0.015};
+    model.dampers[0].coil = {0.004, 0.015};
     expect_same_motion(model, {10.0, 0.1, 50, false}, pulse(50, 20, 40));
 }
 
@@ -120,7 +120,7 @@ TEST(PeriodicOrbit, equals_long_runs_where_the_film_is_very_stiff) {
     PlantModel model = published_plant();
     quiesce::SqueezeBiviscosityParams film{0.025, 0.002, 2e-5,   0.042, 1e-6,
                                            0.160, 1.0,   1000.0, 0.030, 4.74e-5};
-    model.damper = std::make_shared<quiesce::SqueezeBiviscosity>(film);
+    model.dampers[0].damper = std::make_shared<quiesce::SqueezeBiviscosity>(film);
     model.max_step_s = quiesce::longest_safe_step_s(model);
     expect_same_motion(model, {5.0, 0.1, 50, false}, std::vector<double>(50, 5.0));
 }
@@ -138,7 +138,7 @@ TEST(PeriodicOrbit, starts_from_a_guess_in_fewer_periods) {
 
 TEST(PeriodicOrbit, sensitivities_are_differences_of_orbits) {
     PlantModel model = published_plant();
-    model.coil = {0.004, 0.008};
+    model.dampers[0].coil = {0.004, 0.008};
     const OrbitCase orbit_case{5.0, 0.1, 20, false};
     std::vector<double> command_A(20, 2.0);
     command_A[7] = 4.0;

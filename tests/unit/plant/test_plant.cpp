@@ -41,16 +41,24 @@ Matrices coupled_matrices() {
     out.stiffness_N_m = (Eigen::Matrix2d() << 3000.0, -1000.0, -1000.0, 1500.0).finished();
     out.damping_N_s_m = (Eigen::Matrix2d() << 6.0, -1.0, -1.0, 1.0).finished();
     out.force = Eigen::Vector2d(1.0, 0.0);
-    out.damper = Eigen::Vector2d(-1.0, 1.0);
     out.sensor = Eigen::Vector2d(0.0, 1.0);
     out.base = Eigen::Vector2d::Ones();
     return out;
 }
 
+/// Of the damper, between the masses.
+const Eigen::Vector2d kStroke(-1.0, 1.0);
+
+void take(PlantModel &model, const Matrices &matrices) {
+    model.structure = quiesce::structure_from_matrices(matrices, 2);
+    model.dampers[0].stroke = model.structure.shape_of(kStroke);
+}
+
 PlantModel coupled_plant() {
     PlantModel model = quiesce::load_plant("sim_hil/data/plants/squeeze_2012.toml");
-    model.structure = quiesce::structure_from_matrices(coupled_matrices(), 2);
-    model.damper = std::make_shared<quiesce::Viscous>(quiesce::ViscousParams{0.5, 2.0, 1.0});
+    take(model, coupled_matrices());
+    model.dampers[0].damper =
+        std::make_shared<quiesce::Viscous>(quiesce::ViscousParams{0.5, 2.0, 1.0});
     model.shaker = {1.0, 10.0, 0.0, 1.0};
     return model;
 }
@@ -60,10 +68,10 @@ double closed_form_amplitude_m(double freq_Hz, double damper_N_s_m, double dampe
     const Matrices m = coupled_matrices();
     const double omega = kTwoPi * freq_Hz;
     const Eigen::MatrixXcd dynamic =
-        (m.stiffness_N_m + damper_N_m * m.damper * m.damper.transpose() - omega * omega * m.mass_kg)
+        (m.stiffness_N_m + damper_N_m * kStroke * kStroke.transpose() - omega * omega * m.mass_kg)
             .cast<std::complex<double>>() +
         std::complex<double>(0.0, omega) *
-            (m.damping_N_s_m + damper_N_s_m * m.damper * m.damper.transpose());
+            (m.damping_N_s_m + damper_N_s_m * kStroke * kStroke.transpose());
     const Eigen::VectorXcd motion =
         dynamic.partialPivLu().solve(m.force.cast<std::complex<double>>());
     return std::abs(m.sensor.cast<std::complex<double>>().dot(motion));
@@ -74,7 +82,7 @@ double simulated_amplitude_m(const PlantModel &model, double freq_Hz, double cur
     Plant plant(model, excitation, 1000);
     double high_m = 0.0;
     for (int tick = 0; tick < 40000; ++tick) {
-        plant.command(current_A, ActuatorFault::none);
+        plant.command(0, current_A, ActuatorFault::none);
         for (const PlantTruth &step : plant.advance()) {
             high_m = tick < 38000 ? 0.0 : std::max(high_m, step.displacement_m);
         }
@@ -158,7 +166,7 @@ TEST(Plant, coil_follows_the_driver_with_its_lag) {
     const Excitation excitation = sine(model, 10.0);
     Plant plant(model, excitation, 1000);
     for (int tick = 0; tick < 5; ++tick) {
-        plant.command(5.0, ActuatorFault::none);
+        plant.command(0, 5.0, ActuatorFault::none);
         plant.advance();
     }
     EXPECT_NEAR(plant.truth().coil_A, 5.0 * (1.0 - std::exp(-1.0)), 1e-9);
@@ -169,12 +177,12 @@ TEST(Plant, open_coil_carries_no_current_and_stuck_driver_keeps_it) {
     const Excitation excitation = sine(model, 10.0);
     Plant plant(model, excitation, 1000);
     for (int tick = 0; tick < 200; ++tick) {
-        plant.command(tick < 100 ? 4.0 : 0.0,
+        plant.command(0, tick < 100 ? 4.0 : 0.0,
                       tick < 100 ? ActuatorFault::none : ActuatorFault::driver_stuck);
         plant.advance();
     }
     EXPECT_NEAR(plant.truth().coil_A, 4.0, 1e-3);
-    plant.command(4.0, ActuatorFault::coil_open);
+    plant.command(0, 4.0, ActuatorFault::coil_open);
     EXPECT_EQ(plant.truth().coil_A, 0.0);
     plant.advance();
     EXPECT_EQ(plant.truth().coil_A, 0.0);
@@ -182,14 +190,14 @@ TEST(Plant, open_coil_carries_no_current_and_stuck_driver_keeps_it) {
 
 TEST(Plant, remanence_keeps_force_when_the_current_is_gone) {
     PlantModel model = coupled_plant();
-    model.coil = {0.005, 0.005, 0.05};
+    model.dampers[0].coil = {0.005, 0.005, 0.05};
     const Excitation excitation = sine(model, 5.0);
     Plant plant(model, excitation, 1000);
     const auto coefficient_N_s_m = [&plant] {
         return plant.truth().damper_force_N / plant.truth().damper_velocity_m_s;
     };
     for (int tick = 0; tick < 2000; ++tick) {
-        plant.command(tick < 1000 ? 4.0 : 0.0, ActuatorFault::none);
+        plant.command(0, tick < 1000 ? 4.0 : 0.0, ActuatorFault::none);
         plant.advance();
         if (tick == 999) {
             EXPECT_NEAR(coefficient_N_s_m(), 0.5 + 2.0 * 4.0, 0.01);
@@ -197,15 +205,15 @@ TEST(Plant, remanence_keeps_force_when_the_current_is_gone) {
     }
     EXPECT_NEAR(plant.truth().coil_A, 0.0, 1e-9) << "what is measured is the coil's current";
     EXPECT_NEAR(coefficient_N_s_m(), 0.5 + 2.0 * 0.05 * 5.0, 1e-9) << "5 % of 5 A stay";
-    plant.command(4.0, ActuatorFault::none);
+    plant.command(0, 4.0, ActuatorFault::none);
     plant.advance();
-    plant.command(0.0, ActuatorFault::coil_open);
+    plant.command(0, 0.0, ActuatorFault::coil_open);
     EXPECT_NEAR(coefficient_N_s_m(), 0.5 + 2.0 * 0.05 * 5.0, 1e-9) << "an open coil, too";
 }
 
 TEST(Plant, switched_stiffness_at_a_constant_current_is_a_spring) {
     PlantModel model = coupled_plant();
-    model.damper = std::make_shared<quiesce::SwitchedStiffness>(
+    model.dampers[0].damper = std::make_shared<quiesce::SwitchedStiffness>(
         quiesce::SwitchedStiffnessParams{0.5, 2.0, 200.0, 100.0, 1.0});
     const double current_A = quiesce::CurrentDriver(model.driver).output_A(1.5);
     for (const double freq_Hz : {3.0, 5.2, 7.1}) {
@@ -219,7 +227,7 @@ TEST(Plant, switched_stiffness_at_a_constant_current_is_a_spring) {
 TEST(Plant, a_stiffness_in_the_damper_shortens_the_safe_step) {
     PlantModel model = coupled_plant();
     const double without_s = quiesce::longest_safe_step_s(model);
-    model.damper = std::make_shared<quiesce::SwitchedStiffness>(
+    model.dampers[0].damper = std::make_shared<quiesce::SwitchedStiffness>(
         quiesce::SwitchedStiffnessParams{0.5, 2.0, 0.0, 1e6, 1.0});
     EXPECT_LT(quiesce::longest_safe_step_s(model), 0.1 * without_s);
 }
@@ -242,7 +250,8 @@ TEST(Plant, stops_where_the_plates_touch) {
 
 TEST(Plant, stops_when_the_integration_diverges) {
     PlantModel model = coupled_plant();
-    model.structure = quiesce::structure_from_modes({{1500.0, 0.01, 1.0, 0.0, 1.0}});
+    model.structure = quiesce::structure_from_modes({{1500.0, 0.01, 1.0, 1.0}});
+    model.dampers[0].stroke = Eigen::VectorXd::Zero(1);
     model.max_step_s = 1e-3;
     EXPECT_GT(model.max_step_s, quiesce::longest_safe_step_s(model));
     const Excitation excitation = sine(model, 10.0);
@@ -280,7 +289,7 @@ TEST(Plant, a_slow_ramp_of_the_bases_acceleration_bends_it_like_a_static_load) {
         after(model, record({{0.0, 0.0}, {60.0, kEnd_m_s2}, {61.0, 0.0}}), 60000);
     const Eigen::Vector2d load = -m.mass_kg * m.base;
     const Eigen::Vector2d velocity = m.stiffness_N_m.ldlt().solve(load) * (kEnd_m_s2 / 60.0);
-    const Eigen::Matrix2d damping = m.damping_N_s_m + 0.5 * m.damper * m.damper.transpose();
+    const Eigen::Matrix2d damping = m.damping_N_s_m + 0.5 * kStroke * kStroke.transpose();
     const Eigen::Vector2d static_m =
         m.stiffness_N_m.ldlt().solve(Eigen::Vector2d(load * kEnd_m_s2 - damping * velocity));
     EXPECT_NEAR(truth.displacement_m, static_m[1], 1e-9);
@@ -293,7 +302,7 @@ TEST(Plant, a_base_that_jumps_is_felt_at_once_by_the_sensor_alone) {
     Matrices matrices = coupled_matrices();
     matrices.stiffness_N_m.setZero();
     matrices.damping_N_s_m.setZero();
-    model.structure = quiesce::structure_from_matrices(matrices, 2);
+    take(model, matrices);
     const PlantTruth truth = after(model, record({{0.0, 3.0}, {1e3, 3.0}}), 1000);
     EXPECT_NEAR(truth.displacement_m, -0.5 * 3.0, 1e-9) << "the base moves away below";
     EXPECT_NEAR(truth.accel_m_s2, 0.0, 1e-9) << "at rest in space";
@@ -303,8 +312,10 @@ TEST(Plant, an_impulse_sets_a_free_mass_in_motion) {
     PlantModel model = coupled_plant();
     constexpr double kMass_kg = 2.5;
     const double shape = 1.0 / std::sqrt(kMass_kg);
-    model.structure = quiesce::structure_from_modes({{0.001, 0.0, shape, shape, shape}});
-    model.damper = std::make_shared<quiesce::Viscous>(quiesce::ViscousParams{0.0, 0.0, 1.0});
+    model.structure = quiesce::structure_from_modes({{0.001, 0.0, shape, shape}});
+    model.dampers[0].stroke = Eigen::VectorXd::Constant(1, shape);
+    model.dampers[0].damper =
+        std::make_shared<quiesce::Viscous>(quiesce::ViscousParams{0.0, 0.0, 1.0});
     Excitation excitation;
     excitation.append(std::make_unique<quiesce::ImpulseSegment>(0.05, 0.004), 1e5);
     EXPECT_NEAR(after(model, excitation, 100).damper_velocity_m_s, 0.05 / kMass_kg, 2e-5);

@@ -73,7 +73,7 @@ Steady shaken(const PlantModel &model, double freq_Hz, double current_A) {
     quiesce::Plant plant(model, excitation, kTickRate_Hz);
     Steady steady;
     for (int tick = 0; tick < 8 * kTickRate_Hz; ++tick) {
-        plant.command(current_A, quiesce::ActuatorFault::none);
+        plant.command(0, current_A, quiesce::ActuatorFault::none);
         for (const quiesce::PlantTruth &now : plant.advance()) {
             if (tick >= 6 * kTickRate_Hz) {
                 steady.lowest_m = std::min(steady.lowest_m, now.displacement_m);
@@ -116,7 +116,7 @@ double farthest_m(const PlantModel &model, double freq_Hz, double current_A) {
     quiesce::Plant plant(model, excitation, kTickRate_Hz);
     double most_m = 0.0;
     while (plant.tick() < kTickRate_Hz / 2) {
-        plant.command(current_A, quiesce::ActuatorFault::none);
+        plant.command(0, current_A, quiesce::ActuatorFault::none);
         plant.advance(); // throws where the motion is not finite
         most_m = std::max(most_m, std::abs(plant.truth().displacement_m));
     }
@@ -133,7 +133,7 @@ TEST(PlantDamper, every_usable_published_set_runs_in_a_plant) {
         }
         SCOPED_TRACE(file);
         PlantModel model = quiesce::load_plant(kPlant);
-        model.damper = quiesce::load_damper(file).damper;
+        model.dampers[0].damper = quiesce::load_damper(file).damper;
         model.shaker.drive_V = 1.0;
         model.max_step_s = std::min(5e-4, quiesce::longest_safe_step_s(model));
         const double most_m = farthest_m(model, 3.0, 0.4);
@@ -149,8 +149,9 @@ TEST(PlantDamper, takes_the_coil_of_its_file_unless_it_has_one) {
     const std::string coil = "[coil]\nrise_s = 0.010\nfall_s = 0.010\n";
     const std::string volts = file + "\"\ncommand_unit = \"V";
     const std::string with_both = with_file(volts) + "\n[integration]\nmax_step_us = 30\n";
-    EXPECT_EQ(loaded(with_both).coil.rise_s, 0.010);
-    EXPECT_EQ(loaded(spoilt(with_both, {"coil", coil.c_str(), "", ""})).coil.rise_s, 5.263e-3);
+    EXPECT_EQ(loaded(with_both).dampers[0].coil.rise_s, 0.010);
+    EXPECT_EQ(loaded(spoilt(with_both, {"coil", coil.c_str(), "", ""})).dampers[0].coil.rise_s,
+              5.263e-3);
     const std::string without = with_file("sim_hil/data/dampers/rd1005_kwok_tanh.toml");
     expect_message(spoilt(without, {"coil", coil.c_str(), "", ""}), "coil: missing",
                    quiesce::load_plant);

@@ -69,7 +69,7 @@ double difference(const Arrays &arrays, std::unique_ptr<quiesce::Segment> segmen
     for (std::size_t tick = 0; tick < kTicks; ++tick) {
         worst = std::max(worst, std::abs(plant.truth().accel_m_s2 - arrays.accel_m_s2[tick]));
         EXPECT_NEAR(plant.truth().coil_A, arrays.coil_A[tick], 1e-12);
-        plant.command(arrays.command_A[tick], quiesce::ActuatorFault::none);
+        plant.command(0, arrays.command_A[tick], quiesce::ActuatorFault::none);
         plant.advance();
     }
     return worst;

@@ -13,6 +13,14 @@ LEARNED_FORCE_KEYS = ("force_scale_N", "consequents_N")
 DAMPER_KEYS = ("model", "stroke_m", "speed_m_s", "field", "parameters")
 
 
+def require_one_damper(data: dict[str, Any], file: Path) -> None:
+    """UsageError for a plant whose dampers have names and ends: [[damper]]."""
+    if isinstance(data.get("damper"), list):
+        raise UsageError(
+            f"{shown(file)}: damper: [[damper]]; this works on plants with one [damper]"
+        )
+
+
 def with_own_damper(data: dict[str, Any], folder: Path) -> dict[str, Any]:
     """A plant's data with the contents of its damper file, if it names one, in place of the name:
     the same plant, wherever it is written. UsageError where the file cannot be read."""

@@ -10,7 +10,7 @@ import tomli_w
 
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
-from quiesce.plant.damper import scale_force, with_own_damper
+from quiesce.plant.damper import require_one_damper, scale_force, with_own_damper
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,13 @@ def read_plant_data(file: Path) -> dict[str, Any]:
     """The file's TOML, with its damper file's contents in place of its name; the plant library
     checks what is in it."""
     try:
-        return with_own_damper(tomllib.loads(file.read_text(encoding="utf-8")), file.parent)
+        data = tomllib.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(f"{shown(file)}: {error.strerror}; name a plant file")
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UsageError(f"{shown(file)}: not a TOML file: {one_line(error)}")
+    require_one_damper(data, file)
+    return with_own_damper(data, file.parent)
 
 
 def changed(data: dict[str, Any], variant: Variant) -> dict[str, Any]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.plant.damper import require_one_damper
 
 # Of the damper model squeeze_biviscosity: from the base plant, not from the recording.
 ASSUMED_DAMPER_KEYS = ("plate_radius_m", "gap_m", "viscosity_Pa_s", "coil_turns", "coil_radius_m")
@@ -87,6 +88,7 @@ def read_base(
         table = tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UsageError(f"{shown(file)}: {error}")
+    require_one_damper(table, file)
     if ref_current_A > float(table["driver"]["max_current_A"]):
         raise UsageError(
             f"{shown(file)}: driver.max_current_A = {table['driver']['max_current_A']} A, but "

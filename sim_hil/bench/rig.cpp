@@ -1,0 +1,128 @@
+#include "rig.h"
+
+#include <algorithm>
+
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+template <typename Items>
+std::string names_of(const Items &items) {
+    std::string names;
+    for (const auto &item : items) {
+        names += (names.empty() ? "" : ", ") + item.name;
+    }
+    return names.empty() ? "none" : names;
+}
+
+template <typename Items>
+std::size_t index_in(const Items &items, const std::string &name, const std::string &what) {
+    const auto found = std::find_if(items.begin(), items.end(),
+                                    [&](const auto &item) { return item.name == name; });
+    if (found == items.end()) {
+        throw InputError(what + " '" + name +
+                         "' of the board: the plant has no such one; it has: " + names_of(items));
+    }
+    return static_cast<std::size_t>(found - items.begin());
+}
+
+void require_simulated(const BoardFile &file) {
+    for (std::size_t i = 0; i < file.sensors.size(); ++i) {
+        const std::int32_t sense = file.board.sensor[i].sense;
+        if (sense == QUIESCE_SENSE_VOLTAGE || sense == QUIESCE_SENSE_TEMPERATURE ||
+            sense == QUIESCE_SENSE_SUPPLY) {
+            throw InputError("sensor '" + file.sensors[i] +
+                             "' of the board: the simulated plant has no voltages and no "
+                             "temperatures; leave it out of the board for the bench");
+        }
+    }
+}
+
+/// Every damper of the plant is wired to the board: one that nobody commands is no damper of it.
+void require_all_dampers(const Rig &rig, const PlantModel &plant) {
+    for (std::size_t i = 0; i < plant.dampers.size(); ++i) {
+        if (std::find(rig.damper_of.begin(), rig.damper_of.end(), i) == rig.damper_of.end()) {
+            throw InputError("damper '" + plant.dampers[i].name +
+                             "' of the plant: the board has no such one");
+        }
+    }
+}
+
+std::vector<double> noise_of(const BoardFile &file, const PlantModel &plant) {
+    for (const auto &[name, rms] : plant.noise) {
+        if (std::find(file.sensors.begin(), file.sensors.end(), name) == file.sensors.end()) {
+            throw InputError("noise." + name + " of the plant: the board has no such sensor");
+        }
+    }
+    std::vector<double> out;
+    for (const std::string &name : file.sensors) {
+        const auto found = plant.noise.find(name);
+        out.push_back(found == plant.noise.end() ? 0.0 : found->second);
+    }
+    return out;
+}
+
+std::size_t named(const std::vector<std::string> &names, const InjectedFault &fault,
+                  std::size_t otherwise) {
+    const auto found = std::find(names.begin(), names.end(), fault.of);
+    return found == names.end() ? otherwise : static_cast<std::size_t>(found - names.begin());
+}
+
+bool has_name(const std::vector<std::string> &names, const std::string &name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void require_known(const InjectedFault &fault, const Rig *rig) {
+    if (fault.of.empty()) {
+        return;
+    }
+    if (rig == nullptr) {
+        throw InputError("fault.of = '" + fault.of + "': names are a board's; the run has none");
+    }
+    const BoardFile &file = rig->file;
+    if (!has_name(befalls_damper(fault.kind) ? file.dampers : file.sensors, fault.of)) {
+        throw InputError("fault.of = '" + fault.of + "': the board has no such " +
+                         (befalls_damper(fault.kind) ? "damper" : "sensor"));
+    }
+}
+
+} // namespace
+
+Rig make_rig(BoardFile board, const PlantModel &plant) {
+    require_simulated(board);
+    Rig rig{std::move(board), {}, {}, {}};
+    for (const std::string &name : rig.file.bodies) {
+        rig.place_of.push_back(index_in(plant.places, name, "body"));
+    }
+    for (const std::string &name : rig.file.dampers) {
+        rig.damper_of.push_back(index_in(plant.dampers, name, "damper"));
+    }
+    require_all_dampers(rig, plant);
+    rig.noise = noise_of(rig.file, plant);
+    return rig;
+}
+
+std::vector<PlacedFault> place_faults(const Scenario &scenario, const Rig *rig) {
+    std::vector<PlacedFault> out;
+    for (const InjectedFault &fault : scenario.faults) {
+        require_known(fault, rig);
+        const std::vector<std::string> none;
+        const auto tracked =
+            rig == nullptr ? std::size_t{0} : static_cast<std::size_t>(rig->board().tracked);
+        out.push_back({fault, named(rig == nullptr ? none : rig->file.sensors, fault, tracked),
+                       named(rig == nullptr ? none : rig->file.dampers, fault, 0)});
+    }
+    return out;
+}
+
+void require_signals(const BoardFile &file, std::int32_t law) {
+    quiesce_signal_t missing;
+    if (quiesce_missing(&file.board, law, &missing)) {
+        throw InputError("board " + file.name + ": the law needs " + told(file, missing) +
+                         ", which no sensor of it provides");
+    }
+}
+
+} // namespace quiesce

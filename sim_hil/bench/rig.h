@@ -1,0 +1,44 @@
+/// A board and the plant that it is wired to, matched by name: bodies of the board are places of
+/// the plant, dampers of the board are dampers of the plant.
+#ifndef QUIESCE_RIG_H
+#define QUIESCE_RIG_H
+
+#include <string>
+#include <vector>
+
+#include "board_file.h"
+#include "plant_model.h"
+#include "scenario.h"
+
+namespace quiesce {
+
+struct Rig {
+    BoardFile file;
+    std::vector<std::size_t> place_of;  ///< of the plant, for each body of the board
+    std::vector<std::size_t> damper_of; ///< likewise, for each damper
+    std::vector<double> noise;          ///< RMS in a sample, for each sensor, in its unit
+
+    const quiesce_board_t &board() const { return file.board; }
+};
+
+/// Throws InputError naming what the plant lacks, or what of it no simulation makes (temperature,
+/// voltages).
+Rig make_rig(BoardFile board, const PlantModel &plant);
+
+/// A fault with what it befalls.
+struct PlacedFault {
+    InjectedFault fault;
+    std::size_t sensor; ///< of the board
+    std::size_t damper; ///< of the board
+};
+
+/// Of a scenario on this rig; null: the plant's one sensor and one damper. Throws InputError where
+/// it names a sensor or damper that is not there.
+std::vector<PlacedFault> place_faults(const Scenario &scenario, const Rig *rig);
+
+/// Throws InputError where a law (by the value of its parameter) lacks a signal of the board.
+void require_signals(const BoardFile &file, std::int32_t law);
+
+} // namespace quiesce
+
+#endif

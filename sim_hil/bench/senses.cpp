@@ -1,0 +1,119 @@
+#include "senses.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "input_error.h"
+
+namespace quiesce {
+
+namespace {
+
+constexpr double kUs = 1e6;
+
+/// Keeps the noise of one sensor from being another's in a run with the next seed.
+constexpr std::uint64_t kNextNoise = 0x9E3779B97F4A7C15u;
+
+/// One count in the unit of what is measured: the board has thousandths of it.
+double unit_per_count(const quiesce_board_sensor_t &spec) {
+    return 1e-3 * spec.scale * spec.polarity;
+}
+
+std::size_t ticks_in(std::int32_t time_us, std::int64_t tick_rate_Hz) {
+    return static_cast<std::size_t>(
+        std::llround(time_us * static_cast<double>(tick_rate_Hz) / kUs));
+}
+
+bool is_of_body(std::int32_t sense) {
+    return sense <= QUIESCE_SENSE_DISPLACEMENT;
+}
+
+} // namespace
+
+BoardSensor::BoardSensor(const Rig &rig, std::size_t index, std::int32_t tick_rate_Hz,
+                         std::uint64_t seed)
+    : spec_(rig.board().sensor[index]),
+      source_((is_of_body(spec_.sense) ? rig.place_of
+                                       : rig.damper_of)[static_cast<std::size_t>(spec_.at)]),
+      noise_counts_(rig.noise[index] / std::abs(unit_per_count(spec_))),
+      tick_rate_Hz_(tick_rate_Hz), on_the_way_(ticks_in(spec_.latency_us, tick_rate_Hz), 0.0),
+      noise_(seed) {}
+
+/// In the unit of the board: um/s2, um/s, nm, mN.
+double BoardSensor::measure(const Plant &plant) const {
+    switch (spec_.sense) {
+    case QUIESCE_SENSE_ACCEL:
+        return 1e6 * plant.place(source_).accel_m_s2;
+    case QUIESCE_SENSE_VELOCITY:
+        return 1e6 * plant.place(source_).velocity_m_s;
+    case QUIESCE_SENSE_DISPLACEMENT:
+        return 1e9 * plant.place(source_).displacement_m;
+    case QUIESCE_SENSE_STROKE:
+        return 1e9 * plant.damper(source_).stroke_m;
+    case QUIESCE_SENSE_STROKE_VELOCITY:
+        return 1e6 * plant.damper(source_).velocity_m_s;
+    case QUIESCE_SENSE_FORCE:
+        return 1e3 * plant.damper(source_).force_N;
+    default: // make_rig lets no other through
+        throw InputError("a sensor measures what the plant does not have");
+    }
+}
+
+/// In the first tick that begins in each of its periods.
+bool BoardSensor::is_due(std::int64_t tick) const {
+    if (spec_.period_us == 0 || tick == 0) {
+        return true;
+    }
+    const auto period = [this](std::int64_t at) {
+        return at * 1000000 / (tick_rate_Hz_ * spec_.period_us);
+    };
+    return period(tick) != period(tick - 1);
+}
+
+bool BoardSensor::sample(const Plant &plant, std::int64_t tick, std::int32_t &counts) {
+    on_the_way_.push_back(measure(plant));
+    const double value = on_the_way_.front();
+    on_the_way_.pop_front();
+    if (!is_due(tick)) {
+        return false;
+    }
+    const double limit = spec_.full_scale_counts;
+    const double exact = value / unit_per_count(spec_) + noise_counts_ * noise_.gaussian() +
+                         static_cast<double>(spec_.offset_counts);
+    counts = static_cast<std::int32_t>(std::floor(std::clamp(exact, -limit, limit) + 0.5));
+    return true;
+}
+
+Senses::Senses(const AccelerometerParams &own, const Rig *rig, std::int32_t tick_rate_Hz,
+               std::uint64_t seed)
+    : own_(own, seed) {
+    for (std::size_t i = 0; rig != nullptr && i < rig->file.sensors.size(); ++i) {
+        sensors_.emplace_back(*rig, i, tick_rate_Hz, seed ^ i * kNextNoise);
+    }
+}
+
+void Senses::read(const Plant &plant, std::int64_t tick, lockstep_stimulus_t &out) {
+    if (sensors_.empty()) {
+        out.counts[0] = own_.sample_counts(plant.truth().accel_m_s2);
+        out.flags |= LOCKSTEP_FRESH;
+        return;
+    }
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        if (sensors_[i].sample(plant, tick, out.counts[i])) {
+            out.flags |= LOCKSTEP_FRESH << i;
+        }
+    }
+}
+
+std::vector<std::int32_t> Senses::full_scales() const {
+    if (sensors_.empty()) {
+        return {own_.full_scale_counts()};
+    }
+    std::vector<std::int32_t> out;
+    for (const BoardSensor &sensor : sensors_) {
+        out.push_back(sensor.full_scale_counts());
+    }
+    return out;
+}
+
+} // namespace quiesce

@@ -1,0 +1,59 @@
+/// What the controller's sensors deliver of a plant, tick by tick.
+#ifndef QUIESCE_SENSES_H
+#define QUIESCE_SENSES_H
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "accelerometer.h"
+#include "firmware.h"
+#include "noise.h"
+#include "plant.h"
+#include "rig.h"
+
+namespace quiesce {
+
+/// One sensor of a board: scale, offset, polarity, full scale, rate, latency and noise.
+class BoardSensor {
+  public:
+    /// seed: of its noise.
+    BoardSensor(const Rig &rig, std::size_t index, std::int32_t tick_rate_Hz, std::uint64_t seed);
+
+    /// Takes what it measures in this tick. Returns true, with its counts, iff a sample is due.
+    bool sample(const Plant &plant, std::int64_t tick, std::int32_t &counts);
+
+    std::int32_t full_scale_counts() const { return spec_.full_scale_counts; }
+
+  private:
+    double measure(const Plant &plant) const;
+    bool is_due(std::int64_t tick) const;
+
+    quiesce_board_sensor_t spec_;
+    std::size_t source_; ///< place or damper of the plant
+    double noise_counts_;
+    std::int64_t tick_rate_Hz_;
+    std::deque<double> on_the_way_; ///< as many values as its latency is ticks, the oldest first
+    Noise noise_;
+};
+
+/// All of them; without a rig the plant's own accelerometer.
+class Senses {
+  public:
+    Senses(const AccelerometerParams &own, const Rig *rig, std::int32_t tick_rate_Hz,
+           std::uint64_t seed);
+
+    /// Writes counts and flags of fresh samples.
+    void read(const Plant &plant, std::int64_t tick, lockstep_stimulus_t &out);
+
+    /// Of each sensor.
+    std::vector<std::int32_t> full_scales() const;
+
+  private:
+    Accelerometer own_;
+    std::vector<BoardSensor> sensors_; ///< none without a rig
+};
+
+} // namespace quiesce
+
+#endif

@@ -1,0 +1,71 @@
+#include "place_section.h"
+
+#include <algorithm>
+
+#include "plant_model.h"
+
+namespace quiesce {
+
+namespace {
+
+constexpr std::size_t kLongestName = 32;
+constexpr Range kBase = {-1e6, 1e6, "of the base's motion"};
+
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+Place read_place(TomlTable &table, const Structure &structure,
+                 const std::vector<std::string> &taken) {
+    Place place;
+    place.name = read_identifier(table, taken);
+    const std::vector<double> numbers =
+        table.numbers("at", static_cast<std::size_t>(structure.shapes.rows()));
+    const Eigen::Map<const Eigen::VectorXd> at(numbers.data(), structure.shapes.rows());
+    place.shape = structure.shape_of(at);
+    // The matrices say how their degrees of freedom move with the base, the modes do not.
+    place.base =
+        structure.base.size() > 0 ? at.dot(structure.base) : table.number("base", kBase, 1.0);
+    table.reject_unknown_keys();
+    return place;
+}
+
+} // namespace
+
+bool is_identifier(const std::string &name) {
+    const auto is_allowed = [](char c) { return is_letter(c) || is_digit(c); };
+    return !name.empty() && name.size() <= kLongestName && is_letter(name.front()) &&
+           std::all_of(name.begin(), name.end(), is_allowed);
+}
+
+std::string read_identifier(TomlTable &section, const std::vector<std::string> &taken) {
+    std::string name = section.text("name");
+    if (!is_identifier(name)) {
+        section.fail("name", "expected a letter, then letters, digits or _, at most " +
+                                 std::to_string(kLongestName) + " in all; found '" + name + "'");
+    }
+    if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
+        section.fail("name", "expected a name that nothing else has, found '" + name + "'");
+    }
+    return name;
+}
+
+std::vector<Place> read_places(TomlTable &root, const Structure &structure) {
+    std::vector<Place> places;
+    std::vector<std::string> taken = {kGround};
+    for (TomlTable &table : root.tables("place")) {
+        places.push_back(read_place(table, structure, taken));
+        taken.push_back(places.back().name);
+    }
+    if (places.size() > kMaxPlaces) {
+        root.fail("place", "expected at most " + std::to_string(kMaxPlaces) +
+                               " tables [[place]], found " + std::to_string(places.size()));
+    }
+    return places;
+}
+
+} // namespace quiesce
