@@ -1,11 +1,11 @@
 #include "board_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 
 #include "board_keys.h"
+#include "identifier.h"
 #include "toml_table.h"
 
 namespace quiesce {
@@ -14,33 +14,15 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const char *const kGround = "ground";
-constexpr std::size_t kLongestName = 32;
 /// Most that a scale may change when it is rounded to a whole thousandth.
 constexpr double kScaleError = 1e-3;
 
 // Names
 
-bool is_identifier(const std::string &text) {
-    const auto is_part = [](unsigned char c) {
-        return c < 0x80 && (std::isalnum(c) != 0 || c == '_');
-    };
-    return !text.empty() && text.size() <= kLongestName &&
-           std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
-           std::all_of(text.begin(), text.end(), is_part);
-}
-
-void require_name(const TomlTable &table, const std::string &key, const std::string &name) {
-    if (!is_identifier(name)) {
-        table.fail(key,
-                   "expected a letter, then at most 31 letters, digits or _, found '" + name + "'");
-    }
-}
-
 /// Appends a name that must be another than those before it.
 void add_name(const TomlTable &table, const std::string &key, const std::string &name,
               Names &names) {
-    require_name(table, key, name);
+    require_identifier(table, key, name);
     if (std::find(names.begin(), names.end(), name) != names.end()) {
         table.fail(key, "expected names that differ, found '" + name + "' twice");
     }
@@ -236,7 +218,7 @@ void Reader::read_root() {
     root_.accept("schema");
     root_.accept("version");
     file_.name = root_.text("name");
-    require_name(root_, "name", file_.name);
+    require_identifier(root_, "name", file_.name);
     file_.bodies = read_bodies(root_);
     file_.sensors = read_names(sensors_);
     file_.dampers = read_names(dampers_);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "damper_section.h"
+#include "identifier.h"
 #include "place_section.h"
 
 namespace quiesce {
@@ -81,7 +82,7 @@ Eigen::VectorXd read_stroke(TomlTable &section, const PlantModel &model) {
 
 PlantDamper read_joined(Shared &shared, TomlTable &section, const std::vector<std::string> &taken) {
     PlantDamper damper{};
-    damper.name = read_identifier(section, taken);
+    damper.name = read_name(section, taken);
     damper.stroke = read_stroke(section, shared.model);
     std::optional<TomlTable> coil = section.optional_table("coil");
     return read_one(shared, section, std::move(coil), std::move(damper));

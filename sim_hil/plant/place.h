@@ -8,9 +8,6 @@
 
 namespace quiesce {
 
-/// Name of what moves with the base; no place may have it.
-inline const char *const kGround = "ground";
-
 struct Place {
     std::string name;
     Eigen::VectorXd shape; ///< mass-normalised, of each mode, kg^-1/2

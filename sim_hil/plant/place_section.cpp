@@ -2,27 +2,19 @@
 
 #include <algorithm>
 
+#include "identifier.h"
 #include "plant_model.h"
 
 namespace quiesce {
 
 namespace {
 
-constexpr std::size_t kLongestName = 32;
 constexpr Range kBase = {-1e6, 1e6, "of the base's motion"};
-
-bool is_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
 
 Place read_place(TomlTable &table, const Structure &structure,
                  const std::vector<std::string> &taken) {
     Place place;
-    place.name = read_identifier(table, taken);
+    place.name = read_name(table, taken);
     const std::vector<double> numbers =
         table.numbers("at", static_cast<std::size_t>(structure.shapes.rows()));
     const Eigen::Map<const Eigen::VectorXd> at(numbers.data(), structure.shapes.rows());
@@ -36,18 +28,9 @@ Place read_place(TomlTable &table, const Structure &structure,
 
 } // namespace
 
-bool is_identifier(const std::string &name) {
-    const auto is_allowed = [](char c) { return is_letter(c) || is_digit(c); };
-    return !name.empty() && name.size() <= kLongestName && is_letter(name.front()) &&
-           std::all_of(name.begin(), name.end(), is_allowed);
-}
-
-std::string read_identifier(TomlTable &section, const std::vector<std::string> &taken) {
+std::string read_name(TomlTable &section, const std::vector<std::string> &taken) {
     std::string name = section.text("name");
-    if (!is_identifier(name)) {
-        section.fail("name", "expected a letter, then letters, digits or _, at most " +
-                                 std::to_string(kLongestName) + " in all; found '" + name + "'");
-    }
+    require_identifier(section, "name", name);
     if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
         section.fail("name", "expected a name that nothing else has, found '" + name + "'");
     }

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "dampers_section.h"
+#include "identifier.h"
 #include "place_section.h"
 #include "structure_section.h"
 #include "toml_table.h"
@@ -45,9 +46,7 @@ AccelerometerParams read_sensor(TomlTable section) {
 std::map<std::string, double> read_noise(TomlTable section) {
     std::map<std::string, double> noise;
     for (const std::string &name : section.keys()) {
-        if (!is_identifier(name)) {
-            section.fail(name, "expected a sensor's name: letters, digits and _");
-        }
+        require_identifier(section, name, name);
         noise[name] = section.number(name, {0.0, 1e9, "RMS per sample"});
     }
     return noise;

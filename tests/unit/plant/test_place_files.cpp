@@ -130,7 +130,7 @@ const Mistake kMistakes[] = {
     {"place_name_empty", "name = \"floor\"", "name = \"\"", "place[1].name: expected a text"},
     {"place_name_a_number", "name = \"floor\"", "name = 1", "place[1].name: expected a text"},
     {"place_name_with_a_space", "name = \"floor\"", "name = \"my floor\"",
-     "place[1].name: expected a letter, then letters, digits or _, at most 32 in all; found "
+     "place[1].name: expected a letter, then at most 31 letters, digits or _, found "
      "'my floor'"},
     {"place_name_begins_with_a_digit", "name = \"roof\"", "name = \"2nd\"",
      "place[2].name: expected a letter"},
@@ -191,7 +191,7 @@ const Mistake kMistakes[] = {
     {"noise_a_text", "[driver]", "[noise]\nroof = \"much\"\n[driver]",
      "noise.roof: expected a number"},
     {"noise_of_no_name", "[driver]", "[noise]\n\"roof accel\" = 1.0\n[driver]",
-     "noise.roof accel: expected a sensor's name"},
+     "noise.roof accel: expected a letter, then"},
 };
 INSTANTIATE_TEST_SUITE_P(PlantFile, PlaceMistakes, testing::ValuesIn(kMistakes),
                          [](const auto &test) { return std::string(test.param.name); });
