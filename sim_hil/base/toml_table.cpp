@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include <toml++/toml.h>
 
@@ -298,6 +300,10 @@ void TomlTable::reject_unknown_keys() const {
 }
 
 TomlFile::TomlFile(const std::string &file) : file_(file) {
+    std::error_code unreadable; // the parser tells
+    if (std::filesystem::is_directory(file, unreadable)) {
+        throw InputError(on_one_line(file + ": is a folder, not a file"));
+    }
     try {
         const auto table = std::make_shared<const toml::table>(toml::parse_file(file));
         table_ = std::shared_ptr<const TomlNode>(table, opaque(table.get()));

@@ -202,6 +202,7 @@ class Reader {
     BoardFile read();
 
   private:
+    void reject_unknown_keys();
     void read_root();
     void read_parts();
     void check() const;
@@ -214,9 +215,19 @@ class Reader {
     BoardFile file_ = {};
 };
 
+/// First of all: a table with another name would seem to be missing.
+void Reader::reject_unknown_keys() {
+    for (const char *key : {"schema", "version", "name", "bodies", "tracked"}) {
+        root_.accept(key);
+    }
+    for (const RootKey &key : root_keys()) {
+        root_.accept(key.key);
+    }
+    root_.reject_unknown_keys();
+}
+
 void Reader::read_root() {
-    root_.accept("schema");
-    root_.accept("version");
+    reject_unknown_keys();
     file_.name = root_.text("name");
     require_identifier(root_, "name", file_.name);
     file_.bodies = read_bodies(root_);
@@ -248,8 +259,6 @@ BoardFile Reader::read() {
     read_parts();
     file_.board.tracked = root_.has("tracked") ? number_of(root_, "tracked", file_.sensors)
                                                : first_accelerometer(file_.board);
-    root_.accept("tracked");
-    root_.reject_unknown_keys();
     check();
     return file_;
 }

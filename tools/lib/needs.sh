@@ -10,7 +10,7 @@
 needs_of() {
     case "${1:-} ${2:-}" in
     "hil "* | "replay "*) needs_of_target "$@" ;;
-    "chain "* | "params "* | "plant "* | "record "*) echo bench ;;
+    "board "* | "chain "* | "params "* | "plant "* | "record "*) echo bench ;;
     "rules lookup" | "rules optimize" | "rules show") echo bench ;;
     "rules "*) ;;
     "sweep "*) echo bench plant ;;

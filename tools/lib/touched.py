@@ -23,6 +23,7 @@ AREAS = (
     ("hal/linux/", "linux"),
     ("targets/linux/", "linux"),
     ("targets/lockstep/", "comm"),
+    ("sim_hil/board/", "board"),
     ("sim_hil/plant/", "plant"),
     ("sim_hil/damper/", "plant"),
     ("sim_hil/link/", "link"),

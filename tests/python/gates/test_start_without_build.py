@@ -91,6 +91,7 @@ def busy(clone: Clone) -> Iterator[Clone]:
         ("replay x.csv", "bench"),
         ("replay x.csv --target mps2", "bench images"),
         ("record", "bench"),
+        ("board check x.toml", "bench"),
         ("plant check x.toml", "bench"),
         ("params", "bench"),
         ("chain", "bench"),

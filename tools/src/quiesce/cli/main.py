@@ -16,6 +16,7 @@ COMMANDS = (
     ("replay", "replay", "a recorded acceleration through the firmware"),
     ("record", "record", "the simulated accelerometer's signal as a CSV file"),
     ("plant", "plant", "plant files"),
+    ("board", "board.command", "board files: sensors, dampers, their places and limits"),
     ("params", "params", "parameters of the controller: unit, range, default"),
     ("chain", "chain", "magnitude and phase of the conditioning"),
     ("rules", "rules.command", "fuzzy rule files"),
@@ -33,6 +34,7 @@ EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report
   quiesce replay FILE.csv --column acc --unit g a recorded acceleration through the firmware
   quiesce plant check my_plant.toml             is my own plant file right?
+  quiesce board check my_board.toml             and my board of sensors and dampers?
   quiesce params                                every parameter of the controller
   quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
   quiesce sweep --identify FILE.csv             a plant file from a recorded sweep

@@ -57,7 +57,7 @@ class Bench:
     """The executable. Calls may come from several threads; stop() ends those under way."""
 
     def __init__(self) -> None:
-        self._exe = require_file(build_folder() / "host/sim_hil/quiesce_bench", "the bench")
+        self.executable = require_file(build_folder() / "host/sim_hil/quiesce_bench", "the bench")
         self._lock = threading.Lock()
         self._running: set[subprocess.Popen[str]] = set()
 
@@ -68,7 +68,7 @@ class Bench:
         dies.
         """
         process = subprocess.Popen(
-            [str(self._exe), command, *options],
+            [str(self.executable), command, *options],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
+from quiesce.base.c_names import is_c_name
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import root, shown
 from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, compiled_from
@@ -29,15 +30,6 @@ examples:
   quiesce rules compile fan.fis --lsb temperature=0.01 --lsb speed=1 --name fan --out fan
 """
 
-# Keywords of C and C++ that a function cannot have for its name.
-RESERVED = frozenset(
-    "alignas alignof and asm auto bool break case catch char class const constexpr continue "
-    "default delete do double else enum explicit export extern false float for friend goto if "
-    "inline int long main mutable namespace new noexcept not nullptr operator or private "
-    "protected public register restrict return short signed sizeof static static_assert "
-    "struct switch template this throw true try typedef typeid typename union unsigned using "
-    "virtual void volatile wchar_t while xor".split()
-)
 ENGINE_HEADERS = (
     "fuzzy/fuzzy.h",
     "fuzzy/fuzzy_forms.h",
@@ -69,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     name = args.name or re.sub(r"\W", "_", args.file.stem)
     if args.file.is_dir():
         raise UsageError(f"{args.file}: a folder, not a rule file")
-    if not re.fullmatch(r"[A-Za-z]\w*", name) or name in RESERVED or name.startswith("fuzzy_"):
+    if not is_c_name(name) or name.startswith("fuzzy_"):
         raise UsageError(f"--name {name}: a name that C and C++ leave free, please")
     compiled = compiled_from(args)
     out = args.out or root() / "build/rules" / name

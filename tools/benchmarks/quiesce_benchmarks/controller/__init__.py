@@ -1,0 +1,1 @@
+"""Figures of the controller on boards of any size."""

@@ -1,0 +1,1 @@
+"""The actions of `quiesce board`, one module each."""

@@ -1,0 +1,146 @@
+"""`quiesce board show FILE`: what a board says, in tables."""
+
+import argparse
+from typing import Any
+
+from quiesce.base.table import format_table
+from quiesce.engine.bench import Bench
+
+EPILOG = """examples:
+  quiesce board show sim_hil/data/boards/two_storeys.toml
+
+Shown are sensors and dampers, the signals that laws see, measured or made of others, and the laws
+that work with them; a law that lacks a signal is refused by that signal's name.
+"""
+
+# Unit on the board -> the unit that is shown, and how many of the former it is.
+SHOWN_UNITS = {
+    "um/s2": ("m/s2", 1e6),
+    "um/s": ("m/s", 1e6),
+    "nm": ("mm", 1e6),
+    "mN": ("N", 1e3),
+    "mV": ("V", 1e3),
+    "mdegC": ("degC", 1e3),
+}
+SCALES_PER_UNIT = 1000
+NO_LIMIT_PCT = 100
+AXES = "xyz"
+
+Board = dict[str, Any]
+
+
+def add_parser(actions: argparse._SubParsersAction) -> None:
+    parser = actions.add_parser(
+        "show",
+        help="sensors, dampers, signals and laws of a board",
+        description="Show what a board file describes and which laws work with it.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", metavar="FILE", help="board, TOML")
+    parser.set_defaults(run=run)
+
+
+def time_text(time_us: int) -> str:
+    return f"{time_us / 1000:g} ms"
+
+
+def amperes(current_mA: int) -> str:
+    return f"{current_mA / 1000:g} A"
+
+
+def range_text(sensor: Board) -> str:
+    """What it can measure, from its lowest to its highest count."""
+    unit, divisor = SHOWN_UNITS[sensor["unit"]]
+    step = sensor["scale"] / SCALES_PER_UNIT / divisor
+    ends = (
+        sensor["polarity"] * step * (sign * sensor["full_scale_counts"] - sensor["offset_counts"])
+        for sign in (-1, 1)
+    )
+    low, high = sorted(ends)
+    return f"{low:.4g} .. {high:.4g} {unit}"
+
+
+def place_text(sensor: Board) -> str:
+    place = sensor["of"] or "-"
+    return f"{place}, {AXES[sensor['axis']]}" if sensor["measures"] == "acceleration" else place
+
+
+def checks_text(sensor: Board) -> str:
+    """What makes it faulty, besides its age."""
+    checks = []
+    if sensor["stuck_us"]:
+        checks.append(f"stuck {time_text(sensor['stuck_us'])}")
+    if sensor["min_noise_counts"]:
+        checks.append(f"noise < {sensor['min_noise_counts']}")
+    if sensor["max_lost_pct"] < NO_LIMIT_PCT:
+        checks.append(f"lost > {sensor['max_lost_pct']} %")
+    return ", ".join(checks) or "-"
+
+
+def sensor_row(sensor: Board) -> list[str]:
+    return [
+        sensor["name"],
+        sensor["measures"],
+        place_text(sensor),
+        f"{sensor['polarity'] * sensor['scale'] / SCALES_PER_UNIT:g} {sensor['unit']}",
+        range_text(sensor),
+        time_text(sensor["period_us"]) if sensor["period_us"] else "each tick",
+        time_text(sensor["max_age_us"]),
+        checks_text(sensor),
+        time_text(sensor["latency_us"]),
+    ]
+
+
+def trip_text(damper: Board) -> str:
+    if not damper["trip_mA"]:
+        return "-"
+    return f"{amperes(damper['trip_mA'])} for {time_text(damper['trip_us'])}"
+
+
+def damper_row(damper: Board) -> list[str]:
+    return [
+        damper["name"],
+        f"{damper['from']} - {damper['to']}",
+        amperes(damper["ceiling_mA"]),
+        amperes(damper["safe_mA"]),
+        amperes(damper["continuous_mA"]),
+        "measured" if damper["measures_current"] else "modelled",
+        trip_text(damper),
+        time_text(damper["coil_lag_us"]),
+    ]
+
+
+def signal_rows(signals: list[str]) -> list[list[str]]:
+    """One row a quantity: of which bodies or dampers it is known."""
+    places: dict[str, list[str]] = {}
+    for signal in signals:
+        quantity, _, place = signal.partition(" of ")
+        places.setdefault(quantity, []).append(place)
+    return [[quantity, ", ".join(filter(None, of)) or "-"] for quantity, of in places.items()]
+
+
+def law_rows(laws: dict[str, str | None]) -> list[list[str]]:
+    return [[law, f"no: lacks {lack}" if lack else "yes"] for law, lack in laws.items()]
+
+
+def described(board: Board) -> str:
+    sensor_head = "sensor measures of count range every held faulty latency".split()
+    damper_head = ["damper", "stroke", "ceiling", "safe", "continuous", "current", "trip", "coil"]
+    tables = [
+        format_table(sensor_head, [sensor_row(s) for s in board["sensors"]], range(9)),
+        format_table(damper_head, [damper_row(d) for d in board["dampers"]], range(8)),
+        format_table(["signal", "of"], signal_rows(board["signals"]), (0, 1)),
+        format_table(["law", "possible"], law_rows(board["laws"]), (0, 1)),
+    ]
+    head = (
+        f"{board['name']}: bodies {', '.join(board['bodies'])}; "
+        f"tracked {board['sensors'][board['tracked']]['name']}; "
+        f"bus {time_text(board['bus_latency_us'])}"
+    )
+    return "\n\n".join([head, *tables])
+
+
+def run(args: argparse.Namespace) -> int:
+    print(described(Bench().json("board-check", args.file)))
+    return 0
