@@ -42,7 +42,7 @@ typedef struct {
 typedef struct {
     int32_t stroke_nm;     ///< a - b
     int32_t velocity_um_s; ///< of the stroke
-    int32_t force_mN;      ///< on a
+    int32_t force_mN;      ///< > 0 resists a stroke that grows
     int32_t current_mA;    ///< in the coil: measured, else as the command and the coil's lag say
     int32_t voltage_mV;    ///< across the coil
     int32_t temperature_mdegC;

@@ -2,6 +2,15 @@
 
 #include <stddef.h>
 
+// Of what a law needs that demands forces: a bit that no view has. Such a law fails the first test
+// of a tick, and the others do not pay for a second one.
+#define FORCES (UINT64_C(1) << 63)
+
+uint64_t control_needs(const quiesce_params_t *params) {
+    const law_t *law = law_find(params->law);
+    return law->needs | forces_need(law, params);
+}
+
 static void start(control_t *self) {
     for (uint32_t i = 0; i < sizeof self->state / sizeof self->state[0]; i++) {
         self->state[i] = 0;
@@ -59,18 +68,15 @@ static bool find_signal(uint64_t bits, uint32_t index, quiesce_signal_t *found) 
     return false;
 }
 
-bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing) {
-    const law_t *asked = law_find(law);
+bool quiesce_missing(const quiesce_board_t *board, const quiesce_params_t *params,
+                     quiesce_signal_t *missing) {
     places_t places;
-    if (asked == NULL) {
+    if (law_find(params->law) == NULL) {
         return false;
     }
-    if (asked->demands != LAW_DEMANDS_CURRENT) {
-        *missing = (quiesce_signal_t){"tracker of a force", -1};
-        return true;
-    }
     places_init(&places, board);
-    return find_signal(needs_there(asked->needs, &places) & ~places_provide(&places), 0, missing);
+    return find_signal(needs_there(control_needs(params), &places) & ~places_provide(&places), 0,
+                       missing);
 }
 
 bool quiesce_provided(const quiesce_board_t *board, uint32_t index, quiesce_signal_t *provided) {
@@ -81,7 +87,9 @@ bool quiesce_provided(const quiesce_board_t *board, uint32_t index, quiesce_sign
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
     self->law = law_find(params->law);
-    self->needs = needs_there(self->law->needs, places);
+    forces_init(&self->forces, self->law, params, places->dampers);
+    self->needs =
+        needs_there(control_needs(params), places) | (self->forces.track != NULL ? FORCES : 0);
     self->setup = (law_setup_t){
         .params = *params,
         .table = self->law->kind != NULL ? self->law->kind->shipped : NULL,
@@ -91,31 +99,73 @@ void control_init(control_t *self, const places_t *places, const quiesce_params_
     start(self);
 }
 
-quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
-    const law_table_kind_t *kind = self->law->kind;
-    if (kind == NULL || (words == NULL && kind->shipped == NULL)) {
-        return QUIESCE_TABLE_MAGIC;
-    }
-    const quiesce_table_verdict_t verdict =
-        words == NULL ? QUIESCE_TABLE_OK : kind->check(words, count);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
-    self->setup.table = words == NULL ? kind->shipped : words;
+static void use_law_table(control_t *self, const uint32_t *words) {
+    self->setup.table = words;
     if (self->law->retable != NULL) {
         self->law->retable(self->state, &self->setup);
     } else {
         start(self);
     }
+}
+
+static quiesce_table_verdict_t use_shipped(control_t *self) {
+    const law_table_kind_t *kind = self->law->kind;
+    if (kind == NULL ? forces_kind(&self->forces) == NULL : kind->shipped == NULL) {
+        return QUIESCE_TABLE_MAGIC;
+    }
+    self->forces.table = NULL;
+    if (kind != NULL) {
+        use_law_table(self, kind->shipped);
+    }
     return QUIESCE_TABLE_OK;
 }
 
+quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
+    if (words == NULL) {
+        return use_shipped(self);
+    }
+    const track_table_kind_t *map = forces_kind(&self->forces);
+    const law_table_kind_t *kind = self->law->kind;
+    const bool is_map = map != NULL && count > 0 && words[0] == map->magic;
+    if (!is_map && kind == NULL) {
+        return QUIESCE_TABLE_MAGIC;
+    }
+    const quiesce_table_verdict_t verdict =
+        is_map ? map->check(words, count) : kind->check(words, count);
+    if (verdict != QUIESCE_TABLE_OK) {
+        return verdict;
+    }
+    if (is_map) {
+        self->forces.table = words;
+    } else {
+        use_law_table(self, words);
+    }
+    return QUIESCE_TABLE_OK;
+}
+
+static bool has_all(const control_t *self, uint64_t valid) {
+    return (valid & self->needs) == self->needs;
+}
+
 bool control_sees(const control_t *self, const view_t *view) {
-    return (view->valid & self->needs) == self->needs;
+    return has_all(self, view->valid | (forces_are_ready(&self->forces) ? FORCES : 0));
+}
+
+static bool ask(control_t *self, const view_t *view, law_demand_t *out) {
+    return self->law->step(self->state, &self->setup, view, out);
+}
+
+static bool ask_forces(control_t *self, const view_t *view, law_demand_t *out) {
+    if (!control_sees(self, view) || !ask(self, view, out)) {
+        return false;
+    }
+    forces_step(&self->forces, &self->setup.params, view, out);
+    return true;
 }
 
 bool control_step(control_t *self, const view_t *view, law_demand_t *out) {
-    if (control_sees(self, view) && self->law->step(self->state, &self->setup, view, out)) {
+    if ((has_all(self, view->valid) && ask(self, view, out)) ||
+        (self->forces.track != NULL && ask_forces(self, view, out))) {
         self->blind_ticks = 0;
         return true;
     }

@@ -1,7 +1,9 @@
-/// The law that runs: its table, its state, and what it asks for in a tick.
+/// The law that runs, with the tracker of the forces that it may demand: its table, its state, and
+/// the currents that it asks for in a tick.
 #ifndef CONTROL_H
 #define CONTROL_H
 
+#include "forces.h"
 #include "law.h"
 #include "sensing.h"
 
@@ -14,20 +16,25 @@ typedef struct {
     law_setup_t setup;
     uint32_t blind_ticks; ///< in a row, with the output on
     uint32_t blind_most_ticks;
+    forces_t forces;
     uint64_t state[LAW_STATE_BYTES / sizeof(uint64_t)];
 } control_t;
+
+/// VIEW_ bits that the law of these parameters needs, and its tracker. Both are in their ranges.
+uint64_t control_needs(const quiesce_params_t *params);
 
 /// The law of the parameters, which have been checked, with the table that ships, from rest.
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params);
 
-/// Another table; NULL: the one that ships. A table that is refused changes nothing.
+/// Another table, of the law or of the tracker; NULL: what ships. A table that is refused changes
+/// nothing.
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count);
 
-/// Whether the law sees what it needs.
+/// Whether law and tracker see what they need, the tracker's table included.
 bool control_sees(const control_t *self, const view_t *view);
 
-/// Requests in mA for each damper. Where the law does not see what it needs, or has no demand: the
-/// unlock current. Returns false iff that has lasted for longer than it may.
+/// Requests in mA for each damper. Where law or tracker does not see what it needs, or the law has
+/// no demand: the unlock current. Returns false iff that has lasted for longer than it may.
 bool control_step(control_t *self, const view_t *view, law_demand_t *out);
 
 /// As quiesce_report, quiesce_learnt_save and quiesce_learnt_load.

@@ -55,7 +55,7 @@ static void start_all(controller_t *self, const quiesce_board_t *board,
                       const quiesce_params_t *params, const quiesce_params_t *used,
                       bool is_accepted) {
     *self = (controller_t){.view.may_learn = true};
-    signal_chain_init(&self->signal, board, used, law_find(used->law)->needs);
+    signal_chain_init(&self->signal, board, used, control_needs(used));
     control_init(&self->control, &self->signal.sensing.places, used);
     self->recover_ticks = (uint32_t)used->sensor_recover_ticks;
     for (uint32_t i = 0; i < dampers_of(self); i++) {
@@ -91,7 +91,7 @@ bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
         is_accepted = false;
     }
     quiesce_signal_t missing;
-    is_accepted = is_accepted && !quiesce_missing(&used_board, used.law, &missing);
+    is_accepted = is_accepted && !quiesce_missing(&used_board, &used, &missing);
     start_all((controller_t *)(void *)self->opaque, &used_board, &used, &used, is_accepted);
     return is_accepted;
 }

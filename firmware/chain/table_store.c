@@ -37,9 +37,17 @@ static quiesce_table_verdict_t use_slot(quiesce_table_store_t *store, quiesce_t 
     return quiesce_table_use(self, words, count);
 }
 
+// What is in use must not become the spare slot: a table of another kind would not take its place.
+static bool is_same_kind(const quiesce_table_store_t *store, uint32_t spare) {
+    return store->in_use == SHIPPED || store->filled == 0 ||
+           store->words[spare][0] == store->words[store->in_use][0];
+}
+
 quiesce_table_verdict_t quiesce_table_store_commit(quiesce_table_store_t *store, quiesce_t *self) {
     const uint32_t spare = spare_of(store);
-    const quiesce_table_verdict_t verdict = use_slot(store, self, spare, store->filled);
+    const quiesce_table_verdict_t verdict = is_same_kind(store, spare)
+                                                ? use_slot(store, self, spare, store->filled)
+                                                : QUIESCE_TABLE_MAGIC;
     store->filled = 0;
     if (verdict == QUIESCE_TABLE_OK) {
         store->previous = store->in_use;

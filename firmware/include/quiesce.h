@@ -143,10 +143,10 @@ typedef struct {
     int32_t at;       ///< of which body or damper, from 0; -1: there is one only
 } quiesce_signal_t;
 
-/// The first signal that a law (by the value of its parameter) needs and no sensor of a board,
-/// which has been checked, provides; or that it demands forces, which nothing here makes currents.
-/// Returns false iff there is none.
-bool quiesce_missing(const quiesce_board_t *board, int32_t law, quiesce_signal_t *missing);
+/// The first signal that the law of parameters needs, or the tracker of the forces that it demands,
+/// and no sensor of a board provides; both have been checked. Returns false iff there is none.
+bool quiesce_missing(const quiesce_board_t *board, const quiesce_params_t *params,
+                     quiesce_signal_t *missing);
 
 /// The signals that laws see with the sensors of a board, which has been checked: index 0, 1, ..
 /// until it returns false.
@@ -190,7 +190,7 @@ typedef enum {
     QUIESCE_TABLE_OUTPUT = 7, ///< a term out of range
     QUIESCE_TABLE_FIT = 8,    ///< inputs, outputs or their units are not the law's
     QUIESCE_TABLE_POINT = 9,  ///< a frequency that does not rise, a floor above its level, a long
-                              ///< ramp
+                              ///< ramp; an axis or a force of a map
 } quiesce_table_verdict_t;
 
 /// The law that runs uses another table (rules, pulses, ..) from the next tick on: words from
@@ -198,10 +198,18 @@ typedef enum {
 /// learnt about another table is forgotten. The words stay the caller's and must not change while
 /// they are in use. A table that is refused changes nothing. Call between steps, also while
 /// running: the swap is one pointer. quiesce_init goes back to the one that ships.
+///
+/// Where the law demands forces and parameter tracker is inverse, a damper's map (`quiesce identify
+/// inverse`) is taken beside the law's table. None ships: until there is one, and after NULL, that
+/// is a signal which the law lacks.
 quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count);
 
+/// Whether words are a damper's map.
+quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count);
+
 /// Receives a table in parts beside the one in use: two slots of the caller's memory. A table is
-/// put to use whole and checked, or not at all; the one before it is kept.
+/// put to use whole and checked, or not at all; the one before it is kept. A store holds tables of
+/// one kind: a damper's map beside a law's table has a store of its own.
 #define QUIESCE_TABLE_WORDS 1024
 typedef struct {
     uint32_t words[2][QUIESCE_TABLE_WORDS];

@@ -27,7 +27,7 @@ typedef enum {
     QUIESCE_SENSE_DISPLACEMENT = 2,    ///< of a body, nm
     QUIESCE_SENSE_STROKE = 3,          ///< of a damper between its ends, nm
     QUIESCE_SENSE_STROKE_VELOCITY = 4, ///< of a damper, um/s
-    QUIESCE_SENSE_FORCE = 5,           ///< of a damper on its end a, mN
+    QUIESCE_SENSE_FORCE = 5,           ///< of a damper, mN, > 0 resists a stroke that grows
     QUIESCE_SENSE_VOLTAGE = 6,         ///< across a damper's coil, mV
     QUIESCE_SENSE_TEMPERATURE = 7,     ///< of a damper, mdegC
     QUIESCE_SENSE_SUPPLY = 8,          ///< of the drivers, mV

@@ -20,7 +20,7 @@ typedef struct {
 
 typedef enum {
     LAW_DEMANDS_CURRENT, ///< mA
-    LAW_DEMANDS_FORCE,   ///< mN on end a of the damper
+    LAW_DEMANDS_FORCE,   ///< mN, > 0 resists a stroke that grows; a tracker makes it a current
 } law_demand_kind_t;
 
 /// For each damper, any value: what follows limits it.

@@ -84,12 +84,15 @@ Json signals(const BoardFile &file) {
 }
 
 void add_law(Json &out, const BoardFile &file, std::int32_t law, const char *name) {
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    params.law = law;
     quiesce_signal_t missing;
-    const bool lacks = quiesce_missing(&file.board, law, &missing);
+    const bool lacks = quiesce_missing(&file.board, &params, &missing);
     out.set(name, lacks ? Json(told(file, missing)) : Json());
 }
 
-/// Of each law: the first signal that it lacks, or null.
+/// Of each law: the first signal that it lacks, or null; with the default tracker.
 Json laws(const BoardFile &file) {
     Json out = Json::object();
 #define LAW(number, name) add_law(out, file, QUIESCE_LAW_##number, #name);

@@ -13,6 +13,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "firmware/param/parameters.toml"
+# Parameters whose labels are a registry: each is a file of the firmware.
+REGISTERED = ("law", "tracker")
 
 
 def banner(digest: str) -> str:
@@ -30,8 +32,8 @@ def header(params: list[dict], digest: str) -> str:
                 f"    {prefix}_{label.upper()} = {i}," for i, label in enumerate(p["labels"])
             )
             enums += f"\n/// Values of quiesce_params_t.{p['name']}.\nenum {{\n{rows}\n}};\n"
-            if p["name"] == "law":
-                enums += every_law(p["labels"])
+            if p["name"] in REGISTERED:
+                enums += every_one(p)
     return f"""// clang-format off
 /// Parameters of the controller. {banner(digest)}
 #ifndef QUIESCE_PARAMS_H
@@ -92,10 +94,13 @@ bool quiesce_param_get(const quiesce_params_t *params, uint32_t index, int32_t *
 """
 
 
-def every_law(labels: list[str]) -> str:
-    rows = " \\\n".join(f"    LAW({label.upper()}, {label})" for label in labels)
+def every_one(p: dict) -> str:
+    name = p["name"]
+    macro = name.upper()
+    rows = " \\\n".join(f"    {macro}({label.upper()}, {label})" for label in p["labels"])
     return (
-        f"\n/// Applies LAW(NUMBER, name) to each law.\n#define QUIESCE_EACH_LAW(LAW) \\\n{rows}\n"
+        f"\n/// Applies {macro}(NUMBER, name) to each {name}.\n"
+        f"#define QUIESCE_EACH_{macro}({macro}) \\\n{rows}\n"
     )
 
 

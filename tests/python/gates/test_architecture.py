@@ -173,7 +173,7 @@ def test_checker_catches_a_fourth_flat_module(package) -> None:
 
 
 @pytest.mark.parametrize(
-    "folder", ["track", "firmware/track", "tools/src/quiesce/track", "docs/track", "tests/track"]
+    "folder", ["track", "firmware/tracks", "tools/src/quiesce/track", "docs/track", "tests/track"]
 )
 def test_checker_catches_a_folder_that_no_question_leads_to(tmp_path, folder) -> None:
     (tmp_path / "firmware/base/inner").mkdir(parents=True)

@@ -246,7 +246,7 @@ static void test_many_a_sensor_that_nobody_needs_may_fail(void) {
 static void assert_missing(uint64_t needs, const char *name, int32_t at) {
     quiesce_signal_t missing = {NULL, 0};
     test_law.needs = needs;
-    TEST_ASSERT_TRUE(quiesce_missing(&board, 0, &missing));
+    TEST_ASSERT_TRUE(quiesce_missing(&board, &params, &missing));
     TEST_ASSERT_EQUAL_STRING(name, missing.name);
     TEST_ASSERT_EQUAL_INT32(at, missing.at);
     TEST_ASSERT_FALSE(quiesce_init_board(&controller, &board, &params));
@@ -265,21 +265,14 @@ static void test_many_a_law_that_needs_what_is_not_there_is_refused_by_name(void
     add_sensor(QUIESCE_SENSE_FORCE, 0, 1000);
     assert_missing(VIEW_EACH(VIEW_FORCE), "force", 1);
     test_law.needs = VIEW_FORCE | VIEW_EACH(VIEW_STROKE) | VIEW_EACH(VIEW_DISPLACEMENT);
-    TEST_ASSERT_FALSE(quiesce_missing(&board, 0, &missing));
+    TEST_ASSERT_FALSE(quiesce_missing(&board, &params, &missing));
     // Without the accelerometer above, the measured stroke is all that is known up there.
     board.sensor[1] = board.sensor[3];
     board.sensors = 3;
     assert_missing(VIEW_EACH(VIEW_VELOCITY), "velocity", 1);
     assert_missing(VIEW_EACH(VIEW_STROKE_VELOCITY), "stroke velocity", 0);
     test_law.needs = VIEW_EACH(VIEW_STROKE);
-    TEST_ASSERT_FALSE(quiesce_missing(&board, 0, &missing));
-}
-
-// Its newtons must not be taken for milliamperes.
-static void test_many_a_law_that_demands_a_force_is_refused(void) {
-    test_law.demands = LAW_DEMANDS_FORCE;
-    assert_missing(0, "tracker of a force", -1);
-    test_law.demands = LAW_DEMANDS_CURRENT;
+    TEST_ASSERT_FALSE(quiesce_missing(&board, &params, &missing));
 }
 
 // Every kind of sensor, at its place, in its unit.
@@ -391,7 +384,6 @@ int main(void) {
     RUN_TEST(test_many_a_blind_law_falls_back_then_faults_and_comes_back);
     RUN_TEST(test_many_a_sensor_that_nobody_needs_may_fail);
     RUN_TEST(test_many_a_law_that_needs_what_is_not_there_is_refused_by_name);
-    RUN_TEST(test_many_a_law_that_demands_a_force_is_refused);
     RUN_TEST(test_many_measured_quantities_arrive);
     RUN_TEST(test_many_a_slow_sensor_is_held);
     RUN_TEST(test_many_a_budget_of_lost_samples);

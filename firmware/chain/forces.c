@@ -1,0 +1,36 @@
+#include "forces.h"
+
+#include <stddef.h>
+
+static const track_t *tracker_of(const law_t *law, const quiesce_params_t *params) {
+    return law->demands == LAW_DEMANDS_FORCE ? track_find(params->tracker) : NULL;
+}
+
+uint64_t forces_need(const law_t *law, const quiesce_params_t *params) {
+    const track_t *track = tracker_of(law, params);
+    return track != NULL ? track->needs : 0;
+}
+
+void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *params,
+                 uint32_t dampers) {
+    *self = (forces_t){.track = tracker_of(law, params), .dampers = dampers};
+}
+
+const track_table_kind_t *forces_kind(const forces_t *self) {
+    return self->track != NULL ? self->track->kind : NULL;
+}
+
+bool forces_are_ready(const forces_t *self) {
+    return self->track != NULL && (self->track->kind == NULL || self->table != NULL);
+}
+
+void forces_step(forces_t *self, const quiesce_params_t *params, const view_t *view,
+                 law_demand_t *demand) {
+    const track_setup_t setup = {params, self->table};
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        const int32_t demand_mN = demand->value[i];
+        demand->value[i] = i < self->dampers ? self->track->step(self->state[i], &setup,
+                                                                 &view->damper[i], demand_mN)
+                                             : 0;
+    }
+}
