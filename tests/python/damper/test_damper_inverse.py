@@ -12,6 +12,7 @@ from quiesce.base.errors import UsageError
 from quiesce.cli.identify import inverse as cli_inverse
 from quiesce.damper.data.record import Record
 from quiesce.damper.example import EXAMPLE
+from quiesce.damper.force_map import MAGIC
 from quiesce.damper.inverse import (
     ClosedForm,
     InverseByInterpolation,
@@ -200,6 +201,19 @@ def test_command_writes_map_forces_and_plot(tmp_path: Path, capsys) -> None:
     assert max(float(row["current_A"]) for row in rows) < 2.1
     assert (tmp_path / "out/forces.csv").stat().st_size > 1000
     assert (tmp_path / "out/inverse.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
+    words = (tmp_path / "out/map.words").read_text(encoding="utf-8").split()
+    assert int(words[0], 16) == MAGIC and int(words[2], 16) == len(words)
+
+
+def test_command_without_a_map_says_why_and_leaves_none(tmp_path: Path, capsys) -> None:
+    constant = write(tmp_path / "damper.toml", dissipative_tanh(c_N_s_m=600.0, alpha_N=300.0))
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/map.words").write_text("of another damper")
+    assert act(cli_inverse, constant, "--max-current-A", "1", "--out", tmp_path / "out") == 0
+    told = capsys.readouterr().out
+    assert "no map for a controller: the current changes the force by 0 mN" in told
+    assert "map.words" not in told
+    assert not (tmp_path / "out/map.words").exists()
 
 
 def test_command_tells_the_range_as_json(tmp_path: Path, capsys) -> None:

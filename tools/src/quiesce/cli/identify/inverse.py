@@ -18,7 +18,9 @@ HELP = "the current for a wanted force: check, plot and map"
 EPILOG = """A control law wants a force; the inverse gives the current. That needs a force that
 rises with the current: the check says up to which current it does, at several velocities in
 mid-stroke of a sine that has settled. --out writes inverse.csv (velocity, force, current,
-feasible), forces.csv and inverse.svg. Currents saturate where the force is not feasible.
+feasible), forces.csv, inverse.svg and, unless the last line of the check says why not, map.words:
+the map that tracker inverse of a controller takes (quiesce_bench run --force-map). Currents
+saturate where the force is not feasible.
 
 examples:
   quiesce identify inverse damper.toml --max-current-A 2 --out build/inverse
@@ -64,7 +66,8 @@ def run(args: argparse.Namespace) -> int:
         write_map(args.out, damper, found)
     print(json.dumps(numbers_of(damper, found), indent=1) if args.json else text_of(damper, found))
     if args.out and not args.json:
-        print(f"\nwritten: {shown(args.out)}/inverse.csv, forces.csv, inverse.svg")
+        also = ", map.words" if (args.out / "map.words").exists() else ""
+        print(f"\nwritten: {shown(args.out)}/inverse.csv, forces.csv, inverse.svg{also}")
     return 0
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from quiesce.base.atomic import output_files
 from quiesce.base.table import format_table
+from quiesce.damper.force_map import map_words, top_mA, why_no_map
 from quiesce.damper.inverse import Monotone, SteadyForces, inverse_map, why_no_closed_form
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.plain import plain
@@ -36,6 +37,14 @@ def form_text(damper: DamperModel) -> str:
     return "inverse: in closed form (the force is of 2nd order in the current)"
 
 
+def map_text(found: Monotone) -> str:
+    if why := why_no_map(found):
+        return f"no map for a controller: {why}"
+    return (
+        f"map for a controller: {4 * len(map_words(found))} bytes, 0 .. {top_mA(found) / 1e3:g} A"
+    )
+
+
 def text_of(damper: DamperModel, found: Monotone) -> str:
     forces = found.forces
     rows = [
@@ -52,6 +61,7 @@ def text_of(damper: DamperModel, found: Monotone) -> str:
             "",
             range_text(damper, found),
             form_text(damper),
+            map_text(found),
         ]
     )
 
@@ -68,6 +78,7 @@ def numbers_of(damper: DamperModel, found: Monotone) -> dict:
             "per_velocity_A": found.per_velocity_A,
             "force_at_0_A_N": found.forces.force_N[:, 0],
             "largest_force_N": found.forces.force_N.max(axis=1),
+            "why_no_map": why_no_map(found),
         }
     )
 
@@ -99,6 +110,12 @@ def write_map(folder: Path, damper: DamperModel, found: Monotone) -> None:
         (staging / "inverse.csv").write_text("\n".join([*lines, ""]), encoding="utf-8")
         (staging / "forces.csv").write_text("\n".join([*table, ""]), encoding="utf-8")
         plot_forces(staging / "inverse.svg", damper, found)
+        if not why_no_map(found):
+            words = "".join(f"0x{word:08x}\n" for word in map_words(found))
+            (staging / "map.words").write_text(words, encoding="utf-8")
+    if why_no_map(found):
+        # One of a run before must not pass for this damper's.
+        (folder / "map.words").unlink(missing_ok=True)
 
 
 def plot_forces(file: Path, damper: DamperModel, found: Monotone) -> None:
