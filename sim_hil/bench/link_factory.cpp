@@ -30,6 +30,8 @@ void refuse_tables(const LinkOptions &options) {
     refuse(!options.rules_path.empty(), "--rules", "only the host target takes a rule table");
     refuse(!options.phase_table_path.empty(), "--phase-table",
            "only the host target takes a table of pulses");
+    refuse(!options.force_map_path.empty(), "--force-map",
+           "only the host target takes a damper's map");
 }
 
 void refuse_can(const LinkOptions &options) {
@@ -83,6 +85,9 @@ const Target kTargets[] = {
          }
          if (!options.phase_table_path.empty()) {
              tables.push_back(load_pulses(options.phase_table_path));
+         }
+         if (!options.force_map_path.empty()) {
+             tables.push_back(load_force_map(options.force_map_path));
          }
          return std::make_unique<InProcessLink>(std::move(tables));
      }},

@@ -17,6 +17,7 @@ struct LinkOptions {
     std::string plugin_path;      ///< --plugin: emulator plugin that counts instructions
     std::string rules_path;       ///< --rules: rule table for the controller, host only
     std::string phase_table_path; ///< --phase-table: table of pulses, host only
+    std::string force_map_path;   ///< --force-map: a damper's map for the tracker, host only
     std::string can_channel;      ///< --can: CAN channel, linux only (channel_factory.h)
     /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux only
     std::optional<std::int64_t> telemetry_every_ticks;

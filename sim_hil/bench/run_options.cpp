@@ -52,8 +52,9 @@ const std::vector<std::string> &run_option_names() {
 }
 
 const std::vector<std::string> &target_option_names() {
-    static const std::vector<std::string> names = {
-        "target", "image", "plugin", "rules", "phase-table", "can", "telemetry-every", "wait-s"};
+    static const std::vector<std::string> names = {"target", "image",           "plugin",
+                                                   "rules",  "phase-table",     "force-map",
+                                                   "can",    "telemetry-every", "wait-s"};
     return names;
 }
 
@@ -118,6 +119,7 @@ std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {
     options.plugin_path = arguments.text("plugin").value_or("");
     options.rules_path = arguments.text("rules").value_or("");
     options.phase_table_path = arguments.text("phase-table").value_or("");
+    options.force_map_path = arguments.text("force-map").value_or("");
     options.can_channel = arguments.text("can").value_or("");
     options.telemetry_every_ticks = arguments.integer("telemetry-every", 1, UINT16_MAX);
     options.greeting_time_s = arguments.number("wait-s", 0.1, 3600.0);

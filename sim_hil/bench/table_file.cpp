@@ -32,12 +32,20 @@ const char *reason(quiesce_table_verdict_t verdict) {
         return "the controller's rules have two inputs, frequency in uHz and RMS acceleration in "
                "um/s2, and one output, current in mA; compile them with --controller";
     case QUIESCE_TABLE_POINT:
-        return "its frequencies do not rise, or a floor is above its level";
+        return "its frequencies do not rise, or a floor is above its level; a force map's axes do "
+               "not rise from below 0 to above it (currents: from 0 to 20 A at most), or its force "
+               "does not grow with the current";
     }
     return "unknown reason";
 }
 
-std::uint32_t word_of(const std::string &text, const std::string &place) {
+/// A table in a text file, for messages.
+struct TextTable {
+    const char *name;
+    const char *writer;
+};
+
+std::uint32_t word_of(const std::string &text, const std::string &place, const TextTable &table) {
     std::size_t used = 0;
     unsigned long value = 0;
     try {
@@ -47,13 +55,14 @@ std::uint32_t word_of(const std::string &text, const std::string &place) {
     }
     if (used != text.size() || text.empty() || text[0] == '-' || value > UINT32_MAX) {
         throw InputError(place + ": '" + text.substr(0, 20) +
-                         "' is no 32-bit hexadecimal number; quiesce rules compile --words "
-                         "writes such files");
+                         "' is no 32-bit hexadecimal number; " + table.writer +
+                         " writes such files");
     }
     return static_cast<std::uint32_t>(value);
 }
 
 constexpr std::size_t kWordBytes = 4;
+constexpr const char *kRefused = "the controller refuses the table: ";
 
 std::uint32_t word_at(const std::vector<char> &bytes, std::size_t offset) {
     std::uint32_t word = 0;
@@ -62,6 +71,23 @@ std::uint32_t word_at(const std::vector<char> &bytes, std::size_t offset) {
                 << (8U * i);
     }
     return word;
+}
+
+std::vector<std::uint32_t> text_words(const std::string &file, const TextTable &table) {
+    std::ifstream stream(file);
+    if (!stream) {
+        throw InputError(file + ": cannot be read");
+    }
+    std::vector<std::uint32_t> words;
+    std::string text;
+    while (stream >> text) {
+        const std::string place = file + ", word " + std::to_string(words.size() + 1);
+        words.push_back(word_of(text, place, table));
+    }
+    if (words.empty()) {
+        throw InputError(file + ": holds no words of a " + table.name);
+    }
+    return words;
 }
 
 /// What a controller with this law says of them.
@@ -84,24 +110,24 @@ void use_table(quiesce_t &controller, const std::vector<std::uint32_t> &words) {
     const quiesce_table_verdict_t verdict =
         quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
     if (verdict != QUIESCE_TABLE_OK) {
-        throw InputError(std::string("the controller refuses the table: ") + reason(verdict));
+        throw InputError(kRefused + std::string(reason(verdict)));
     }
 }
 
 std::vector<std::uint32_t> load_rules(const std::string &file) {
-    std::ifstream stream(file);
-    if (!stream) {
-        throw InputError(file + ": cannot be read");
-    }
-    std::vector<std::uint32_t> words;
-    std::string text;
-    while (stream >> text) {
-        words.push_back(word_of(text, file + ", word " + std::to_string(words.size() + 1)));
-    }
-    if (words.empty()) {
-        throw InputError(file + ": holds no words of a rule table");
-    }
+    std::vector<std::uint32_t> words =
+        text_words(file, {"rule table", "quiesce rules compile --words"});
     try_table(file, QUIESCE_LAW_FUZZY, words);
+    return words;
+}
+
+std::vector<std::uint32_t> load_force_map(const std::string &file) {
+    std::vector<std::uint32_t> words = text_words(file, {"force map", "quiesce identify inverse"});
+    const quiesce_table_verdict_t verdict =
+        quiesce_force_map_check(words.data(), static_cast<std::uint32_t>(words.size()));
+    if (verdict != QUIESCE_TABLE_OK) {
+        throw InputError(file + ": " + kRefused + reason(verdict));
+    }
     return words;
 }
 

@@ -1,5 +1,5 @@
 /// Tables for the controller's laws, from files: rules as `quiesce rules compile` writes them,
-/// pulses as `quiesce tune` does.
+/// pulses as `quiesce tune` does; a damper's map for its tracker, from `quiesce identify inverse`.
 #ifndef QUIESCE_TABLE_FILE_H
 #define QUIESCE_TABLE_FILE_H
 
@@ -14,6 +14,9 @@ namespace quiesce {
 /// Words of a file with one hexadecimal number a line. Throws InputError where the file cannot be
 /// read, holds anything else or nothing, or where the fuzzy laws refuse the table.
 std::vector<std::uint32_t> load_rules(const std::string &file);
+
+/// Likewise a damper's map; throws InputError also where no law of the build demands forces.
+std::vector<std::uint32_t> load_force_map(const std::string &file);
 
 /// Words of a binary file, little-endian. Throws InputError where the file cannot be read, does not
 /// hold whole words, or where law phase refuses the table.

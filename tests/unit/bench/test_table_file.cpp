@@ -1,4 +1,4 @@
-/// --rules: rule tables from files, and what a user reads where one is not good.
+/// --rules, --force-map: tables from text files, and what a user reads where one is not good.
 #include "table_file.h"
 
 #include <gtest/gtest.h>
@@ -238,6 +238,49 @@ TEST(UseTable, refuses_with_the_reason_alone) {
         EXPECT_STREQ(error.what(), "the controller refuses the table: its checksum is wrong: it is "
                                    "damaged");
     }
+}
+
+// Two velocities, two currents, four forces.
+Words force_map() {
+    return with_crc(
+        {0x31464D51u, 0, 13, 2, 2, 0xFFFFFC18u, 1000, 0, 2000, 0xFFFFFFFFu, 0xFFFFFC18u, 1, 1000});
+}
+
+std::string map_message(const Words &words) {
+    const TextFile file(hex(words));
+    try {
+        EXPECT_EQ(quiesce::load_force_map(file.name()), words);
+    } catch (const InputError &error) {
+        return std::string(error.what()).substr(file.name().size());
+    }
+    return "accepted";
+}
+
+TEST(ForceMapFile, is_read_or_refused_with_the_reason) {
+    constexpr const char *kRefused = ": the controller refuses the table: ";
+    constexpr std::size_t kForce = 9;
+    Words words = force_map();
+    EXPECT_EQ(map_message(words), "accepted");
+    words[kForce] = 0xFFFFFC17u; // more than with current
+    EXPECT_EQ(map_message(words).rfind(std::string(kRefused) + "its checksum", 0), 0u);
+    words = with_crc(words);
+    EXPECT_NE(map_message(words).find("force does not grow with the current"), std::string::npos);
+    words.pop_back();
+    EXPECT_EQ(map_message(words).rfind(std::string(kRefused) + "it is shorter", 0), 0u);
+    EXPECT_EQ(map_message(shipped()).rfind(std::string(kRefused) + "it is not a table", 0), 0u);
+    const TextFile nothing("");
+    EXPECT_THROW(quiesce::load_force_map(nothing.name()), InputError);
+}
+
+TEST(ForceMapFile, only_the_host_takes_one) {
+    const TextFile file(hex(force_map()));
+    const std::string run = "run --scenario sim_hil/data/scenarios/sine_5Hz.toml --law off ";
+    const std::string option = "--force-map " + file.name();
+    EXPECT_EQ(bench(run + option).exit_code, 0);
+    const Outcome outcome = bench(run + "--target mps2 --image none.elf " + option);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.output,
+              "quiesce_bench: --force-map: only the host target takes a damper's map\n");
 }
 
 } // namespace
