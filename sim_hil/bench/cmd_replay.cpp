@@ -175,7 +175,7 @@ int cmd_replay(const std::vector<std::string> &words) {
     quiesce_params_default(&params);
     params = board ? params_for_board(arguments, params) : params_from(arguments, params);
     if (board) {
-        require_signals(*board, params.law);
+        require_signals(*board, params);
     }
     const std::vector<std::int32_t> counts = read_counts(arguments.required("counts"));
     const std::string trace_file = arguments.required("trace");

@@ -22,8 +22,11 @@ std::size_t index_in(const Items &items, const std::string &name, const std::str
     const auto found = std::find_if(items.begin(), items.end(),
                                     [&](const auto &item) { return item.name == name; });
     if (found == items.end()) {
-        throw InputError(what + " '" + name +
-                         "' of the board: the plant has no such one; it has: " + names_of(items));
+        throw InputError(
+            what + " '" + name +
+            "' of the board: the plant has no such one ([[place]] and [[damper]] of its "
+            "file have names); it has: " +
+            names_of(items));
     }
     return static_cast<std::size_t>(found - items.begin());
 }
@@ -117,9 +120,9 @@ std::vector<PlacedFault> place_faults(const Scenario &scenario, const Rig *rig) 
     return out;
 }
 
-void require_signals(const BoardFile &file, std::int32_t law) {
+void require_signals(const BoardFile &file, const quiesce_params_t &params) {
     quiesce_signal_t missing;
-    if (quiesce_missing(&file.board, law, &missing)) {
+    if (quiesce_missing(&file.board, &params, &missing)) {
         throw InputError("board " + file.name + ": the law needs " + told(file, missing) +
                          ", which no sensor of it provides");
     }

@@ -36,8 +36,8 @@ struct PlacedFault {
 /// it names a sensor or damper that is not there.
 std::vector<PlacedFault> place_faults(const Scenario &scenario, const Rig *rig);
 
-/// Throws InputError where a law (by the value of its parameter) lacks a signal of the board.
-void require_signals(const BoardFile &file, std::int32_t law);
+/// Throws InputError where the law of the parameters, or its tracker, lacks a signal of the board.
+void require_signals(const BoardFile &file, const quiesce_params_t &params);
 
 } // namespace quiesce
 

@@ -107,7 +107,7 @@ RunSetup run_setup(const Arguments &arguments) {
     } else {
         setup.rig = make_rig(load_board(board), setup.plant);
         setup.params = params_for_board(arguments, setup.params);
-        require_signals(setup.rig->file, setup.params.law);
+        require_signals(setup.rig->file, setup.params);
     }
     apply_overrides(arguments, setup);
     return setup;
