@@ -59,11 +59,6 @@ scale_t scale_from_ratio(uint32_t numerator, uint32_t denominator) {
         }
         shift++;
     }
-    return (scale_t){(int32_t)mantissa, shift};
-}
-
-int32_t scale_apply(scale_t scale, int32_t value, int32_t limit) {
-    const int64_t half = scale.shift == 0 ? 0 : INT64_C(1) << (scale.shift - 1u);
-    const int64_t product = ((int64_t)value * scale.mantissa + half) >> scale.shift;
-    return (int32_t)clamp_i64(product, -(int64_t)limit, limit);
+    const int64_t half = shift == 0 ? 0 : INT64_C(1) << (shift - 1u);
+    return (scale_t){(int32_t)mantissa, shift, half};
 }

@@ -93,6 +93,7 @@ static inline uint32_t reciprocal_u32(uint32_t value) {
 typedef struct {
     int32_t mantissa; ///< 2^30 .. 2^31 - 1
     uint32_t shift;   ///< 0 .. 62
+    int64_t half;     ///< of the last place that stays: what rounds to nearest
 } scale_t;
 
 /// numerator / denominator as a scale, relative error at most 2^-30.
@@ -100,6 +101,9 @@ typedef struct {
 scale_t scale_from_ratio(uint32_t numerator, uint32_t denominator);
 
 /// value x scale, rounded to nearest, saturated to -limit .. limit (limit >= 0).
-int32_t scale_apply(scale_t scale, int32_t value, int32_t limit);
+static inline int32_t scale_apply(const scale_t *scale, int32_t value, int32_t limit) {
+    const int64_t product = ((int64_t)value * scale->mantissa + scale->half) >> scale->shift;
+    return (int32_t)clamp_i64(product, -(int64_t)limit, limit);
+}
 
 #endif

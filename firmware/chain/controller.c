@@ -298,18 +298,20 @@ void quiesce_report(const quiesce_t *self, int32_t word[QUIESCE_REPORT_WORDS]) {
 
 void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out) {
     const controller_t *c = (const controller_t *)(const void *)self->opaque;
+    view_t view = c->view;
+    sensing_show_strokes(&c->signal.sensing, &view);
     *out = (quiesce_picture_t){
-        .valid = {(uint32_t)c->view.valid, (uint32_t)(c->view.valid >> 32)},
-        .supply_mV = c->view.supply_mV,
+        .valid = {(uint32_t)view.valid, (uint32_t)(view.valid >> 32)},
+        .supply_mV = view.supply_mV,
     };
     for (uint32_t i = 0; i < QUIESCE_BODIES; i++) {
-        const view_body_t *body = &c->view.body[i];
+        const view_body_t *body = &view.body[i];
         out->body[i].accel_um_s2 = body->accel_um_s2;
         out->body[i].velocity_um_s = body->velocity_um_s;
         out->body[i].displacement_nm = body->displacement_nm;
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        const view_damper_t *damper = &c->view.damper[i];
+        const view_damper_t *damper = &view.damper[i];
         out->damper[i].stroke_nm = damper->stroke_nm;
         out->damper[i].velocity_um_s = damper->velocity_um_s;
         out->damper[i].force_mN = damper->force_mN;

@@ -1,9 +1,19 @@
 #include "sensing.h"
 
+#include <stddef.h>
+
 // Bits of a quantity of a body or damper.
 static uint64_t bit(uint64_t quantity, int32_t at) {
     return quantity << at;
 }
+
+// Likewise, of motion and strokes, which are in the low word.
+static uint32_t low_bit(uint64_t quantity, int32_t at) {
+    return (uint32_t)quantity << at;
+}
+
+_Static_assert(QUIESCE_VALID_STROKE_VELOCITY + QUIESCE_MAX_DAMPERS <= 32,
+               "motion and strokes are in the low word");
 
 // Counts of a board; constants where the build has one of them.
 static int32_t sensors_of(const places_t *self) {
@@ -12,6 +22,15 @@ static int32_t sensors_of(const places_t *self) {
 
 static int32_t dampers_of(const places_t *self) {
     return QUIESCE_DAMPERS == 1 ? 1 : self->dampers;
+}
+
+// Of those that are no accelerometers; the only sensor is one.
+static uint32_t measured_of_bodies(const places_t *self) {
+    return QUIESCE_SENSORS == 1 ? 0 : self->of_bodies;
+}
+
+static uint32_t measured_in_all(const places_t *self) {
+    return QUIESCE_SENSORS == 1 ? 0 : self->of_all;
 }
 
 static bool is_accelerometer(sensor_place_t sensor) {
@@ -65,6 +84,49 @@ static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
     position_init(&self->position, rate_Hz, p->velocity_cutoff_mHz);
 }
 
+static bool is_of_body(int32_t sense) {
+    return sense <= QUIESCE_SENSE_DISPLACEMENT;
+}
+
+#define OF_BODY(field) (offsetof(view_t, body) + offsetof(view_body_t, field))
+#define OF_DAMPER(field) (offsetof(view_t, damper) + offsetof(view_damper_t, field))
+
+static const struct {
+    uint16_t offset; ///< in view_t, of the first body or damper
+    uint64_t quantity;
+} quantities[QUIESCE_SENSES] = {
+    [QUIESCE_SENSE_ACCEL] = {OF_BODY(accel_um_s2), VIEW_ACCEL},
+    [QUIESCE_SENSE_VELOCITY] = {OF_BODY(velocity_um_s), VIEW_VELOCITY},
+    [QUIESCE_SENSE_DISPLACEMENT] = {OF_BODY(displacement_nm), VIEW_DISPLACEMENT},
+    [QUIESCE_SENSE_STROKE] = {OF_DAMPER(stroke_nm), VIEW_STROKE},
+    [QUIESCE_SENSE_STROKE_VELOCITY] = {OF_DAMPER(velocity_um_s), VIEW_STROKE_VELOCITY},
+    [QUIESCE_SENSE_FORCE] = {OF_DAMPER(force_mN), VIEW_FORCE},
+    [QUIESCE_SENSE_VOLTAGE] = {OF_DAMPER(voltage_mV), VIEW_VOLTAGE},
+    [QUIESCE_SENSE_TEMPERATURE] = {OF_DAMPER(temperature_mdegC), VIEW_TEMPERATURE},
+    [QUIESCE_SENSE_SUPPLY] = {offsetof(view_t, supply_mV), VIEW_SUPPLY},
+};
+
+static sensor_place_t place_of(const quiesce_board_sensor_t *sensor) {
+    const size_t stride = is_of_body(sensor->sense) ? sizeof(view_body_t) : sizeof(view_damper_t);
+    return (sensor_place_t){
+        .sense = (uint8_t)sensor->sense,
+        .at = (uint8_t)sensor->at,
+        .offset = (uint16_t)(quantities[sensor->sense].offset + stride * (size_t)sensor->at),
+        .bit = bit(quantities[sensor->sense].quantity, sensor->at),
+    };
+}
+
+// Appends those of bodies, or all others but the accelerometers. Returns how many there are then.
+static uint8_t list_measured(places_t *self, bool of_bodies, uint8_t count) {
+    for (int32_t i = 0; i < sensors_of(self); i++) {
+        const sensor_place_t sensor = self->sensor[i];
+        if (!is_accelerometer(sensor) && is_of_body(sensor.sense) == of_bodies) {
+            self->measured[count++] = (uint8_t)i;
+        }
+    }
+    return count;
+}
+
 void places_init(places_t *self, const quiesce_board_t *board) {
     *self = (places_t){
         .sensors = (uint8_t)board->sensors,
@@ -72,9 +134,10 @@ void places_init(places_t *self, const quiesce_board_t *board) {
         .dampers = (uint8_t)board->dampers,
     };
     for (int32_t i = 0; i < sensors_of(self); i++) {
-        const quiesce_board_sensor_t *sensor = &board->sensor[i];
-        self->sensor[i] = (sensor_place_t){(uint8_t)sensor->sense, (uint8_t)sensor->at};
+        self->sensor[i] = place_of(&board->sensor[i]);
     }
+    self->of_bodies = list_measured(self, true, 0);
+    self->of_all = list_measured(self, false, self->of_bodies);
     for (int32_t i = 0; i < dampers_of(self); i++) {
         const quiesce_board_damper_t *damper = &board->damper[i];
         self->damper[i] = (damper_place_t){(uint8_t)damper->end_a, (uint8_t)damper->end_b};
@@ -83,10 +146,11 @@ void places_init(places_t *self, const quiesce_board_t *board) {
 
 void sensing_init(sensing_t *self, const quiesce_board_t *board, const quiesce_params_t *params,
                   uint64_t needs) {
-    const uint64_t strokes =
-        VIEW_EACH(VIEW_DISPLACEMENT) | VIEW_EACH(VIEW_STROKE) | VIEW_EACH(VIEW_STROKE_VELOCITY);
+    const uint64_t strokes = VIEW_EACH(VIEW_STROKE) | VIEW_EACH(VIEW_STROKE_VELOCITY);
     places_init(&self->places, board);
-    self->has_strokes = board->bodies > 1 || (needs & strokes) != 0;
+    self->has_strokes = (needs & strokes) != 0;
+    self->has_displacements =
+        board->bodies > 1 || (needs & (VIEW_EACH(VIEW_DISPLACEMENT) | strokes)) != 0;
     for (int32_t i = 0; i < sensors_of(&self->places); i++) {
         channel_init(&self->channel[i], &board->sensor[i], params,
                      is_accelerometer(self->places.sensor[i]));
@@ -95,7 +159,9 @@ void sensing_init(sensing_t *self, const quiesce_board_t *board, const quiesce_p
 
 // um/s, away from 0: never 0 where the state is not.
 static int32_t velocity_away_um_s(int64_t velocity_um_s_q32) {
-    return motion_velocity_um_s(velocity_um_s_q32 + (velocity_um_s_q32 > 0 ? UINT32_MAX : 0));
+    const int32_t floor_um_s = motion_velocity_um_s(velocity_um_s_q32);
+    const bool has_part = (uint32_t)velocity_um_s_q32 != 0;
+    return floor_um_s + (floor_um_s >= 0 && has_part ? 1 : 0);
 }
 
 static bool is_inside(int32_t value, int32_t limit) {
@@ -104,11 +170,11 @@ static bool is_inside(int32_t value, int32_t limit) {
 
 static void show_displacement(channel_t *self, int32_t at, view_t *view) {
     view_body_t *body = &view->body[at];
-    body->displacement_nm = position_step(&self->position, self->velocity_um_s_q32);
-    const bool has_velocity = (view->valid & bit(VIEW_VELOCITY, at)) != 0;
-    view->valid |= has_velocity && is_inside(body->displacement_nm, VIEW_LIMIT)
-                       ? bit(VIEW_DISPLACEMENT, at)
-                       : 0;
+    body->displacement_nm = position_step(&self->position, self->motion.velocity_um_s_q32);
+    if (((uint32_t)view->valid & low_bit(VIEW_VELOCITY, at)) != 0 &&
+        is_inside(body->displacement_nm, VIEW_LIMIT)) {
+        view->valid |= low_bit(VIEW_DISPLACEMENT, at);
+    }
 }
 
 static void show_acceleration(channel_t *self, int32_t at, view_t *view) {
@@ -120,64 +186,32 @@ static void show_acceleration(channel_t *self, int32_t at, view_t *view) {
     }
     const int64_t velocity_um_s_q32 = motion_step(&self->motion, accel_um_s2);
     const int32_t velocity_um_s = velocity_away_um_s(velocity_um_s_q32);
-    self->velocity_um_s_q32 = velocity_um_s_q32;
     view->body[at].accel_um_s2 = accel_um_s2;
     view->body[at].velocity_um_s = velocity_um_s;
     if (self->condition.has_value) {
         view->valid |=
-            (is_inside(accel_um_s2, CONDITION_ACCEL_LIMIT_um_s2) ? bit(VIEW_ACCEL, at) : 0) |
-            (is_inside(velocity_um_s, VIEW_LIMIT) ? bit(VIEW_VELOCITY, at) : 0);
-    }
-}
-
-static bool is_of_body(sensor_place_t sensor) {
-    return sensor.sense <= QUIESCE_SENSE_DISPLACEMENT;
-}
-
-typedef struct {
-    uint64_t quantity; ///< its first bit
-    int32_t *value;
-} place_t;
-
-static place_t place_of(sensor_place_t sensor, view_t *view) {
-    // A build may have fewer bodies than dampers, or the other way round.
-    view_body_t *body = &view->body[is_of_body(sensor) ? sensor.at : 0];
-    view_damper_t *damper = &view->damper[is_of_body(sensor) ? 0 : sensor.at];
-    switch (sensor.sense) {
-    case QUIESCE_SENSE_VELOCITY:
-        return (place_t){VIEW_VELOCITY, &body->velocity_um_s};
-    case QUIESCE_SENSE_DISPLACEMENT:
-        return (place_t){VIEW_DISPLACEMENT, &body->displacement_nm};
-    case QUIESCE_SENSE_STROKE:
-        return (place_t){VIEW_STROKE, &damper->stroke_nm};
-    case QUIESCE_SENSE_STROKE_VELOCITY:
-        return (place_t){VIEW_STROKE_VELOCITY, &damper->velocity_um_s};
-    case QUIESCE_SENSE_FORCE:
-        return (place_t){VIEW_FORCE, &damper->force_mN};
-    case QUIESCE_SENSE_VOLTAGE:
-        return (place_t){VIEW_VOLTAGE, &damper->voltage_mV};
-    case QUIESCE_SENSE_TEMPERATURE:
-        return (place_t){VIEW_TEMPERATURE, &damper->temperature_mdegC};
-    default:
-        return (place_t){VIEW_SUPPLY, &view->supply_mV};
+            (is_inside(accel_um_s2, CONDITION_ACCEL_LIMIT_um_s2) ? low_bit(VIEW_ACCEL, at) : 0) |
+            (is_inside(velocity_um_s, VIEW_LIMIT) ? low_bit(VIEW_VELOCITY, at) : 0);
     }
 }
 
 // What is measured replaces what was computed, also where it is not valid now.
-static void show_measured(const channel_t *self, sensor_place_t sensor, view_t *view) {
-    const place_t place = place_of(sensor, view);
-    const bool is_valid = self->condition.has_value && is_inside(self->sample.value, VIEW_LIMIT);
-    *place.value = self->sample.value;
-    view->valid &= ~bit(place.quantity, sensor.at);
-    view->valid |= is_valid ? bit(place.quantity, sensor.at) : 0;
+static void show_measured(const channel_t *self, const sensor_place_t *sensor, view_t *view) {
+    const int32_t value = self->sample.value;
+    *(int32_t *)(void *)((uint8_t *)view + sensor->offset) = value;
+    if (self->condition.has_value && is_inside(value, VIEW_LIMIT)) {
+        view->valid |= sensor->bit;
+    } else {
+        view->valid &= ~sensor->bit;
+    }
 }
 
 // Whether a quantity of both ends is valid; the ground's always is.
 static bool is_known_of_both(const view_t *view, damper_place_t damper, uint64_t quantity) {
-    const uint64_t ends =
-        bit(quantity, end_a_of(damper)) |
-        (end_b_of(damper) == QUIESCE_GROUND ? 0 : bit(quantity, end_b_of(damper)));
-    return (view->valid & ends) == ends;
+    const uint32_t ends =
+        low_bit(quantity, end_a_of(damper)) |
+        (end_b_of(damper) == QUIESCE_GROUND ? 0 : low_bit(quantity, end_b_of(damper)));
+    return ((uint32_t)view->valid & ends) == ends;
 }
 
 static void show_stroke(damper_place_t damper, int32_t i, view_t *view) {
@@ -194,17 +228,35 @@ static void show_stroke(damper_place_t damper, int32_t i, view_t *view) {
     const bool has_stroke = is_known_of_both(view, damper, VIEW_DISPLACEMENT);
     const bool has_velocity = is_known_of_both(view, damper, VIEW_VELOCITY);
     view->valid |=
-        (has_stroke && is_inside(out->stroke_nm, VIEW_LIMIT) ? bit(VIEW_STROKE, i) : 0) |
-        (has_velocity && is_inside(out->velocity_um_s, VIEW_LIMIT) ? bit(VIEW_STROKE_VELOCITY, i)
-                                                                   : 0);
+        (has_stroke && is_inside(out->stroke_nm, VIEW_LIMIT) ? low_bit(VIEW_STROKE, i) : 0) |
+        (has_velocity && is_inside(out->velocity_um_s, VIEW_LIMIT)
+             ? low_bit(VIEW_STROKE_VELOCITY, i)
+             : 0);
 }
 
-static void show_all_measured(const sensing_t *self, bool of_bodies, view_t *view) {
-    for (int32_t i = 0; i < sensors_of(&self->places); i++) {
-        const sensor_place_t sensor = self->places.sensor[i];
-        if (!is_accelerometer(sensor) && is_of_body(sensor) == of_bodies) {
-            show_measured(&self->channel[i], sensor, view);
-        }
+// Those of the list from first on.
+static void show_all_measured(const sensing_t *self, uint32_t first, uint32_t end, view_t *view) {
+    for (uint32_t i = first; i < end; i++) {
+        const uint8_t number = self->places.measured[i];
+        show_measured(&self->channel[number], &self->places.sensor[number], view);
+    }
+}
+
+static void show_of_dampers(const sensing_t *self, view_t *view) {
+    show_all_measured(self, measured_of_bodies(&self->places), measured_in_all(&self->places),
+                      view);
+}
+
+static void show_strokes(const sensing_t *self, view_t *view) {
+    for (int32_t i = 0; i < dampers_of(&self->places); i++) {
+        show_stroke(self->places.damper[i], i, view);
+    }
+}
+
+void sensing_show_strokes(const sensing_t *self, view_t *view) {
+    if (self->has_displacements && !self->has_strokes) {
+        show_strokes(self, view);
+        show_of_dampers(self, view);
     }
 }
 
@@ -218,16 +270,16 @@ void sensing_step(sensing_t *self, const quiesce_sample_t samples[QUIESCE_SENSOR
         if (is_accelerometer(self->places.sensor[i])) {
             const int32_t at = QUIESCE_BODIES == 1 ? 0 : self->places.sensor[i].at;
             show_acceleration(channel, at, view);
-            if (self->has_strokes) {
+            if (self->has_displacements) {
                 show_displacement(channel, at, view);
             }
         }
     }
-    show_all_measured(self, true, view);
-    for (int32_t i = 0; self->has_strokes && i < dampers_of(&self->places); i++) {
-        show_stroke(self->places.damper[i], i, view);
+    show_all_measured(self, 0, measured_of_bodies(&self->places), view);
+    if (self->has_strokes) {
+        show_strokes(self, view);
     }
-    show_all_measured(self, false, view);
+    show_of_dampers(self, view);
 }
 
 uint64_t places_provide(const places_t *self) {
@@ -238,7 +290,7 @@ uint64_t places_provide(const places_t *self) {
         if (is_accelerometer(sensor)) {
             known.valid |= bit(VIEW_ACCEL | VIEW_VELOCITY | VIEW_DISPLACEMENT, sensor.at);
         } else {
-            measured |= bit(place_of(sensor, &known).quantity, sensor.at);
+            measured |= sensor.bit;
         }
     }
     known.valid |= measured;

@@ -133,7 +133,7 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t
     sensing_step(&self->sensing, in->samples, view);
     const channel_t *channel = &self->sensing.channel[tracked_of(self)];
     out->sample = &channel->sample;
-    out->velocity_um_s_q32 = channel->velocity_um_s_q32;
+    out->velocity_um_s_q32 = channel->motion.velocity_um_s_q32;
     if (out->sample->is_fault) {
         // What was taken in before the fault was seen must not outlive it.
         rms_reset(&self->rms);

@@ -7,11 +7,13 @@
 void condition_init(condition_t *self, const condition_cfg_t *cfg) {
     const int64_t omega_q32 = cfg->dc_cutoff_mHz * TWO_PI_PER_MILLI_Q32 / cfg->tick_rate_Hz;
     const int64_t one_q32 = INT64_C(1) << 32;
+    // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.
+    const int32_t dc_gain_q32 = (int32_t)(omega_q32 - omega_q32 * omega_q32 / one_q32);
     *self = (condition_t){
         .cfg = *cfg,
         .scale = scale_from_ratio((uint32_t)cfg->scale, 1000u),
-        // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.
-        .dc_gain_q32 = omega_q32 - ((omega_q32 * omega_q32) / one_q32),
+        .dc_gain_q32 = dc_gain_q32,
+        .mean_most = UINT32_MAX / ((uint32_t)dc_gain_q32 + 1u),
         .last_counts = INT32_MIN, // no ADC reports it
         .noise = {.limit = 2u * cfg->min_noise_counts,
                   .window_samples = cfg->tick_rate_Hz / cfg->period_ticks},
@@ -63,7 +65,7 @@ static condition_flag_t classify(condition_t *self, int32_t counts, bool is_fres
 static int32_t scaled(const condition_t *self, int32_t counts) {
     // Both are at most 2^23 in magnitude here, their difference 2^24.
     const int32_t offset_free = (counts - self->cfg.offset_counts) * self->cfg.polarity;
-    return scale_apply(self->scale, offset_free, self->cfg.limit);
+    return scale_apply(&self->scale, offset_free, self->cfg.limit);
 }
 
 static void take_good_sample(condition_t *self, int32_t counts) {
@@ -80,10 +82,12 @@ static void take_good_sample(condition_t *self, int32_t counts) {
 static void follow_dc(condition_t *self, int32_t rest) {
     // Until the plain mean of all samples so far would be slower, the mean is the better start: a
     // record that begins in full swing must not ring through the DC removal.
-    const int64_t mean_gain_q32 = UINT32_MAX / self->mean_samples;
-    const bool is_start = mean_gain_q32 > self->dc_gain_q32;
-    self->mean_samples += is_start ? 1u : 0u;
-    self->dc_q32 += rest * (is_start ? mean_gain_q32 : self->dc_gain_q32);
+    if (self->mean_samples <= self->mean_most) {
+        self->dc_q32 += rest * (int64_t)(UINT32_MAX / self->mean_samples);
+        self->mean_samples++;
+    } else {
+        self->dc_q32 += (int64_t)rest * self->dc_gain_q32;
+    }
 }
 
 // The held sample without its DC part; 0 while there is none to trust.

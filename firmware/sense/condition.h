@@ -63,7 +63,8 @@ typedef struct {
     condition_cfg_t cfg;
     scale_t scale;         ///< unit per count
     int64_t dc_q32;        ///< in Q32
-    int64_t dc_gain_q32;   ///< share of the error taken over each tick
+    int32_t dc_gain_q32;   ///< share of the error taken over each tick, below 2^26
+    uint32_t mean_most;    ///< of mean_samples: beyond it the plain mean is the slower one
     bool has_value;        ///< a good sample since init or the last fault; dc_q32 is learnt
     uint32_t mean_samples; ///< samples that the starting mean holds, plus one
     int32_t held;          ///< last good sample, before DC removal

@@ -49,7 +49,8 @@ std::vector<std::int32_t> read_counts(const std::string &file) {
 /// One record after the other, all of the same length, and what of them is written.
 struct Plan {
     std::optional<BoardFile> board;
-    std::size_t sensors; ///< counts in a tick
+    std::size_t sensors;      ///< counts in a tick
+    bool counts_instructions; ///< of the control step: reports and pictures are not made then
     std::size_t record_ticks;
     std::size_t from_tick; ///< first tick of each record that is written
     std::size_t every;     ///< ticks from one row to the next
@@ -98,6 +99,7 @@ Plan plan_from(const Arguments &arguments, std::optional<BoardFile> board, std::
     return {
         std::move(board),
         sensors,
+        arguments.text("plugin").has_value(),
         static_cast<std::size_t>(record_ticks),
         static_cast<std::size_t>(arguments.integer("from-tick", 0, record_ticks - 1).value_or(0)),
         static_cast<std::size_t>(arguments.integer("every", 1, record_ticks).value_or(1)),
@@ -106,8 +108,10 @@ Plan plan_from(const Arguments &arguments, std::optional<BoardFile> board, std::
 
 /// What the sensors deliver for the counts of a tick.
 lockstep_stimulus_t stimulus_of(const std::int32_t *counts, const Plan &plan) {
-    lockstep_stimulus_t out = {LOCKSTEP_ENABLE | LOCKSTEP_REPORT, {0}, {0}};
-    out.flags |= plan.board ? LOCKSTEP_PICTURE : 0u;
+    lockstep_stimulus_t out = {LOCKSTEP_ENABLE, {0}, {0}};
+    if (!plan.counts_instructions) {
+        out.flags |= LOCKSTEP_REPORT | (plan.board ? LOCKSTEP_PICTURE : 0u);
+    }
     for (std::size_t i = 0; i < plan.sensors; ++i) {
         if (counts[i] != kNoSample) {
             out.counts[i] = counts[i];
@@ -183,7 +187,7 @@ int cmd_replay(const std::vector<std::string> &words) {
     const std::unique_ptr<ControllerLink> link = target_link(arguments);
     Replay result(plan.columns);
     replay(counts, plan, params, *link, result);
-    link->finish();
+    const auto instructions = link->finish();
     result.trace.write(trace_file);
     const std::size_t ticks = counts.size() / plan.sensors;
     const double duration_s = static_cast<double>(ticks) / params.tick_rate_Hz;
@@ -196,7 +200,9 @@ int cmd_replay(const std::vector<std::string> &words) {
                       {"distinct_commands", result.digest.distinct_commands()},
                       {"telemetry_crc32", result.digest.telemetry_crc32()},
                       {"wall_s", result.wall_s},
-                      {"realtime_factor", duration_s / result.wall_s}};
+                      {"realtime_factor", duration_s / result.wall_s},
+                      {"instr_median", instructions ? Json(instructions->median) : Json()},
+                      {"instr_worst", instructions ? Json(instructions->worst) : Json()}};
     std::cout << out.dump() << '\n';
     return 0;
 }

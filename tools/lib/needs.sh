@@ -35,6 +35,7 @@ needs_of_target() {
 needs_of_benchmark() {
     case "${1:-}" in
     can | fuzzy | house | signal) echo bench ;;
+    controller) echo bench dampers images ;;
     control | sweep) echo bench plant ;;
     *) echo bench plant dampers ;;
     esac
@@ -49,7 +50,7 @@ needs_build() {
         plant) host+=(quiesce_plant) ;;
         dampers) host+=(quiesce_dampers) ;;
         linux) host+=(quiesced) ;;
-        images) mps2+=(quiesce_mps2_shm quiesce_mps2_uart uart_echo) ;;
+        images) mps2+=(quiesce_mps2_shm quiesce_mps2_shm_8x4 quiesce_mps2_uart uart_echo) ;;
         esac
     done
     ((${#host[@]} == 0)) || build_preset host "${host[@]}"

@@ -63,8 +63,8 @@ TEST(FaultInjector, stuck_sample_stays_for_the_whole_fault) {
 }
 
 TEST(FaultInjector, actuator_faults_reach_the_actuator) {
-    const FaultInjector injector(
-        {{FaultKind::driver_stuck, 1.0, 2.0}, {FaultKind::coil_open, 2.0, 2.0}}, kFullScale);
+    const FaultInjector injector =
+        injector_of({{FaultKind::driver_stuck, 1.0, 2.0}, {FaultKind::coil_open, 2.0, 2.0}});
     EXPECT_EQ(injector.actuator(0.5, 0), ActuatorFault::none);
     EXPECT_EQ(injector.actuator(1.5, 0), ActuatorFault::driver_stuck);
     EXPECT_EQ(injector.actuator(2.5, 0), ActuatorFault::coil_open);
@@ -72,11 +72,10 @@ TEST(FaultInjector, actuator_faults_reach_the_actuator) {
 }
 
 TEST(FaultInjector, order_and_overlap_do_not_matter) {
-    FaultInjector injector({{FaultKind::estop, 5.0, 1.0},
-                            {FaultKind::disable, 0.0, 4.0},
-                            {FaultKind::dropout, 1.0, 0.1},
-                            {FaultKind::saturate, 2.0, 0.5}},
-                           kFullScale);
+    FaultInjector injector = injector_of({{FaultKind::estop, 5.0, 1.0},
+                                          {FaultKind::disable, 0.0, 4.0},
+                                          {FaultKind::dropout, 1.0, 0.1},
+                                          {FaultKind::saturate, 2.0, 0.5}});
     for (int tick = 0; tick < 7000; ++tick) {
         const double time_s = static_cast<double>(tick) / 1000.0;
         const lockstep_stimulus_t found = applied(injector, time_s, 1);
@@ -85,6 +84,20 @@ TEST(FaultInjector, order_and_overlap_do_not_matter) {
         EXPECT_EQ((found.flags & LOCKSTEP_FRESH) == 0, tick >= 1000 && tick < 1100) << tick;
         EXPECT_EQ(found.counts[0] == kFullScale, tick >= 2000 && tick < 2500) << tick;
     }
+}
+
+TEST(FaultInjector, a_fault_befalls_its_own_sensor_and_damper) {
+    FaultInjector injector({{{FaultKind::saturate, 1.0, 1.0}, 1, 0},
+                            {{FaultKind::dropout, 1.0, 1.0}, 2, 0},
+                            {{FaultKind::coil_open, 1.0, 1.0}, 0, 1}},
+                           {100, 200, 300});
+    lockstep_stimulus_t stimulus = {LOCKSTEP_FRESH * 7u, {5, 6, 7}, {0}};
+    injector.apply(1.5, stimulus);
+    EXPECT_EQ(stimulus.counts[0], 5);
+    EXPECT_EQ(stimulus.counts[1], 200);
+    EXPECT_EQ(stimulus.flags, LOCKSTEP_FRESH * 3u);
+    EXPECT_EQ(injector.actuator(1.5, 0), ActuatorFault::none);
+    EXPECT_EQ(injector.actuator(1.5, 1), ActuatorFault::coil_open);
 }
 
 } // namespace

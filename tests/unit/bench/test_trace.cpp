@@ -56,7 +56,7 @@ TEST(Trace, cannot_be_written_into_a_folder_that_is_not_there) {
 
 /// The only row of a trace with these columns, by name.
 std::map<std::string, double> row_of(const quiesce::TickColumns &columns,
-                                     std::initializer_list<double> own,
+                                     const std::vector<double> &own,
                                      const lockstep_reply_t &reply) {
     quiesce::Trace trace(columns.names());
     columns.put(own, reply, trace);
@@ -81,7 +81,8 @@ TEST(TickColumns, telemetry_keeps_signs_and_large_words) {
     reply.telemetry.accel_um_s2 = -7;
     reply.telemetry.current_cmd_mA = 4321;
     reply.telemetry.lock_is_on = 1;
-    const quiesce::TickColumns columns({"own"}, QUIESCE_LAW_OFF, std::nullopt);
+    const quiesce::TickColumns columns(
+        {"own"}, quiesce::controller_columns(QUIESCE_LAW_OFF, nullptr), std::nullopt);
     const auto row = row_of(columns, {2.5}, reply);
     EXPECT_EQ(row.at("own"), 2.5);
     EXPECT_EQ(row.at("tick"), 4294967295.0);
@@ -95,16 +96,20 @@ TEST(TickColumns, what_a_law_reports_has_its_own_names) {
     for (int i = 0; i < QUIESCE_REPORT_WORDS; ++i) {
         reply.report[i] = 100 - 50 * i;
     }
-    const quiesce::TickColumns phase({}, QUIESCE_LAW_PHASE, std::nullopt);
+    const quiesce::TickColumns phase({}, quiesce::controller_columns(QUIESCE_LAW_PHASE, nullptr),
+                                     std::nullopt);
     const auto row = row_of(phase, {}, reply);
     EXPECT_EQ(row.at("adapt_state"), 100.0);
     EXPECT_EQ(row.at("trim_on_mdeg"), -50.0);
     EXPECT_EQ(row.at("trim_is_whole"), -200.0);
     EXPECT_EQ(row.count("rules_fired"), 0u);
-    const quiesce::TickColumns fuzzy({}, QUIESCE_LAW_FUZZY, "rules_fired,current_fuzzy_mA");
+    const quiesce::TickColumns fuzzy({}, quiesce::controller_columns(QUIESCE_LAW_FUZZY, nullptr),
+                                     "rules_fired,current_fuzzy_mA");
     EXPECT_EQ(row_of(fuzzy, {}, reply),
               (std::map<std::string, double>{{"rules_fired", 50.0}, {"current_fuzzy_mA", 100.0}}));
-    EXPECT_THROW(quiesce::TickColumns({}, QUIESCE_LAW_OFF, "rules_fired"), quiesce::InputError);
+    EXPECT_THROW(quiesce::TickColumns({}, quiesce::controller_columns(QUIESCE_LAW_OFF, nullptr),
+                                      "rules_fired"),
+                 quiesce::InputError);
 }
 
 TEST(ReplyFields, name_the_words_where_they_are) {

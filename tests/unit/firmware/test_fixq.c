@@ -59,13 +59,15 @@ static void test_clamps_and_signs_at_their_edges(void) {
 
 static void test_scale_applies_a_ratio_and_saturates(void) {
     const scale_t scale = scale_from_ratio(57751, 1000);
-    TEST_ASSERT_EQUAL_INT32(57751, scale_apply(scale, 1000, INT32_MAX));
-    TEST_ASSERT_INT32_WITHIN(1, -57751000, scale_apply(scale, -1000000, INT32_MAX));
-    TEST_ASSERT_EQUAL_INT32(500, scale_apply(scale, 1000, 500));
-    TEST_ASSERT_EQUAL_INT32(-500, scale_apply(scale, -1000, 500));
+    const scale_t large = scale_from_ratio(1000000000, 1000);
+    const scale_t small = scale_from_ratio(1, 1000);
+    TEST_ASSERT_EQUAL_INT32(57751, scale_apply(&scale, 1000, INT32_MAX));
+    TEST_ASSERT_INT32_WITHIN(1, -57751000, scale_apply(&scale, -1000000, INT32_MAX));
+    TEST_ASSERT_EQUAL_INT32(500, scale_apply(&scale, 1000, 500));
+    TEST_ASSERT_EQUAL_INT32(-500, scale_apply(&scale, -1000, 500));
     TEST_ASSERT_EQUAL_INT32(1000000000,
-                            scale_apply(scale_from_ratio(1000000000, 1000), 1000, INT32_MAX));
-    TEST_ASSERT_INT32_WITHIN(1, 8388, scale_apply(scale_from_ratio(1, 1000), 8388607, INT32_MAX));
+                            scale_apply(&large, 1000, INT32_MAX));
+    TEST_ASSERT_INT32_WITHIN(1, 8388, scale_apply(&small, 8388607, INT32_MAX));
 }
 
 int main(void) {

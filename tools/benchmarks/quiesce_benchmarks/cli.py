@@ -11,6 +11,7 @@ from quiesce.base.paths import build_folder, shown
 
 from quiesce_benchmarks.can import benchmark as can_benchmark
 from quiesce_benchmarks.control import benchmark as control_benchmark
+from quiesce_benchmarks.controller import benchmark as controller_benchmark
 from quiesce_benchmarks.damper import benchmark as damper_benchmark
 from quiesce_benchmarks.fuzzy import benchmark as fuzzy_benchmark
 from quiesce_benchmarks.house import benchmark as house_benchmark
@@ -26,6 +27,7 @@ BENCHMARKS = (
     sweep_benchmark,
     damper_benchmark,
     can_benchmark,
+    controller_benchmark,
     house_benchmark,
 )
 
