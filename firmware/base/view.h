@@ -53,7 +53,8 @@ typedef struct {
     uint32_t body; ///< that it is on
     int32_t rms_um_s2;
     int32_t freq_uHz;            ///< last dominant frequency
-    uint32_t phase_turn;         ///< of the lock: acceleration = amp x cos(phase), at this tick
+    uint32_t phase_turn;         ///< of the lock: acceleration = amp x cos(phase), of the structure
+                                 ///< when this tick's command reaches its driver
     uint32_t step_turn;          ///< a tick
     const harmonic_sums_t *half; ///< half a cycle whose sums became known in this tick, else NULL
 } view_tone_t;

@@ -11,6 +11,12 @@ static uint32_t step_turn_of(int32_t freq_mHz, uint32_t rate_Hz) {
     return (uint32_t)(((uint64_t)(uint32_t)freq_mHz << 32) / (1000u * rate_Hz));
 }
 
+// Of the sensor that is tracked and of the bus, to nearest; the coil's lag is the table's.
+static uint32_t latency_q8(const quiesce_board_t *board, uint32_t rate_Hz) {
+    const int32_t latency_us = board->sensor[board->tracked].latency_us + board->bus_latency_us;
+    return (uint32_t)(((uint64_t)(uint32_t)latency_us * rate_Hz * 256u + 500000u) / 1000000u);
+}
+
 void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
                        const quiesce_params_t *p, uint64_t needs) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
@@ -36,6 +42,7 @@ void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
     self->highest_step_turn = step_turn_of(p->band_high_mHz, rate_Hz);
     self->min_accel_um_s2 = p->track_min_accel_um_s2;
     self->hold_ticks = ticks_in_ms(p->track_hold_ms, p->tick_rate_Hz);
+    self->latency_q8 = latency_q8(board, rate_Hz);
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
@@ -122,7 +129,8 @@ static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out,
         .body = QUIESCE_BODIES == 1 ? 0 : self->sensing.places.sensor[tracked_of(self)].at,
         .rms_um_s2 = out->rms_um_s2,
         .freq_uHz = self->estimator.tone[0].freq_uHz,
-        .phase_turn = lock->phase_turn,
+        .phase_turn =
+            lock->phase_turn + (uint32_t)((uint64_t)lock->step_turn * self->latency_q8 >> 8),
         .step_turn = lock->step_turn,
         .half = lock->has_half ? &lock->last : NULL,
     };

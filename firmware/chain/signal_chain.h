@@ -24,6 +24,7 @@ typedef struct {
     uint32_t highest_step_turn;
     int32_t min_accel_um_s2; ///< RMS
     uint32_t hold_ticks;     ///< that laws go on with a frequency that is no longer valid
+    uint32_t latency_q8;     ///< ticks, from a motion to the current that answers it
 } signal_chain_t;
 
 typedef struct {

@@ -338,6 +338,55 @@ static void test_all_parameters_at_their_ends_together_run(void) {
     }
 }
 
+// Commands of law phase at 8 Hz from 4 s to 6 s, where samples come late_ticks after the motion and
+// the board says so or not, into out.
+static void run_late(uint32_t late_ticks, int32_t sensor_us, int32_t bus_us, int32_t out[2000]) {
+    static quiesce_t controller;
+    quiesce_board_t board;
+    quiesce_in_t in = {0};
+    quiesce_out_t result;
+    uint32_t seed = 3;
+    quiesce_board_default(&board);
+    board.sensor[0].latency_us = sensor_us;
+    board.bus_latency_us = bus_us;
+    params.law = QUIESCE_LAW_PHASE;
+    params.slew_mA_s = 10000000;
+    TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
+    in.enable = true;
+    for (uint32_t i = 0; i < 6000; i++) {
+        in.tick++;
+        in.sensor[0].counts =
+            signal_sine(20000, 8000, i + 1000 - late_ticks, 1000) + signal_noise(&seed, 20);
+        in.sensor[0].is_fresh = true;
+        quiesce_step(&controller, &in, &result);
+        if (i >= 4000) {
+            out[i - 4000] = result.damper[0].current_cmd_mA;
+        }
+    }
+}
+
+static int32_t mean_difference_mA(const int32_t a[2000], const int32_t b[2000], uint32_t shift) {
+    int64_t sum = 0;
+    for (uint32_t i = 0; i + shift < 2000; i++) {
+        sum += a[i + shift] > b[i] ? a[i + shift] - b[i] : b[i] - a[i + shift];
+    }
+    return (int32_t)(sum / (2000 - shift));
+}
+
+static void test_latencies_of_sensor_and_bus_are_made_up_for(void) {
+    static int32_t punctual[2000];
+    static int32_t late[2000];
+    run_late(0, 0, 0, punctual);
+    run_late(9, 0, 0, late); // and nobody has said so
+    TEST_ASSERT_GREATER_THAN_INT32(800, mean_difference_mA(punctual, late, 0));
+    run_late(9, 9000, 0, late);
+    TEST_ASSERT_LESS_THAN_INT32(60, mean_difference_mA(punctual, late, 0));
+    // Commands leave as much earlier as the bus takes.
+    run_late(0, 0, 7000, late);
+    TEST_ASSERT_LESS_THAN_INT32(60, mean_difference_mA(punctual, late, 7));
+    TEST_ASSERT_GREATER_THAN_INT32(600, mean_difference_mA(punctual, late, 0));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_chain_reaches_the_rule_bases_current);
@@ -357,5 +406,6 @@ int main(void) {
     RUN_TEST(test_arbitrary_input_never_drives_the_command_out_of_range);
     RUN_TEST(test_every_accepted_extreme_runs);
     RUN_TEST(test_all_parameters_at_their_ends_together_run);
+    RUN_TEST(test_latencies_of_sensor_and_bus_are_made_up_for);
     return UNITY_END();
 }

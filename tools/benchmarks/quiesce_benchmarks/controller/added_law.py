@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from quiesce.base.errors import BenchFailure
-from quiesce.base.paths import root
+from quiesce.base.paths import build_folder, root
 
 from quiesce_benchmarks.house.fresh import fresh_clone
 
@@ -60,7 +60,8 @@ def difference(clone: Path) -> tuple[int, int]:
 def run_in_bench(clone: Path) -> int:
     """Builds the bench with it, runs it on a damper's map; how many currents it commanded."""
     build = clone / "build/host"
-    run(["cmake", "--preset", "host"], clone)
+    # The tests are configured with the rest, and not built.
+    run(["cmake", "--preset", "host", f"-DUNITY_DIR={build_folder() / 'deps/unity'}"], clone)
     run(["cmake", "--build", str(build), "--target", "quiesce_bench"], clone)
     words = clone / "map"
     run([root() / "tools/quiesce", "identify", "inverse", DAMPER, "--out", str(words)], clone)

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from quiesce.base.paths import build_folder, root
+from quiesce.base.paths import build_folder
 from quiesce.engine.bench import Bench, image, require_file
+from quiesce.engine.scenarios import find_file, names
 
 from quiesce_benchmarks.controller.rigs import Board, Damper, Sensor, random_counts, write_rig
 
@@ -29,7 +30,7 @@ def largest_image() -> str:
 
 def of_laws(bench: Bench, quick: bool) -> dict[str, tuple[int, int]]:
     """Median of the scenario with the largest, and worst tick, over the scenarios that ship."""
-    scenarios = sorted((root() / "sim_hil/data/scenarios").glob("*.toml"))
+    scenarios = [find_file(name) for name in names()]
     found = {}
     for law in LAWS:
         runs = [of_scenario(bench, law, file) for file in scenarios[:: 4 if quick else 1]]
