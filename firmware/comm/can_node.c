@@ -3,10 +3,14 @@
 #include <stddef.h>
 
 #include "crc32.h"
+#include "safe_current.h"
 
 #define FALLBACK_RATE_HZ 1000u
 
 _Static_assert(sizeof(quiesce_params_t) == 4u * QUIESCE_PARAM_COUNT, "parameters are words only");
+_Static_assert(QUIESCE_CAN_AT_CURRENT_DEMAND + QUIESCE_MAX_DAMPERS - 1 ==
+                   QUIESCE_CAN_AT_CURRENT_DEMAND3,
+               "a message of each damper, one after the other");
 _Static_assert(QUIESCE_PARAM_COUNT <= UINT8_MAX, "indices fit ServiceRequest");
 
 uint32_t can_node_param_hash(const quiesce_params_t *params) {
@@ -19,20 +23,24 @@ static uint32_t rate_Hz(const quiesce_params_t *params) {
                                                            : FALLBACK_RATE_HZ;
 }
 
-void can_node_init(can_node_t *self, const quiesce_params_t *params) {
-    *self = (can_node_t){.param_hash = can_node_param_hash(params)};
+void can_node_init(can_node_t *self, const quiesce_board_t *board, const quiesce_params_t *params) {
+    *self = (can_node_t){
+        .param_hash = can_node_param_hash(params),
+        .dampers = dampers_of_board(board),
+    };
     can_receive_init(&self->receive, rate_Hz(params));
     can_service_init(&self->service, params);
-    can_freeze_init(&self->freeze, quiesce_params_safe_current_mA(params));
+    can_freeze_init(&self->freeze, safe_current_mA(board, params, 0));
     can_schedule_init(&self->schedule, rate_Hz(params));
 }
 
-void can_node_use_params(can_node_t *self, const quiesce_params_t *params) {
+void can_node_use_params(can_node_t *self, const quiesce_board_t *board,
+                         const quiesce_params_t *params) {
     const bool has_new_rate = rate_Hz(params) != rate_Hz(&self->service.in_effect);
     self->param_hash = can_node_param_hash(params);
     can_receive_use_rate(&self->receive, rate_Hz(params));
     can_service_use_params(&self->service, params);
-    can_freeze_restart(&self->freeze, quiesce_params_safe_current_mA(params));
+    can_freeze_restart(&self->freeze, safe_current_mA(board, params, 0));
     if (has_new_rate) {
         can_schedule_init(&self->schedule, rate_Hz(params));
     }
@@ -100,10 +108,6 @@ static bool pack(can_node_t *self, uint32_t message, const can_node_tick_t *tick
     const quiesce_telemetry_t *t = &out->telemetry;
     const bool is_streaming = self->service.raw_ms > 0u;
     switch (message) {
-    case QUIESCE_CAN_AT_CURRENT_DEMAND:
-        can_pack_demand(t->state, out->damper[0].current_cmd_mA, out->damper[0].driver_enable,
-                        frame);
-        return true;
     case QUIESCE_CAN_AT_STATUS:
         can_pack_status(tick, t, is_streaming, frame);
         return true;
@@ -148,17 +152,33 @@ static void finish(uint32_t message, uint8_t *alive, can_frame_t *frame) {
     }
 }
 
-// What is sent by the clock, in the order of ids.
+// Each damper's, in the order of ids: they go before everything else.
+static uint32_t put_demands(can_node_t *self, const quiesce_out_t *out,
+                            can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS && i < self->dampers; i++) {
+        const uint32_t message = QUIESCE_CAN_AT_CURRENT_DEMAND + i;
+        if (can_schedule_is_due(&self->schedule, message)) {
+            can_pack_demand(out->telemetry.state, out->damper[i].current_cmd_mA,
+                            out->damper[i].driver_enable, &frames[count]);
+            finish(message, &self->alive[message], &frames[count]);
+            count++;
+        }
+    }
+    return count;
+}
+
+// What else is sent by the clock, in the order of ids.
 static const uint8_t cyclic[] = {
-    QUIESCE_CAN_AT_CURRENT_DEMAND, QUIESCE_CAN_AT_STATUS,         QUIESCE_CAN_AT_MOTION,
-    QUIESCE_CAN_AT_SPECTRUM_PEAK0, QUIESCE_CAN_AT_SPECTRUM_PEAK1, QUIESCE_CAN_AT_SPECTRUM_PEAK2,
-    QUIESCE_CAN_AT_LAW_STATE,      QUIESCE_CAN_AT_FAULT_FREEZE,   QUIESCE_CAN_AT_LOOP_TIMING,
-    QUIESCE_CAN_AT_CAN_HEALTH,     QUIESCE_CAN_AT_IDENTIFICATION, QUIESCE_CAN_AT_RAW_SAMPLE,
+    QUIESCE_CAN_AT_STATUS,         QUIESCE_CAN_AT_MOTION,         QUIESCE_CAN_AT_SPECTRUM_PEAK0,
+    QUIESCE_CAN_AT_SPECTRUM_PEAK1, QUIESCE_CAN_AT_SPECTRUM_PEAK2, QUIESCE_CAN_AT_LAW_STATE,
+    QUIESCE_CAN_AT_FAULT_FREEZE,   QUIESCE_CAN_AT_LOOP_TIMING,    QUIESCE_CAN_AT_CAN_HEALTH,
+    QUIESCE_CAN_AT_IDENTIFICATION, QUIESCE_CAN_AT_RAW_SAMPLE,
 };
 
 static uint32_t put_cyclic(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
                            const quiesce_t *controller, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
-    uint32_t count = 0;
+    uint32_t count = put_demands(self, out, frames);
     for (uint32_t i = 0; i < sizeof cyclic; i++) {
         const uint32_t message = cyclic[i];
         if (can_schedule_is_due(&self->schedule, message) && count < CAN_NODE_MAX_FRAMES - 1u &&
@@ -192,7 +212,8 @@ uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quie
     return count;
 }
 
-void can_node_farewell(can_node_t *self, int32_t safe_current_mA, can_frame_t *frame) {
-    can_pack_demand(self->freeze.state, safe_current_mA, false, frame);
-    finish(QUIESCE_CAN_AT_CURRENT_DEMAND, &self->alive[QUIESCE_CAN_AT_CURRENT_DEMAND], frame);
+void can_node_farewell(can_node_t *self, uint32_t damper, int32_t safe_mA, can_frame_t *frame) {
+    const uint32_t message = QUIESCE_CAN_AT_CURRENT_DEMAND + damper;
+    can_pack_demand(self->freeze.state, safe_mA, false, frame);
+    finish(message, &self->alive[message], frame);
 }

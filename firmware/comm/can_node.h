@@ -16,9 +16,9 @@
 #include "can_service.h"
 #include "quiesce.h"
 
-/// Frames of a tick at the most: demand, raw sample, a page of the freeze frame, a reply, and
-/// cyclic ones.
-#define CAN_NODE_MAX_FRAMES 7u
+/// Frames of a tick at the most: a demand for each damper, raw sample, a page of the freeze frame,
+/// a reply, and cyclic ones.
+#define CAN_NODE_MAX_FRAMES (6u + QUIESCE_DAMPERS)
 
 /// Contents are private.
 typedef struct {
@@ -27,6 +27,7 @@ typedef struct {
     can_freeze_t freeze;
     can_schedule_t schedule;
     uint8_t alive[QUIESCE_CAN_MESSAGES]; ///< of the next frame of each
+    uint32_t dampers;                    ///< that are sent their current
     uint32_t param_hash;
     uint32_t lateness_max_us; ///< since the last LoopTiming
     uint32_t work_max_us;
@@ -34,12 +35,14 @@ typedef struct {
 } can_node_t;
 
 /// Forgets everything; parameters in effect are params (their tick rate gives the cycle times;
-/// 1000 Hz where it is one that the controller refuses).
-void can_node_init(can_node_t *self, const quiesce_params_t *params);
+/// 1000 Hz where it is one that the controller refuses). board: NULL where parameters say what is
+/// wired.
+void can_node_init(can_node_t *self, const quiesce_board_t *board, const quiesce_params_t *params);
 
-/// The controller was restarted with other parameters: their rate and hash, nothing staged.
-/// Counters, alive counters and receivers go on.
-void can_node_use_params(can_node_t *self, const quiesce_params_t *params);
+/// The controller was restarted with the same board and other parameters: their rate and hash,
+/// nothing staged. Counters, alive counters and receivers go on.
+void can_node_use_params(can_node_t *self, const quiesce_board_t *board,
+                         const quiesce_params_t *params);
 
 /// Takes one received frame. Bounded; call it for every frame before the tick.
 void can_node_receive(can_node_t *self, const can_frame_t *frame);
@@ -61,8 +64,9 @@ void can_node_answer(can_node_t *self, can_node_result_t result, uint32_t param_
 uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
                        const quiesce_t *controller, can_frame_t frames[CAN_NODE_MAX_FRAMES]);
 
-/// The demand frame alone, for the moment when the controller leaves: safe current, output off.
-void can_node_farewell(can_node_t *self, int32_t safe_current_mA, can_frame_t *frame);
+/// The demand frame of a damper alone, for the moment when the controller leaves: safe current,
+/// output off.
+void can_node_farewell(can_node_t *self, uint32_t damper, int32_t safe_mA, can_frame_t *frame);
 
 const can_node_counters_t *can_node_counters(const can_node_t *self);
 

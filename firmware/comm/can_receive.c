@@ -3,6 +3,14 @@
 #include "fixq.h"
 #include "quiesce_can.h"
 
+// Of each sensor and each damper, one after the other: dbc.py holds their ids and layouts to that.
+_Static_assert(QUIESCE_CAN_AT_ACCEL_SAMPLE + QUIESCE_MAX_SENSORS - 1 ==
+                   QUIESCE_CAN_AT_SENSOR_SAMPLE7,
+               "a message of each sensor");
+_Static_assert(QUIESCE_CAN_AT_CURRENT_MEASURED + QUIESCE_MAX_DAMPERS - 1 ==
+                   QUIESCE_CAN_AT_CURRENT_MEASURED3,
+               "a message of each damper");
+
 static void count(uint32_t *counter) {
     *counter = increment_sat_u32(*counter);
 }
@@ -17,10 +25,16 @@ static uint32_t timeout_ticks(uint32_t message, uint32_t tick_rate_Hz) {
 
 void can_receive_use_rate(can_receive_t *self, uint32_t tick_rate_Hz) {
     self->stop.timeout_ticks = timeout_ticks(QUIESCE_CAN_AT_EMERGENCY_STOP, tick_rate_Hz);
-    self->accel.timeout_ticks = timeout_ticks(QUIESCE_CAN_AT_ACCEL_SAMPLE, tick_rate_Hz);
-    self->current.timeout_ticks = timeout_ticks(QUIESCE_CAN_AT_CURRENT_MEASURED, tick_rate_Hz);
     self->operator_command.timeout_ticks =
         timeout_ticks(QUIESCE_CAN_AT_OPERATOR_COMMAND, tick_rate_Hz);
+    for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
+        self->sensor[i].from.timeout_ticks =
+            timeout_ticks(QUIESCE_CAN_AT_ACCEL_SAMPLE, tick_rate_Hz);
+    }
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        self->driver[i].from.timeout_ticks =
+            timeout_ticks(QUIESCE_CAN_AT_CURRENT_MEASURED, tick_rate_Hz);
+    }
 }
 
 void can_receive_init(can_receive_t *self, uint32_t tick_rate_Hz) {
@@ -84,16 +98,17 @@ static void take_stop(can_receive_t *self, const can_frame_t *frame) {
     self->is_stop_seen = true;
 }
 
-static void take_accel(can_receive_t *self, const can_frame_t *frame) {
+static void take_sample(can_receive_t *self, uint32_t number, const can_frame_t *frame) {
     struct quiesce_can_accel_sample_t sample;
-    if (!is_good(self, &self->accel, QUIESCE_CAN_AT_ACCEL_SAMPLE, frame)) {
+    can_sensor_t *const sensor = &self->sensor[number];
+    if (!is_good(self, &sensor->from, QUIESCE_CAN_AT_ACCEL_SAMPLE + number, frame)) {
         return;
     }
     (void)quiesce_can_accel_sample_unpack(&sample, frame->data, frame->length);
-    accept(self, &self->accel);
+    accept(self, &sensor->from);
     if (sample.is_bad == 0u) {
-        self->accel_counts = sample.accel_counts;
-        self->accel_is_fresh = true;
+        sensor->counts = sample.accel_counts;
+        sensor->is_fresh = true;
     }
 }
 
@@ -104,15 +119,16 @@ static bool is_failure(uint32_t driver_status) {
            driver_status != QUIESCE_CAN_CURRENT_MEASURED_DRIVER_STATUS_DEMAND_LOST_CHOICE;
 }
 
-static void take_current(can_receive_t *self, const can_frame_t *frame) {
+static void take_current(can_receive_t *self, uint32_t number, const can_frame_t *frame) {
     struct quiesce_can_current_measured_t current;
-    if (!is_good(self, &self->current, QUIESCE_CAN_AT_CURRENT_MEASURED, frame)) {
+    can_driver_t *const driver = &self->driver[number];
+    if (!is_good(self, &driver->from, QUIESCE_CAN_AT_CURRENT_MEASURED + number, frame)) {
         return;
     }
     (void)quiesce_can_current_measured_unpack(&current, frame->data, frame->length);
-    accept(self, &self->current);
-    self->current_meas_mA = current.current_meas_mA;
-    self->driver_has_failed = is_failure(current.driver_status);
+    accept(self, &driver->from);
+    driver->current_mA = current.current_meas_mA;
+    driver->has_failed = is_failure(current.driver_status);
 }
 
 static void take_operator(can_receive_t *self, const can_frame_t *frame) {
@@ -127,16 +143,27 @@ static void take_operator(can_receive_t *self, const can_frame_t *frame) {
     self->is_released = command.fault_reset == 0u;
 }
 
+// Of a sensor or a damper that the build has: messages of others are none of the controller's.
+static bool is_taken_by_number(can_receive_t *self, const can_frame_t *frame) {
+    const uint32_t sensor = frame->id - QUIESCE_CAN_ACCEL_SAMPLE_FRAME_ID; // wraps below the first
+    const uint32_t damper = frame->id - QUIESCE_CAN_CURRENT_MEASURED_FRAME_ID;
+    if (sensor < QUIESCE_SENSORS) {
+        take_sample(self, sensor, frame);
+    } else if (damper < QUIESCE_DAMPERS) {
+        take_current(self, damper, frame);
+    } else {
+        return false;
+    }
+    return true;
+}
+
 bool can_receive_frame(can_receive_t *self, const can_frame_t *frame) {
+    if (is_taken_by_number(self, frame)) {
+        return false;
+    }
     switch (frame->id) {
     case QUIESCE_CAN_EMERGENCY_STOP_FRAME_ID:
         take_stop(self, frame);
-        return false;
-    case QUIESCE_CAN_ACCEL_SAMPLE_FRAME_ID:
-        take_accel(self, frame);
-        return false;
-    case QUIESCE_CAN_CURRENT_MEASURED_FRAME_ID:
-        take_current(self, frame);
         return false;
     case QUIESCE_CAN_OPERATOR_COMMAND_FRAME_ID:
         take_operator(self, frame);
@@ -162,27 +189,40 @@ static void age(can_receiver_t *self, uint32_t ticks) {
     }
 }
 
+static quiesce_sample_t hand_over_sample(can_sensor_t *self, uint32_t ticks) {
+    age(&self->from, ticks);
+    const bool is_fresh = self->is_fresh && self->from.is_present;
+    self->is_fresh = false;
+    return (quiesce_sample_t){.counts = is_fresh ? self->counts : 0, .is_fresh = is_fresh};
+}
+
+static quiesce_driver_t hand_over_driver(can_driver_t *self, uint32_t ticks) {
+    age(&self->from, ticks);
+    const bool is_measured = self->from.is_present;
+    return (quiesce_driver_t){
+        .current_mA = is_measured ? self->current_mA : 0,
+        .is_measured = is_measured,
+        .has_failed = is_measured && self->has_failed,
+    };
+}
+
 void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *inputs) {
     age(&self->stop, ticks);
-    age(&self->accel, ticks);
-    age(&self->current, ticks);
     age(&self->operator_command, ticks);
 
     const bool is_operated = self->operator_command.is_present;
-    const bool accel_is_fresh = self->accel_is_fresh && self->accel.is_present;
-    const bool current_is_measured = self->current.is_present;
     *inputs = (can_node_inputs_t){
         .enable = is_operated && self->enable,
         .fault_reset = is_operated && self->is_reset_edge,
         .estop = self->stop.is_present || self->is_stop_seen,
-        .accel_is_fresh = accel_is_fresh,
-        .accel_counts = accel_is_fresh ? self->accel_counts : 0,
-        .current_is_measured = current_is_measured,
-        .current_meas_mA = current_is_measured ? self->current_meas_mA : 0,
-        .driver_has_failed = current_is_measured && self->driver_has_failed,
     };
+    for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
+        inputs->sensor[i] = hand_over_sample(&self->sensor[i], ticks);
+    }
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        inputs->driver[i] = hand_over_driver(&self->driver[i], ticks);
+    }
     self->is_stop_seen = false;
-    self->accel_is_fresh = false;
     self->is_reset_edge = false;
     self->is_released = self->is_released && is_operated;
 }

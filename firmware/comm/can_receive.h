@@ -1,20 +1,21 @@
-/// What other nodes tell the controller tick by tick: emergency stop, acceleration, measured
-/// current, the operator. Each is as old as its last accepted frame, and gone after its timeout.
+/// What other nodes tell the controller tick by tick: emergency stop, samples of sensors, measured
+/// currents of dampers, the operator. Each is as old as its last accepted frame, and gone after its
+/// timeout.
 #ifndef CAN_RECEIVE_H
 #define CAN_RECEIVE_H
 
+#include "quiesce.h"
 #include "quiesce_can_tables.h"
 
 /// What the bus says in this tick.
 typedef struct {
-    bool enable;      ///< OperatorCommand, not older than its timeout
-    bool fault_reset; ///< its rising edge: true for one tick
-    bool estop;       ///< EmergencyStop, not older than its timeout
-    bool accel_is_fresh;
-    int32_t accel_counts; ///< 0 unless accel_is_fresh
-    bool current_is_measured;
-    int32_t current_meas_mA; ///< 0 unless current_is_measured
-    bool driver_has_failed;  ///< CurrentMeasured says open load, short, heat or supply
+    bool enable;                              ///< OperatorCommand, not older than its timeout
+    bool fault_reset;                         ///< its rising edge: true for one tick
+    bool estop;                               ///< EmergencyStop, not older than its timeout
+    quiesce_sample_t sensor[QUIESCE_SENSORS]; ///< counts are 0 unless it is fresh
+    /// current_mA is 0 unless it is measured; has_failed: CurrentMeasured says open load, short,
+    /// heat or supply.
+    quiesce_driver_t driver[QUIESCE_DAMPERS];
 } can_node_inputs_t;
 
 /// Counters of what was refused, saturating at 2^32 - 1.
@@ -37,15 +38,23 @@ typedef struct {
 } can_receiver_t;
 
 typedef struct {
+    can_receiver_t from;
+    int32_t counts;
+    bool is_fresh; ///< since the last tick
+} can_sensor_t;
+
+typedef struct {
+    can_receiver_t from;
+    int32_t current_mA;
+    bool has_failed;
+} can_driver_t;
+
+typedef struct {
     can_receiver_t stop;
-    can_receiver_t accel;
-    can_receiver_t current;
+    can_sensor_t sensor[QUIESCE_SENSORS];
+    can_driver_t driver[QUIESCE_DAMPERS];
     can_receiver_t operator_command;
     e2e_receiver_t service;
-    int32_t accel_counts;
-    bool accel_is_fresh; ///< since the last tick
-    int32_t current_meas_mA;
-    bool driver_has_failed;
     bool is_stop_seen; ///< since the last tick: a stop counts however long that tick is late
     bool enable;
     bool is_released;   ///< the last OperatorCommand had fault_reset = 0

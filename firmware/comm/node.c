@@ -4,27 +4,38 @@
 
 // Between a start and the first step: the command, and what messages that go out before say of it.
 static bool start(node_t *node) {
-    const int32_t safe_mA = quiesce_params_safe_current_mA(&node->params);
+    const bool is_accepted =
+        node->board == NULL ? quiesce_init(&node->controller, &node->params)
+                            : quiesce_init_board(&node->controller, node->board, &node->params);
     node->in = (quiesce_in_t){0};
-    node->out = (quiesce_out_t){
-        .damper[0].current_cmd_mA = safe_mA,
-        .telemetry = {.current_cmd_mA = safe_mA},
-    };
-    node->out.damper[0].driver_enable = quiesce_init(&node->controller, &node->params);
-    return node->out.damper[0].driver_enable;
+    node->out = (quiesce_out_t){0};
+    for (uint32_t i = 0; i < node_dampers(node); i++) {
+        node->safe_mA[i] = safe_current_mA(node->board, &node->params, i);
+        node->out.damper[i] = (quiesce_command_t){
+            .current_cmd_mA = node->safe_mA[i],
+            .driver_enable = is_accepted,
+        };
+    }
+    node->out.telemetry.current_cmd_mA = node->safe_mA[0];
+    return is_accepted;
 }
 
-bool node_init(node_t *node, const quiesce_params_t *params, node_sources_t from) {
-    *node = (node_t){.params = *params, .from = from};
-    can_node_init(&node->can, params);
+bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_t *params,
+               node_sources_t from) {
+    *node = (node_t){.board = board, .params = *params, .from = from};
+    can_node_init(&node->can, board, params);
     return start(node);
+}
+
+uint32_t node_dampers(const node_t *node) {
+    return QUIESCE_DAMPERS == 1 ? 1u : node->can.dampers;
 }
 
 void node_restart(node_t *node, const quiesce_params_t *params) {
     node->params = *params;
     node->restarts++;
     (void)start(node);
-    can_node_use_params(&node->can, &node->params);
+    can_node_use_params(&node->can, node->board, &node->params);
 }
 
 void node_receive(node_t *node, const can_frame_t *frame) {
@@ -44,21 +55,20 @@ static bool is_enabled(const node_t *node, const node_inputs_t *board) {
     }
 }
 
-static void take_sample(node_t *node, const node_inputs_t *board) {
-    const bool is_on_bus = node->from.accel_is_on_bus;
-    quiesce_sample_t *const sample = &node->in.sensor[0];
-    sample->is_fresh = is_on_bus ? node->bus.accel_is_fresh : board->accel_is_fresh;
-    if (sample->is_fresh) {
-        sample->counts = is_on_bus ? node->bus.accel_counts : board->accel_counts;
+// What was had last stays where nothing new has come.
+static void take_sample(quiesce_sample_t *sample, const quiesce_sample_t *from) {
+    sample->is_fresh = from->is_fresh;
+    if (from->is_fresh) {
+        sample->counts = from->counts;
     }
 }
 
-static void take_current(node_t *node, const node_inputs_t *board) {
-    quiesce_driver_t *const driver = &node->in.driver[0];
-    driver->is_measured = board->current_is_measured || node->bus.current_is_measured;
+static void take_driver(quiesce_driver_t *driver, const quiesce_driver_t *board,
+                        const quiesce_driver_t *bus) {
+    driver->has_failed = board->has_failed || bus->has_failed;
+    driver->is_measured = board->is_measured || bus->is_measured;
     if (driver->is_measured) {
-        driver->current_mA =
-            board->current_is_measured ? board->current_meas_mA : node->bus.current_meas_mA;
+        driver->current_mA = board->is_measured ? board->current_mA : bus->current_mA;
     }
 }
 
@@ -68,18 +78,29 @@ static void take_inputs(node_t *node, const node_inputs_t *board) {
     in->enable = is_enabled(node, board);
     in->estop = board->estop || node->bus.estop;
     in->fault_reset = board->fault_reset || node->bus.fault_reset;
-    in->driver[0].has_failed = board->driver_has_failed || node->bus.driver_has_failed;
-    take_sample(node, board);
-    take_current(node, board);
+    for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
+        const bool is_on_bus = (node->from.sensors_on_bus >> i & 1u) != 0u;
+        take_sample(&in->sensor[i], is_on_bus ? &node->bus.sensor[i] : &board->sensor[i]);
+    }
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        take_driver(&in->driver[i], &board->driver[i], &node->bus.driver[i]);
+    }
+}
+
+// The accelerometer that RawSample and FaultFreeze have; a board that is refused may say anything.
+static uint32_t tracked_sensor(const node_t *node) {
+    const int32_t tracked = node->board != NULL ? node->board->tracked : 0;
+    return tracked > 0 && tracked < QUIESCE_SENSORS ? (uint32_t)tracked : 0u;
 }
 
 // For the frames; a restart within the tick forgets the inputs.
 static void note(node_t *node, const node_inputs_t *board) {
+    const quiesce_sample_t *const sample = &node->in.sensor[tracked_sensor(node)];
     node->said = (can_node_tick_t){
         .enable = node->in.enable,
         .estop = node->in.estop,
-        .accel_counts = node->in.sensor[0].counts,
-        .accel_is_fresh = node->in.sensor[0].is_fresh,
+        .accel_counts = sample->counts,
+        .accel_is_fresh = sample->is_fresh,
         .current_meas_mA = node->in.driver[0].current_mA,
         .current_is_measured = node->in.driver[0].is_measured,
         .overruns = board->overruns,
@@ -103,12 +124,23 @@ static bool has_latched_fault(const node_t *node) {
     return t->state == QUIESCE_STATE_FAULT && t->fault != QUIESCE_FAULT_PARAMETER;
 }
 
+// No sensor of the board provides what the law needs.
+static bool misses_signal(const node_t *node, int32_t law) {
+    quiesce_signal_t missing;
+    return node->board != NULL && quiesce_missing(node->board, law, &missing);
+}
+
 static const quiesce_params_t *accept_staged(node_t *node) {
     const quiesce_params_t *const staged = can_node_staged(&node->can);
     quiesce_param_error_t error;
     int32_t value = 0;
     if (has_latched_fault(node)) {
         can_node_answer(&node->can, CAN_NODE_FAULT_IS_LATCHED, 0);
+        return NULL;
+    }
+    if (misses_signal(node, staged->law)) {
+        can_node_answer(&node->can, CAN_NODE_CONTRADICTION,
+                        offsetof(quiesce_params_t, law) / sizeof(int32_t));
         return NULL;
     }
     if (quiesce_params_check(staged, &error)) {
@@ -157,6 +189,9 @@ uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
     return node_frames(node, frames);
 }
 
-void node_farewell(node_t *node, can_frame_t *frame) {
-    can_node_farewell(&node->can, quiesce_params_safe_current_mA(&node->params), frame);
+uint32_t node_farewell(node_t *node, can_frame_t frames[QUIESCE_DAMPERS]) {
+    for (uint32_t i = 0; i < node_dampers(node); i++) {
+        can_node_farewell(&node->can, i, node->safe_mA[i], &frames[i]);
+    }
+    return node_dampers(node);
 }

@@ -8,6 +8,7 @@
 #define NODE_H
 
 #include "can_node.h"
+#include "safe_current.h"
 
 /// Where the operator's enable comes from.
 typedef enum {
@@ -19,7 +20,7 @@ typedef enum {
 /// Where what both board and bus can say comes from.
 typedef struct {
     node_enable_t enable;
-    bool accel_is_on_bus; ///< samples are AccelSample frames; else node_inputs_t has them
+    uint32_t sensors_on_bus; ///< bit i: samples of sensor i are its frames; else node_inputs_t's
 } node_sources_t;
 
 /// What the board itself sees in a tick. Emergency stops, acknowledgements and failures of board
@@ -28,13 +29,10 @@ typedef struct {
     bool enable;
     bool estop;
     bool fault_reset;
-    bool driver_has_failed; ///< it takes no command; what it says on the bus adds
-    bool accel_is_fresh;
-    bool current_is_measured;
-    int32_t accel_counts;
-    int32_t current_meas_mA;
-    uint32_t ticks_elapsed; ///< 1, more where ticks were lost
-    uint32_t overruns;      ///< these and the following: see can_node_tick_t
+    quiesce_sample_t sensor[QUIESCE_SENSORS];
+    quiesce_driver_t driver[QUIESCE_DAMPERS]; ///< has_failed: it takes no command
+    uint32_t ticks_elapsed;                   ///< 1, more where ticks were lost
+    uint32_t overruns;                        ///< these and the following: see can_node_tick_t
     uint32_t lateness_us;
     uint32_t work_us;
     uint32_t tx_dropped;
@@ -47,12 +45,14 @@ typedef bool (*node_store_t)(void *context, const quiesce_params_t *params);
 typedef struct {
     quiesce_t controller;
     can_node_t can;
-    quiesce_params_t params; ///< in effect
-    can_node_inputs_t bus;   ///< what the bus says in this tick
-    quiesce_in_t in;         ///< of the last step; accel_counts, current_meas_mA: the last ones had
-    quiesce_out_t out;       ///< of the last step, or of the start: the command for the driver
-    can_node_tick_t said;    ///< what the frames of this tick say beyond out
-    uint32_t restarts;       ///< with other parameters, since node_init
+    const quiesce_board_t *board;     ///< the caller's, NULL: what parameters say
+    quiesce_params_t params;          ///< in effect
+    int32_t safe_mA[QUIESCE_DAMPERS]; ///< each damper's safe current with these parameters
+    can_node_inputs_t bus;            ///< what the bus says in this tick
+    quiesce_in_t in;                  ///< of the last step; counts and currents: the last ones had
+    quiesce_out_t out;    ///< of the last step, or of the start: the command for the driver
+    can_node_tick_t said; ///< what the frames of this tick say beyond out
+    uint32_t restarts;    ///< with other parameters, since node_init
     node_sources_t from;
     node_store_t store; ///< NULL: there is none, SAVE is refused
     void *store_context;
@@ -60,10 +60,16 @@ typedef struct {
                         ///< its owner says with can_node_answer how it went
 } node_t;
 
-/// Starts from rest, without a store (set store and store_context afterwards): the command is the
-/// safe current. Returns false iff a parameter is refused; the controller then stays in its latched
-/// fault, at the safe current with the driver off.
-bool node_init(node_t *node, const quiesce_params_t *params, node_sources_t from);
+/// Starts from rest, without a store (set store and store_context afterwards): commands are the
+/// safe currents. board: what is wired to what, kept by the caller for as long as the node runs;
+/// NULL: one accelerometer and one damper, as parameters say. Returns false iff a parameter or the
+/// board is refused, or a signal is missing (quiesce_init_board); the controller then stays in its
+/// latched fault, at the safe currents with the drivers off.
+bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_t *params,
+               node_sources_t from);
+
+/// Dampers in use: 0 .. node_dampers - 1.
+uint32_t node_dampers(const node_t *node);
 
 /// Takes a received frame, between ticks.
 void node_receive(node_t *node, const can_frame_t *frame);
@@ -73,9 +79,9 @@ void node_receive(node_t *node, const can_frame_t *frame);
 void node_step(node_t *node, const node_inputs_t *inputs);
 
 /// The second part: what a service request asks for. Returns the parameters with which the
-/// controller is to be restarted now, else NULL; then write their safe current
-/// (quiesce_params_safe_current_mA) to the driver, whose output stage stays as it is, call
-/// node_restart, write the command again. Parameters are refused while a fault is latched, which a
+/// controller is to be restarted now, else NULL; then write their safe currents
+/// (safe_current_mA of node->board) to the drivers, whose output stages stay as they are, call
+/// node_restart, write the commands again. Parameters are refused while a fault is latched, which a
 /// restart would forget.
 const quiesce_params_t *node_task(node_t *node);
 
@@ -86,13 +92,15 @@ uint32_t node_frames(node_t *node, can_frame_t frames[CAN_NODE_MAX_FRAMES]);
 uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
                    can_frame_t frames[CAN_NODE_MAX_FRAMES]);
 
-/// Starts from rest with other parameters, which quiesce_params_check accepts: the command is their
-/// safe current, with the driver on; counts in node->restarts. As at any start, a latched fault and
-/// what was learnt are forgotten, the shipped rules and pulses are in use, and the caller's tick
-/// has to run at params->tick_rate_Hz.
+/// Starts from rest with the same board and other parameters, which quiesce_params_check accepts:
+/// commands are their safe currents, with the drivers on unless a signal is missing for their law;
+/// counts in node->restarts. As at any start, a latched fault and what was learnt are forgotten,
+/// the shipped rules and pulses are in use, and the caller's tick has to run at
+/// params->tick_rate_Hz.
 void node_restart(node_t *node, const quiesce_params_t *params);
 
-/// The last frame before leaving: safe current, driver off. The driver itself comes first.
-void node_farewell(node_t *node, can_frame_t *frame);
+/// The last frames before leaving, one a damper: safe current, driver off. The drivers themselves
+/// come first. Returns their number.
+uint32_t node_farewell(node_t *node, can_frame_t frames[QUIESCE_DAMPERS]);
 
 #endif

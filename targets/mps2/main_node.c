@@ -1,12 +1,20 @@
 // The controller with its CAN interface, free-running: SLCAN frames on UART0, the tick from the
 // timer, acceleration and measured current from other nodes' frames, the demand as a frame. Nobody
-// waits for the host: what it does not read in time is dropped and counted.
+// waits for the host: what it does not read in time is dropped and counted. What is wired to what
+// comes from a board that is linked in (QUIESCE_BOARD), else from parameters.
 #include "node.h"
 #include "slcan.h"
 #include "tick_mps2.h"
 #include "uart_mps2.h"
 
 #include <stddef.h>
+
+#ifdef HAS_QUIESCE_BOARD
+extern const quiesce_board_t quiesce_board; // `quiesce board compile` makes it
+#define WIRING (&quiesce_board)
+#else
+#define WIRING NULL
+#endif
 
 #define UART_BAUD 1000000u
 #define COUNTS_PER_US (CMSDK_CLOCK_HZ / 1000000u)
@@ -90,7 +98,8 @@ static void run_tick(board_t *board, uint32_t ticks) {
 }
 
 int main(void) {
-    static const node_sources_t sources = {.enable = NODE_ENABLE_CAN, .accel_is_on_bus = true};
+    static const node_sources_t sources = {.enable = NODE_ENABLE_CAN,
+                                           .sensors_on_bus = (1u << QUIESCE_SENSORS) - 1u};
     static board_t board;
     quiesce_params_t params;
 
@@ -98,7 +107,7 @@ int main(void) {
     uart_mps2_open(&board.uart, CMSDK_UART0, UART_BAUD);
     slcan_decoder_init(&board.decoder);
     quiesce_params_default(&params);
-    (void)node_init(&board.node, &params, sources);
+    (void)node_init(&board.node, WIRING, &params, sources);
     use_rate(&board);
     for (;;) {
         const uint32_t ticks = hal_tick_elapsed(&board.tick);

@@ -5,7 +5,9 @@ Deterministic: the same DBC gives the same bytes (cantools' date and version sta
 the DBC's hash). `--check` writes nothing and exits 1 where a committed file differs.
 
 Telemetry messages carry one 32-bit word each, id and word number in step, so that C sends them by
-index; the header gets their first id and their number instead of functions.
+index; the header gets their first id and their number instead of functions. Messages of one kind
+(FAMILIES: of each sensor, of each damper) are those of the first one under the ids after it: they
+have rows in the tables and no functions.
 
 quiesce_can_tables.h and .c hold what a DBC says and cantools' code does not: where each message of
 the bus keeps its protection, when it is sent, when it is too old, and how the firmware's words are
@@ -30,6 +32,12 @@ SOURCE = ROOT / "firmware/comm/quiesce.dbc"
 OUTPUT = ROOT / "firmware/comm/generated"
 NAME = "quiesce_can"
 TELEMETRY = "Telemetry"
+# Message of sensor or damper 0: what the others are called, with their number.
+FAMILIES = {
+    "CurrentDemand": "CurrentDemand",
+    "AccelSample": "SensorSample",
+    "CurrentMeasured": "CurrentMeasured",
+}
 SIMULATED = {"Bench", "Target"}  # nodes of the lock-step messages
 SENDER = "Controller"  # whose words are narrowed
 
@@ -175,6 +183,39 @@ def check_times(message: Message) -> None:
         refuse(message, "GenMsgStartDelayTime must be below GenMsgCycleTime")
 
 
+def family(database: Database, first: str) -> list[Message]:
+    """The message of number 0 and the others of its kind, by number."""
+    found = {message.name: message for message in database.messages}
+    members = [found[first]] if first in found else []
+    while f"{FAMILIES[first]}{len(members)}" in found:
+        members.append(found[f"{FAMILIES[first]}{len(members)}"])
+    return members
+
+
+def layout(message: Message) -> list[tuple[int, int, bool]]:
+    return [(signal.start, signal.length, signal.is_signed) for signal in message.signals]
+
+
+def times(message: Message) -> list[int]:
+    names = ("GenMsgCycleTime", "GenMsgStartDelayTime", "GenMsgDelayTime", "QuiesceTimeoutMs")
+    return [attribute(message, name) for name in names]
+
+
+def check_family(members: list[Message]) -> None:
+    """C reaches a member by the first one's row, id and functions, and its own number."""
+    for number, message in enumerate(members):
+        first = members[0]
+        if message.frame_id != first.frame_id + number:
+            refuse(message, f"its id must be {first.name}'s + {number}")
+        if layout(message) != layout(first) or times(message) != times(first):
+            refuse(message, f"layout and times must be {first.name}'s")
+
+
+def copies(database: Database) -> set[str]:
+    """Names of the members of families that are not the first."""
+    return {member.name for first in FAMILIES for member in family(database, first)[1:]}
+
+
 def check(database: Database) -> None:
     """ValueError, one line, where the firmware could not be sure of what it sends or takes."""
     names: dict[int, str] = {}
@@ -188,6 +229,8 @@ def check(database: Database) -> None:
             check_signal(message, signal)
         check_protection(message)
         check_times(message)
+    for first in FAMILIES:
+        check_family(family(database, first))
 
 
 def bus_messages(database: Database) -> list[Message]:
@@ -243,7 +286,7 @@ def generate_tables(database: Database, digest: str) -> dict[str, str]:
         narrowing="\n".join(
             narrowing(m, s)
             for m in messages
-            if SENDER in m.senders
+            if SENDER in m.senders and m.name not in copies(database)
             for s in m.signals
             if is_narrow(s)
         ),
@@ -264,7 +307,11 @@ def generate_sources(source: bytes) -> dict[str, str]:
     database = load(source)
     check(database)
     by_function = Database(
-        messages=[m for m in database.messages if not m.name.startswith(TELEMETRY)],
+        messages=[
+            m
+            for m in database.messages
+            if not m.name.startswith(TELEMETRY) and m.name not in copies(database)
+        ],
         nodes=database.nodes,
         version=database.version,
     )

@@ -106,6 +106,17 @@ def test_the_interface_meets_its_goals() -> None:
     assert response_ms is not None and response_ms <= 0.55
 
 
+@pytest.mark.parametrize(
+    ("sensors", "dampers", "with_sensors_pct"),
+    [(0, 1, 33.7), (1, 1, 54.7), (1, 2, 75.6), (2, 2, 96.6), (0, 4, 96.4)],
+)
+def test_each_sensor_and_damper_costs(sensors: int, dampers: int, with_sensors_pct: float) -> None:
+    """105 bits a sensor every 1 ms; 95 bits a damper every 1 ms and every 10 ms."""
+    totals = bus_load.totals_pct(load(), 500_000, sensors, dampers)
+    assert totals["with_sensor_node"] == pytest.approx(with_sensors_pct, abs=0.05)
+    assert len(bus_load.on_bus(load(), sensors, dampers)) == 15 + sensors + 2 * dampers
+
+
 def test_slcan_rate_covers_what_a_controller_sends() -> None:
     need, baud = bus_load.baud_needed([message(1, 1, 8)])
     assert (need, baud) == (220_000.0, 230_400)
@@ -158,6 +169,8 @@ def test_the_bench_says_what_it_could_not_judge(quiesce) -> None:
         (["--bitrate", "2000000"], "1000000"),
         (["--jitter-ms", "-1"], "--jitter-ms"),
         (["--errors-per-s", "nan"], "--errors-per-s"),
+        (["--sensors", "9"], "0 .. 8"),
+        (["--dampers", "0"], "1 .. 4"),
         (["--dbc", "no.dbc"], "no.dbc"),
     ],
 )

@@ -94,8 +94,7 @@ static void tick(peer_t *peer, unsigned number) {
     const double counts = 20000.0 * sin(2.0 * PI * 8.0 * number / 1000.0);
     const node_inputs_t inputs = {
         .enable = true,
-        .accel_is_fresh = true,
-        .accel_counts = (int32_t)counts + (int32_t)(number * 7919u % 13u),
+        .sensor = {{.counts = (int32_t)counts + (int32_t)(number * 7919u % 13u), .is_fresh = true}},
         .ticks_elapsed = 1,
         .work_us = 20,
         .tx_dropped = peer->dropped,
@@ -167,7 +166,7 @@ int main(int argc, char **argv) {
     slcan_decoder_init(&peer.decoder);
     quiesce_params_t params;
     quiesce_params_default(&params);
-    if (!node_init(&peer.node, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
+    if (!node_init(&peer.node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
         return 1;
     }
     peer.node.store = keep;

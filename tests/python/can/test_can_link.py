@@ -255,11 +255,25 @@ def test_replay_withholds_by_the_shipped_ids_with_any_dbc(line, tmp_path: Path) 
 
 def test_replay_withholds_measurements_and_lock_step(line, tmp_path: Path) -> None:
     master, path = line
-    ids = (0x030, 0x040, 0x5FF, 0x600, 0x601, 0x603, 0x608, 0x620, 0x6FF, 0x700)
+    ids = (
+        0x011,
+        0x030,
+        0x037,
+        0x040,
+        0x043,
+        0x5FF,
+        0x600,
+        0x601,
+        0x603,
+        0x608,
+        0x620,
+        0x6FF,
+        0x700,
+    )
     log = log_of(tmp_path / "a.log", ids)
     bus = ["--bus", f"slcan:{path}"]
     result = run_quiesce(tmp_path, "can", "replay", log, *bus)
-    assert sent(master) == [0x5FF, 0x700] and "8 withheld" in result.stderr
+    assert sent(master) == [0x5FF, 0x700] and "11 withheld" in result.stderr
     assert run_quiesce(tmp_path, "can", "replay", log, *bus, "--include-commands").returncode == 0
     assert sent(master) == list(ids)
 

@@ -123,7 +123,8 @@ def test_every_protected_frame_has_the_crc_of_the_description(sent_frames):
         if is_protected(message):
             assert data[-1] == frame_crc(frame_id, data), message.name
             checked.add(message.name)
-    assert checked == {"CurrentDemand", "Status", "ServiceReply"}
+    demands = {"CurrentDemand", "CurrentDemand1", "CurrentDemand2", "CurrentDemand3"}
+    assert checked == demands | {"Status", "ServiceReply"}
 
 
 def test_alive_counters_of_the_controller_go_up_by_one(sent_frames):
@@ -178,6 +179,35 @@ def test_services_and_their_results_are_the_firmwares():
     rows = {int(n): label for label, n in re.findall(r"CAN_NODE_(\w+) = (\d+),", body)}
     choices = DATABASE.get_message_by_name("ServiceReply").get_signal_by_name("result").choices
     assert {number: str(label) for number, label in choices.items()} == rows
+
+
+def test_each_sensor_and_damper_has_its_messages():
+    """Number k under the id of number 0 + k, and everything but the names the same."""
+    families = {
+        "CurrentDemand": ("CurrentDemand", 4),
+        "AccelSample": ("SensorSample", 8),
+        "CurrentMeasured": ("CurrentMeasured", 4),
+    }
+    for name, (others, count) in families.items():
+        first = DATABASE.get_message_by_name(name)
+        for k in range(1, count):
+            other = DATABASE.get_message_by_name(f"{others}{k}")
+            assert other.frame_id == first.frame_id + k
+            assert (other.senders, other.receivers) == (first.senders, first.receivers)
+            for mine, its in zip(other.signals, first.signals, strict=True):
+                assert mine.receivers == its.receivers and mine.choices == its.choices
+                assert (mine.minimum, mine.maximum, mine.unit) == (
+                    its.minimum,
+                    its.maximum,
+                    its.unit,
+                )
+
+
+def test_stop_goes_before_every_sample_and_demands_before_all():
+    ids = {m.name: m.frame_id for m in DATABASE.messages}
+    assert ids["CurrentDemand3"] < ids["EmergencyStop"] < ids["AccelSample"]
+    assert ids["SensorSample7"] < ids["CurrentMeasured"]
+    assert ids["CurrentMeasured3"] < ids["OperatorCommand"] < ids["Status"]
 
 
 @pytest.mark.parametrize(
@@ -240,6 +270,18 @@ MISTAKES = {
     "GenMsgStartDelayTime must be below": (
         '"GenMsgStartDelayTime" BO_ 264 2;',
         '"GenMsgStartDelayTime" BO_ 264 20;',
+    ),
+    "SensorSample2: its id must be AccelSample's + 2": (
+        "BO_ 50 SensorSample2",
+        "BO_ 63 SensorSample2",
+    ),
+    "SensorSample1: layout and times must be AccelSample's": (
+        "sample_counts : 0|24@1-",
+        "sample_counts : 0|16@1-",
+    ),
+    "CurrentDemand1: layout and times must be CurrentDemand's": (
+        '"GenMsgCycleTime" BO_ 17 1;',
+        '"GenMsgCycleTime" BO_ 17 2;',
     ),
     "classic frames of 11-bit ids only": ("BO_ 264 Motion", "BO_ 2147483912 Motion"),
 }

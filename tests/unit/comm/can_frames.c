@@ -29,8 +29,10 @@ static void fill_all(const int32_t *value, uint32_t *seed) {
     uint32_t other[8];
     fill((uint32_t *)(void *)&out.telemetry, sizeof out.telemetry / 4u, value, seed);
     fill(other, 8, value, seed);
-    out.damper[0].current_cmd_mA = (int32_t)other[0];
-    out.damper[0].driver_enable = (other[0] & 1u) != 0;
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        out.damper[i].current_cmd_mA = (int32_t)other[i];
+        out.damper[i].driver_enable = (other[i] & 1u) != 0;
+    }
     tick = (can_node_tick_t){
         .enable = (other[0] & 2u) != 0,
         .estop = (other[0] & 4u) != 0,
@@ -77,9 +79,15 @@ static void run(const int32_t *value, uint32_t *seed) {
 int main(void) {
     static const int32_t ends[] = {INT32_MIN, -1, 0, 1, INT32_MAX};
     quiesce_params_t params;
+    quiesce_board_t board;
     uint32_t seed = 1;
     quiesce_params_default(&params);
-    can_node_init(&node, &params);
+    quiesce_board_default(&board);
+    board.dampers = QUIESCE_DAMPERS;
+    for (uint32_t i = 1; i < QUIESCE_DAMPERS; i++) {
+        board.damper[i] = board.damper[0];
+    }
+    can_node_init(&node, &board, &params);
     (void)quiesce_init(&controller, &params);
     for (uint32_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
         run(&ends[i], &seed);

@@ -17,6 +17,11 @@ can_frame_t make_stop(uint16_t code, uint8_t alive) {
     return protect(QUIESCE_CAN_AT_EMERGENCY_STOP, data, alive);
 }
 
+can_frame_t make_sample(uint32_t sensor, int32_t counts, uint8_t alive) {
+    const can_frame_t first = make_accel(counts, false, false, alive);
+    return protect(QUIESCE_CAN_AT_ACCEL_SAMPLE + sensor, first.data, alive);
+}
+
 can_frame_t make_accel(int32_t counts, bool is_saturated, bool is_bad, uint8_t alive) {
     const struct quiesce_can_accel_sample_t wire = {
         .accel_counts = counts,
@@ -33,13 +38,18 @@ can_frame_t make_current(int16_t current_mA, uint8_t alive) {
 }
 
 can_frame_t make_driver(int16_t current_mA, uint8_t driver_status, uint8_t alive) {
+    return make_driver_of(0, current_mA, driver_status, alive);
+}
+
+can_frame_t make_driver_of(uint32_t damper, int16_t current_mA, uint8_t driver_status,
+                           uint8_t alive) {
     const struct quiesce_can_current_measured_t wire = {
         .current_meas_mA = current_mA,
         .driver_status = driver_status,
     };
     uint8_t data[CAN_MAX_BYTES];
     (void)quiesce_can_current_measured_pack(data, &wire, sizeof data);
-    return protect(QUIESCE_CAN_AT_CURRENT_MEASURED, data, alive);
+    return protect(QUIESCE_CAN_AT_CURRENT_MEASURED + damper, data, alive);
 }
 
 can_frame_t make_operator(bool enable, bool fault_reset, uint8_t alive) {

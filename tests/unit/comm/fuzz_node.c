@@ -25,10 +25,13 @@ static void require(bool holds) {
 }
 
 static bool is_taken(const can_frame_t *frame) {
-    switch (message_of(frame)) {
+    const uint32_t message = message_of(frame);
+    if (message - QUIESCE_CAN_AT_ACCEL_SAMPLE < QUIESCE_SENSORS ||
+        message - QUIESCE_CAN_AT_CURRENT_MEASURED < QUIESCE_DAMPERS) {
+        return true;
+    }
+    switch (message) {
     case QUIESCE_CAN_AT_EMERGENCY_STOP:
-    case QUIESCE_CAN_AT_ACCEL_SAMPLE:
-    case QUIESCE_CAN_AT_CURRENT_MEASURED:
     case QUIESCE_CAN_AT_OPERATOR_COMMAND:
     case QUIESCE_CAN_AT_SERVICE_REQUEST:
         return true;
@@ -63,8 +66,7 @@ static void tick(uint8_t flags) {
         .enable = (flags & 1u) != 0,
         .estop = (flags & 0xF0u) == 0xF0u,
         .fault_reset = (flags & 2u) != 0,
-        .accel_counts = (int32_t)(flags * 2654435761u) >> 8,
-        .accel_is_fresh = (flags & 4u) != 0,
+        .sensor = {{.counts = (int32_t)(flags * 2654435761u) >> 8, .is_fresh = (flags & 4u) != 0}},
         .ticks_elapsed = 1u + (flags >> 6) % 3u,
     };
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
@@ -158,9 +160,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count) {
     memset(&node, 0, sizeof node);
     const node_sources_t from = {
         .enable = count == 0 ? NODE_ENABLE_BOARD : (node_enable_t)(bytes[0] >> 1) % 3,
-        .accel_is_on_bus = count > 0 && (bytes[0] & 8u) != 0,
+        .sensors_on_bus = count > 0 && (bytes[0] & 8u) != 0 ? 1u : 0u,
     };
-    require(count == 0 || node_init(&node, &params, from));
+    require(count == 0 || node_init(&node, NULL, &params, from));
     if (count > 0 && bytes[0] % 2u == 0) {
         run_stream(&bytes[1], count - 1u);
         return 0;

@@ -3,6 +3,7 @@
 #include "can_node.h"
 #include "unity.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #define SECONDS 10u
@@ -27,7 +28,7 @@ static void start(int32_t rate_Hz) {
     quiesce_params_t params;
     quiesce_params_default(&params);
     params.tick_rate_Hz = rate_Hz;
-    can_node_init(&node, &params);
+    can_node_init(&node, NULL, &params);
     (void)quiesce_init(&controller, &params);
 }
 
@@ -262,7 +263,7 @@ static void test_farewell_is_a_demand_of_the_safe_current_with_the_output_off(vo
     out.damper[0].current_cmd_mA = 3000;
     out.damper[0].driver_enable = true;
     (void)can_node_tick(&node, &tick, &out, &controller, frames);
-    can_node_farewell(&node, 250, &frame);
+    can_node_farewell(&node, 0, 250, &frame);
     TEST_ASSERT_TRUE(is_well_made(&frame));
     (void)quiesce_can_current_demand_unpack(&demand, frame.data, frame.length);
     TEST_ASSERT_EQUAL_UINT16(250, demand.current_cmd_mA);

@@ -17,7 +17,7 @@ static can_frame_t frames[CAN_NODE_MAX_FRAMES];
 
 void setUp(void) {
     quiesce_params_default(&params);
-    can_node_init(&node, &params);
+    can_node_init(&node, NULL, &params);
     (void)quiesce_init(&controller, &params);
     memset(&out, 0, sizeof out);
     memset(&tick, 0, sizeof tick);
@@ -112,7 +112,7 @@ static void test_apply_is_the_applications_task(void) {
         TEST_ASSERT_FALSE(next_reply(&reply));
     }
     params.slew_mA_s = 12345;
-    can_node_use_params(&node, &params);
+    can_node_use_params(&node, NULL, &params);
     can_node_answer(&node, CAN_NODE_DONE, 0);
     TEST_ASSERT_EQUAL(CAN_NODE_NOTHING, can_node_task(&node));
     TEST_ASSERT_TRUE(next_reply(&reply));
@@ -222,7 +222,7 @@ static void test_hash_is_of_the_parameters_in_effect(void) {
     TEST_ASSERT_EQUAL_HEX32(crc32_of(&params), can_node_param_hash(&params));
     TEST_ASSERT_EQUAL_HEX32(crc32_of(&params), node.param_hash);
     params.slew_mA_s = 1;
-    can_node_use_params(&node, &params);
+    can_node_use_params(&node, NULL, &params);
     TEST_ASSERT_EQUAL_HEX32(crc32_of(&params), node.param_hash);
 }
 

@@ -31,7 +31,7 @@ static void write_command(void) {
 
 static void start(node_enable_t enable) {
     memset(&node, 0xA5, sizeof node);
-    TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.enable = enable}));
+    TEST_ASSERT_TRUE(node_init(&node, NULL, &params, (node_sources_t){.enable = enable}));
     write_command();
 }
 
@@ -73,8 +73,8 @@ static void tick(void) {
 static void run(uint32_t ticks) {
     for (uint32_t i = 0; i < ticks; i++) {
         seed = seed * 1664525u + 1013904223u;
-        board.accel_counts = (int32_t)(seed >> 16) - 32768;
-        board.accel_is_fresh = true;
+        board.sensor[0].counts = (int32_t)(seed >> 16) - 32768;
+        board.sensor[0].is_fresh = true;
         tick();
     }
 }
@@ -178,10 +178,10 @@ static void check_failed_driver(void) {
 static void test_driver_that_fails_is_switched_off_until_it_is_acknowledged(void) {
     run(400);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
-    board.driver_has_failed = true;
+    board.driver[0].has_failed = true;
     run(1);
     check_failed_driver();
-    board.driver_has_failed = false;
+    board.driver[0].has_failed = false;
     run(1000);
     check_failed_driver();
     board.fault_reset = true;
@@ -212,13 +212,13 @@ static void test_stop_is_acknowledged_over_the_bus_once_it_is_released(void) {
 }
 
 static void run_without_a_board(void) {
-    board.accel_is_fresh = false;
-    board.current_is_measured = false;
+    board.sensor[0].is_fresh = false;
+    board.driver[0].is_measured = false;
     tick();
 }
 
 static void test_bus_sample_is_there_for_its_tick(void) {
-    TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.accel_is_on_bus = true}));
+    TEST_ASSERT_TRUE(node_init(&node, NULL, &params, (node_sources_t){.sensors_on_bus = 1}));
     run_without_a_board();
     TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
     TEST_ASSERT_FALSE(node.in.driver[0].is_measured);
@@ -239,18 +239,18 @@ static void test_the_sensor_is_where_it_was_set_up(void) {
     receive(make_accel(-4321, false, false, 0));
     run_without_a_board(); // a sample on the bus is no sample of the board's sensor
     TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
-    TEST_ASSERT_TRUE(node_init(&node, &params, (node_sources_t){.accel_is_on_bus = true}));
+    TEST_ASSERT_TRUE(node_init(&node, NULL, &params, (node_sources_t){.sensors_on_bus = 1}));
     run(1);
     TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
 }
 
 static void test_the_boards_measurement_goes_before_the_buss(void) {
-    board.current_is_measured = true;
-    board.current_meas_mA = 77;
+    board.driver[0].is_measured = true;
+    board.driver[0].current_mA = 77;
     receive(make_current(-99, 0));
     run(1);
     TEST_ASSERT_EQUAL_INT32(77, node.in.driver[0].current_mA);
-    board.current_is_measured = false;
+    board.driver[0].is_measured = false;
     run(1);
     TEST_ASSERT_TRUE(node.in.driver[0].is_measured);
     TEST_ASSERT_EQUAL_INT32(-99, node.in.driver[0].current_mA);
@@ -262,8 +262,8 @@ static void test_raw_stream_has_the_samples_that_the_controller_got(void) {
     for (uint32_t i = 0; i < 100; i++) {
         const int32_t last = node.in.sensor[0].counts;
         if (i % 3u == 0) {
-            board.accel_counts = 0;
-            board.accel_is_fresh = false;
+            board.sensor[0].counts = 0;
+            board.sensor[0].is_fresh = false;
             tick();
         } else {
             run(1);
@@ -272,7 +272,7 @@ static void test_raw_stream_has_the_samples_that_the_controller_got(void) {
         TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_RAW_SAMPLE_FRAME_ID, frame->id);
         (void)quiesce_can_raw_sample_unpack(&raw, frame->data, frame->length);
         TEST_ASSERT_EQUAL(i % 3u != 0, raw.accel_is_fresh);
-        TEST_ASSERT_EQUAL_INT32(i % 3u == 0 ? last : board.accel_counts, raw.accel_counts);
+        TEST_ASSERT_EQUAL_INT32(i % 3u == 0 ? last : board.sensor[0].counts, raw.accel_counts);
         TEST_ASSERT_EQUAL_UINT16(node.in.tick, raw.tick_low);
     }
 }
@@ -324,7 +324,8 @@ static void test_a_latched_fault_is_not_forgotten_by_apply(void) {
 
 static void test_refused_parameters_are_mended_over_the_bus(void) {
     params.slew_mA_s = -1;
-    TEST_ASSERT_FALSE(node_init(&node, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD}));
+    TEST_ASSERT_FALSE(
+        node_init(&node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD}));
     write_command();
     TEST_ASSERT_EQUAL_INT32(250, driver.command_mA);
     TEST_ASSERT_FALSE(driver.is_enabled);
@@ -371,7 +372,7 @@ static void test_tick_is_all_three_parts(void) {
     stage_and_apply();
     memcpy(&other, &node, sizeof node);
     for (uint32_t i = 0; i < 500; i++) {
-        board.accel_counts = (int32_t)(i * 7919u % 65536u) - 32768;
+        board.sensor[0].counts = (int32_t)(i * 7919u % 65536u) - 32768;
         tick();
         TEST_ASSERT_EQUAL_UINT32(frame_count, node_tick(&other, &board, others));
         // Words only: the bytes between the members of other structures mean nothing.
@@ -440,10 +441,8 @@ static void test_slow_store_is_answered_by_its_owner(void) {
 }
 
 static void test_leaving_switches_the_output_off(void) {
-    can_frame_t frame;
     run(2000);
-    node_farewell(&node, &frame);
-    frames[0] = frame;
+    TEST_ASSERT_EQUAL_UINT32(1, node_farewell(&node, frames));
     TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
     TEST_ASSERT_EQUAL_UINT8(0, demand().driver_is_enabled);
 }

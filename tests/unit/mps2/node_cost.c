@@ -8,6 +8,8 @@
 #include "node.h"
 #include "print.h"
 
+#include <stddef.h>
+
 #define FAULT_EVERY_TICKS 3000u
 #define OPERATOR_EVERY_TICKS 100u
 #define REQUEST_EVERY_TICKS 10u
@@ -65,18 +67,17 @@ static void control(rig_t *rig) {
     quiesce_in_t *const in = &rig->node.in;
     in->tick++;
     in->enable = true;
-    in->sensor[0].counts = rig->board.accel_counts;
-    in->sensor[0].is_fresh = rig->board.accel_is_fresh;
+    in->sensor[0] = rig->board.sensor[0];
     quiesce_step(&rig->node.controller, in, &rig->node.out);
-    rig->tick.accel_is_fresh = rig->node.bus.accel_is_fresh;
+    rig->tick.accel_is_fresh = rig->node.bus.sensor[0].is_fresh;
 }
 
 static void run(rig_t *rig, const order_t *order) {
     for (uint32_t i = 0; i < order->ticks; i++) {
         receive_all(rig, i, order->what);
         const bool has_fault = i % FAULT_EVERY_TICKS > FAULT_EVERY_TICKS / 2u;
-        rig->board.accel_counts = (int32_t)(i * 2654435761u) >> 16;
-        rig->board.accel_is_fresh = !has_fault;
+        rig->board.sensor[0].counts = (int32_t)(i * 2654435761u) >> 16;
+        rig->board.sensor[0].is_fresh = !has_fault;
         if (order->what == COUNT_NODE_TICK) {
             counted_call((counted_function_t)tick_node, (uintptr_t)rig, 0, 0);
             continue;
@@ -96,7 +97,7 @@ int main(void) {
     quiesce_params_t params;
     quiesce_params_default(&params);
     rig.board = (node_inputs_t){.enable = true, .ticks_elapsed = 1};
-    if (!node_init(&rig.node, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
+    if (!node_init(&rig.node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
         return 1;
     }
     counted_call_init();

@@ -1,5 +1,6 @@
 """Messages of the CAN interface as quiesce.dbc describes them: the only source."""
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -13,6 +14,8 @@ CYCLIC_IF_ACTIVE = "CyclicIfActive"
 ON_REQUEST = "OnRequest"
 # Lock-step messages and telemetry never share a bus with a controller at work.
 FIRST_LOCKSTEP_ID = 0x600
+# Of sensors and dampers after the first, whose messages are AccelSample and these without a number.
+NUMBERED = re.compile(r"(CurrentDemand|SensorSample|CurrentMeasured)([1-9])")
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,18 @@ class Message:
     @property
     def is_lockstep(self) -> bool:
         return self.frame_id >= FIRST_LOCKSTEP_ID
+
+    @property
+    def kind(self) -> str:
+        """Its name without the number of a sensor or damper: AccelSample is sensor 0's."""
+        found = NUMBERED.fullmatch(self.name)
+        return (found[1] if found else self.name).replace("AccelSample", "SensorSample")
+
+    @property
+    def number(self) -> int:
+        """Of the sensor or damper that it belongs to; 0 for all others."""
+        found = NUMBERED.fullmatch(self.name)
+        return int(found[2]) if found else 0
 
 
 class Database:

@@ -21,7 +21,8 @@ from quiesce.can.database import (
 
 ERROR_FRAME_BITS = 31  # with what follows it, the paper's section 3.4
 RAW = "RawSample"
-SENSOR = "AccelSample"
+SENSOR = "SensorSample"  # of every sensor on the bus
+OF_DAMPERS = ("CurrentDemand", "CurrentMeasured")
 # Rates that serial adapters commonly have.
 BAUD_RATES = (9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600)
 BAUD_RATES += (1_000_000, 1_500_000, 2_000_000, 3_000_000, 4_000_000)
@@ -59,26 +60,43 @@ def load_pct(messages: Sequence[Message], bitrate: int) -> float:
     return sum(100.0 * 1000 * frame_bits(m.length) / m.period_ms / bitrate for m in messages)
 
 
-def cyclic(database: Database) -> list[Message]:
+def cyclic(database: Database, dampers: int = 1) -> list[Message]:
     """What the controller's own configuration puts on a bus all the time, and while a fault or an
-    emergency stop holds: everything with a cycle time but samples. A sensor node's AccelSample is
-    only on buses that have one."""
+    emergency stop holds: everything with a cycle time but samples. Those of sensor nodes are only
+    on buses that have them."""
     return [
         m
         for m in database.messages
-        if m.send_type in (CYCLIC, CYCLIC_IF_ACTIVE) and m.name not in (RAW, SENSOR)
+        if m.send_type in (CYCLIC, CYCLIC_IF_ACTIVE)
+        and m.kind not in (RAW, SENSOR)
+        and is_there(m, 0, dampers)
     ]
 
 
-def totals_pct(database: Database, bitrate: int) -> dict[str, float]:
+def is_there(message: Message, sensors: int, dampers: int) -> bool:
+    """Whether a bus of so many sensors and dampers carries it."""
+    if message.kind == SENSOR:
+        return message.number < sensors
+    return message.kind not in OF_DAMPERS or message.number < dampers
+
+
+def samples(database: Database, sensors: int) -> list[Message]:
+    """Those of so many sensors."""
+    return [m for m in database.messages if m.kind == SENSOR and m.number < sensors]
+
+
+def totals_pct(
+    database: Database, bitrate: int, sensors: int = 1, dampers: int = 1
+) -> dict[str, float]:
     """Loads of the bus in what it may carry."""
-    base, raw, sensor = cyclic(database), named(database, RAW), named(database, SENSOR)
+    base, raw = cyclic(database, dampers), named(database, RAW)
+    sensor = samples(database, sensors)
     chosen = {
         "cyclic": base,
         "with_raw": base + raw,
         "with_sensor_node": base + sensor,
         "with_sensor_node_and_raw": base + sensor + raw,
-        "everything": on_bus(database),
+        "everything": on_bus(database, sensors, dampers),
     }
     return {name: load_pct(messages, bitrate) for name, messages in chosen.items()}
 
@@ -103,9 +121,13 @@ def totals_table(totals: dict[str, float], bitrate: int) -> str:
     return f"{format_table(head, rows, left=(0,))}\n{LEFT_OUT}"
 
 
-def on_bus(database: Database) -> list[Message]:
+def on_bus(database: Database, sensors: int = 1, dampers: int = 1) -> list[Message]:
     """Everything that may meet on a bus at work, samples and services, too."""
-    return [m for m in database.messages if m.period_ms > 0 and not m.is_lockstep]
+    return [
+        m
+        for m in database.messages
+        if m.period_ms > 0 and not m.is_lockstep and is_there(m, sensors, dampers)
+    ]
 
 
 def named(database: Database, name: str) -> list[Message]:
@@ -197,6 +219,6 @@ def baud_needed(messages: Sequence[Message]) -> tuple[float, int | None]:
     return need, next((rate for rate in BAUD_RATES if rate >= need), None)
 
 
-def slcan_messages(database: Database) -> list[Message]:
+def slcan_messages(database: Database, dampers: int = 1) -> list[Message]:
     """What a controller sends when everything is on."""
-    return [m for m in on_bus(database) if m.sender == "Controller"]
+    return [m for m in on_bus(database, 0, dampers) if m.sender == "Controller"]

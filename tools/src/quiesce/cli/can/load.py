@@ -11,6 +11,7 @@ from quiesce.cli.can.options import add_database_option, database_of
 EPILOG = """examples:
   quiesce can load
   quiesce can load --bitrate 250000 --sensor-node
+  quiesce can load --sensors 1 --dampers 2
   quiesce can load --errors-per-s 10 --jitter-ms 0.1 --json
 
 Longest frames (worst-case bit stuffing), each message at its least period: its cycle time, or for
@@ -18,6 +19,9 @@ services the least time between two. 'response' is from the event to the frame's
 everything is queued in the worst phase (Davis et al. 2007). '> period': a message may wait for
 longer than its own period and needs a queue in its sender.
 """
+
+
+MOST_SENSORS, MOST_DAMPERS = 8, 4  # that the interface has messages for
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -31,6 +35,15 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--bitrate", type=int, default=500_000, metavar="BIT/S", help="(500000)")
     parser.add_argument(
         "--sensor-node", action="store_true", help="response times with AccelSample on the bus"
+    )
+    parser.add_argument(
+        "--sensors",
+        type=int,
+        metavar="N",
+        help="sensors on the bus, 0 .. 8, in totals and response times (1 in totals)",
+    )
+    parser.add_argument(
+        "--dampers", type=int, default=1, metavar="N", help="dampers on it, 1 .. 4 (%(default)d)"
     )
     parser.add_argument(
         "--no-raw", action="store_true", help="response times without raw streaming"
@@ -49,6 +62,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def check(args: argparse.Namespace) -> None:
     if not 10_000 <= args.bitrate <= 1_000_000:
         raise UsageError(f"--bitrate {args.bitrate}: classic CAN has 10000 .. 1000000 bit/s")
+    for option, number, low, high in (
+        ("--sensors", args.sensors, 0, MOST_SENSORS),
+        ("--dampers", args.dampers, 1, MOST_DAMPERS),
+    ):
+        if number is not None and not low <= number <= high:
+            raise UsageError(f"{option} {number}: {low} .. {high}")
     for option, value in (
         ("--jitter-ms", args.jitter_ms),
         ("--errors-per-s", args.errors_per_s),
@@ -68,19 +87,20 @@ def computed(args: argparse.Namespace) -> dict[str, Any]:
     from quiesce.can import load
 
     database = database_of(args)
-    raw, sensor = load.named(database, load.RAW), load.named(database, load.SENSOR)
-    left_out = ([] if args.sensor_node else sensor) + (raw if args.no_raw else [])
-    chosen = [one for one in load.on_bus(database) if one not in left_out]
+    raw = load.named(database, load.RAW)
+    left_out = raw if args.no_raw else []
+    sensors = args.sensors if args.sensors is not None else int(args.sensor_node)
+    chosen = [one for one in load.on_bus(database, sensors, args.dampers) if one not in left_out]
     if not chosen:
         raise UsageError(f"{database.file}: no message has a cycle time (GenMsgCycleTime)")
     analysis = load.Analysis(chosen, args.bitrate, args.jitter_ms, args.errors_per_s)
-    need, baud = load.baud_needed(load.slcan_messages(database))
-    need_less, baud_less = load.baud_needed(
-        [one for one in load.slcan_messages(database) if one not in raw]
-    )
+    sent = load.slcan_messages(database, args.dampers)
+    need, baud = load.baud_needed(sent)
+    need_less, baud_less = load.baud_needed([one for one in sent if one not in raw])
+    in_totals = 1 if args.sensors is None else args.sensors
     return {
         "bitrate": args.bitrate,
-        "load_pct": load.totals_pct(database, args.bitrate),
+        "load_pct": load.totals_pct(database, args.bitrate, in_totals, args.dampers),
         "messages": [row(analysis, index) for index in range(len(analysis.streams))],
         "slcan": {
             "bits_per_s": need,

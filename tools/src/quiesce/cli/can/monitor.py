@@ -131,8 +131,7 @@ class View:
             f"frequency  {self.value('Motion', 'freq_uHz', 1e-6)} Hz{doubt}",
             f"vibration  {self.value('Status', 'rms_um_s2', 1e-6)} m/s2 RMS, displacement "
             f"{self.value('Motion', 'displacement_amp_nm', 1e-3)} um",
-            f"current    {self.value('CurrentDemand', 'current_cmd_mA', 1e-3)} A demanded, "
-            f"{self.value('CurrentMeasured', 'current_meas_mA', 1e-3)} A measured",
+            *(self.current(number) for number in self.dampers()),
             "",
             self.messages(now_s),
         ]
@@ -140,6 +139,20 @@ class View:
         if others or self._link.malformed:
             lines.append(f"{others} frames of unknown ids, {self._link.malformed} malformed lines")
         return "\n".join(lines)
+
+    def dampers(self) -> list[int]:
+        """Those that are heard of, and the first."""
+        heard = {seen.message for seen in self._traffic.seen.values()}
+        numbers = {one.number for one in heard if one.kind in ("CurrentDemand", "CurrentMeasured")}
+        return sorted({0} | numbers)
+
+    def current(self, number: int) -> str:
+        suffix = str(number) if number else ""
+        return (
+            f"current {suffix:<2} "
+            f"{self.value(f'CurrentDemand{suffix}', 'current_cmd_mA', 1e-3)} A demanded, "
+            f"{self.value(f'CurrentMeasured{suffix}', 'current_meas_mA', 1e-3)} A measured"
+        )
 
     def messages(self, now_s: float) -> str:
         rows = [

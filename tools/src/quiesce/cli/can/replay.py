@@ -17,10 +17,10 @@ EPILOG = """examples:
   quiesce can replay run.blf --bus udp_multicast:239.74.163.2
   quiesce can replay run.asc --only Status,Motion --speed 10 --bus socketcan:can0
 
-Never sends what a controller or a driver would act on, unless --include-commands: CurrentDemand,
-EmergencyStop, OperatorCommand, ServiceRequest (which may change parameters), what sensor nodes and
-drivers send (AccelSample, CurrentMeasured), lock-step messages (0x600 .. 0x6FF). Their ids are
-those of the shipped DBC; --dbc only names messages for --only.
+Never sends what a controller or a driver would act on, unless --include-commands: CurrentDemand of
+every damper, EmergencyStop, OperatorCommand, ServiceRequest (which may change parameters), what
+sensor nodes and drivers send (AccelSample, SensorSample1 .., CurrentMeasured), lock-step messages
+(0x600 .. 0x6FF). Their ids are those of the shipped DBC; --dbc only names messages for --only.
 """
 
 COMMANDS = ("CurrentDemand", "EmergencyStop", "OperatorCommand", "ServiceRequest")
@@ -93,7 +93,7 @@ def withheld_ids() -> set[int]:
     from quiesce.can.database import load
 
     database = load()
-    commands = {database.by_name[name].frame_id for name in COMMANDS}
+    commands = {one.frame_id for one in database.messages if one.kind in COMMANDS}
     measured = {one.frame_id for one in database.messages if one.sender in MEASURING}
     return commands | measured | set(LOCKSTEP_IDS)
 
