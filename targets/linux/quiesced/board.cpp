@@ -1,5 +1,7 @@
 #include "board.h"
 
+#include <algorithm>
+
 #include "clock.h"
 
 namespace quiesced {
@@ -7,6 +9,7 @@ namespace quiesced {
 namespace {
 
 constexpr int kMaxEdges = 64; // a tick; the rest waits for the next one
+constexpr std::uint64_t kSecond_us = 1'000'000;
 
 } // namespace
 
@@ -33,27 +36,51 @@ bool Board::read_enable() {
     return level;
 }
 
-void Board::read_accel(hal_axis_t axis, node_inputs_t &inputs) {
-    if (config_.accel.source == AccelSource::can) {
-        return;
+/// A single reading takes its time: as often as the board says, no more.
+void Board::use_rate(std::uint32_t rate_Hz) {
+    const quiesce_board_t *wiring = config_.wiring();
+    for (std::size_t i = 0; wiring != nullptr && i < config_.sensors.size(); ++i) {
+        const auto period_us = static_cast<std::uint64_t>(wiring->sensor[i].period_us);
+        const bool is_single = !config_.sensors[i].channel.empty();
+        sensors_[i].period_ticks =
+            is_single ? static_cast<std::uint32_t>(period_us * rate_Hz / kSecond_us) : 0;
     }
-    AccelDevice *device = devices_.accel.get();
-    inputs.accel_is_fresh =
-        device != nullptr && hal_accel_read(&device->handle, axis, &inputs.accel_counts);
-    silent_ticks_ = inputs.accel_is_fresh ? 0 : silent_ticks_ + 1;
 }
 
-void Board::read_current(node_inputs_t &inputs) {
-    CurrentDevice *device = devices_.current.get();
-    inputs.current_is_measured =
-        device != nullptr && hal_current_read(&device->handle, &inputs.current_meas_mA);
+bool Board::is_due(std::size_t sensor, std::uint32_t elapsed) {
+    SensorWatch &watch = sensors_[sensor];
+    if (watch.wait_ticks > elapsed) {
+        watch.wait_ticks -= elapsed;
+        return false;
+    }
+    watch.wait_ticks = watch.period_ticks;
+    return true;
 }
 
-node_inputs_t Board::read(hal_axis_t axis, std::uint32_t elapsed, const hal_tick_t &timing) {
+quiesce_sample_t Board::read_sensor(std::size_t sensor, hal_axis_t axis, std::uint32_t elapsed) {
+    quiesce_sample_t sample{};
+    if (config_.sensors[sensor].source != SensorSource::can && is_due(sensor, elapsed)) {
+        SensorDevice *device = devices_.sensors[sensor].get();
+        sample.is_fresh =
+            device != nullptr && hal_accel_read(&device->handle, axis, &sample.counts);
+        sensors_[sensor].silent_ticks =
+            sample.is_fresh ? 0 : sensors_[sensor].silent_ticks + elapsed;
+    }
+    return sample;
+}
+
+quiesce_driver_t Board::read_driver(std::size_t damper) {
+    CurrentDevice *device = devices_.outputs[damper].get();
+    quiesce_driver_t driver{};
+    driver.has_failed = !is_drivable(damper);
+    driver.is_measured = device != nullptr && hal_current_read(&device->handle, &driver.current_mA);
+    return driver;
+}
+
+node_inputs_t Board::read(const Axes &axes, std::uint32_t elapsed, const hal_tick_t &timing) {
     node_inputs_t inputs{};
     inputs.enable = read_enable();
     inputs.estop = estop_.is_pressed(devices_.estop_input, log_);
-    inputs.driver_has_failed = !is_drivable();
     inputs.ticks_elapsed = elapsed;
     inputs.overruns = timing.overruns;
     inputs.lateness_us = timing.lateness_ns / 1000U;
@@ -62,38 +89,59 @@ node_inputs_t Board::read(hal_axis_t axis, std::uint32_t elapsed, const hal_tick
         inputs.tx_dropped = can_bus_counters(bus_)->tx_dropped;
         inputs.bus_off_count = can_bus_counters(bus_)->bus_off;
     }
-    read_accel(axis, inputs);
-    read_current(inputs);
+    for (std::size_t i = 0; i < config_.sensors.size(); ++i) {
+        inputs.sensor[i] = read_sensor(i, axes[i], elapsed);
+    }
+    for (std::size_t i = 0; i < config_.outputs.size(); ++i) {
+        inputs.driver[i] = read_driver(i);
+    }
     return inputs;
 }
 
-void Board::write_current(std::int32_t current_mA, bool enable) {
-    CurrentDevice *device = devices_.current.get();
-    written_ns_ = 0;
+void Board::write_current(std::size_t damper, std::int32_t current_mA, bool enable) {
+    CurrentDevice *device = devices_.outputs[damper].get();
+    std::int64_t &written_ns = outputs_[damper].written_ns;
+    written_ns = 0;
     if (device != nullptr) {
         const std::uint32_t failures = device->failures();
         hal_current_write(&device->handle, current_mA, enable);
-        written_ns_ = device->failures() == failures ? monotonic_ns() : 0;
+        written_ns = device->failures() == failures ? monotonic_ns() : 0;
     }
 }
 
 void Board::command_left(std::int64_t demand_ns, bool is_safe, std::uint32_t tick) {
-    const std::int64_t left_ns =
-        config_.current.output == CurrentOutput::can ? demand_ns : written_ns_;
+    std::int64_t left_ns = 0;
+    for (std::size_t i = 0; i < config_.outputs.size(); ++i) {
+        const bool is_on_bus = config_.outputs[i].output == CurrentOutput::can;
+        const std::int64_t own_ns = is_on_bus ? demand_ns : outputs_[i].written_ns;
+        if (own_ns == 0) { // one that has not left: it is not safe yet
+            left_ns = 0;
+            break;
+        }
+        left_ns = std::max(left_ns, own_ns);
+    }
     estop_.command_sent(left_ns != 0 && is_safe, left_ns, tick, log_);
 }
 
 /// Whether the driver takes its current: a CAN driver looks after itself.
-bool Board::is_drivable() {
-    if (config_.current.output == CurrentOutput::can) {
+bool Board::is_drivable(std::size_t damper) {
+    if (config_.outputs[damper].output == CurrentOutput::can) {
         return true;
     }
-    CurrentDevice *device = devices_.current.get();
-    return device != nullptr && device->failures() == current_failures_;
+    CurrentDevice *device = devices_.outputs[damper].get();
+    return device != nullptr && device->failures() == outputs_[damper].failures;
+}
+
+bool Board::are_drivable() {
+    bool are_all = true;
+    for (std::size_t i = 0; i < config_.outputs.size(); ++i) {
+        are_all = are_all && is_drivable(i);
+    }
+    return are_all;
 }
 
 void Board::write_lines(bool is_driver_on, bool has_fault, bool rewrite) {
-    enable_output_.set(devices_.enable_output, is_driver_on && is_drivable(), rewrite, log_);
+    enable_output_.set(devices_.enable_output, is_driver_on && are_drivable(), rewrite, log_);
     fault_output_.set(devices_.fault_output, has_fault, rewrite, log_);
 }
 
@@ -105,34 +153,40 @@ void Board::release_fault_line() {
     fault_output_.set(devices_.fault_output, false, true, log_);
 }
 
-void Board::look_after_accel(std::uint32_t rate_Hz) {
-    if (config_.accel.source == AccelSource::can) {
+void Board::look_after_sensor(std::size_t sensor, std::uint32_t rate_Hz) {
+    const SensorConfig &config = config_.sensors[sensor];
+    SensorWatch &watch = sensors_[sensor];
+    if (config.source == SensorSource::can) {
         return;
     }
-    if (devices_.accel.get() == nullptr) {
-        silent_ticks_ = devices_.accel.pick_up() ? 0 : silent_ticks_;
-    } else if (silent_ticks_ > rate_Hz) {
-        log_.log(LogLevel::error, "accelerometer: no sample for a second; it is opened anew");
-        devices_.accel.give_up();
+    if (devices_.sensors[sensor].get() == nullptr) {
+        watch.silent_ticks = devices_.sensors[sensor].pick_up() ? 0 : watch.silent_ticks;
+    } else if (watch.silent_ticks > rate_Hz) {
+        log_.log(LogLevel::error, "%s: no sample for a second; it is opened anew",
+                 config.place.title.c_str());
+        devices_.sensors[sensor].give_up();
     }
 }
 
-void Board::look_after_current(bool once_a_second, ChangeLog &changes) {
-    CurrentDevice *device = devices_.current.get();
+void Board::look_after_output(std::size_t damper, bool once_a_second, ChangeLog &changes) {
+    auto &output = devices_.outputs[damper];
+    CurrentDevice *device = output.get();
+    OutputWatch &watch = outputs_[damper];
     if (device == nullptr) {
-        if (devices_.current.pick_up()) {
-            current_failures_ = 0;
+        if (output.pick_up()) {
+            watch.failures = 0;
         }
         return;
     }
+    const char *title = config_.outputs[damper].place.title.c_str();
     const std::uint32_t failures = device->failures();
-    changes.failed_writes(failures, monotonic_ns());
+    changes.failed_writes(damper, title, failures, monotonic_ns());
     if (once_a_second) {
-        if (failures != current_failures_) {
-            log_.log(LogLevel::error, "current output: it is opened anew");
-            devices_.current.give_up();
+        if (failures != watch.failures) {
+            log_.log(LogLevel::error, "%s: it is opened anew", title);
+            output.give_up();
         }
-        current_failures_ = failures;
+        watch.failures = failures;
     }
 }
 
@@ -144,8 +198,12 @@ void Board::look_after_bus() {
 }
 
 void Board::look_after(std::uint32_t rate_Hz, bool once_a_second, ChangeLog &changes) {
-    look_after_accel(rate_Hz);
-    look_after_current(once_a_second, changes);
+    for (std::size_t i = 0; i < config_.sensors.size(); ++i) {
+        look_after_sensor(i, rate_Hz);
+    }
+    for (std::size_t i = 0; i < config_.outputs.size(); ++i) {
+        look_after_output(i, once_a_second, changes);
+    }
     (void)devices_.data_ready_input.pick_up();
     look_after_bus();
     feed_watchdogs(monotonic_ns());

@@ -1,4 +1,4 @@
-/// The board's side of a tick: sensors and inputs before the control step, driver and lines after
+/// The board's side of a tick: sensors and inputs before the control step, drivers and lines after
 /// it, and devices that are gone. Nothing in it waits.
 #ifndef QUIESCED_BOARD_H
 #define QUIESCED_BOARD_H
@@ -10,6 +10,9 @@
 
 namespace quiesced {
 
+/// By number of the sensor.
+using Axes = std::array<hal_axis_t, QUIESCE_SENSORS>;
+
 class Board {
   public:
     /// exchange and its peripherals, bus and watchdog (null: none) must outlive it.
@@ -17,18 +20,21 @@ class Board {
     Board(const Board &) = delete;
     Board &operator=(const Board &) = delete;
 
-    /// What the board sees in the tick that begins. axis: of the accelerometer.
-    node_inputs_t read(hal_axis_t axis, std::uint32_t elapsed, const hal_tick_t &timing);
+    /// What the board sees in the tick that begins. axes: of the accelerometers.
+    node_inputs_t read(const Axes &axes, std::uint32_t elapsed, const hal_tick_t &timing);
 
-    /// The command, to a driver at this machine.
-    void write_current(std::int32_t current_mA, bool enable);
+    /// A damper's command, to a driver at this machine.
+    void write_current(std::size_t damper, std::int32_t current_mA, bool enable);
 
-    /// The tick's command has left: with the demand frame at this time (0: it has not), or, where
-    /// the driver is at this machine, when it was written. is_safe: safe current, driver off.
+    /// The tick's commands have left: with the demand frames at this time (0: they have not), or,
+    /// where a driver is at this machine, when it was written. is_safe: safe currents, drivers off.
     void command_left(std::int64_t demand_ns, bool is_safe, std::uint32_t tick);
 
     /// rewrite: even where nothing has changed, to notice that a line is gone.
     void write_lines(bool is_driver_on, bool has_fault, bool rewrite);
+    /// Ticks in a second; before the first tick and whenever it is another.
+    void use_rate(std::uint32_t rate_Hz);
+
     void release_enable_line();
     void release_fault_line();
 
@@ -39,11 +45,13 @@ class Board {
 
   private:
     bool read_enable();
-    void read_accel(hal_axis_t axis, node_inputs_t &inputs);
-    void read_current(node_inputs_t &inputs);
-    bool is_drivable();
-    void look_after_accel(std::uint32_t rate_Hz);
-    void look_after_current(bool once_a_second, ChangeLog &changes);
+    bool is_due(std::size_t sensor, std::uint32_t elapsed);
+    quiesce_sample_t read_sensor(std::size_t sensor, hal_axis_t axis, std::uint32_t elapsed);
+    quiesce_driver_t read_driver(std::size_t damper);
+    bool is_drivable(std::size_t damper);
+    bool are_drivable();
+    void look_after_sensor(std::size_t sensor, std::uint32_t rate_Hz);
+    void look_after_output(std::size_t damper, bool once_a_second, ChangeLog &changes);
     void feed_watchdogs(std::int64_t now_ns);
 
     const Config &config_;
@@ -56,10 +64,18 @@ class Board {
     EmergencyStop estop_;
     OutputLine enable_output_{"enable_output"};
     OutputLine fault_output_{"fault_output"};
-    std::uint32_t silent_ticks_ = 0; ///< without a sample of the accelerometer
-    std::uint32_t current_failures_ = 0;
+    struct SensorWatch {
+        std::uint32_t silent_ticks = 0; ///< without a sample
+        std::uint32_t wait_ticks = 0;   ///< until a channel with a period is read
+        std::uint32_t period_ticks = 0; ///< between two readings of it; 0: it is read every tick
+    };
+    struct OutputWatch {
+        std::uint32_t failures = 0;  ///< of the device, when the last second began
+        std::int64_t written_ns = 0; ///< the last command; 0: it failed
+    };
+    std::array<SensorWatch, QUIESCE_SENSORS> sensors_{};
+    std::array<OutputWatch, QUIESCE_DAMPERS> outputs_{};
     std::int64_t next_notice_ns_ = 0; ///< to the service manager
-    std::int64_t written_ns_ = 0;     ///< the last command, at this machine's driver; 0: it failed
 };
 
 } // namespace quiesced

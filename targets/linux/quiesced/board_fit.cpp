@@ -1,7 +1,10 @@
 #include "board_fit.h"
 
+#include <cstdarg>
 #include <cstdio>
 #include <cstring>
+
+#include "bus_load.h"
 
 namespace quiesced {
 
@@ -15,41 +18,87 @@ std::uint32_t index_of(const char *name) {
     return index;
 }
 
-Misfit make_misfit(const char *name, const char *section, const char *key) {
-    return {index_of(name), section, key, {}};
+/// place: null for a table that there is one of.
+__attribute__((format(printf, 5, 6))) Misfit make_misfit(const char *parameter, const char *section,
+                                                         const Place *place, const char *key,
+                                                         const char *format, ...) {
+    const std::size_t table = place != nullptr ? place->table : 0;
+    Misfit out = {index_of(parameter), section, table, key, {}};
+    std::va_list values;
+    va_start(values, format);
+    (void)std::vsnprintf(out.reason.data(), out.reason.size(), format, values);
+    va_end(values);
+    return out;
 }
 
 /// The sensor's edges are the ticks: its rate is set once, at the opening.
-bool has_other_rate(const Config &config, const quiesce_params_t &params) {
-    return config.accel.source == AccelSource::adxl355 && config.gpio.data_ready_input &&
-           params.tick_rate_Hz != static_cast<std::int32_t>(config.accel.rate_Hz);
+std::optional<Misfit> find_other_rate(const Config &config, const quiesce_params_t &params) {
+    for (const SensorConfig &sensor : config.sensors) {
+        if (sensor.source == SensorSource::adxl355 && config.gpio.data_ready_input &&
+            params.tick_rate_Hz != static_cast<std::int32_t>(sensor.rate_Hz)) {
+            const char *section = sensor.place.section.c_str();
+            return make_misfit("tick_rate_Hz", section, &sensor.place, "rate_Hz",
+                               "%s.rate_Hz is %u, tick_rate_Hz %d; they must be the same where "
+                               "data_ready_input starts the ticks",
+                               section, static_cast<unsigned>(sensor.rate_Hz),
+                               static_cast<int>(params.tick_rate_Hz));
+        }
+    }
+    return std::nullopt;
 }
 
-bool is_beyond_output(const Config &config, const quiesce_params_t &params) {
-    return config.current.output != CurrentOutput::can &&
-           params.max_current_mA > config.current.full_scale_mA;
+/// With a board its ceilings are within the outputs, and no command is above them.
+std::optional<Misfit> find_beyond_output(const Config &config, const quiesce_params_t &params) {
+    const OutputConfig &output = config.outputs.front();
+    if (config.board || output.output == CurrentOutput::can ||
+        params.max_current_mA <= output.full_scale_mA) {
+        return std::nullopt;
+    }
+    return make_misfit("max_current_mA", "current", nullptr, "full_scale_mA",
+                       "current.full_scale_mA is %d, max_current_mA %d; it must not be more than "
+                       "the output can give",
+                       static_cast<int>(output.full_scale_mA),
+                       static_cast<int>(params.max_current_mA));
+}
+
+std::optional<Misfit> find_missing_signal(const Config &config, const quiesce_params_t &params) {
+    const auto law = static_cast<std::size_t>(params.law);
+    if (!config.board || law >= config.board->missing.size() ||
+        config.board->missing[law].empty()) {
+        return std::nullopt;
+    }
+    return make_misfit("law", "board", nullptr, "file",
+                       "law %s needs signal %s, which no sensor of the board provides",
+                       quiesce_param_info(index_of("law"))->labels[law],
+                       config.board->missing[law].c_str());
+}
+
+std::optional<Misfit> find_full_bus(const Config &config, const quiesce_params_t &params) {
+    if (!config.can) {
+        return std::nullopt;
+    }
+    const BusLoad load = bus_load(config, params);
+    if (load.total() <= kMostLoad_pct) {
+        return std::nullopt;
+    }
+    const std::uint32_t bitrate = config.can->bitrate;
+    return make_misfit(
+        "tick_rate_Hz", "can", nullptr, "interface",
+        "the bus would be %.1f %% full at %u bit/s (demands %.1f, samples %.1f, others %.1f), more "
+        "than %.0f: a lower tick_rate_Hz, sensors at this machine or CAN FD (fd, data_bitrate) "
+        "would help",
+        load.total(), static_cast<unsigned>(bitrate != 0 ? bitrate : kUsualBitrate), load.demands,
+        load.samples, load.others, kMostLoad_pct);
 }
 
 } // namespace
 
 std::optional<Misfit> find_misfit(const Config &config, const quiesce_params_t &params) {
-    if (has_other_rate(config, params)) {
-        Misfit out = make_misfit("tick_rate_Hz", "accel", "rate_Hz");
-        (void)std::snprintf(out.reason.data(), out.reason.size(),
-                            "accel.rate_Hz is %u, tick_rate_Hz %d; they must be the same where "
-                            "data_ready_input starts the ticks",
-                            static_cast<unsigned>(config.accel.rate_Hz),
-                            static_cast<int>(params.tick_rate_Hz));
-        return out;
-    }
-    if (is_beyond_output(config, params)) {
-        Misfit out = make_misfit("max_current_mA", "current", "full_scale_mA");
-        (void)std::snprintf(out.reason.data(), out.reason.size(),
-                            "current.full_scale_mA is %d, max_current_mA %d; it must not be more "
-                            "than the output can give",
-                            static_cast<int>(config.current.full_scale_mA),
-                            static_cast<int>(params.max_current_mA));
-        return out;
+    for (const auto find :
+         {find_other_rate, find_beyond_output, find_missing_signal, find_full_bus}) {
+        if (std::optional<Misfit> misfit = find(config, params)) {
+            return misfit;
+        }
     }
     return std::nullopt;
 }

@@ -13,12 +13,14 @@ namespace quiesced {
 
 struct Misfit {
     std::uint32_t index;            ///< of the parameter
-    const char *section;            ///< of the configuration that it does not fit
+    const char *section;            ///< of the configuration that it does not fit; lives as long
+    std::size_t table;              ///< which of its tables
     const char *key;                ///< there
-    std::array<char, 160> reason{}; ///< one line
+    std::array<char, 240> reason{}; ///< one line
 };
 
-/// Allocates nothing.
+/// A law that needs a signal which no sensor of the board provides; ticks that the sensor which
+/// starts them does not have; a current beyond the output; a bus too full. Allocates nothing.
 std::optional<Misfit> find_misfit(const Config &config, const quiesce_params_t &params);
 
 /// The parameters to start with: those that were saved where they are used (StateStore::effective)

@@ -15,7 +15,9 @@ class ChangeLog {
     void control(const quiesce_telemetry_t &telemetry);
     void bus(const can_bus_t *bus);
     void overruns(std::uint32_t overruns, std::int64_t now_ns);
-    void failed_writes(std::uint32_t failures, std::int64_t now_ns);
+    /// Of an output of the configuration, by its number.
+    void failed_writes(std::size_t number, const char *title, std::uint32_t failures,
+                       std::int64_t now_ns);
 
     /// The last faults that were entered, the newest first, and their number since the start.
     const std::array<FaultEvent, Snapshot::kFaults> &faults() const { return faults_; }
@@ -36,7 +38,7 @@ class ChangeLog {
     std::uint32_t fault_ = QUIESCE_FAULT_NONE;
     std::uint32_t bus_event_ = 0;
     Counted overruns_;
-    Counted failed_writes_;
+    std::array<Counted, QUIESCE_DAMPERS> failed_writes_;
     std::array<FaultEvent, Snapshot::kFaults> faults_{};
     std::uint32_t fault_events_ = 0;
 };

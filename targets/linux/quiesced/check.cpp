@@ -14,6 +14,7 @@
 #include "instance_lock.h"
 #include "line_finder.h"
 #include "state_store.h"
+#include "wiring_text.h"
 
 namespace quiesced {
 
@@ -32,8 +33,7 @@ void note_access(const std::string &key, const std::string &path, int mode) {
 }
 
 /// An IIO device by its folder's or its own name.
-bool has_iio_device(const std::string &device) {
-    const fs::path root = "/sys/bus/iio/devices";
+bool has_iio_device(const std::string &device, const fs::path &root) {
     std::error_code ignored;
     if (fs::exists(root / device, ignored)) {
         return true;
@@ -47,8 +47,8 @@ bool has_iio_device(const std::string &device) {
     return false;
 }
 
-void note_iio(const std::string &key, const std::string &device) {
-    if (!has_iio_device(device)) {
+void note_iio(const std::string &key, const std::string &device, const SystemFolders &folders) {
+    if (!has_iio_device(device, folders.iio)) {
         note(key + ": no IIO device \"" + device + "\"");
     }
 }
@@ -68,16 +68,28 @@ void note_line(const std::optional<LineConfig> &line, const char *key) {
     }
 }
 
-void note_peripherals(const Config &config) {
-    if (config.accel.source == AccelSource::iio) {
-        note_iio("accel.device", config.accel.device);
-    } else if (config.accel.source == AccelSource::adxl355) {
-        note_access("accel.device", config.accel.device, R_OK | W_OK);
+void note_sensor(const SensorConfig &sensor, const SystemFolders &folders) {
+    if (sensor.source == SensorSource::iio) {
+        note_iio(sensor.place.key("device"), sensor.device, folders);
+    } else if (sensor.source == SensorSource::adxl355) {
+        note_access(sensor.place.key("device"), sensor.device, R_OK | W_OK);
     }
-    if (config.current.output == CurrentOutput::pwm) {
-        note_access("current.chip", "/sys/class/pwm/" + config.current.device, F_OK);
-    } else if (config.current.output == CurrentOutput::dac) {
-        note_iio("current.device", config.current.device);
+}
+
+void note_output(const OutputConfig &output, const SystemFolders &folders) {
+    if (output.output == CurrentOutput::pwm) {
+        note_access(output.place.key("chip"), folders.pwm + "/" + output.device, F_OK);
+    } else if (output.output == CurrentOutput::dac) {
+        note_iio(output.place.key("device"), output.device, folders);
+    }
+}
+
+void note_peripherals(const Config &config) {
+    for (const SensorConfig &sensor : config.sensors) {
+        note_sensor(sensor, config.folders);
+    }
+    for (const OutputConfig &output : config.outputs) {
+        note_output(output, config.folders);
     }
     note_line(config.gpio.enable_output, "gpio.enable_output");
     note_line(config.gpio.fault_output, "gpio.fault_output");
@@ -134,6 +146,7 @@ int check(const std::string &config_file) {
     }
     (void)std::printf("%s: every key is right\n", config_file.c_str());
     const Config &config = reading.config;
+    (void)std::printf("%s", wiring_text(config).c_str());
     if (config.can) {
         note_can(*config.can);
     }

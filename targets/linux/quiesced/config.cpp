@@ -6,25 +6,14 @@
 #include "board_fit.h"
 #include "parameter_section.h"
 #include "section.h"
+#include "wiring.h"
 
 namespace quiesced {
 
 namespace {
 
-constexpr std::int64_t kMaxCurrent_mA = 20000;
-constexpr std::int64_t kMaxCode = 0xFFFFFF;
 constexpr std::uint32_t kMaxAdxl355Rate_Hz = 4000;
 constexpr std::size_t kInterfaceNameBytes = 15; // IFNAMSIZ - 1
-
-/// Reads [key] where it is there; says that it is missing where it is required.
-template <typename Read>
-void with_section(Section &root, const char *key, bool is_required, Read &&read) {
-    root.read(key, is_required, [&] {
-        Section section(root.table().table(key), root.problems());
-        read(section);
-        section.end();
-    });
-}
 
 void read_loop(Section &section, LoopConfig &loop) {
     section.integer("priority", 0, 99, loop.priority);
@@ -52,6 +41,7 @@ void read_can(Section &section, CanConfig &can) {
     section.integer("restart_ms", 1, 10000, can.restart_ms);
     section.integer("serial_baud", 0, 4000000, can.serial_baud);
     section.integer("bitrate", 0, 1000000, can.bitrate);
+    section.integer("data_bitrate", 0, 10000000, can.data_bitrate);
     if (can.interface.empty()) {
         return;
     }
@@ -59,45 +49,11 @@ void read_can(Section &section, CanConfig &can) {
     if (can.is_serial() && can.use_fd) {
         section.wrong("fd", "an SLCAN adapter has no CAN FD; expected false");
     }
-    for (const char *key : {"serial_baud", "bitrate"}) {
-        if (!can.is_serial() && section.has(key)) {
-            section.wrong(key, "only for an SLCAN adapter; 'ip link' sets up an interface");
-        }
+    if (!can.is_serial() && section.has("serial_baud")) {
+        section.wrong("serial_baud", "only for an SLCAN adapter; 'ip link' sets up an interface");
     }
-}
-
-void read_accel(Section &section, AccelConfig &accel) {
-    section.choice("source", {"can", "iio", "adxl355"}, accel.source, true);
-    if (accel.source == AccelSource::iio) {
-        section.text("device", accel.device, true);
-        section.boolean("use_buffer", accel.use_buffer);
-        section.text("trigger", accel.trigger);
-    } else if (accel.source == AccelSource::adxl355) {
-        section.text("device", accel.device, true);
-        section.integer("clock_Hz", 100000, 10000000, accel.clock_Hz);
-        section.one_of("range_g", {2, 4, 8}, accel.range_g);
-        section.one_of("rate_Hz", {500, 1000, 2000, 4000}, accel.rate_Hz);
-    }
-}
-
-void read_current(Section &section, CurrentConfig &current) {
-    section.choice("output", {"can", "pwm", "dac"}, current.output, true);
-    if (current.output == CurrentOutput::can) {
-        return;
-    }
-    const bool is_pwm = current.output == CurrentOutput::pwm;
-    section.text(is_pwm ? "chip" : "device", current.device, true);
-    section.integer("channel", 0, 63, current.channel);
-    section.integer("full_scale_mA", 1, kMaxCurrent_mA, current.full_scale_mA, true);
-    if (is_pwm) {
-        section.integer("period_ns", 1000, 1000000000, current.period_ns, true);
-        section.boolean("is_inverted", current.is_inverted);
-        return;
-    }
-    section.integer("zero_code", -kMaxCode, kMaxCode, current.zero_code, true);
-    section.integer("full_scale_code", -kMaxCode, kMaxCode, current.full_scale_code, true);
-    if (section.has("full_scale_code") && current.zero_code == current.full_scale_code) {
-        section.wrong("full_scale_code", "expected another code than zero_code");
+    if (!can.use_fd && section.has("data_bitrate")) {
+        section.wrong("data_bitrate", "only with fd = true");
     }
 }
 
@@ -161,11 +117,15 @@ void read_log(Section &section, LogConfig &log) {
 
 /// What needs [can] without having it; "": nothing.
 std::string bus_user(const Section &root, const Config &config) {
-    if (root.has("accel") && config.accel.source == AccelSource::can) {
-        return "accel.source";
+    for (const SensorConfig &sensor : config.sensors) {
+        if (root.has(sensor.place.section.c_str()) && sensor.source == SensorSource::can) {
+            return sensor.place.key("source");
+        }
     }
-    if (root.has("current") && config.current.output == CurrentOutput::can) {
-        return "current.output";
+    for (const OutputConfig &output : config.outputs) {
+        if (root.has(output.place.section.c_str()) && output.output == CurrentOutput::can) {
+            return output.place.key("output");
+        }
     }
     return config.enable_from != NODE_ENABLE_BOARD ? "operator.enable" : "";
 }
@@ -185,22 +145,30 @@ std::uint32_t default_rate_Hz(const Config &config) {
                                         : std::min(2 * tick_rate_Hz, kMaxAdxl355Rate_Hz);
 }
 
+/// The table of the file that is to be mended.
+TomlTable table_of(Section &root, const Misfit &misfit) {
+    const std::string section = misfit.section;
+    const bool is_one_of_many = section == "sensor" || section == "damper";
+    return is_one_of_many ? root.table().tables(section)[misfit.table]
+                          : root.table().table(section);
+}
+
 void check_fit(Section &root, const Config &config) {
     const std::optional<Misfit> misfit = find_misfit(config, config.params);
-    if (misfit) {
-        Section section(root.table().table(misfit->section), root.problems());
+    if (misfit && root.has(misfit->section)) {
+        Section section(table_of(root, *misfit), root.problems());
         section.wrong(misfit->key, misfit->reason.data());
+    } else if (misfit) {
+        root.wrong(misfit->section, misfit->reason.data());
     }
 }
 
-void read_root(Section &root, Needs needs, Config &config) {
+void read_root(Section &root, Needs needs, const std::string &board_file, Config &config) {
     const bool has_peripherals = needs == Needs::peripherals;
     with_section(root, "loop", false, [&](Section &s) { read_loop(s, config.loop); });
     with_section(root, "can", !has_peripherals,
                  [&](Section &s) { read_can(s, config.can.emplace()); });
-    with_section(root, "accel", has_peripherals, [&](Section &s) { read_accel(s, config.accel); });
-    with_section(root, "current", has_peripherals,
-                 [&](Section &s) { read_current(s, config.current); });
+    read_wiring(root, has_peripherals, board_file, config);
     with_section(root, "gpio", false, [&](Section &s) { read_gpio(s, config.gpio); });
     with_section(root, "operator", false, [&](Section &s) {
         s.choice("enable", {"board", "can", "both"}, config.enable_from);
@@ -212,10 +180,12 @@ void read_root(Section &root, Needs needs, Config &config) {
     with_section(root, "state", false, [&](Section &s) { read_state(s, config.state); });
     with_section(root, "log", false, [&](Section &s) { read_log(s, config.log); });
     with_section(root, "parameters", false,
-                 [&](Section &s) { config.params = read_parameters(s); });
+                 [&](Section &s) { config.params = read_parameters(s, has_board(root)); });
     root.end();
-    if (config.accel.rate_Hz == 0) {
-        config.accel.rate_Hz = default_rate_Hz(config);
+    for (SensorConfig &sensor : config.sensors) {
+        if (sensor.rate_Hz == 0) {
+            sensor.rate_Hz = default_rate_Hz(config);
+        }
     }
     if (has_peripherals) {
         check_bus(root, config);
@@ -235,7 +205,15 @@ gpio_spec_t LineConfig::spec() const {
     return spec;
 }
 
-ConfigReading read_config(const std::string &file, Needs needs) {
+std::uint32_t Config::sensors_on_bus() const {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        bits |= sensors[i].source == SensorSource::can ? 1U << i : 0U;
+    }
+    return bits;
+}
+
+ConfigReading read_config(const std::string &file, Needs needs, const std::string &board_file) {
     ConfigReading out;
     out.config.file = file;
     quiesce_params_default(&out.config.params);
@@ -243,7 +221,7 @@ ConfigReading read_config(const std::string &file, Needs needs) {
         const quiesce::TomlFile toml(file);
         out.is_toml = true;
         Section root(toml.root(), out.problems);
-        read_root(root, needs, out.config);
+        read_root(root, needs, board_file, out.config);
     });
     return out;
 }

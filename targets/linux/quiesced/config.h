@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "board_file.h"
 #include "firmware.h"
 
 namespace quiesced {
@@ -22,17 +23,33 @@ struct CanConfig {
     std::string interface; ///< "can0", or "slcan:/dev/ttyACM0"
     bool use_fd = false;
     std::uint32_t restart_ms = 100;
-    std::uint32_t serial_baud = 0; ///< 0: leave it as it is
-    std::uint32_t bitrate = 0;     ///< SLCAN only; 0: do not set it
+    std::uint32_t serial_baud = 0;  ///< 0: leave it as it is
+    std::uint32_t bitrate = 0;      ///< SLCAN: to set, 0: do not; else what `ip link` has set
+    std::uint32_t data_bitrate = 0; ///< CAN FD, likewise; 0: not known
 
     bool is_serial() const { return interface.rfind("slcan:", 0) == 0; }
 };
 
-enum class AccelSource { can, iio, adxl355 };
+/// Where a sensor or damper stands in the file.
+struct Place {
+    std::string section;   ///< "accel" or "current", with a board "sensor" or "damper"
+    std::size_t table = 0; ///< which [[sensor]] or [[damper]], from 0
+    std::string name;      ///< on the board; "" without one
+    std::string title;     ///< for people: "accelerometer", "sensor roof_accel"
 
-struct AccelConfig {
-    AccelSource source = AccelSource::can;
+    /// "accel.device", "sensor.roof_accel.device"
+    std::string key(const char *of) const {
+        return section + (name.empty() ? "" : "." + name) + "." + of;
+    }
+};
+
+enum class SensorSource { can, iio, adxl355 };
+
+struct SensorConfig {
+    Place place{"accel", 0, "", "accelerometer"};
+    SensorSource source = SensorSource::can;
     std::string device;
+    std::string channel; ///< iio: "voltage0", read by itself; "": the axes of an accelerometer
     bool use_buffer = true;
     std::string trigger; ///< "": leave it as it is
     std::uint32_t clock_Hz = 5'000'000;
@@ -42,7 +59,8 @@ struct AccelConfig {
 
 enum class CurrentOutput { can, pwm, dac };
 
-struct CurrentConfig {
+struct OutputConfig {
+    Place place{"current", 0, "", "current output"};
     CurrentOutput output = CurrentOutput::can;
     std::string device; ///< pwm: the chip
     std::uint32_t channel = 0;
@@ -86,18 +104,40 @@ struct LogConfig {
     LogLevel level = LogLevel::info;
 };
 
+/// What is wired to what, from a board file.
+struct WiredBoard {
+    std::string file;
+    quiesce::BoardFile board;
+    /// By law: the signal that it needs and no sensor provides ("stroke of upper"), "": none.
+    std::vector<std::string> missing;
+};
+
+/// The kernel's folders; tests have others.
+struct SystemFolders {
+    std::string iio = "/sys/bus/iio/devices";
+    std::string pwm = "/sys/class/pwm";
+    std::string dev = "/dev";
+};
+
 struct Config {
     std::string file;
     LoopConfig loop;
     std::optional<CanConfig> can;
-    AccelConfig accel;
-    CurrentConfig current;
+    std::optional<WiredBoard> board;       ///< without it parameters say what is wired
+    std::vector<SensorConfig> sensors{{}}; ///< by number on the board
+    std::vector<OutputConfig> outputs{{}}; ///< likewise, of dampers
+    SystemFolders folders;
     GpioConfig gpio;
     node_enable_t enable_from = NODE_ENABLE_BOARD;
     std::optional<WatchdogConfig> watchdog;
     StateConfig state;
     LogConfig log;
     quiesce_params_t params{}; ///< defaults, and what [parameters] says
+
+    /// Null without a board.
+    const quiesce_board_t *wiring() const { return board ? &board->board.board : nullptr; }
+    /// Bit i: sensor i.
+    std::uint32_t sensors_on_bus() const;
 };
 
 /// What a mode needs of the file: the lock-step server has no peripherals.
@@ -110,8 +150,9 @@ struct ConfigReading {
     std::vector<std::string> problems;
 };
 
-/// Never throws for what a file may contain.
-ConfigReading read_config(const std::string &file, Needs needs);
+/// Never throws for what a file may contain. board_file: instead of the one that it names, "":
+/// that.
+ConfigReading read_config(const std::string &file, Needs needs, const std::string &board_file = "");
 
 /// The same, for programs that cannot go on with a wrong one. Throws InputError: the first line,
 /// and how many more there are.

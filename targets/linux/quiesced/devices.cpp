@@ -6,28 +6,28 @@ namespace quiesced {
 
 namespace {
 
-constexpr const char *kIioRoot = "/sys/bus/iio/devices";
-
 [[noreturn]] void refuse(const std::string &key, const linux_error_t &error) {
     throw quiesce::InputError(key + ": " + error.text);
 }
 
 template <typename Pointer>
-Pointer require(Pointer pointer, const char *key, const linux_error_t &error) {
+Pointer require(Pointer pointer, const std::string &key, const linux_error_t &error) {
     if (pointer == nullptr) {
         refuse(key, error);
     }
     return pointer;
 }
 
-class IioAccel final : public AccelDevice {
+class IioAccel final : public SensorDevice {
   public:
-    explicit IioAccel(const AccelConfig &config) {
-        const accel_iio_options_t options = {
-            config.device.c_str(), config.use_buffer,
-            config.trigger.empty() ? nullptr : config.trigger.c_str(), kIioRoot, "/dev"};
+    IioAccel(const SensorConfig &config, const SystemFolders &folders) {
+        const accel_iio_options_t options = {config.device.c_str(), config.use_buffer,
+                                             config.trigger.empty() ? nullptr
+                                                                    : config.trigger.c_str(),
+                                             folders.iio.c_str(), folders.dev.c_str()};
         linux_error_t error{};
-        self_ = require(accel_iio_open(&options, &handle, &error), "accel.device", error);
+        self_ =
+            require(accel_iio_open(&options, &handle, &error), config.place.key("device"), error);
     }
     IioAccel(const IioAccel &) = delete;
     IioAccel &operator=(const IioAccel &) = delete;
@@ -37,13 +37,31 @@ class IioAccel final : public AccelDevice {
     accel_iio_t *self_;
 };
 
-class Adxl355Accel final : public AccelDevice {
+class IioChannel final : public SensorDevice {
   public:
-    explicit Adxl355Accel(const AccelConfig &config) {
+    IioChannel(const SensorConfig &config, const SystemFolders &folders) {
+        const sensor_iio_options_t options = {config.device.c_str(), config.channel.c_str(),
+                                              folders.iio.c_str()};
+        linux_error_t error{};
+        self_ =
+            require(sensor_iio_open(&options, &handle, &error), config.place.key("channel"), error);
+    }
+    IioChannel(const IioChannel &) = delete;
+    IioChannel &operator=(const IioChannel &) = delete;
+    ~IioChannel() override { sensor_iio_close(self_); }
+
+  private:
+    sensor_iio_t *self_;
+};
+
+class Adxl355Accel final : public SensorDevice {
+  public:
+    explicit Adxl355Accel(const SensorConfig &config) {
         const accel_adxl355_options_t options = {config.device.c_str(), config.clock_Hz,
                                                  config.range_g, config.rate_Hz};
         linux_error_t error{};
-        self_ = require(accel_adxl355_open(&options, &handle, &error), "accel.device", error);
+        self_ = require(accel_adxl355_open(&options, &handle, &error), config.place.key("device"),
+                        error);
     }
     Adxl355Accel(const Adxl355Accel &) = delete;
     Adxl355Accel &operator=(const Adxl355Accel &) = delete;
@@ -55,12 +73,13 @@ class Adxl355Accel final : public AccelDevice {
 
 class PwmCurrent final : public CurrentDevice {
   public:
-    explicit PwmCurrent(const CurrentConfig &config) {
+    PwmCurrent(const OutputConfig &config, const SystemFolders &folders) {
         const current_pwm_options_t options = {config.device.c_str(), config.channel,
                                                config.period_ns,      config.full_scale_mA,
-                                               config.is_inverted,    "/sys/class/pwm"};
+                                               config.is_inverted,    folders.pwm.c_str()};
         linux_error_t error{};
-        self_ = require(current_pwm_open(&options, &handle, &error), "current.chip", error);
+        self_ =
+            require(current_pwm_open(&options, &handle, &error), config.place.key("chip"), error);
     }
     PwmCurrent(const PwmCurrent &) = delete;
     PwmCurrent &operator=(const PwmCurrent &) = delete;
@@ -73,12 +92,13 @@ class PwmCurrent final : public CurrentDevice {
 
 class DacCurrent final : public CurrentDevice {
   public:
-    explicit DacCurrent(const CurrentConfig &config) {
+    DacCurrent(const OutputConfig &config, const SystemFolders &folders) {
         const current_dac_options_t options = {config.device.c_str(), config.channel,
                                                config.zero_code,      config.full_scale_code,
-                                               config.full_scale_mA,  kIioRoot};
+                                               config.full_scale_mA,  folders.iio.c_str()};
         linux_error_t error{};
-        self_ = require(current_dac_open(&options, &handle, &error), "current.device", error);
+        self_ =
+            require(current_dac_open(&options, &handle, &error), config.place.key("device"), error);
     }
     DacCurrent(const DacCurrent &) = delete;
     DacCurrent &operator=(const DacCurrent &) = delete;
@@ -91,23 +111,28 @@ class DacCurrent final : public CurrentDevice {
 
 } // namespace
 
-std::unique_ptr<AccelDevice> open_accel(const AccelConfig &config) {
+std::unique_ptr<SensorDevice> open_sensor(const SensorConfig &config,
+                                          const SystemFolders &folders) {
     switch (config.source) {
-    case AccelSource::iio:
-        return std::make_unique<IioAccel>(config);
-    case AccelSource::adxl355:
+    case SensorSource::iio:
+        if (!config.channel.empty()) {
+            return std::make_unique<IioChannel>(config, folders);
+        }
+        return std::make_unique<IioAccel>(config, folders);
+    case SensorSource::adxl355:
         return std::make_unique<Adxl355Accel>(config);
     default:
         return nullptr;
     }
 }
 
-std::unique_ptr<CurrentDevice> open_current(const CurrentConfig &config) {
+std::unique_ptr<CurrentDevice> open_current(const OutputConfig &config,
+                                            const SystemFolders &folders) {
     switch (config.output) {
     case CurrentOutput::pwm:
-        return std::make_unique<PwmCurrent>(config);
+        return std::make_unique<PwmCurrent>(config, folders);
     case CurrentOutput::dac:
-        return std::make_unique<DacCurrent>(config);
+        return std::make_unique<DacCurrent>(config, folders);
     default:
         return nullptr;
     }

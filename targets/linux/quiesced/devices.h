@@ -9,10 +9,10 @@
 
 namespace quiesced {
 
-/// An accelerometer that is read through a handle. The bus is none: its samples are in the node.
-class AccelDevice {
+/// A sensor that is read through a handle. The bus is none: its samples are in the node.
+class SensorDevice {
   public:
-    virtual ~AccelDevice() = default;
+    virtual ~SensorDevice() = default;
     hal_accel_t handle{};
 };
 
@@ -35,8 +35,9 @@ using Line = std::unique_ptr<gpio_line_t, LineCloser>;
 using Watchdog = std::unique_ptr<watchdog_t, WatchdogCloser>;
 
 /// All throw InputError: "KEY: what, and what to do". Null where the source or output is the bus.
-std::unique_ptr<AccelDevice> open_accel(const AccelConfig &config);
-std::unique_ptr<CurrentDevice> open_current(const CurrentConfig &config);
+std::unique_ptr<SensorDevice> open_sensor(const SensorConfig &config, const SystemFolders &folders);
+std::unique_ptr<CurrentDevice> open_current(const OutputConfig &config,
+                                            const SystemFolders &folders);
 /// key: of the line in the configuration, for the message. Outputs start inactive.
 Line open_output(const LineConfig &config, const char *key);
 Line open_input(const LineConfig &config, const char *key);

@@ -26,6 +26,9 @@ struct Snapshot {
     static constexpr std::size_t kFaults = 8;
 
     quiesce_telemetry_t telemetry;
+    std::array<quiesce_sample_t, QUIESCE_SENSORS> sensors; ///< the last ones had
+    std::array<quiesce_driver_t, QUIESCE_DAMPERS> drivers;
+    std::array<quiesce_command_t, QUIESCE_DAMPERS> commands;
     bool is_driver_enabled;
     bool is_enabled;          ///< the operator's enable, from wherever it comes
     bool is_estop;            ///< likewise
@@ -43,8 +46,8 @@ struct Snapshot {
 
 /// Lines and drivers that may vanish.
 struct Peripherals {
-    Replaceable<std::unique_ptr<AccelDevice>> accel;
-    Replaceable<std::unique_ptr<CurrentDevice>> current;
+    std::array<Replaceable<std::unique_ptr<SensorDevice>>, QUIESCE_SENSORS> sensors;
+    std::array<Replaceable<std::unique_ptr<CurrentDevice>>, QUIESCE_DAMPERS> outputs;
     Replaceable<Line> enable_output;
     Replaceable<Line> fault_output;
     Replaceable<Line> estop_input;

@@ -29,8 +29,14 @@ ReadConfig require_config_text(const std::string &file) {
     for (int i = 0; i < kReadings; ++i) {
         std::string text = text_of(file);
         Config config = require_config(file, Needs::peripherals);
-        if (text_of(file) == text) {
-            return {std::move(config), std::move(text)};
+        const std::string board_file = config.board ? config.board->file : "";
+        std::string board_text = config.board ? text_of(board_file) : "";
+        // The board was read before its text: once more, so that both are of one state.
+        const Config again = require_config(file, Needs::peripherals);
+        const bool is_same_board =
+            !config.board || (again.board && text_of(board_file) == board_text);
+        if (text_of(file) == text && is_same_board) {
+            return {again, std::move(text), std::move(board_text)};
         }
     }
     throw quiesce::InputError(file + ": changes while it is read; try again");
@@ -43,10 +49,15 @@ std::string fallback_state_folder() {
     return folder.rfind('/', 0) == 0 ? folder : StateConfig().folder;
 }
 
-std::string KeptConfig::keep(const std::string &text, const quiesce_params_t &params) {
-    // Parameters of an earlier configuration do not belong to this one.
+std::string KeptConfig::keep(const std::string &text, const std::string &board_text,
+                             const quiesce_params_t &params) {
+    // Parameters and board of an earlier configuration do not belong to this one.
     (void)unlink(params_file().c_str());
-    std::string error = replace_file(config_file(), text);
+    (void)unlink(board_file().c_str());
+    std::string error = board_text.empty() ? "" : replace_file(board_file(), board_text);
+    if (error.empty()) {
+        error = replace_file(config_file(), text);
+    }
     if (!error.empty()) {
         (void)unlink(config_file().c_str());
         return error;
@@ -68,7 +79,8 @@ std::optional<ConfigReading> KeptConfig::load() const {
     if (access(config_file().c_str(), F_OK) != 0) {
         return std::nullopt;
     }
-    return read_config(config_file(), Needs::peripherals);
+    const bool has_board = access(board_file().c_str(), F_OK) == 0;
+    return read_config(config_file(), Needs::peripherals, has_board ? board_file() : "");
 }
 
 std::optional<quiesce_params_t> KeptConfig::load_params() const {

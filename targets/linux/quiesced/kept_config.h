@@ -10,13 +10,14 @@
 
 namespace quiesced {
 
-/// A configuration and the text of its file.
+/// A configuration and the texts of its files.
 struct ReadConfig {
     Config config;
     std::string text;
+    std::string board_text; ///< "": it has no board
 };
 
-/// As require_config; the text is the one that was read.
+/// As require_config; the texts are those that were read.
 ReadConfig require_config_text(const std::string &file);
 
 /// Where the state is when the configuration cannot be read: systemd's STATE_DIRECTORY, or the
@@ -28,9 +29,10 @@ class KeptConfig {
   public:
     explicit KeptConfig(const std::string &folder) : folder_(folder) {}
 
-    /// Keeps the text of the file and the parameters in effect. Returns why it failed, empty: kept;
-    /// where it failed an earlier one is not kept either.
-    std::string keep(const std::string &text, const quiesce_params_t &params);
+    /// Keeps the texts of the files (board_text "": there is none) and the parameters in effect.
+    /// Returns why it failed, empty: kept; where it failed an earlier one is not kept either.
+    std::string keep(const std::string &text, const std::string &board_text,
+                     const quiesce_params_t &params);
     /// Keeps other parameters; likewise.
     std::string keep_params(const quiesce_params_t &params);
 
@@ -40,6 +42,7 @@ class KeptConfig {
     std::optional<quiesce_params_t> load_params() const;
 
     std::string config_file() const { return folder_ + "/running.toml"; }
+    std::string board_file() const { return folder_ + "/running.board.toml"; }
     std::string params_file() const { return folder_ + "/running.bin"; }
 
   private:

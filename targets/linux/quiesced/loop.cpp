@@ -1,5 +1,8 @@
 #include "loop.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "board_fit.h"
 #include "clock.h"
 #include "frame_sender.h"
@@ -23,30 +26,51 @@ Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &excha
            watchdog_t *watchdog)
     : config_(config), exchange_(exchange), log_(exchange.log), bus_(bus), latch_(exchange),
       board_(config, exchange, bus, watchdog), changes_(exchange.log) {
-    const bool is_accepted =
-        node_init(&node_, &params, {config.enable_from, config.accel.source == AccelSource::can});
-    axis_ = is_accepted ? static_cast<hal_axis_t>(params.accel_axis) : HAL_AXIS_Z;
-    write_command();
+    use_axes(
+        node_init(&node_, config.wiring(), &params, {config.enable_from, config.sensors_on_bus()}));
+    write_commands();
     node_.store = store;
     node_.store_context = this;
     node_.store_is_slow = true;
 }
 
+/// As the board says, or the parameters, unless they are refused.
+void Loop::use_axes(bool is_accepted) {
+    const quiesce_board_t *wiring = config_.wiring();
+    axes_.fill(HAL_AXIS_Z);
+    if (wiring == nullptr && is_accepted) {
+        axes_[0] = static_cast<hal_axis_t>(node_.params.accel_axis);
+    }
+    for (std::size_t i = 0; wiring != nullptr && i < config_.sensors.size(); ++i) {
+        axes_[i] = static_cast<hal_axis_t>(wiring->sensor[i].axis);
+    }
+}
+
 /// A fault of an earlier run keeps the driver off, whatever the core says.
-void Loop::write_current(std::int32_t current_mA, bool enable) {
-    board_.write_current(current_mA, enable && !latch_.is_holding());
+void Loop::write_current(std::size_t damper, std::int32_t current_mA, bool enable) {
+    board_.write_current(damper, current_mA, enable && !latch_.is_holding());
 }
 
-void Loop::write_command() {
-    write_current(node_.out.damper[0].current_cmd_mA, node_.out.damper[0].driver_enable);
+void Loop::write_commands() {
+    for (std::uint32_t i = 0; i < node_dampers(&node_); ++i) {
+        write_current(i, node_.out.damper[i].current_cmd_mA, node_.out.damper[i].driver_enable);
+    }
 }
 
-/// The driver has its safe current while the controller starts.
+/// may_enable: a driver that is on stays on.
+void Loop::write_safe(bool may_enable, const quiesce_params_t &params) {
+    for (std::uint32_t i = 0; i < node_dampers(&node_); ++i) {
+        write_current(i, safe_current_mA(node_.board, &params, i),
+                      may_enable && node_.out.damper[i].driver_enable);
+    }
+}
+
+/// The drivers have their safe currents while the controller starts.
 void Loop::restart(const quiesce_params_t &params) {
-    write_current(quiesce_params_safe_current_mA(&params), node_.out.damper[0].driver_enable);
+    write_safe(true, params);
     node_restart(&node_, &params);
-    axis_ = static_cast<hal_axis_t>(node_.params.accel_axis);
-    write_command();
+    use_axes(true);
+    write_commands();
 }
 
 /// Called every tick until it is answered.
@@ -130,6 +154,7 @@ void Loop::after_restart() {
     if (rate_Hz != rate_Hz_) {
         rate_Hz_ = rate_Hz;
         source_.change_rate(rate_Hz);
+        board_.use_rate(rate_Hz);
     }
     if (has_learnt_) {
         use_learnt(learnt_);
@@ -147,8 +172,12 @@ void Loop::receive() {
 }
 
 bool Loop::is_safe_command() const {
-    return node_.out.damper[0].current_cmd_mA == quiesce_params_safe_current_mA(&node_.params) &&
-           !node_.out.damper[0].driver_enable;
+    bool are_all = true;
+    for (std::uint32_t i = 0; i < node_dampers(&node_); ++i) {
+        const quiesce_command_t &command = node_.out.damper[i];
+        are_all = are_all && command.current_cmd_mA == node_.safe_mA[i] && !command.driver_enable;
+    }
+    return are_all;
 }
 
 void Loop::send() {
@@ -161,6 +190,9 @@ void Loop::send() {
 Snapshot Loop::snapshot() const {
     Snapshot snapshot{};
     snapshot.telemetry = node_.out.telemetry;
+    std::copy(std::begin(node_.in.sensor), std::end(node_.in.sensor), snapshot.sensors.begin());
+    std::copy(std::begin(node_.in.driver), std::end(node_.in.driver), snapshot.drivers.begin());
+    std::copy(std::begin(node_.out.damper), std::end(node_.out.damper), snapshot.commands.begin());
     snapshot.is_driver_enabled = node_.out.damper[0].driver_enable;
     snapshot.is_enabled = node_.in.enable;
     snapshot.is_estop = node_.in.estop;
@@ -220,10 +252,10 @@ void Loop::tick(std::uint32_t elapsed) {
     receive();
     answer_store();
     prepare_apply();
-    node_inputs_t inputs = board_.read(axis_, elapsed, source_.timing());
+    node_inputs_t inputs = board_.read(axes_, elapsed, source_.timing());
     latch_.before_tick(inputs);
     node_step(&node_, &inputs);
-    write_command();
+    write_commands();
     if (const quiesce_params_t *params = node_task(&node_)) {
         restart(*params);
     }
@@ -239,6 +271,7 @@ void Loop::tick(std::uint32_t elapsed) {
 void Loop::run(std::uint64_t ticks) {
     rate_Hz_ = static_cast<std::uint32_t>(node_.params.tick_rate_Hz);
     restarts_ = node_.restarts;
+    board_.use_rate(rate_Hz_);
     source_.start(rate_Hz_, config_.gpio.data_ready_input.has_value());
     std::uint64_t done = 0;
     while (!stop_is_requested() && (ticks == 0 || done < ticks)) {
@@ -257,24 +290,28 @@ void Loop::run(std::uint64_t ticks) {
 }
 
 /// No tick has to be kept any more: a full queue is waited for.
-bool Loop::say_farewell(const can_frame_t &frame) {
-    for (int i = 0; i < kFarewellPatience_ms; ++i) {
-        if (can_bus_send(bus_, &frame)) {
+bool Loop::say_farewell() {
+    can_frame_t frames[QUIESCE_DAMPERS];
+    const std::uint32_t count = node_farewell(&node_, frames);
+    std::uint32_t sent = 0;
+    for (int i = 0; i < kFarewellPatience_ms && bus_ != nullptr; ++i) {
+        while (sent < count && can_bus_send(bus_, &frames[sent])) {
+            ++sent;
+        }
+        if (sent == count) {
             return true;
         }
         board_.look_after_bus();
         sleep_ms(1);
     }
-    return false;
+    return bus_ == nullptr;
 }
 
 void Loop::leave() {
-    can_frame_t frame{};
     for (int i = 0; i < kFarewells; ++i) {
-        write_current(quiesce_params_safe_current_mA(&node_.params), false);
-        node_farewell(&node_, &frame);
+        write_safe(false, node_.params);
         board_.release_enable_line();
-        if (bus_ != nullptr && !say_farewell(frame)) {
+        if (!say_farewell()) {
             log_.log(LogLevel::error, "CAN: the farewell frame was not taken");
             break;
         }

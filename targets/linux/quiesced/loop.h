@@ -15,8 +15,8 @@ namespace quiesced {
 
 class Loop {
   public:
-    /// Starts the controller from rest: the driver gets the safe current. Where
-    /// exchange.latched_fault has a fault, the driver stays off until it is acknowledged. exchange
+    /// Starts the controller from rest: the drivers get their safe currents. Where
+    /// exchange.latched_fault has a fault, they stay off until it is acknowledged. exchange
     /// and its peripherals, bus and watchdog (null: none) must outlive the loop.
     Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange, can_bus_t *bus,
          watchdog_t *watchdog);
@@ -33,8 +33,10 @@ class Loop {
   private:
     void tick(std::uint32_t elapsed);
     void receive();
-    void write_current(std::int32_t current_mA, bool enable);
-    void write_command();
+    void write_current(std::size_t damper, std::int32_t current_mA, bool enable);
+    void write_commands();
+    void write_safe(bool may_enable, const quiesce_params_t &params);
+    void use_axes(bool is_accepted);
     void restart(const quiesce_params_t &params);
     void take_new_params();
     void use_params(const quiesce_params_t &params);
@@ -49,7 +51,7 @@ class Loop {
     void put_learnt();
     void put_params();
     void leave();
-    bool say_farewell(const can_frame_t &frame);
+    bool say_farewell();
     void put_last();
 
     bool is_safe_command() const;
@@ -63,7 +65,7 @@ class Loop {
     can_bus_t *bus_;
 
     node_t node_{};
-    hal_axis_t axis_ = HAL_AXIS_Z;
+    Axes axes_{};
     FaultLatch latch_;
     Board board_;
     TickSource source_;

@@ -1,5 +1,6 @@
 #include "make_safe.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "bus.h"
@@ -44,40 +45,54 @@ void release_line(const std::optional<LineConfig> &line, const char *key) {
     }
 }
 
-void release_driver(const CurrentConfig &config, std::int32_t safe_current_mA) {
-    const std::unique_ptr<CurrentDevice> device = open_current(config);
+void release_driver(const OutputConfig &config, const SystemFolders &folders,
+                    std::int32_t safe_mA) {
+    const std::unique_ptr<CurrentDevice> device = open_current(config, folders);
     if (device != nullptr) {
-        hal_current_write(&device->handle, safe_current_mA, false);
+        hal_current_write(&device->handle, safe_mA, false);
         if (device->failures() > 0) {
-            throw quiesce::InputError("current: the output cannot be written");
+            throw quiesce::InputError(config.place.title + ": the output cannot be written");
         }
     }
 }
 
-void say_farewell(const CanConfig &config, const quiesce_params_t &params,
-                  std::int32_t safe_current_mA) {
-    const Bus bus = open_bus(config, BusUse::controller);
+void say_farewell(const Config &config, const quiesce_params_t &params) {
+    const Bus bus = open_bus(*config.can, BusUse::controller);
     const auto node = std::make_unique<can_node_t>();
-    can_node_init(node.get(), &params);
+    can_node_init(node.get(), config.wiring(), &params);
     for (int i = 0; i < kFarewells; ++i) {
-        can_frame_t frame{};
-        can_node_farewell(node.get(), safe_current_mA, &frame);
-        if (!send_patiently(bus.get(), frame, kPatience_ms)) {
-            throw quiesce::InputError("can.interface: " + config.interface +
-                                      " does not take the farewell frame; is the bus up?");
+        for (std::uint32_t damper = 0; damper < config.outputs.size(); ++damper) {
+            can_frame_t frame{};
+            can_node_farewell(node.get(), damper, safe_current_mA(config.wiring(), &params, damper),
+                              &frame);
+            if (!send_patiently(bus.get(), frame, kPatience_ms)) {
+                throw quiesce::InputError("can.interface: " + config.can->interface +
+                                          " does not take the farewell frame; is the bus up?");
+            }
         }
         sleep_ms(kPause_ms);
     }
 }
 
+/// One that cannot be made safe does not keep the others from it.
+bool release_drivers(const Config &config, const quiesce_params_t &params) {
+    bool is_safe = true;
+    for (std::uint32_t damper = 0; damper < config.outputs.size(); ++damper) {
+        is_safe &= do_step([&] {
+            release_driver(config.outputs[damper], config.folders,
+                           safe_current_mA(config.wiring(), &params, damper));
+        });
+    }
+    return is_safe;
+}
+
 bool release_outputs(const Config &config, const quiesce_params_t &params) {
-    const std::int32_t safe_current_mA = quiesce_params_safe_current_mA(&params);
     bool is_safe = true;
     is_safe &= do_step([&] { release_line(config.gpio.enable_output, "gpio.enable_output"); });
-    is_safe &= do_step([&] { release_driver(config.current, safe_current_mA); });
+    is_safe &= release_drivers(config, params);
     is_safe &= do_step([&] { release_line(config.gpio.fault_output, "gpio.fault_output"); });
     if (config.can) {
-        is_safe &= do_step([&] { say_farewell(*config.can, params, safe_current_mA); });
+        is_safe &= do_step([&] { say_farewell(config, params); });
     }
     return is_safe;
 }
@@ -121,21 +136,28 @@ bool release_kept(const KeptConfig &store, const ConfigReading &kept,
 Config other_outputs(const Config &config, const Config &other) {
     Config left = config;
     drop_lines(other.gpio, left.gpio);
-    const CurrentConfig &mine = config.current;
-    const CurrentConfig &theirs = other.current;
-    if (mine.output == theirs.output && mine.device == theirs.device &&
-        mine.channel == theirs.channel) {
-        left.current.output = CurrentOutput::can; // there is nothing to write
+    for (OutputConfig &mine : left.outputs) {
+        const bool has_it = std::any_of(
+            other.outputs.begin(), other.outputs.end(), [&mine](const OutputConfig &theirs) {
+                return mine.output == theirs.output && mine.device == theirs.device &&
+                       mine.channel == theirs.channel;
+            });
+        if (has_it) {
+            mine.output = CurrentOutput::can; // there is nothing to write
+        }
     }
-    if (config.can && other.can && config.can->interface == other.can->interface) {
+    // The other has told its own dampers only.
+    if (config.can && other.can && config.can->interface == other.can->interface &&
+        config.outputs.size() <= other.outputs.size()) {
         left.can.reset();
     }
     return left;
 }
 
-int make_safe(const std::string &config_file) {
+int make_safe(const std::string &config_file, const SystemFolders &folders) {
     install_signals(); // a SIGTERM does not stop it half-way
-    const ConfigReading today = read_config(config_file, Needs::peripherals);
+    ConfigReading today = read_config(config_file, Needs::peripherals);
+    today.config.folders = folders;
     complain_about(today);
     const std::string folder = today.is_toml ? today.config.state.folder : fallback_state_folder();
     if (const long pid = InstanceLock::holder(folder); pid != 0) {
@@ -143,7 +165,10 @@ int make_safe(const std::string &config_file) {
         return 1;
     }
     const KeptConfig store(folder);
-    const auto kept = store.load();
+    auto kept = store.load();
+    if (kept) {
+        kept->config.folders = folders;
+    }
     bool is_safe = kept ? release_kept(store, *kept, folder) : today.problems.empty();
     const Config left = kept ? other_outputs(today.config, kept->config) : today.config;
     is_safe &= release_outputs(left, params_of(today.config, folder));

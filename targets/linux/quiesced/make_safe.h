@@ -10,7 +10,8 @@
 namespace quiesced {
 
 /// The outputs of a configuration that another one does not have. An output that both have, with
-/// whatever settings, is left out: by the other's it is safe, by these it may not be.
+/// whatever settings and for whatever damper, is left out: by the other's it is safe, by these it
+/// may not be.
 Config other_outputs(const Config &config, const Config &other);
 
 /// First what the last controller ran with, as it has kept it, then other outputs that the file has
@@ -18,7 +19,7 @@ Config other_outputs(const Config &config, const Config &other);
 /// for each failure; of a file that has mistakes it uses what can be read. Returns 0, or 1 where
 /// something failed (mistakes in the file count where nothing is kept) or a controller still runs,
 /// which it leaves alone.
-int make_safe(const std::string &config_file);
+int make_safe(const std::string &config_file, const SystemFolders &folders = {});
 
 } // namespace quiesced
 

@@ -51,6 +51,16 @@ const char *bus_state_name(can_bus_state_t state) {
     return name_in(names, state);
 }
 
+const char *source_name(SensorSource source) {
+    constexpr std::array names = {"can", "iio", "adxl355"};
+    return names[static_cast<std::size_t>(source)];
+}
+
+const char *output_name(CurrentOutput output) {
+    constexpr std::array names = {"can", "pwm", "dac"};
+    return names[static_cast<std::size_t>(output)];
+}
+
 const char *version() {
     return QUIESCED_VERSION(QUIESCE_VERSION_MAJOR, QUIESCE_VERSION_MINOR, QUIESCE_VERSION_PATCH);
 }

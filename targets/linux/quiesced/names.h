@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "config.h"
 #include "firmware.h"
 
 namespace quiesced {
@@ -12,6 +13,10 @@ namespace quiesced {
 const char *state_name(std::uint32_t state);
 const char *fault_name(std::uint32_t fault);
 const char *bus_state_name(can_bus_state_t state);
+
+/// As the configuration has them.
+const char *source_name(SensorSource source);
+const char *output_name(CurrentOutput output);
 
 /// "0.1.0"
 const char *version();

@@ -1,5 +1,7 @@
 #include "parameter_section.h"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 
 namespace quiesced {
@@ -13,6 +15,17 @@ std::optional<std::uint32_t> index_of(const std::string &name) {
         }
     }
     return std::nullopt;
+}
+
+/// What quiesce_init_board takes from the board.
+bool is_boards(const std::string &name) {
+    static const std::array names = {
+        "accel_scale_nm_s2",  "accel_offset_counts",     "accel_polarity",
+        "accel_axis",         "accel_full_scale_counts", "sensor_max_age_ticks",
+        "sensor_stuck_ticks", "sensor_min_noise_counts", "safe_current_mA",
+        "current_check",      "current_lag_ms",
+    };
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 std::vector<std::string> labels_of(const quiesce_param_info_t &info) {
@@ -62,7 +75,7 @@ std::int32_t read_value(TomlTable &table, const std::string &key,
 
 } // namespace
 
-quiesce_params_t read_parameters(Section &section) {
+quiesce_params_t read_parameters(Section &section, bool has_board) {
     quiesce_params_t params{};
     quiesce_params_default(&params);
     TomlTable &table = section.table();
@@ -73,6 +86,10 @@ quiesce_params_t read_parameters(Section &section) {
         if (!index) {
             section.wrong(key.c_str(),
                           "no such parameter; docs/reference/parameters.md lists them");
+            continue;
+        }
+        if (has_board && is_boards(key)) {
+            section.wrong(key.c_str(), "comes from the board file");
             continue;
         }
         attempt(section.problems(), [&] {

@@ -7,8 +7,9 @@
 
 namespace quiesced {
 
-/// Defaults, then what the section says; each value and all of them together are checked.
-quiesce_params_t read_parameters(Section &section);
+/// Defaults, then what the section says; each value and all of them together are checked. With a
+/// board, parameters that it takes the place of are refused.
+quiesce_params_t read_parameters(Section &section, bool has_board);
 
 } // namespace quiesced
 

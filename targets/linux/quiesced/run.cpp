@@ -50,9 +50,13 @@ void open_lines(const GpioConfig &gpio, Peripherals &devices) {
 }
 
 void open_peripherals(const Config &config, Peripherals &devices) {
-    devices.current.start_with(open_current(config.current));
+    for (std::size_t i = 0; i < config.outputs.size(); ++i) {
+        devices.outputs[i].start_with(open_current(config.outputs[i], config.folders));
+    }
     open_lines(config.gpio, devices);
-    devices.accel.start_with(open_accel(config.accel));
+    for (std::size_t i = 0; i < config.sensors.size(); ++i) {
+        devices.sensors[i].start_with(open_sensor(config.sensors[i], config.folders));
+    }
 }
 
 void become_realtime(const LoopConfig &loop) {
@@ -79,7 +83,7 @@ void log_note(const std::string &note, LogRing &log) {
 /// Before anything is switched on.
 void keep_config(const ReadConfig &read, const quiesce_params_t &params, LogRing &log) {
     KeptConfig kept(read.config.state.folder);
-    const std::string error = kept.keep(read.text, params);
+    const std::string error = kept.keep(read.text, read.board_text, params);
     if (!error.empty()) {
         log_note("--make-safe will have to use the configuration's file as it is then: " + error,
                  log);

@@ -71,6 +71,16 @@ class Section {
     Problems &problems_;
 };
 
+/// Reads [key] where it is there; says that it is missing where it is required.
+template <typename Read>
+void with_section(Section &root, const char *key, bool is_required, Read &&read) {
+    root.read(key, is_required, [&] {
+        Section section(root.table().table(key), root.problems());
+        read(section);
+        section.end();
+    });
+}
+
 } // namespace quiesced
 
 #endif

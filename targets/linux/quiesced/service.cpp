@@ -201,7 +201,8 @@ void Service::store_learnt() {
 void Service::write_files() {
     store_learnt();
     if (exchange_.snapshot.take(last_)) {
-        status_trouble_.note(replace_file(store_.status_file(), status_json(last_)), sink_);
+        status_trouble_.note(replace_file(store_.status_file(), status_json(config_, last_)),
+                             sink_);
         manager_.send("STATUS=" + status_line(last_));
     }
 }
@@ -214,8 +215,16 @@ void Service::look_after_devices() {
             sink_.write(LogLevel::warning, line);
         }
     };
-    say(devices.accel.maintain("accelerometer", [&] { return open_accel(config_.accel); }));
-    say(devices.current.maintain("current output", [&] { return open_current(config_.current); }));
+    for (std::size_t i = 0; i < config_.sensors.size(); ++i) {
+        const SensorConfig &sensor = config_.sensors[i];
+        say(devices.sensors[i].maintain(sensor.place.title.c_str(),
+                                        [&] { return open_sensor(sensor, config_.folders); }));
+    }
+    for (std::size_t i = 0; i < config_.outputs.size(); ++i) {
+        const OutputConfig &output = config_.outputs[i];
+        say(devices.outputs[i].maintain(output.place.title.c_str(),
+                                        [&] { return open_current(output, config_.folders); }));
+    }
     const auto output = [&](Replaceable<Line> &line, const std::optional<LineConfig> &config,
                             const char *name) {
         say(line.maintain(name, [&] { return open_output(*config, name); }));

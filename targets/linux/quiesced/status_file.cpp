@@ -20,6 +20,16 @@ const char *truth(bool value) {
     return value ? "true" : "false";
 }
 
+/// On the board; without one by its section.
+const std::string &name_of(const Place &place) {
+    return place.name.empty() ? place.section : place.name;
+}
+
+/// Names of boards need no escapes.
+std::string quoted(const std::string &name) {
+    return "\"" + name + "\"";
+}
+
 void put_control(std::ostream &out, const Snapshot &snapshot) {
     const quiesce_telemetry_t &t = snapshot.telemetry;
     out << "  \"tick\": " << t.tick << ",\n"
@@ -37,6 +47,40 @@ void put_control(std::ostream &out, const Snapshot &snapshot) {
         << "  \"displacement_amp_nm\": " << t.displacement_amp_nm << ",\n"
         << "  \"bad_sample_count\": " << t.bad_sample_count << ",\n"
         << "  \"param_hash\": " << snapshot.param_hash << ",\n";
+}
+
+void put_sensors(std::ostream &out, const Config &config, const Snapshot &snapshot) {
+    out << "  \"sensors\": [";
+    for (std::size_t i = 0; i < config.sensors.size(); ++i) {
+        const SensorConfig &sensor = config.sensors[i];
+        const quiesce_sample_t &sample = snapshot.sensors[i];
+        out << (i == 0 ? "\n" : ",\n") << "    {\"name\": " << quoted(name_of(sensor.place))
+            << ", \"source\": \"" << source_name(sensor.source)
+            << "\", \"counts\": " << sample.counts << ", \"is_fresh\": " << truth(sample.is_fresh)
+            << "}";
+    }
+    out << "\n  ],\n";
+}
+
+void put_dampers(std::ostream &out, const Config &config, const Snapshot &snapshot) {
+    out << "  \"dampers\": [";
+    for (std::size_t i = 0; i < config.outputs.size(); ++i) {
+        const OutputConfig &output = config.outputs[i];
+        const quiesce_driver_t &driver = snapshot.drivers[i];
+        const quiesce_command_t &command = snapshot.commands[i];
+        out << (i == 0 ? "\n" : ",\n") << "    {\"name\": " << quoted(name_of(output.place))
+            << ", \"output\": \"" << output_name(output.output)
+            << "\", \"current_cmd_mA\": " << command.current_cmd_mA
+            << ", \"is_driver_enabled\": " << truth(command.driver_enable)
+            << ", \"current_meas_mA\": ";
+        if (driver.is_measured) {
+            out << driver.current_mA;
+        } else {
+            out << "null";
+        }
+        out << ", \"has_failed\": " << truth(driver.has_failed) << "}";
+    }
+    out << "\n  ],\n";
 }
 
 void put_faults(std::ostream &out, const Snapshot &snapshot) {
@@ -79,12 +123,14 @@ void put_bus(std::ostream &out, const Snapshot &snapshot) {
 
 } // namespace
 
-std::string status_json(const Snapshot &snapshot) {
+std::string status_json(const Config &config, const Snapshot &snapshot) {
     std::ostringstream out;
     out << "{\n  \"version\": \"" << version() << "\",\n"
         << "  \"pid\": " << getpid() << ",\n"
         << "  \"time\": \"" << iso_time(realtime_ns()) << "\",\n";
     put_control(out, snapshot);
+    put_sensors(out, config, snapshot);
+    put_dampers(out, config, snapshot);
     put_faults(out, snapshot);
     put_loop(out, snapshot);
     put_bus(out, snapshot);

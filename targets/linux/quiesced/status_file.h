@@ -8,7 +8,7 @@
 
 namespace quiesced {
 
-std::string status_json(const Snapshot &snapshot);
+std::string status_json(const Config &config, const Snapshot &snapshot);
 
 /// Replaces a file as a whole (write aside, rename). It is not synced to the disk: after a power
 /// failure it may be an old one, or gone. Returns why it failed; empty: written.

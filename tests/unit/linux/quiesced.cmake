@@ -8,6 +8,7 @@ include(GoogleTest)
 add_executable(
   test_quiesced
   quiesced/test_board_fit.cpp
+  quiesced/test_bus_load.cpp
   quiesced/test_config.cpp
   quiesced/test_edge_rate.cpp
   quiesced/test_fault.cpp
@@ -18,7 +19,10 @@ add_executable(
   quiesced/test_notify.cpp
   quiesced/test_options.cpp
   quiesced/test_state.cpp
-  quiesced/test_tick_source.cpp)
+  quiesced/test_tick_source.cpp
+  quiesced/test_wiring.cpp
+  quiesced/test_wiring_safe.cpp
+  quiesced/two_storeys.cpp)
 target_link_libraries(test_quiesced PRIVATE can_make quiesced_core quiesce_warnings GTest::gtest_main)
 target_include_directories(test_quiesced PRIVATE quiesced)
 target_compile_definitions(

@@ -185,6 +185,30 @@ static void put_scan(int32_t x, int32_t y, int32_t z) {
     TEST_ASSERT_EQUAL_INT(sizeof scan, write(fifo, scan, sizeof scan));
 }
 
+static void test_channel_is_read_by_itself_whatever_it_measures(void) {
+    const sensor_iio_options_t options = {"adxl355", "voltage0", sysfs_root};
+    int32_t counts = 77;
+    scratch_write(DEVICE "/in_voltage0_raw", "-4321\n");
+    sensor_iio_t *const sensor = sensor_iio_open(&options, &accel, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(sensor, error.text);
+    TEST_ASSERT_TRUE(hal_accel_read(&accel, HAL_AXIS_Z, &counts));
+    TEST_ASSERT_EQUAL_INT32(-4321, counts);
+    scratch_write(DEVICE "/in_voltage0_raw", "2147483648\n");
+    TEST_ASSERT_FALSE(hal_accel_read(&accel, HAL_AXIS_X, &counts));
+    TEST_ASSERT_EQUAL_INT32(-4321, counts);
+    TEST_ASSERT_EQUAL_UINT32(1, sensor_iio_failures(sensor));
+    sensor_iio_close(sensor);
+}
+
+static void test_channel_that_is_not_there_is_one_line(void) {
+    const sensor_iio_options_t no_channel = {"adxl355", "voltage9", sysfs_root};
+    const sensor_iio_options_t no_device = {"adc", "voltage0", sysfs_root};
+    TEST_ASSERT_NULL(sensor_iio_open(&no_channel, &accel, &error));
+    assert_one_line(&error, "in_voltage9_raw");
+    TEST_ASSERT_NULL(sensor_iio_open(&no_device, &accel, &error));
+    assert_one_line(&error, "adc");
+}
+
 static void test_buffer_is_set_up_and_gives_the_newest_scan(void) {
     int32_t counts = 0;
     make_buffered_device();
@@ -368,6 +392,8 @@ int main(void) {
     RUN_TEST(test_sensor_of_one_axis_answers_on_all);
     RUN_TEST(test_contents_that_are_no_number_are_counted_and_no_sample);
     RUN_TEST(test_device_that_is_not_there_is_one_line);
+    RUN_TEST(test_channel_is_read_by_itself_whatever_it_measures);
+    RUN_TEST(test_channel_that_is_not_there_is_one_line);
     RUN_TEST(test_buffer_is_set_up_and_gives_the_newest_scan);
     RUN_TEST(test_one_read_of_a_flood_is_bounded);
     RUN_TEST(test_part_of_a_scan_and_a_lost_device_are_counted);

@@ -93,7 +93,7 @@ class BoardFit : public testing::Test {
 };
 
 TEST_F(BoardFit, the_configuration_fits_itself) {
-    EXPECT_EQ(config_.accel.rate_Hz, 1000U);
+    EXPECT_EQ(config_.sensors.front().rate_Hz, 1000U);
     EXPECT_FALSE(find_misfit(config_, config_.params));
 }
 
@@ -116,7 +116,7 @@ TEST_F(BoardFit, the_current_must_be_within_the_output) {
     EXPECT_EQ(misfit->index, index_of("max_current_mA"));
     EXPECT_STREQ(misfit->reason.data(), "current.full_scale_mA is 5000, max_current_mA 5001; it "
                                         "must not be more than the output can give");
-    config_.current.output = CurrentOutput::can;
+    config_.outputs.front().output = CurrentOutput::can;
     EXPECT_FALSE(find_misfit(config_, config_.params));
 }
 
@@ -161,7 +161,7 @@ TEST_F(BoardFit, apply_refuses_what_the_board_cannot_do) {
     };
     for (const Staged &row : rows) {
         const auto exchange = std::make_unique<Exchange>();
-        exchange->peripherals.current.start_with(std::make_unique<WillingDriver>());
+        exchange->peripherals.outputs[0].start_with(std::make_unique<WillingDriver>());
         const Bus bus = open_bus(*config_.can, BusUse::controller);
         const auto loop =
             std::make_unique<Loop>(config_, config_.params, *exchange, bus.get(), nullptr);

@@ -68,11 +68,11 @@ TEST(Config, every_key_is_read) {
     const Config &config = reading.config;
     EXPECT_EQ(config.can->serial_baud, 1000000U);
     EXPECT_EQ(config.can->bitrate, 500000U);
-    EXPECT_EQ(config.accel.source, AccelSource::adxl355);
-    EXPECT_EQ(config.accel.range_g, 8U);
-    EXPECT_EQ(config.accel.rate_Hz, 4000U);
-    EXPECT_EQ(config.current.output, CurrentOutput::dac);
-    EXPECT_EQ(config.current.full_scale_code, 4095);
+    EXPECT_EQ(config.sensors.front().source, SensorSource::adxl355);
+    EXPECT_EQ(config.sensors.front().range_g, 8U);
+    EXPECT_EQ(config.sensors.front().rate_Hz, 4000U);
+    EXPECT_EQ(config.outputs.front().output, CurrentOutput::dac);
+    EXPECT_EQ(config.outputs.front().full_scale_code, 4095);
     const gpio_spec_t spec = config.gpio.estop_input->spec();
     EXPECT_STREQ(spec.line, "ESTOP");
     EXPECT_TRUE(spec.is_active_low);
@@ -96,17 +96,17 @@ TEST(Config, iio_and_pwm_are_read) {
              "period_ns = 50000\nfull_scale_mA = 5000\nis_inverted = true\n");
     ASSERT_TRUE(reading.problems.empty()) << reading.problems.front();
     EXPECT_FALSE(reading.config.can); // nothing needs a bus
-    EXPECT_EQ(reading.config.accel.trigger, "t0");
-    EXPECT_FALSE(reading.config.accel.use_buffer);
-    EXPECT_EQ(reading.config.current.device, "pwmchip0");
-    EXPECT_TRUE(reading.config.current.is_inverted);
+    EXPECT_EQ(reading.config.sensors.front().trigger, "t0");
+    EXPECT_FALSE(reading.config.sensors.front().use_buffer);
+    EXPECT_EQ(reading.config.outputs.front().device, "pwmchip0");
+    EXPECT_TRUE(reading.config.outputs.front().is_inverted);
 }
 
-AccelConfig read_accel(const std::string &accel, const std::string &more) {
+SensorConfig read_accel(const std::string &accel, const std::string &more) {
     const ConfigReading reading =
         read("[accel]\nsource = \"adxl355\"\ndevice = \"d\"\n" + accel + kCan + kCurrent + more);
     EXPECT_TRUE(reading.problems.empty()) << reading.problems.front();
-    return reading.config.accel;
+    return reading.config.sensors.front();
 }
 
 TEST(Config, the_sensor_is_by_default_as_fast_as_the_ticks_that_it_starts) {
@@ -217,8 +217,10 @@ const Malformed kTables[] = {
      "q.toml:3: can.fd: an SLCAN adapter has no CAN FD"},
     {"socket_baud", kCan + "serial_baud = 9600\n" + kAccel + kCurrent,
      "q.toml:3: can.serial_baud: only for an SLCAN adapter"},
-    {"socket_bitrate", kCan + "bitrate = 500000\n" + kAccel + kCurrent,
-     "q.toml:3: can.bitrate: only for an SLCAN adapter"},
+    {"classic_data_bitrate", kCan + "data_bitrate = 500000\n" + kAccel + kCurrent,
+     "q.toml:3: can.data_bitrate: only with fd = true"},
+    {"full_bus", kCan + "bitrate = 250000\n" + kAccel + kCurrent,
+     "q.toml:2: can.interface: the bus would be 109.3 % full at 250000 bit/s (demands 38.0, "},
     {"restart", kCan + "restart_ms = 0\n" + kAccel + kCurrent, "q.toml:3: can.restart_ms: expect"},
     {"source", kCan + "[accel]\nsource = \"usb\"\n" + kCurrent,
      "q.toml:4: accel.source: expected one of: can, iio, adxl355"},

@@ -52,7 +52,7 @@ class Rig {
         latch = std::make_unique<FaultLatch>(*exchange);
         quiesce_params_t params{};
         quiesce_params_default(&params);
-        (void)node_init(node.get(), &params, {NODE_ENABLE_BOARD, false});
+        (void)node_init(node.get(), nullptr, &params, {NODE_ENABLE_BOARD, 0});
     }
 
     std::uint32_t tick(bool is_pressed, bool is_reset) {
@@ -61,8 +61,7 @@ class Rig {
         inputs.estop = is_pressed;
         inputs.fault_reset = is_reset;
         inputs.ticks_elapsed = 1;
-        inputs.accel_is_fresh = true;
-        inputs.accel_counts = count_++ % 7;
+        inputs.sensor[0] = {count_++ % 7, true};
         latch->before_tick(inputs);
         can_frame_t frames[CAN_NODE_MAX_FRAMES];
         (void)node_tick(node.get(), &inputs, frames);

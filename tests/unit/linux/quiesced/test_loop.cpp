@@ -33,7 +33,7 @@ class FakeCurrent final : public CurrentDevice {
 };
 
 /// A sensor that keeps the axes that were asked for.
-class FakeAccel final : public AccelDevice {
+class FakeAccel final : public SensorDevice {
   public:
     explicit FakeAccel(std::vector<hal_axis_t> &axes) {
         handle = {[](void *self, hal_axis_t axis, std::int32_t *counts) {
@@ -49,14 +49,14 @@ class FakeAccel final : public AccelDevice {
 class LoopOf : public testing::Test {
   protected:
     LoopOf() {
-        config.accel.source = AccelSource::iio;
-        config.current.output = CurrentOutput::pwm;
+        config.sensors.front().source = SensorSource::iio;
+        config.outputs.front().output = CurrentOutput::pwm;
         quiesce_params_default(&params);
         params.law = QUIESCE_LAW_OFF;
         params.safe_current_mA = 250;
         params.accel_axis = QUIESCE_ACCEL_AXIS_X;
-        exchange->peripherals.current.start_with(std::make_unique<FakeCurrent>(told));
-        exchange->peripherals.accel.start_with(std::make_unique<FakeAccel>(axes));
+        exchange->peripherals.outputs[0].start_with(std::make_unique<FakeCurrent>(told));
+        exchange->peripherals.sensors[0].start_with(std::make_unique<FakeAccel>(axes));
     }
 
     void start() { loop = std::make_unique<Loop>(config, params, *exchange, nullptr, nullptr); }

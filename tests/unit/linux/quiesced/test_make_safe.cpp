@@ -18,8 +18,8 @@ Config board() {
     Config config;
     config.gpio.enable_output = LineConfig{"ENABLE", false, 0};
     config.gpio.fault_output = LineConfig{"FAULT", false, 0};
-    config.current.output = CurrentOutput::pwm;
-    config.current.device = "pwmchip0";
+    config.outputs.front().output = CurrentOutput::pwm;
+    config.outputs.front().device = "pwmchip0";
     config.can.emplace().interface = "can0";
     return config;
 }
@@ -27,29 +27,29 @@ Config board() {
 TEST(OtherOutputs, the_same_configuration_has_none) {
     const Config left = other_outputs(board(), board());
     EXPECT_FALSE(left.gpio.enable_output || left.gpio.fault_output || left.can);
-    EXPECT_EQ(left.current.output, CurrentOutput::can);
+    EXPECT_EQ(left.outputs.front().output, CurrentOutput::can);
 }
 
 TEST(OtherOutputs, other_settings_of_an_output_do_not_undo_what_made_it_safe) {
     Config edited = board();
     edited.gpio.enable_output->is_active_low = true; // inactive by this one: the driver is on
     std::swap(edited.gpio.enable_output, edited.gpio.fault_output);
-    edited.current.is_inverted = true; // no duty: full current
+    edited.outputs.front().is_inverted = true; // no duty: full current
     edited.can->use_fd = true;
     const Config left = other_outputs(edited, board());
     EXPECT_FALSE(left.gpio.enable_output || left.gpio.fault_output || left.can);
-    EXPECT_EQ(left.current.output, CurrentOutput::can);
+    EXPECT_EQ(left.outputs.front().output, CurrentOutput::can);
 }
 
 TEST(OtherOutputs, another_output_is_one) {
     Config edited = board();
     edited.gpio.enable_output->line = "ENABLE2";
-    edited.current.channel = 1;
+    edited.outputs.front().channel = 1;
     edited.can->interface = "can1";
     const Config left = other_outputs(edited, board());
     ASSERT_TRUE(left.gpio.enable_output && left.can);
     EXPECT_FALSE(left.gpio.fault_output);
-    EXPECT_EQ(left.current.output, CurrentOutput::pwm);
+    EXPECT_EQ(left.outputs.front().output, CurrentOutput::pwm);
 }
 
 TEST(KeptConfig, comes_back_with_the_parameters_in_effect) {
@@ -59,7 +59,7 @@ TEST(KeptConfig, comes_back_with_the_parameters_in_effect) {
     quiesce_params_t params{};
     quiesce_params_default(&params);
     params.safe_current_mA = 40;
-    ASSERT_EQ(kept.keep("[can]\ninterface = 'can7'\n", params), "");
+    ASSERT_EQ(kept.keep("[can]\ninterface = 'can7'\n", "", params), "");
     ASSERT_TRUE(kept.load() && kept.load_params());
     EXPECT_EQ(kept.load()->config.can->interface, "can7");
     EXPECT_EQ(kept.load_params()->safe_current_mA, 40);
@@ -72,9 +72,9 @@ TEST(KeptConfig, what_cannot_be_kept_is_not_there) {
     const TemporaryFolder folder;
     KeptConfig kept(folder.path());
     const quiesce_params_t params{};
-    ASSERT_EQ(kept.keep("[can]\n", params), "");
+    ASSERT_EQ(kept.keep("[can]\n", "", params), "");
     std::filesystem::create_directory(kept.config_file() + ".new");
-    EXPECT_NE(kept.keep("[can]\n", params), "");
+    EXPECT_NE(kept.keep("[can]\n", "", params), "");
     EXPECT_FALSE(kept.load() || kept.load_params());
     std::filesystem::create_directory(kept.params_file() + ".new");
     EXPECT_NE(kept.keep_params(params), "");

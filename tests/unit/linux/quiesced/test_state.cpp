@@ -134,7 +134,7 @@ TEST(StatusFile, names_state_fault_and_counters) {
     snapshot.faults[0] = {QUIESCE_FAULT_ESTOP, 17, 0};
     snapshot.fault_events = 1;
     snapshot.bus.tx_dropped = 5;
-    const std::string json = status_json(snapshot);
+    const std::string json = status_json(Config(), snapshot);
     for (const char *part : {"\"state\": \"FAULT\"", "\"fault\": \"ESTOP\"", "\"tx_dropped\": 5",
                              "\"last_faults\": [{\"fault\": \"ESTOP\", \"tick\": 17, \"time\": "
                              "\"1970-01-01T00:00:00"}) {
