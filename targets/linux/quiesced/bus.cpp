@@ -10,9 +10,10 @@ namespace quiesced {
 
 namespace {
 
-constexpr std::array<std::uint32_t, 4> kLockstepIds = {
+constexpr std::array<std::uint32_t, 5> kLockstepIds = {
     QUIESCE_CAN_LOCKSTEP_CONTROL_FRAME_ID, QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_FRAME_ID,
-    QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID};
+    QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID,
+    QUIESCE_CAN_LOCKSTEP_SENSOR_FRAME_ID};
 
 /// What can_node_receive takes.
 std::vector<std::uint32_t> controller_ids() {

@@ -202,11 +202,11 @@ static void test_channel_is_read_by_itself_whatever_it_measures(void) {
 
 static void test_channel_that_is_not_there_is_one_line(void) {
     const sensor_iio_options_t no_channel = {"adxl355", "voltage9", sysfs_root};
-    const sensor_iio_options_t no_device = {"adc", "voltage0", sysfs_root};
+    const sensor_iio_options_t no_device = {"thermometer", "voltage0", sysfs_root};
     TEST_ASSERT_NULL(sensor_iio_open(&no_channel, &accel, &error));
     assert_one_line(&error, "in_voltage9_raw");
     TEST_ASSERT_NULL(sensor_iio_open(&no_device, &accel, &error));
-    assert_one_line(&error, "adc");
+    assert_one_line(&error, "thermometer");
 }
 
 static void test_buffer_is_set_up_and_gives_the_newest_scan(void) {
