@@ -1,6 +1,5 @@
 #include "board_fit.h"
 
-#include <cstdarg>
 #include <cstdio>
 #include <cstring>
 
@@ -18,17 +17,9 @@ std::uint32_t index_of(const char *name) {
     return index;
 }
 
-/// place: null for a table that there is one of.
-__attribute__((format(printf, 5, 6))) Misfit make_misfit(const char *parameter, const char *section,
-                                                         const Place *place, const char *key,
-                                                         const char *format, ...) {
-    const std::size_t table = place != nullptr ? place->table : 0;
-    Misfit out = {index_of(parameter), section, table, key, {}};
-    std::va_list values;
-    va_start(values, format);
-    (void)std::vsnprintf(out.reason.data(), out.reason.size(), format, values);
-    va_end(values);
-    return out;
+/// table: of those of the section.
+Misfit make_misfit(const char *parameter, const char *section, std::size_t table, const char *key) {
+    return {index_of(parameter), section, table, key, {}};
 }
 
 /// The sensor's edges are the ticks: its rate is set once, at the opening.
@@ -37,11 +28,13 @@ std::optional<Misfit> find_other_rate(const Config &config, const quiesce_params
         if (sensor.source == SensorSource::adxl355 && config.gpio.data_ready_input &&
             params.tick_rate_Hz != static_cast<std::int32_t>(sensor.rate_Hz)) {
             const char *section = sensor.place.section.c_str();
-            return make_misfit("tick_rate_Hz", section, &sensor.place, "rate_Hz",
-                               "%s.rate_Hz is %u, tick_rate_Hz %d; they must be the same where "
-                               "data_ready_input starts the ticks",
-                               section, static_cast<unsigned>(sensor.rate_Hz),
-                               static_cast<int>(params.tick_rate_Hz));
+            Misfit out = make_misfit("tick_rate_Hz", section, sensor.place.table, "rate_Hz");
+            (void)std::snprintf(out.reason.data(), out.reason.size(),
+                                "%s.rate_Hz is %u, tick_rate_Hz %d; they must be the same where "
+                                "data_ready_input starts the ticks",
+                                section, static_cast<unsigned>(sensor.rate_Hz),
+                                static_cast<int>(params.tick_rate_Hz));
+            return out;
         }
     }
     return std::nullopt;
@@ -54,11 +47,13 @@ std::optional<Misfit> find_beyond_output(const Config &config, const quiesce_par
         params.max_current_mA <= output.full_scale_mA) {
         return std::nullopt;
     }
-    return make_misfit("max_current_mA", "current", nullptr, "full_scale_mA",
-                       "current.full_scale_mA is %d, max_current_mA %d; it must not be more than "
-                       "the output can give",
-                       static_cast<int>(output.full_scale_mA),
-                       static_cast<int>(params.max_current_mA));
+    Misfit out = make_misfit("max_current_mA", "current", 0, "full_scale_mA");
+    (void)std::snprintf(out.reason.data(), out.reason.size(),
+                        "current.full_scale_mA is %d, max_current_mA %d; it must not be more than "
+                        "the output can give",
+                        static_cast<int>(output.full_scale_mA),
+                        static_cast<int>(params.max_current_mA));
+    return out;
 }
 
 std::optional<Misfit> find_missing_signal(const Config &config, const quiesce_params_t &params) {
@@ -67,10 +62,12 @@ std::optional<Misfit> find_missing_signal(const Config &config, const quiesce_pa
         config.board->missing[law].empty()) {
         return std::nullopt;
     }
-    return make_misfit("law", "board", nullptr, "file",
-                       "law %s needs signal %s, which no sensor of the board provides",
-                       quiesce_param_info(index_of("law"))->labels[law],
-                       config.board->missing[law].c_str());
+    Misfit out = make_misfit("law", "board", 0, "file");
+    (void)std::snprintf(out.reason.data(), out.reason.size(),
+                        "law %s needs signal %s, which no sensor of the board provides",
+                        quiesce_param_info(out.index)->labels[law],
+                        config.board->missing[law].c_str());
+    return out;
 }
 
 std::optional<Misfit> find_full_bus(const Config &config, const quiesce_params_t &params) {
@@ -82,13 +79,15 @@ std::optional<Misfit> find_full_bus(const Config &config, const quiesce_params_t
         return std::nullopt;
     }
     const std::uint32_t bitrate = config.can->bitrate;
-    return make_misfit(
-        "tick_rate_Hz", "can", nullptr, "interface",
+    Misfit out = make_misfit("tick_rate_Hz", "can", 0, "interface");
+    (void)std::snprintf(
+        out.reason.data(), out.reason.size(),
         "the bus would be %.1f %% full at %u bit/s (demands %.1f, samples %.1f, others %.1f), more "
         "than %.0f: a lower tick_rate_Hz, sensors at this machine or CAN FD (fd, data_bitrate) "
         "would help",
         load.total(), static_cast<unsigned>(bitrate != 0 ? bitrate : kUsualBitrate), load.demands,
         load.samples, load.others, kMostLoad_pct);
+    return out;
 }
 
 } // namespace

@@ -246,14 +246,15 @@ void read_board(Section &root, const std::string &board_file, Config &config) {
     });
 }
 
-/// Without knowing the board its outputs are still made safe.
-Names names_in(Section &root, const char *name) {
+/// Without knowing the board its outputs are still made safe: at most as many as there may be.
+Names names_in(Section &root, const char *name, std::size_t most) {
     Names names;
     attempt(root.problems(), [&] {
         for (TomlTable &one : root.table().tables(name)) {
             names.push_back(one.text("name"));
         }
     });
+    names.resize(std::min(names.size(), most));
     return names;
 }
 
@@ -269,7 +270,8 @@ void read_of_board(Section &root, const std::string &board_file, Config &config)
         }
     }
     config.sensors = read_parts<SensorConfig>(
-        root, "sensor", wired != nullptr ? config.board->board.sensors : names_in(root, "sensor"),
+        root, "sensor",
+        wired != nullptr ? config.board->board.sensors : names_in(root, "sensor", QUIESCE_SENSORS),
         [](Section &section, SensorConfig &sensor) { read_source(section, true, sensor); },
         [&](Section &section, const SensorConfig &sensor, std::size_t number) {
             if (wired != nullptr) {
@@ -277,7 +279,8 @@ void read_of_board(Section &root, const std::string &board_file, Config &config)
             }
         });
     config.outputs = read_parts<OutputConfig>(
-        root, "damper", wired != nullptr ? config.board->board.dampers : names_in(root, "damper"),
+        root, "damper",
+        wired != nullptr ? config.board->board.dampers : names_in(root, "damper", QUIESCE_DAMPERS),
         read_output, [&](Section &section, const OutputConfig &output, std::size_t number) {
             if (wired != nullptr) {
                 check_output(section, output, wired->damper[number]);

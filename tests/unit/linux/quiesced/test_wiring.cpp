@@ -174,6 +174,9 @@ TEST_F(Wiring, outputs_are_known_without_their_board) {
     ASSERT_EQ(reading.config.outputs.size(), 2U);
     EXPECT_EQ(reading.config.outputs[0].output, CurrentOutput::dac); // in the order of the file
     EXPECT_EQ(reading.config.outputs[1].device, "pwmchip0");
+    write_text(rig.config_file(), "[board]\nfile = \"no\"\n" +
+                                      on_bus("damper", "output", {"a", "b", "c", "d", "e", "f"}));
+    EXPECT_EQ(read_config(rig.config_file(), Needs::peripherals).config.outputs.size(), 4U);
 }
 
 TEST_F(Wiring, a_slower_tick_or_a_sensor_here_makes_room_on_the_bus) {
