@@ -124,10 +124,10 @@ static bool has_latched_fault(const node_t *node) {
     return t->state == QUIESCE_STATE_FAULT && t->fault != QUIESCE_FAULT_PARAMETER;
 }
 
-// No sensor of the board provides what the law needs.
-static bool misses_signal(const node_t *node, int32_t law) {
+// No sensor of the board provides what the law or its tracker needs.
+static bool misses_signal(const node_t *node, const quiesce_params_t *params) {
     quiesce_signal_t missing;
-    return node->board != NULL && quiesce_missing(node->board, law, &missing);
+    return node->board != NULL && quiesce_missing(node->board, params, &missing);
 }
 
 static const quiesce_params_t *accept_staged(node_t *node) {
@@ -138,12 +138,12 @@ static const quiesce_params_t *accept_staged(node_t *node) {
         can_node_answer(&node->can, CAN_NODE_FAULT_IS_LATCHED, 0);
         return NULL;
     }
-    if (misses_signal(node, staged->law)) {
-        can_node_answer(&node->can, CAN_NODE_CONTRADICTION,
-                        offsetof(quiesce_params_t, law) / sizeof(int32_t));
-        return NULL;
-    }
     if (quiesce_params_check(staged, &error)) {
+        if (misses_signal(node, staged)) {
+            can_node_answer(&node->can, CAN_NODE_CONTRADICTION,
+                            offsetof(quiesce_params_t, law) / sizeof(int32_t));
+            return NULL;
+        }
         can_node_answer(&node->can, CAN_NODE_DONE, 0);
         return staged;
     }

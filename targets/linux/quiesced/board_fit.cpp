@@ -58,15 +58,17 @@ std::optional<Misfit> find_beyond_output(const Config &config, const quiesce_par
 
 std::optional<Misfit> find_missing_signal(const Config &config, const quiesce_params_t &params) {
     const auto law = static_cast<std::size_t>(params.law);
+    const auto tracker = static_cast<std::size_t>(params.tracker);
     if (!config.board || law >= config.board->missing.size() ||
-        config.board->missing[law].empty()) {
+        tracker >= config.board->missing[law].size() ||
+        config.board->missing[law][tracker].empty()) {
         return std::nullopt;
     }
     Misfit out = make_misfit("law", "board", 0, "file");
     (void)std::snprintf(out.reason.data(), out.reason.size(),
                         "law %s needs signal %s, which no sensor of the board provides",
                         quiesce_param_info(out.index)->labels[law],
-                        config.board->missing[law].c_str());
+                        config.board->missing[law][tracker].c_str());
     return out;
 }
 

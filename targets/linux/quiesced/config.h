@@ -108,8 +108,9 @@ struct LogConfig {
 struct WiredBoard {
     std::string file;
     quiesce::BoardFile board;
-    /// By law: the signal that it needs and no sensor provides ("stroke of upper"), "": none.
-    std::vector<std::string> missing;
+    /// By law, and for each by tracker: the signal that they need and no sensor provides ("stroke
+    /// of upper"), "": none.
+    std::vector<std::vector<std::string>> missing;
 };
 
 /// The kernel's folders; tests have others.

@@ -1,8 +1,8 @@
 #include "parameter_section.h"
 
-#include <algorithm>
-#include <array>
 #include <optional>
+
+#include "board_file.h"
 
 namespace quiesced {
 
@@ -15,17 +15,6 @@ std::optional<std::uint32_t> index_of(const std::string &name) {
         }
     }
     return std::nullopt;
-}
-
-/// What quiesce_init_board takes from the board.
-bool is_boards(const std::string &name) {
-    static const std::array names = {
-        "accel_scale_nm_s2",  "accel_offset_counts",     "accel_polarity",
-        "accel_axis",         "accel_full_scale_counts", "sensor_max_age_ticks",
-        "sensor_stuck_ticks", "sensor_min_noise_counts", "safe_current_mA",
-        "current_check",      "current_lag_ms",
-    };
-    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 std::vector<std::string> labels_of(const quiesce_param_info_t &info) {
@@ -88,7 +77,7 @@ quiesce_params_t read_parameters(Section &section, bool has_board) {
                           "no such parameter; docs/reference/parameters.md lists them");
             continue;
         }
-        if (has_board && is_boards(key)) {
+        if (has_board && quiesce::is_of_board(key)) {
             section.wrong(key.c_str(), "comes from the board file");
             continue;
         }

@@ -216,12 +216,24 @@ void check_devices(Section &root, const std::vector<Part> &parts) {
 
 // Board
 
-std::vector<std::string> missing_signals(const quiesce::BoardFile &board) {
+/// Told now, so that the control loop does not have to make a text.
+std::vector<std::string> missing_signals(const quiesce::BoardFile &board, std::int32_t law) {
     std::vector<std::string> out;
-    for (std::int32_t law = 0; quiesce_report_words(law) != nullptr; ++law) {
+    quiesce_params_t params{};
+    quiesce_params_default(&params);
+    params.law = law;
+    for (params.tracker = 0; quiesce_params_check(&params, nullptr); ++params.tracker) {
         quiesce_signal_t signal{};
-        const bool is_missing = quiesce_missing(&board.board, law, &signal);
+        const bool is_missing = quiesce_missing(&board.board, &params, &signal);
         out.push_back(is_missing ? quiesce::told(board, signal) : "");
+    }
+    return out;
+}
+
+std::vector<std::vector<std::string>> missing_signals(const quiesce::BoardFile &board) {
+    std::vector<std::vector<std::string>> out;
+    for (std::int32_t law = 0; quiesce_report_words(law) != nullptr; ++law) {
+        out.push_back(missing_signals(board, law));
     }
     return out;
 }
@@ -240,7 +252,7 @@ void read_board(Section &root, const std::string &board_file, Config &config) {
         if (!file.empty()) {
             file = board_file.empty() ? beside(config.file, file) : board_file;
             quiesce::BoardFile board = quiesce::load_board(file);
-            std::vector<std::string> missing = missing_signals(board);
+            auto missing = missing_signals(board);
             config.board = {file, std::move(board), std::move(missing)};
         }
     });

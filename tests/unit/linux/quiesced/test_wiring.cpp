@@ -191,7 +191,7 @@ TEST_F(Wiring, a_law_that_lacks_a_signal_is_refused) {
     rig.write_config();
     Config read = config();
     EXPECT_FALSE(find_misfit(read, read.params));
-    read.board->missing[QUIESCE_LAW_CONSTANT] = "force of upper";
+    read.board->missing[QUIESCE_LAW_CONSTANT][0] = "force of upper";
     read.params.law = QUIESCE_LAW_CONSTANT;
     const std::optional<Misfit> misfit = find_misfit(read, read.params);
     ASSERT_TRUE(misfit);
