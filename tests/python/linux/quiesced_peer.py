@@ -93,12 +93,13 @@ class Frame:
 
 @dataclass
 class Peer:
-    """The bus's other nodes. The sensor node sends a sample for every demand frame; the operator
+    """The bus's other nodes. Each sensor node sends a sample for every demand frame; the operator
     repeats what he commands, and acknowledges again and again where he does."""
 
     master: int
     line: str
     feeds_sensor: bool = True
+    sensors: int = 1  # of the board
     operator: dict[str, int] | None = None
     acknowledges: bool = False
     estop: bool = False
@@ -191,7 +192,8 @@ class Peer:
     def _serve(self) -> None:
         self._demands += 1
         if self.feeds_sensor:
-            self.send_raw(slcan(*accel_sample(self._demands)))
+            for sensor in range(self.sensors):
+                self.send_raw(slcan(*accel_sample(self._demands, sensor)))
         if self._demands % 5 == 0:
             if self.operator is not None:
                 is_pressed = self.acknowledges and self._demands // 50 % 2
@@ -207,12 +209,12 @@ class Peer:
         os.close(self.master)
 
 
-def accel_sample(number: int) -> tuple[int, bytes]:
+def accel_sample(number: int, sensor: int = 0) -> tuple[int, bytes]:
     """Some 0.2 g at 10 Hz with noise; number: of the sample, 500 a second."""
-    noise = number * 7919 % 101
+    noise = number * 7919 % 101 + sensor
     counts = round(40000 * math.sin(2 * math.pi * 10.0 * number / 500.0)) + noise
     data = (counts & 0xFFFFFF).to_bytes(3, "little") + bytes([(number % 16) << 4, 0])
-    return SAMPLE_ID, sealed(SAMPLE_ID, data)
+    return SAMPLE_ID + sensor, sealed(SAMPLE_ID + sensor, data)
 
 
 def parse(line: bytes) -> Frame | None:
