@@ -61,10 +61,11 @@ quiesce_sample_t Board::read_sensor(std::size_t sensor, hal_axis_t axis, std::ui
     quiesce_sample_t sample{};
     if (config_.sensors[sensor].source != SensorSource::can && is_due(sensor, elapsed)) {
         SensorDevice *device = devices_.sensors[sensor].get();
+        SensorWatch &watch = sensors_[sensor];
         sample.is_fresh =
             device != nullptr && hal_accel_read(&device->handle, axis, &sample.counts);
-        sensors_[sensor].silent_ticks =
-            sample.is_fresh ? 0 : sensors_[sensor].silent_ticks + elapsed;
+        watch.silent_ticks =
+            sample.is_fresh ? 0 : watch.silent_ticks + std::max(elapsed, watch.period_ticks);
     }
     return sample;
 }
