@@ -123,6 +123,15 @@ typedef struct {
     uint64_t opaque[QUIESCE_STATE_BYTES / 8];
 } quiesce_t;
 
+// The names that the linker sees have the sizes in them: what was compiled for other ones than the
+// library does not link, instead of handing over memory that is too small.
+#define QUIESCE_JOIN_SIZES(name, sensors, bodies, dampers) name##_##sensors##_##bodies##_##dampers
+#define QUIESCE_SIZED(name, sensors, bodies, dampers)                                              \
+    QUIESCE_JOIN_SIZES(name, sensors, bodies, dampers)
+#define quiesce_init QUIESCE_SIZED(quiesce_init, QUIESCE_SENSORS, QUIESCE_BODIES, QUIESCE_DAMPERS)
+#define quiesce_init_board                                                                         \
+    QUIESCE_SIZED(quiesce_init_board, QUIESCE_SENSORS, QUIESCE_BODIES, QUIESCE_DAMPERS)
+
 /// Starts the controller from rest with a copy of the parameters: one accelerometer and one damper
 /// to the ground, as they say (accel_*, sensor_*, safe_current_mA, current_*).
 /// Returns false iff quiesce_params_check refuses them; the controller is then in FAULT with
