@@ -9,10 +9,10 @@
 #include <unistd.h>
 
 #include "board_fit.h"
-#include "config.h"
 #include "fault_store.h"
 #include "instance_lock.h"
 #include "line_finder.h"
+#include "read_config.h"
 #include "state_store.h"
 #include "wiring_text.h"
 

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <optional>
 
-#include "config.h"
 #include "fault_store.h"
 #include "input_error.h"
 #include "instance_lock.h"
+#include "read_config.h"
 
 namespace quiesced {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "config.h"
+#include "read_config.h"
 
 namespace quiesced {
 

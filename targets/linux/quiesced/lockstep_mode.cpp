@@ -8,6 +8,7 @@
 
 #include "bus.h"
 #include "clock.h"
+#include "read_config.h"
 #include "signals.h"
 
 extern "C" {

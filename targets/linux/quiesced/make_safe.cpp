@@ -9,6 +9,7 @@
 #include "input_error.h"
 #include "instance_lock.h"
 #include "kept_config.h"
+#include "read_config.h"
 #include "signals.h"
 #include "state_store.h"
 

@@ -12,6 +12,7 @@
 #include "kept_config.h"
 #include "loop.h"
 #include "names.h"
+#include "read_config.h"
 #include "service.h"
 #include "signals.h"
 

@@ -11,6 +11,7 @@
 #include "histogram.h"
 #include "input_error.h"
 #include "names.h"
+#include "read_config.h"
 #include "signals.h"
 #include "status_file.h"
 

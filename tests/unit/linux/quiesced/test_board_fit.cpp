@@ -13,6 +13,7 @@
 #include "board_fit.h"
 #include "bus.h"
 #include "loop.h"
+#include "read_config.h"
 #include "service.h"
 #include "signals.h"
 #include "temporary_folder.h"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "config.h"
+#include "read_config.h"
 #include "input_error.h"
 #include "temporary_folder.h"
 

@@ -9,6 +9,7 @@
 #include "input_error.h"
 #include "kept_config.h"
 #include "make_safe.h"
+#include "read_config.h"
 #include "temporary_folder.h"
 
 namespace quiesced {

@@ -5,6 +5,7 @@
 
 #include "board_fit.h"
 #include "loop.h"
+#include "read_config.h"
 #include "status_file.h"
 #include "two_storeys.h"
 #include "wiring_text.h"

@@ -8,6 +8,7 @@
 
 #include "kept_config.h"
 #include "make_safe.h"
+#include "read_config.h"
 #include "two_storeys.h"
 
 extern "C" {
