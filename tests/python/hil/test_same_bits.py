@@ -14,7 +14,7 @@ from conftest import ROOT, require
 from quiesce.engine.bench import Bench, target_options
 from quiesce.engine.params import effective_params
 from quiesce.signal.recording import read_recording
-from quiesce.signal.replay import sensor_counts
+from quiesce.signal.replay import own_sensor
 from quiesce.signal.resample import resample
 
 SHIPPED = ROOT / "sim_hil/data/recordings/step_10_20Hz.csv"
@@ -56,9 +56,10 @@ EVERY_RECORDING = pytest.mark.parametrize(
 def counts(bench: Bench, file: Path, column: str, unit: str) -> np.ndarray:
     """What the sensor gives of a recording."""
     params = effective_params(bench, [])
-    recording = read_recording(file, [column], unit, "t_s")
-    accel_m_s2 = resample(recording.accel_m_s2[column], recording.rate_Hz, params["tick_rate_Hz"])
-    return sensor_counts(accel_m_s2, params)
+    recording = read_recording(file, [column], "t_s")
+    accel_m_s2 = recording.accel_m_s2(column, unit)
+    sampled = resample(accel_m_s2, recording.rate_Hz, params["tick_rate_Hz"])
+    return own_sensor(params).counts(sampled)
 
 
 @pytest.mark.slow

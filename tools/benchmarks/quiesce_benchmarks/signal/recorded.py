@@ -65,8 +65,8 @@ def find_folder(given: Path | None) -> Path:
 
 def replay_source(rig: Rig, folder: Path, source: Source) -> Replay:
     columns = [name for name in (source.column, source.reference_column) if name]
-    recording = read_recording(folder / source.file, columns, "g", "t_s")
-    accel_m_s2 = resample(recording.accel_m_s2[source.column], recording.rate_Hz, rig.rate_Hz)
+    recording = read_recording(folder / source.file, columns, "t_s")
+    accel_m_s2 = resample(recording.accel_m_s2(source.column, "g"), recording.rate_Hz, rig.rate_Hz)
     out = rig.run(accel_m_s2[None, :], COLUMNS)
     return Replay(
         recording=recording,
@@ -85,7 +85,7 @@ def against_reference(rig: Rig, replay: Replay, source: Source, from_s: float) -
     """
     recording = replay.recording
     middle_s, reference_Hz = reference_freq_Hz(
-        recording.accel_m_s2[source.reference_column], recording.rate_Hz
+        recording.accel_m_s2(source.reference_column, "g"), recording.rate_Hz
     )
     latency_s = frequency_latency_s(replay.window_ms, rig.rate_Hz)
     updates = np.flatnonzero(replay.time_s >= from_s)[:: rig.rate_Hz // SPECTRUM_RATE_Hz]

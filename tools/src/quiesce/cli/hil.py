@@ -19,6 +19,8 @@ from quiesce.hil.metrics import Result, differing_cases, make_rows, metrics_json
 from quiesce.hil.page import make_page
 from quiesce.hil.picture import plot_picture
 from quiesce.hil.published import load_reference
+from quiesce.hil.rig import rig_rows
+from quiesce.hil.rig_table import rig_text
 from quiesce.hil.rule_surface import rule_surface
 from quiesce.hil.runs import (
     ConstantSearch,
@@ -48,6 +50,7 @@ EPILOG = f"""examples:
   quiesce hil --quick                          5 Hz and the step, two seeds, no UART: under a minute
   quiesce hil --scenario step_10_20Hz --law fuzzy --law fuzzy_selftune_printed
   quiesce hil --scenario my_scenario.toml --target host
+  quiesce hil --scenario sim_hil/data/rigs/two_storeys.toml    a rig: each body, each damper
   quiesce hil --target host --json | python3 -m json.tool
   quiesce hil --target linux --quick           the Linux controller quiesced, started here
   quiesce hil --target linux --can slcan:tcp:localhost:5556      ... in a virtual machine
@@ -60,6 +63,9 @@ laws:      {", ".join(laws.names())}
 Without --scenario, 5 Hz and the step run on the image, too. Open loop always runs: reductions are
 against it. Written to build/report/hil: index.html, metrics.json, details.json, table.txt and
 picture.svg. Exit code 1 where the target does not answer bit for bit like the host.
+
+Of a scenario with a board the table and the page show each body and each damper. A law that needs a
+signal which the board lacks is left out, by the signal's name.
 
 --target linux runs the same scenarios as the image and the host beside it, and drives quiesced
 --lockstep, tick by tick, over CAN. Command, state and fault of every tick are compared, all words
@@ -128,6 +134,7 @@ def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
     loaded = [scenarios.load(bench, name) for name in names]
     options = [] if args.seed is None else ["--seed", str(args.seed)]
     options += [] if args.noise_mg is None else ["--noise-mg", str(args.noise_mg)]
+    check_noise(args, loaded)
     return Plan(
         scenarios=loaded,
         target_scenarios=[s.name for s in loaded] if args.scenario else ON_TARGET,
@@ -140,6 +147,15 @@ def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
     )
 
 
+def check_noise(args: argparse.Namespace, loaded: list[scenarios.Scenario]) -> None:
+    named = next((scenario for scenario in loaded if scenario.board), None)
+    if args.noise_mg is not None and named is not None:
+        raise UsageError(
+            f"--noise-mg: scenario {named.name} has a board, whose sensors have the noise that "
+            "[noise] of the plant file gives each"
+        )
+
+
 def telemetry_every(args: argparse.Namespace) -> int:
     if args.target != "linux":
         return 1
@@ -148,6 +164,15 @@ def telemetry_every(args: argparse.Namespace) -> int:
 
 def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
+
+
+def judged(bench: Bench, plan: Plan, name: str, law: str) -> tuple[scenarios.Scenario, laws.Law]:
+    """What is compared and timed: these; where all that was asked for are rigs, one of those."""
+    if not plan.has_rigs_only:
+        return scenarios.load(bench, name), laws.find(law)
+    cases = [case for case in plan.cases() if case.scenario is plan.scenarios[0]]
+    chosen = next((case for case in cases if case.law.name == law), cases[-1])
+    return chosen.scenario, chosen.law
 
 
 def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run]) -> Result:
@@ -161,21 +186,23 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
         name = target_name(plan.checked_target)
         words = compared_text(plan.telemetry_every)
         say(f"comparing {words}, {name} against host, {count} seeds")
+        scenario, law = judged(bench, plan, scenarios.TRACE_EQUALITY, TRACE_LAW)
         equal = compare_traces(
             bench,
-            scenarios.load(bench, scenarios.TRACE_EQUALITY),
-            laws.find(TRACE_LAW),
+            scenario,
+            law,
             range(first_seed, first_seed + count),
-            plan.options_of(plan.checked_target),
+            plan.options_of(plan.checked_target, scenario),
         )
         equal["telemetry_every"] = plan.telemetry_every
     say("measuring speed, nothing else running")
-    step, law = scenarios.load(bench, STEP), laws.find(SPEED_LAW)
-    speed = measure_speed(bench, step, law, plan)
-    if "mps2" in plan.targets and not plan.is_quick:
+    speed = measure_speed(bench, *judged(bench, plan, STEP, SPEED_LAW), plan)
+    if "mps2" in plan.targets and not plan.is_quick and not plan.has_rigs_only:
         say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
         uart = measure_uart(bench, UART_EXCHANGES)
-    return Result(rows, beside, reference.published, equal, differing_cases(runs), speed, uart)
+    return Result(
+        rows, beside, reference.published, equal, differing_cases(runs), speed, uart, rig_rows(runs)
+    )
 
 
 def details_json(result: Result, searches: list[ConstantSearch], runs: list[Run]) -> dict[str, Any]:
@@ -236,10 +263,18 @@ def run(args: argparse.Namespace) -> int:
     bench = Bench()
     check_target(args)
     plan = make_plan(args, bench)
+    for line in plan.left_out():
+        say(line)
     if args.target != "linux":
         return run_plan(args, bench, plan)
     with linux_channel(args.can) as channel:
         return run_plan(args, bench, dataclasses.replace(plan, can=channel))
+
+
+def tables(result: Result) -> list[str]:
+    parts = [comparison_table(result)] if result.plain else []
+    parts += [rig_text(result.rigs)] if result.rigs else []
+    return [*parts, summary(result)]
 
 
 def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
@@ -254,7 +289,7 @@ def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
         (staging / "index.html").write_text(page, encoding="utf-8")
         write_json(staging / "metrics.json", metrics_json(result))
         write_json(staging / "details.json", details_json(result, searches, runs))
-        table = f"{comparison_table(result)}\n\n{summary(result)}\n"
+        table = "\n\n".join(tables(result)) + "\n"
         (staging / "table.txt").write_text(table, encoding="utf-8")
         (staging / "picture.svg").write_text(plot_picture(runs), encoding="utf-8")
     if args.json:

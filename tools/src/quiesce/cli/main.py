@@ -13,7 +13,7 @@ from quiesce.base.errors import UsageError
 # have words_of(arguments): what the parser gets in their place.
 COMMANDS = (
     ("hil", "hil", "the published scenarios in closed loop; table and report"),
-    ("replay", "replay", "a recorded acceleration through the firmware"),
+    ("replay", "replay", "recorded motion through the firmware"),
     ("record", "record", "the simulated accelerometer's signal as a CSV file"),
     ("plant", "plant", "plant files"),
     ("board", "board.command", "board files: sensors, dampers, their places and limits"),

@@ -1,4 +1,4 @@
-"""`quiesce record SCENARIO`: what the simulated accelerometer measured, as a recording."""
+"""`quiesce record SCENARIO`: what the simulated sensors measured, as a recording."""
 
 import argparse
 import tempfile
@@ -11,24 +11,29 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, setting_options
-from quiesce.engine.trace import read_trace
-from quiesce.signal.recording import M_S2_PER_UNIT
+from quiesce.engine.trace import Trace, read_trace
+from quiesce.signal.recording import COLUMN_UNITS, M_S2_PER_UNIT
 
 EPILOG = """examples:
   quiesce record step_10_20Hz --from-s 2 --to-s 8 --out step.csv
   quiesce record sine_5Hz --law fuzzy --out damped.csv
   quiesce replay step.csv --column accel_m_s2 --unit m_s2
+  quiesce record sim_hil/data/rigs/two_storeys.toml --out rig.csv
 
 One row a control tick: t_s and accel_m_s2, with the noise and the resolution of the plant's
-sensor.
+sensor. Of a scenario with a board one column a sensor, its name and unit: roof_accel_m_s2,
+upper_stroke_mm; a sensor with a period keeps its value from one sample to the next.
 """
+
+# What a column is in, by the unit of its sensor.
+RECORDED_UNITS = {"um/s2": "m_s2", "um/s": "m_s", "nm": "mm", "mN": "N"}
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "record",
-        description="Run a scenario and keep what its simulated accelerometer measured, as a\n"
-        "recording for 'quiesce replay'.",
+        description="Run a scenario and keep what its simulated sensors measured, as a recording\n"
+        "for 'quiesce replay'.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -53,6 +58,32 @@ def count_m_s2(plant_file: Path) -> float:
     return sensor["full_scale_g"] * M_S2_PER_UNIT["g"] / 2 ** (sensor["bits"] - 1)
 
 
+def held(counts: np.ndarray, is_due: np.ndarray) -> np.ndarray:
+    """Of each tick the last count that was due."""
+    return counts[np.maximum.accumulate(np.where(is_due, np.arange(len(counts)), 0))]
+
+
+def measured(scenario: scenarios.Scenario, trace: Trace) -> dict[str, np.ndarray]:
+    """What each sensor measured, by the name of its column."""
+    if scenario.board is None:
+        return {"accel_m_s2": trace["accel_counts"] * count_m_s2(scenario.plant_file)}
+    ticks, rate_Hz = len(trace["t_s"]), round(1.0 / trace["t_s"][1])
+    columns = {}
+    for sensor in scenario.board.sensors:
+        unit = RECORDED_UNITS[sensor.unit]
+        counts = held(trace[f"{sensor.name}_counts"], sensor.is_due(ticks, rate_Hz))
+        columns[f"{sensor.name}_{unit}"] = sensor.values(counts) / COLUMN_UNITS[sensor.unit][unit]
+    return columns
+
+
+def write_csv(file: Path, time_s: np.ndarray, columns: dict[str, np.ndarray]) -> None:
+    with file.open("w") as stream:
+        stream.write(",".join(["t_s", *columns]) + "\n")
+        for t_s, *values in zip(time_s, *columns.values(), strict=True):
+            cells = [f"{t_s:.6f}".rstrip("0").rstrip("."), *(f"{value:.6f}" for value in values)]
+            stream.write(",".join(cells) + "\n")
+
+
 def run(args: argparse.Namespace) -> int:
     bench = Bench()
     law, scenario = laws.find(args.law), scenarios.load(bench, args.scenario)
@@ -63,8 +94,8 @@ def run(args: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
         trace_file = Path(folder) / "trace"
         bench.call("run", *options, "--trace", str(trace_file))
-        trace = read_trace(trace_file, ["t_s", "accel_counts"])
-    time_s, accel_m_s2 = trace["t_s"], trace["accel_counts"] * count_m_s2(scenario.plant_file)
+        trace = read_trace(trace_file)
+    time_s, columns = trace["t_s"], measured(scenario, trace)
     end_s = np.inf if args.to_s is None else args.to_s
     chosen = (time_s >= args.from_s) & (time_s < end_s)
     if not chosen.any():
@@ -72,9 +103,8 @@ def run(args: argparse.Namespace) -> int:
             f"--from-s {args.from_s:g} --to-s {end_s:g}: no sample; the scenario spans "
             f"{time_s[0]:g} .. {time_s[-1]:g} s"
         )
-    with output_files(args.out.parent) as staging, (staging / args.out.name).open("w") as file:
-        file.write("t_s,accel_m_s2\n")
-        for t_s, value in zip(time_s[chosen], accel_m_s2[chosen], strict=True):
-            file.write(f"{t_s:.6f}".rstrip("0").rstrip(".") + f",{value:.6f}\n")
+    with output_files(args.out.parent) as staging:
+        kept = {name: values[chosen] for name, values in columns.items()}
+        write_csv(staging / args.out.name, time_s[chosen], kept)
     print(f"{shown(args.out)}: {int(chosen.sum())} rows of {scenario.name}, law {law.name}")
     return 0

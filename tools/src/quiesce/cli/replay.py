@@ -1,4 +1,4 @@
-"""`quiesce replay FILE.csv`: a recorded acceleration through the firmware's chain."""
+"""`quiesce replay FILE.csv`: recorded motion through the firmware's chain."""
 
 import argparse
 import json
@@ -12,9 +12,18 @@ from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import build_folder, shown
 from quiesce.engine.bench import Bench
+from quiesce.engine.board import load_board
 from quiesce.signal.recording import M_S2_PER_UNIT, Recording, read_recording
 from quiesce.signal.reference_peak import Agreement, WINDOW_s, compare, reference_freq_Hz
-from quiesce.signal.replay import Replayed, replay, summarize, write_csv
+from quiesce.signal.replay import (
+    Replayed,
+    Source,
+    board_columns,
+    one_column,
+    replay,
+    summarize,
+    write_csv,
+)
 from quiesce.signal.replay_plot import plot_replay
 from quiesce.signal.resample import METHOD, is_same_rate
 
@@ -22,6 +31,8 @@ EPILOG = """examples:
   quiesce replay sim_hil/data/recordings/step_10_20Hz.csv --column accel_m_s2 --unit m_s2
   quiesce replay sweep.csv --column mems_g --unit g --reference-column piezo_g --from-s 23
   quiesce replay other.csv --column acc --unit g --time-column time --set rms_window_ms=1000
+  quiesce replay rig.csv --board sim_hil/data/boards/two_storeys.toml \\
+      --sensor floor_accel=acc_1:g --sensor roof_accel=acc_2:g --sensor upper_stroke=lvdt:mm
 
 The file has one header line, a column of time in seconds and columns of acceleration. It is
 resampled to the control rate (tick_rate_Hz), turned into counts of the sensor that the parameters
@@ -29,20 +40,26 @@ describe, and run through the controller with its output enabled. Written: repla
 under its C names) and replay.png. With a reference column, the firmware's frequency at each of its
 updates (every 4 ms) is compared with the reference's own peak (2 s Hann window); the latencies of
 both are taken out.
+
+With --board, columns go to sensors of that board by name, in a unit of what each measures:
+acceleration m_s2, mm_s2, g; velocity m_s, mm_s; displacement and stroke m, mm, um; force N;
+temperature degC; voltage V. A sensor with a period has a sample in the first tick of each. One that
+is not named delivers none; the tracked one must be named. replay.csv then has the picture, too, as
+body_quantity_unit and damper_quantity_unit.
 """
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "replay",
-        description="Run the firmware's chain over a recorded acceleration: frequency, RMS and\n"
-        "current against time, with a plot.",
+        description="Run the firmware's chain over a recorded acceleration, or over columns for\n"
+        "the sensors of a board: frequency, RMS and current against time, with a plot.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("file", metavar="FILE.csv", type=Path, help="recording")
-    parser.add_argument("--column", required=True, help="column of the acceleration")
-    parser.add_argument("--unit", required=True, choices=list(M_S2_PER_UNIT), help="its unit")
+    parser.add_argument("--column", help="column of the acceleration")
+    parser.add_argument("--unit", choices=list(M_S2_PER_UNIT), help="its unit")
     parser.add_argument("--time-column", default="t_s", help="column of time in s (%(default)s)")
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter, repeatable"
@@ -59,8 +76,16 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--out", type=Path, metavar="DIR", help="folder to write to (build/replay/FILE)"
     )
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+    add_board_options(parser.add_argument_group("columns for the sensors of a board"))
     add_reference_options(parser.add_argument_group("comparison with a reference sensor"))
     parser.set_defaults(run=run)
+
+
+def add_board_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--board", type=Path, metavar="BOARD.toml", help="what is wired to what")
+    group.add_argument(
+        "--sensor", action="append", default=[], metavar="NAME=COLUMN:UNIT", help="repeatable"
+    )
 
 
 def add_reference_options(group: argparse._ArgumentGroup) -> None:
@@ -88,7 +113,7 @@ def reference_curve(
     if args.reference_column is None:
         return None
     middle_s, freq_Hz = reference_freq_Hz(
-        recording.accel_m_s2[args.reference_column], recording.rate_Hz
+        recording.accel_m_s2(args.reference_column, args.unit), recording.rate_Hz
     )
     if middle_s.size == 0:
         raise UsageError(
@@ -136,9 +161,42 @@ def agreement_figures(agreement: Agreement) -> dict[str, Any]:
     }
 
 
+def source_text(args: argparse.Namespace) -> str:
+    if args.board is None:
+        return f"{args.column} in {args.unit}"
+    return f"{', '.join(args.sensor)} on board {shown(args.board)}"
+
+
+def known(value: float | None, unit: str) -> str:
+    return "not known" if value is None else f"{value:.4g} {unit}"
+
+
+def body_text(name: str, body: dict[str, float | None]) -> str:
+    return (
+        f"{name}: RMS {known(body['accel_rms_m_s2'], 'm/s2')}, {known(body['disp_rms_mm'], 'mm')}; "
+        f"peak {known(body['accel_peak_m_s2'], 'm/s2')}, {known(body['disp_peak_mm'], 'mm')}"
+    )
+
+
+def damper_text(name: str, damper: dict[str, float | None]) -> str:
+    return (
+        f"{name}: command {damper['mean_current_A']:.3f} A on average, at most "
+        f"{damper['max_current_A']:.3f} A; stroke RMS {known(damper['stroke_rms_mm'], 'mm')}, "
+        f"peak {known(damper['stroke_peak_mm'], 'mm')}"
+    )
+
+
+def print_rig(figures: dict[str, Any]) -> None:
+    """Nothing without a board."""
+    lines = [("body", body_text(*one)) for one in figures.get("bodies", {}).items()]
+    lines += [("damper", damper_text(*one)) for one in figures.get("dampers", {}).items()]
+    for kind, text in lines:
+        print(f"{kind:10} {text}")
+
+
 def print_summary(args: argparse.Namespace, figures: dict[str, Any]) -> None:
     print(
-        f"recording  {shown(args.file)}, {args.column} in {args.unit}: {figures['rows']} rows at "
+        f"recording  {shown(args.file)}, {source_text(args)}: {figures['rows']} rows at "
         f"{figures['rate_Hz']:.6g} Hz, {figures['duration_s']:.1f} s"
     )
     if is_same_rate(figures["rows"], figures["rate_Hz"], figures["tick_rate_Hz"]):
@@ -160,6 +218,7 @@ def print_summary(args: argparse.Namespace, figures: dict[str, Any]) -> None:
         f"RMS        at most {figures['max_rms_m_s2']:.4g} m/s2; mean current command "
         f"{figures['mean_current_A']:.3f} A"
     )
+    print_rig(figures)
     faults = ", ".join(str(fault) for fault in figures["faults_seen"])
     print(f"faults     {faults or 'none'}")
     if figures["reference"]:
@@ -173,21 +232,47 @@ def print_summary(args: argparse.Namespace, figures: dict[str, Any]) -> None:
     print(f"written    {', '.join(figures['outputs'])}")
 
 
+def source_of(args: argparse.Namespace, bench: Bench) -> Source:
+    """UsageError where the options do not go together, or do not fit the board."""
+    if args.board is None:
+        if args.sensor:
+            raise UsageError("--sensor goes with --board")
+        if args.column is None or args.unit is None:
+            raise UsageError("--column and --unit are needed, or --board and --sensor")
+        return one_column(args.column, args.unit)
+    for option in ("column", "unit", "reference_column"):
+        if getattr(args, option) is not None:
+            name = option.replace("_", "-")
+            raise UsageError(f"--{name} goes without --board, which takes --sensor")
+    return board_columns(load_board(bench, args.board), args.sensor)
+
+
+def title_of(args: argparse.Namespace) -> str:
+    return f"{args.file.name}: {args.column or args.board.name}"
+
+
+def what_was_played(args: argparse.Namespace) -> dict[str, Any]:
+    if args.board is None:
+        return {"column": args.column, "unit": args.unit}
+    return {"board": str(args.board), "sensors": args.sensor}
+
+
 def run(args: argparse.Namespace) -> int:
-    columns = [args.column] + ([args.reference_column] if args.reference_column else [])
-    recording = read_recording(args.file, columns, args.unit, args.time_column)
+    bench = Bench()
+    source = source_of(args, bench)
+    columns = source.columns + ([args.reference_column] if args.reference_column else [])
+    recording = read_recording(args.file, columns, args.time_column)
     reference = reference_curve(args, recording)
-    replayed = replay(Bench(), recording, args.column, args.set, args.target)
+    replayed = replay(bench, recording, source, args.set, args.target)
     agreement = judge(args, replayed, reference) if reference else None
 
     out = args.out or build_folder() / "replay" / args.file.stem
     with output_files(out) as staging:
         write_csv(staging / "replay.csv", replayed, args.every)
-        plot_replay(staging / "replay.png", replayed, f"{args.file.name}: {args.column}", reference)
+        plot_replay(staging / "replay.png", replayed, title_of(args), reference)
     figures = {
         "file": str(args.file),
-        "column": args.column,
-        "unit": args.unit,
+        **what_was_played(args),
         "rows": recording.rows,
         "rate_Hz": round(recording.rate_Hz, 6),
         "duration_s": round(recording.duration_s, 6),

@@ -14,6 +14,8 @@ from quiesce.base.paths import build_folder, shown
 
 QEMU = "qemu-system-arm"
 IMAGES = {"mps2": "quiesce_mps2_shm.elf", "mps2-uart": "quiesce_mps2_uart.elf"}
+# With a board, which may have more than one sensor and damper.
+BOARD_IMAGES = {"mps2": "quiesce_mps2_shm_8x4.elf"}
 ECHO_IMAGE = "uart_echo.elf"
 
 
@@ -23,9 +25,10 @@ def require_file(path: Path, what: str) -> Path:
     return path
 
 
-def image(target: str) -> Path:
+def image(target: str, has_board: bool = False) -> Path:
     """The image that runs on an emulated target."""
-    return require_file(build_folder() / "mps2/targets/mps2" / IMAGES[target], "the image")
+    name = (BOARD_IMAGES if has_board else IMAGES)[target]
+    return require_file(build_folder() / "mps2/targets/mps2" / name, "the image")
 
 
 def echo_image() -> Path:
@@ -40,17 +43,17 @@ def require_emulator() -> None:
         )
 
 
-def target_options(target: str, linux: Sequence[str] = ()) -> list[str]:
+def target_options(target: str, linux: Sequence[str] = (), has_board: bool = False) -> list[str]:
     """Options of the bench for a target. UsageError where it cannot run here.
 
-    linux: further ones for that target, its channel.
+    linux: further ones for that target, its channel. has_board: what runs there has one.
     """
     if target == "host":
         return ["--target", "host"]
     if target == "linux":
         return ["--target", "linux", *linux]
     require_emulator()
-    return ["--target", target, "--image", str(image(target))]
+    return ["--target", target, "--image", str(image(target, has_board))]
 
 
 class Bench:

@@ -8,6 +8,7 @@ from typing import Any
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import scenario_folder, shown
 from quiesce.engine.bench import Bench
+from quiesce.engine.board import Board, load_board
 
 SCHEMA = "quiesce-scenario"
 TRACE_EQUALITY = "trace_equality"
@@ -20,6 +21,7 @@ class Scenario:
     plant_file: Path
     windows_s: tuple[tuple[float, float], ...]  # where the steady state is judged
     transient_s: float | None  # start of the step's transient
+    board: Board | None = None
 
     @property
     def is_step(self) -> bool:
@@ -54,7 +56,7 @@ def find_file(name: str) -> Path:
 
 
 def load(bench: Bench, name: str) -> Scenario:
-    """UsageError, in the bench's words, where the scenario or its plant is not valid."""
+    """UsageError, in the bench's words, where the scenario, its plant or its board is not valid."""
     file = find_file(name)
     data = read_toml(file)
     bench.call("scenario-check", str(file))
@@ -64,4 +66,5 @@ def load(bench: Bench, name: str) -> Scenario:
         plant_file=(file.parent / data["plant"]).resolve(),
         windows_s=tuple((w["start_s"], w["end_s"]) for w in data.get("window", [])),
         transient_s=data.get("transient", {}).get("start_s"),
+        board=load_board(bench, file.parent / data["board"]) if "board" in data else None,
     )

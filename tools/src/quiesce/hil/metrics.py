@@ -8,7 +8,8 @@ import numpy as np
 
 from quiesce.engine.laws import OPEN_LOOP
 from quiesce.hil.published import Published, Reference
-from quiesce.hil.runs import Run, displacement_um
+from quiesce.hil.rig import RigRow
+from quiesce.hil.runs import Run, displacement_um, reduction_pct
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,14 @@ class Result:
     differing: list[str]  # cases whose telemetry differs between host and image
     realtime_factor: dict[str, float | None]
     uart: dict[str, Any] | None
+    rigs: Sequence[RigRow] = ()
+
+    @property
+    def plain(self) -> list[tuple[Row, Beside]]:
+        """Rows, with what stands beside them, of scenarios without a board."""
+        rigs = {row.scenario for row in self.rigs}
+        pairs = zip(self.rows, self.beside, strict=True)
+        return [(row, beside) for row, beside in pairs if row.scenario not in rigs]
 
     @property
     def is_equal(self) -> bool:
@@ -77,12 +86,6 @@ class Result:
 
 def excitation_text(freq_Hz: float) -> str:
     return f"{freq_Hz:g} Hz" if freq_Hz > 0.0 else "no one frequency"
-
-
-def reduction_pct(value: float | None, open_loop: float | None) -> float | None:
-    if value is None or not open_loop:
-        return None
-    return round(100.0 * (1.0 - value / open_loop), 4)
 
 
 def mean_current_A(run: Run, window: int) -> float:
@@ -200,6 +203,7 @@ def metrics_json(result: Result) -> dict[str, Any]:
             name: None if factor is None else round(factor, 2)
             for name, factor in result.realtime_factor.items()
         },
+        **({"rigs": [asdict(row) for row in result.rigs]} if result.rigs else {}),
     }
 
 

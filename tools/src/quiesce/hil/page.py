@@ -8,6 +8,7 @@ from quiesce.engine import laws
 from quiesce.hil.metrics import Beside, Result, Row
 from quiesce.hil.plots import (
     plot_reductions,
+    plot_rig,
     plot_searches,
     plot_spectra,
     plot_steady,
@@ -15,6 +16,7 @@ from quiesce.hil.plots import (
     plot_surface,
     scenario_names,
 )
+from quiesce.hil.rig_table import LEFT, rig_tables
 from quiesce.hil.rule_surface import RuleSurface
 from quiesce.hil.runs import ConstantSearch, Run
 from quiesce.hil.table import (
@@ -26,7 +28,7 @@ from quiesce.hil.table import (
     published_text,
     target_name,
 )
-from quiesce.report.html import card, cards, document, image, section
+from quiesce.report.html import card, cards, document, html_table, image, section
 
 
 def text(value: float | None, digits: int = 1) -> str:
@@ -126,6 +128,49 @@ def table(result: Result) -> str:
     return f'<div class="wide"><table>{rows}</table></div>'
 
 
+def comparison(result: Result) -> str:
+    """Against published figures, of plants without a board."""
+    if not result.plain:
+        return ""
+    return f"""<h2>Comparison</h2>
+{table(result)}
+<p><b>Published</b>: measured by the paper on the real structure. <b>Simulated</b>: an independent
+simulation of this plant, sine cases without sensor noise. <b>Bound</b>: the best that any current
+waveform does on this plant (best found, ±0.5). Each <b>diff</b> is ours less the figure before it;
+for a published range, less its nearer end. <b>On</b>: “both” where host and the other target agree
+to every digit. The reversed sign of self-tuning stands beside the same published figure: the
+paper's printed table has the sign that makes 5 Hz worse on this plant.</p>"""
+
+
+def rigs(result: Result, runs: Sequence[Run]) -> str:
+    """Bodies and dampers of scenarios with a board."""
+    if not result.rigs:
+        return ""
+    parts = ["<h2>Bodies and dampers</h2>"]
+    for heading, bodies, dampers in rig_tables(result.rigs):
+        parts += [f"<h3>{html.escape(heading)}</h3>", html_table(bodies, LEFT)]
+        parts.append(html_table(dampers, LEFT))
+    parts.append(
+        "<p>True values of the simulated plant. <b>red.</b>: less than with law off; <b>more</b>: "
+        "of a damper's peak force, against law off.</p>"
+    )
+    for name in dict.fromkeys(row.scenario for row in result.rigs):
+        parts.append(
+            section(
+                f"The end of {name}",
+                "True displacement of each body, force and coil current of each damper.",
+                image(plot_rig(runs, name), "displacements, forces and currents against time"),
+            )
+        )
+    return "".join(parts)
+
+
+def conditions(row: Row, has_board: bool) -> str:
+    """With a board each sensor has its own noise."""
+    noise = "" if has_board else f"Sensor noise {row.noise_mg:g} mg, drive"
+    return f"{noise or 'Drive'}\n{row.drive_V:g} V, seed {row.seed}."
+
+
 def figures(
     result: Result, runs: Sequence[Run], searches: Sequence[ConstantSearch], surface: RuleSurface
 ) -> str:
@@ -179,25 +224,19 @@ def make_page(
     surface: RuleSurface,
     command: str,
 ) -> str:
-    first = result.rows[0]
+    has_board = not result.plain
+    drive = conditions(result.rows[0], has_board)
     counts = "\n".join(instruction_lines(result))
     return document(
         "closed loop, published against ours",
         f"""<h1>Closed loop: published, ours, best attainable</h1>
 <p class="lead">The controller's firmware against the simulated structure, in lock-step, one
 acceleration sample and one current command each control tick. Reductions are against 0 A with the
-same excitation; negative is worse than doing nothing. Sensor noise {first.noise_mg:g} mg, drive
-{first.drive_V:g} V, seed {first.seed}.</p>
+same excitation; negative is worse than doing nothing. {drive}</p>
 {result_cards(result)}
-<h2>Comparison</h2>
-{table(result)}
-<p><b>Published</b>: measured by the paper on the real structure. <b>Simulated</b>: an independent
-simulation of this plant, sine cases without sensor noise. <b>Bound</b>: the best that any current
-waveform does on this plant (best found, ±0.5). Each <b>diff</b> is ours less the figure before it;
-for a published range, less its nearer end. <b>On</b>: “both” where host and the other target agree
-to every digit. The reversed sign of self-tuning stands beside the same published figure: the
-paper's printed table has the sign that makes 5 Hz worse on this plant.</p>
-{figures(result, runs, searches, surface)}
+{comparison(result)}
+{rigs(result, runs)}
+{figures(result, [r for r in runs if r.case.scenario.board is None], searches, surface)}
 {f"<h2>Instructions of the image</h2><pre>{html.escape(counts)}</pre>" if counts else ""}
 <h2>Run it again</h2>
 <pre>{html.escape(command)}

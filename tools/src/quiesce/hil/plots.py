@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from quiesce.engine import laws
-from quiesce.hil.metrics import Result, amplitude_spectrum, excitation_text, reduction_pct
+from quiesce.hil.metrics import Result, amplitude_spectrum, excitation_text
 from quiesce.hil.rule_surface import RuleSurface, visited_cells
-from quiesce.hil.runs import ConstantSearch, Run, displacement_um
+from quiesce.hil.runs import ConstantSearch, Run, displacement_um, reduction_pct
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
 
 PERIODS_SHOWN = 3
@@ -62,7 +62,7 @@ def figure_legend(figure: Any, axes: Any) -> None:
 
 def plot_reductions(result: Result) -> str:
     """Bars of our reductions in the steady scenarios, with what they are compared with."""
-    rows = [(r, b) for r, b in zip(result.rows, result.beside, strict=True) if r.settle_s is None]
+    rows = [(r, b) for r, b in result.plain if r.settle_s is None]
     rows = [(r, b) for r, b in rows if r.law != laws.OPEN_LOOP and r.amp_reduction_pct is not None]
     if not rows:
         return ""
@@ -134,6 +134,30 @@ def plot_steady(runs: Sequence[Run]) -> str:
         column[2].set_xlabel("time before the end (s)")
     for axis, (_, _, text) in zip(axes[:, 0], columns, strict=True):
         axis.set_ylabel(text)
+    figure.align_ylabels(axes[:, 0])
+    figure_legend(figure, axes[0, 0])
+    return svg_of(figure)
+
+
+def plot_rig(runs: Sequence[Run], name: str) -> str:
+    """The last seconds of a rig: displacement of each body, force and current of each damper."""
+    found = one_run_a_law(runs, name)
+    board = next(iter(found.values())).case.scenario.board
+    curves = [(f"{body}_true_um", 1e-3, f"{body} (mm)") for body in board.bodies]
+    for damper in board.dampers:
+        curves.append((f"{damper}_true_force_mN", 1e-3, f"{damper} (N)"))
+        curves.append((f"{damper}_true_mA", 1e-3, f"{damper} (A)"))
+    figure, axes = pyplot().subplots(
+        len(curves), 1, figsize=(11, 0.6 + 1.3 * len(curves)), squeeze=False, sharex=True
+    )
+    for law, run in found.items():
+        time_s = run.trace["t_s"] - run.trace["t_s"][-1]
+        last = time_s > -BROADBAND_SHOWN_s
+        for axis, (key, scale, _) in zip(axes[:, 0], curves, strict=True):
+            axis.plot(time_s[last], scale * run.trace[key][last], **line_style(law))
+    for axis, (_, _, text) in zip(axes[:, 0], curves, strict=True):
+        axis.set_ylabel(text)
+    axes[-1, 0].set_xlabel("time before the end (s)")
     figure.align_ylabels(axes[:, 0])
     figure_legend(figure, axes[0, 0])
     return svg_of(figure)

@@ -48,6 +48,12 @@ def displacement_um(figures: dict[str, Any], number: str = "") -> float:
     return figures[f"disp_rms{number}_um"] if amplitude is None else amplitude
 
 
+def reduction_pct(value: float | None, open_loop: float | None) -> float | None:
+    if value is None or not open_loop:
+        return None
+    return round(100.0 * (1.0 - value / open_loop), 4)
+
+
 @dataclass(frozen=True)
 class ConstantSearch:
     """Figures over a grid of constant currents, and the best of them.
@@ -66,6 +72,11 @@ class ConstantSearch:
     @property
     def best_mA(self) -> int:
         return self.current_mA[min(range(len(self.current_mA)), key=self.displacement_um)]
+
+
+def lacked(scenario: Scenario, law: Law) -> str | None:
+    """The first signal that the law needs and the scenario's board, if it has one, lacks."""
+    return scenario.board.lacks[law.bench_law] if scenario.board else None
 
 
 @dataclass(frozen=True)
@@ -91,9 +102,15 @@ class Plan:
         """The target whose every reply is compared with the host's."""
         return next((target for target in self.targets if target != "host"), None)
 
-    def options_of(self, target: str) -> list[str]:
+    @property
+    def has_rigs_only(self) -> bool:
+        return all(scenario.board is not None for scenario in self.scenarios)
+
+    def options_of(self, target: str, scenario: Scenario) -> list[str]:
         linux = ["--telemetry-every", str(self.telemetry_every)]
-        return target_options(target, [*linux, "--can", self.can] if self.can else [])
+        return target_options(
+            target, [*linux, "--can", self.can] if self.can else [], scenario.board is not None
+        )
 
     def laws_on(self, target: str) -> list[Law]:
         """The quick plan runs on the image what tells most: the fuzzy law, and what it needs."""
@@ -108,12 +125,24 @@ class Plan:
             for target in self.targets
             if target == "host" or scenario.name in self.target_scenarios
             for law in self.laws_on(target)
+            if lacked(scenario, law) is None
+        ]
+
+    def left_out(self) -> list[str]:
+        """Of each law that cannot work with a board: why, in words."""
+        return [
+            f"{scenario.name}: {law.name} is left out, it needs {signal}, which no sensor of board "
+            f"{scenario.board.name} provides"
+            for scenario in self.scenarios
+            for law in self.laws
+            if (signal := lacked(scenario, law)) is not None
         ]
 
     def searches(self) -> list[Scenario]:
         if all(law.name != CONSTANT_BEST for law in self.laws):
             return []
-        return [s for s in self.scenarios if any(case.scenario is s for case in self.cases())]
+        searched = [c.scenario for c in self.cases() if c.law.name == CONSTANT_BEST]
+        return [s for s in self.scenarios if any(one is s for one in searched)]
 
 
 class Runner:
@@ -124,7 +153,8 @@ class Runner:
         self.plan = plan
         # Refuses bad settings before anything runs.
         self._params = effective_params(bench, plan.settings)
-        self._target_options = {t: plan.options_of(t) for t in plan.targets}
+        for case in plan.cases():
+            plan.options_of(case.target, case.scenario)
         self._line = threading.Lock()  # one bench at a time talks over a CAN channel
 
     def run_all(self) -> tuple[list[Run], list[ConstantSearch]]:
@@ -148,6 +178,8 @@ class Runner:
     def _search(self, scenario: Scenario, progress: Progress) -> ConstantSearch:
         law = next(law for law in self.plan.laws if law.name == CONSTANT_BEST)
         top_mA = self._params["max_current_mA"]
+        if scenario.board:
+            top_mA = min(top_mA, scenario.board.ceiling_mA)
         grid_mA = [*range(0, top_mA, self.plan.constant_step_mA), top_mA]
         figures = [
             self._bench.json("run", *self._options(scenario, law, [f"constant_current_mA={mA}"]))
@@ -166,12 +198,21 @@ class Runner:
         options = self._options(case.scenario, case.law, settings)
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
             file = Path(folder) / "trace"
-            options += [*self._target_options[case.target], "--trace", str(file)]
+            options += [*self.plan.options_of(case.target, case.scenario), "--trace", str(file)]
             with self._line if case.target == "linux" else nullcontext():
                 figures = self._bench.json("run", *options)
-            trace = read_trace(file, TRACE_COLUMNS)
+            trace = read_trace(file, [*TRACE_COLUMNS, *rig_columns(case.scenario)])
         progress.done(f"{case.scenario.name} {case.law.name} {case.target}: {headline(figures)}")
         return Run(case, figures, trace)
+
+
+def rig_columns(scenario: Scenario) -> list[str]:
+    """Of a trace: the truth of each body and damper, in um, mN and mA."""
+    board = scenario.board
+    if board is None:
+        return []
+    of_dampers = [f"{name}_true_{what}" for name in board.dampers for what in ("force_mN", "mA")]
+    return [*(f"{name}_true_um" for name in board.bodies), *of_dampers]
 
 
 def headline(figures: dict[str, Any]) -> str:
@@ -193,7 +234,7 @@ def measure_speed(
     factors: dict[str, float | None] = {"host": None, "mps2": None}
     for target in plan.targets:
         options = ["--scenario", str(scenario.file), "--law", law.bench_law]
-        options += ["--repeat", str(repeats[target]), *plan.options_of(target)]
+        options += ["--repeat", str(repeats[target]), *plan.options_of(target, scenario)]
         factors[target] = bench.json("run", *options)["realtime_factor"]
     return factors
 

@@ -1,8 +1,9 @@
 """The table that `quiesce hil` prints: published, ours, independent simulation, bound."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import groupby
+from typing import Any, TypeVar
 
 from quiesce.engine import laws
 from quiesce.hil.metrics import Beside, OpenLoop, Result, Row, excitation_text
@@ -25,6 +26,9 @@ NOTES = (
     "and the\n"
     "other target agree to every digit."
 )
+
+AnyRow = TypeVar("AnyRow", bound=Any)
+Also = TypeVar("Also")
 
 
 def target_name(target: str) -> str:
@@ -84,12 +88,14 @@ def figures_of(row: Row) -> Row:
     return replace(row, target="", instr_median=None, instr_worst=None)
 
 
-def merge_targets(result: Result) -> list[tuple[Row, Beside]]:
+def merge_targets(
+    pairs: Iterable[tuple[AnyRow, Also]], compared: Callable[[AnyRow], AnyRow] = figures_of
+) -> list[tuple[AnyRow, Also]]:
     """Rows with host and image merged where they agree to every digit."""
-    merged: list[tuple[Row, Beside]] = []
-    for row, beside in zip(result.rows, result.beside, strict=True):
+    merged: list[tuple[AnyRow, Also]] = []
+    for row, beside in pairs:
         for i, (other, _) in enumerate(merged):
-            if figures_of(other) == figures_of(row):
+            if compared(other) == compared(row):
                 merged[i] = (replace(other, target="both"), beside)
                 break
         else:
@@ -99,7 +105,7 @@ def merge_targets(result: Result) -> list[tuple[Row, Beside]]:
 
 def groups(result: Result) -> Iterator[tuple[str, list[tuple[Row, Beside]]]]:
     """Rows by scenario and frequency, each with its heading."""
-    pairs = merge_targets(result)
+    pairs = merge_targets(result.plain)
     order = {key: i for i, key in enumerate(dict.fromkeys(group_key(row) for row, _ in pairs))}
     pairs.sort(key=lambda pair: order[group_key(pair[0])])
     for (scenario, freq_hz), members in groupby(pairs, key=lambda pair: group_key(pair[0])):

@@ -17,7 +17,8 @@ def require_one_damper(data: dict[str, Any], file: Path) -> None:
     """UsageError for a plant whose dampers have names and ends: [[damper]]."""
     if isinstance(data.get("damper"), list):
         raise UsageError(
-            f"{shown(file)}: damper: [[damper]]; this works on plants with one [damper]"
+            f"{shown(file)}: its dampers have names and ends ([[damper]]); this works on plants "
+            "with one plain [damper]"
         )
 
 

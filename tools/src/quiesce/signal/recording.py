@@ -1,4 +1,4 @@
-"""A recorded acceleration from a CSV file: read, checked, in m/s2 against uniform time."""
+"""Recorded columns from a CSV file: read, checked, against uniform time."""
 
 import csv
 import math
@@ -12,6 +12,15 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 
 M_S2_PER_UNIT = {"g": 9.80665, "m_s2": 1.0, "mm_s2": 1e-3}
+# What a column may be in, by the unit of its sensor: how many of that unit it is.
+COLUMN_UNITS = {
+    "um/s2": {unit: 1e6 * m_s2 for unit, m_s2 in M_S2_PER_UNIT.items()},
+    "um/s": {"m_s": 1e6, "mm_s": 1e3},
+    "nm": {"m": 1e9, "mm": 1e6, "um": 1e3},
+    "mN": {"N": 1e3},
+    "mV": {"V": 1e3},
+    "mdegC": {"degC": 1e3},
+}
 MIN_ROWS = 3
 # Largest distance of a time stamp from the uniform grid, in sample periods: covers stamps rounded
 # to 1 ms at 400 Hz, refuses gaps and drifting clocks.
@@ -20,23 +29,26 @@ MAX_JITTER = 0.25
 
 @dataclass(frozen=True)
 class Recording:
-    """Samples at start_s + n / rate_Hz; one array a column, in m/s2."""
+    """Samples at start_s + n / rate_Hz; one array a column, as it stands in the file."""
 
     start_s: float
     rate_Hz: float
-    accel_m_s2: dict[str, np.ndarray]
+    columns: dict[str, np.ndarray]
     jitter: float  # largest distance of a time stamp from that grid, in sample periods
 
     @property
     def rows(self) -> int:
-        return len(next(iter(self.accel_m_s2.values())))
+        return len(next(iter(self.columns.values())))
 
     @property
     def duration_s(self) -> float:
         return self.rows / self.rate_Hz
 
+    def accel_m_s2(self, column: str, unit: str) -> np.ndarray:
+        return self.columns[column] * M_S2_PER_UNIT[unit]
 
-def read_recording(file: Path, columns: list[str], unit: str, time_column: str) -> Recording:
+
+def read_recording(file: Path, columns: list[str], time_column: str) -> Recording:
     """UsageError, naming the line where there is one, for anything that is not a recording."""
     lines, table = read_columns(file, [time_column, *columns])
     time_s = table[:, 0]
@@ -45,7 +57,7 @@ def read_recording(file: Path, columns: list[str], unit: str, time_column: str) 
     return Recording(
         start_s=float(time_s[0]),
         rate_Hz=float(1.0 / period_s),
-        accel_m_s2={name: table[:, 1 + i] * M_S2_PER_UNIT[unit] for i, name in enumerate(columns)},
+        columns={name: table[:, 1 + i] for i, name in enumerate(columns)},
         jitter=check_uniform(file, time_column, lines, time_s, period_s),
     )
 

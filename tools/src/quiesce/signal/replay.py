@@ -1,4 +1,4 @@
-"""Runs the firmware's chain over a recorded acceleration, through the bench."""
+"""Runs the firmware's chain over recorded motion, through the bench."""
 
 import csv
 import tempfile
@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from quiesce.engine.bench import Bench, setting_options, target_options
+from quiesce.engine.board import Board, Sensor
 from quiesce.engine.params import effective_params
 from quiesce.engine.trace import Trace, read_trace
-from quiesce.signal.recording import Recording
-from quiesce.signal.resample import resample
+from quiesce.signal import picture
+from quiesce.signal.channels import Channel, read_channels, tick_counts
+from quiesce.signal.recording import M_S2_PER_UNIT, Recording
 
 # The decimator before the spectrum (firmware/sense/decimate.h).
 SPECTRUM_RATE_Hz = 250
@@ -34,6 +36,33 @@ CSV_COLUMNS = (
 
 
 @dataclass(frozen=True)
+class Source:
+    """What a recording feeds: the sensors of a board, or without one the accelerometer of the
+    parameters."""
+
+    channels: dict[str, Channel]  # by the name of the sensor
+    board: Board | None = None
+
+    @property
+    def columns(self) -> list[str]:
+        """Of the recording."""
+        return list(dict.fromkeys(channel.column for channel in self.channels.values()))
+
+    @property
+    def csv_columns(self) -> list[str]:
+        return [*CSV_COLUMNS, *(picture.columns(self.board) if self.board else [])]
+
+
+def one_column(column: str, unit: str) -> Source:
+    return Source({"accel": Channel(column, M_S2_PER_UNIT[unit])})
+
+
+def board_columns(board: Board, words: Sequence[str]) -> Source:
+    """words: NAME=COLUMN:UNIT of each sensor. UsageError where they do not fit the board."""
+    return Source(read_channels(words, board), board)
+
+
+@dataclass(frozen=True)
 class Replayed:
     """What the chain made of a recording: one row a tick, times on the recording's own axis."""
 
@@ -41,6 +70,7 @@ class Replayed:
     time_s: np.ndarray
     trace: Trace
     summary: dict[str, Any]  # the bench's own
+    board: Board | None = None
 
     @property
     def latency_s(self) -> np.ndarray:
@@ -62,38 +92,45 @@ def frequency_latency_s(window_ms: np.ndarray, tick_rate_Hz: int) -> np.ndarray:
     return 0.5e-3 * window_ms + delay_s
 
 
-def sensor_counts(accel_m_s2: np.ndarray, params: dict[str, int]) -> np.ndarray:
-    """Counts of the sensor that the parameters describe, clipped at its full scale."""
-    counts = accel_m_s2 * params["accel_polarity"] / (params["accel_scale_nm_s2"] * 1e-9)
-    full_scale = params["accel_full_scale_counts"]
-    counts = np.rint(counts + params["accel_offset_counts"])
-    return np.clip(counts, -full_scale, full_scale).astype("<i4")
+def own_sensor(params: dict[str, int]) -> Sensor:
+    """The accelerometer that the parameters describe, in m/s2."""
+    return Sensor(
+        name="accel",
+        measures="acceleration",
+        unit="m/s2",
+        unit_per_count=params["accel_scale_nm_s2"] * 1e-9,
+        polarity=params["accel_polarity"],
+        offset_counts=params["accel_offset_counts"],
+        full_scale_counts=params["accel_full_scale_counts"],
+        period_us=0,
+    )
 
 
 def replay(
-    bench: Bench, recording: Recording, column: str, settings: Sequence[str], target: str
+    bench: Bench, recording: Recording, source: Source, settings: Sequence[str], target: str
 ) -> Replayed:
     """UsageError for settings that the controller refuses or a target that cannot run."""
     params = effective_params(bench, settings)
-    rate_Hz = params["tick_rate_Hz"]
-    accel_m_s2 = resample(recording.accel_m_s2[column], recording.rate_Hz, rate_Hz)
-    options = [*setting_options(settings), *target_options(target)]
+    rate_Hz, board = params["tick_rate_Hz"], source.board
+    sensors = board.sensors if board else [own_sensor(params)]
+    counts = tick_counts(recording, sensors, source.channels, rate_Hz)
+    options = [*setting_options(settings), *target_options(target, has_board=board is not None)]
+    options += ["--board", str(board.file)] if board else []
     with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
         counts_file, trace_file = Path(folder) / "counts", Path(folder) / "trace"
-        sensor_counts(accel_m_s2, params).tofile(counts_file)
-        summary = bench.json(
-            "replay", "--counts", str(counts_file), "--trace", str(trace_file), *options
-        )
-        trace = read_trace(trace_file, list(CSV_COLUMNS))
-    time_s = recording.start_s + np.arange(len(accel_m_s2)) / rate_Hz
-    return Replayed(rate_Hz, time_s, trace, summary)
+        counts.tofile(counts_file)
+        files = ["--counts", str(counts_file), "--trace", str(trace_file)]
+        summary = bench.json("replay", *files, *options)
+        trace = read_trace(trace_file, source.csv_columns)
+    time_s = recording.start_s + np.arange(len(counts)) / rate_Hz
+    return Replayed(rate_Hz, time_s, trace, summary, board)
 
 
 def write_csv(file: Path, replayed: Replayed, every_ticks: int) -> None:
     with file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["t_s", *CSV_COLUMNS])
-        columns = [replayed.trace[name].astype(int)[::every_ticks] for name in CSV_COLUMNS]
+        writer.writerow(["t_s", *replayed.trace])
+        columns = [values.astype(int)[::every_ticks] for values in replayed.trace.values()]
         for time_s, *values in zip(replayed.time_s[::every_ticks], *columns, strict=True):
             writer.writerow([f"{time_s:.6f}".rstrip("0").rstrip("."), *values])
 
@@ -103,6 +140,10 @@ def summarize(replayed: Replayed) -> dict[str, Any]:
     trace = replayed.trace
     valid = trace["freq_is_valid"] > 0
     freq_Hz = trace["freq_uHz"][valid] * 1e-6
+    rig = {}
+    if replayed.board:
+        rig["bodies"] = picture.body_figures(trace, replayed.board)
+        rig["dampers"] = picture.damper_figures(trace, replayed.board)
     return {
         "target": replayed.summary["target"],
         "tick_rate_Hz": replayed.tick_rate_Hz,
@@ -114,4 +155,5 @@ def summarize(replayed: Replayed) -> dict[str, Any]:
         "max_rms_m_s2": round(float(trace["rms_um_s2"].max()) * 1e-6, 6),
         "mean_current_A": round(float(trace["current_cmd_mA"].mean()) * 1e-3, 4),
         "faults_seen": replayed.summary["faults_seen"],
+        **rig,
     }

@@ -5,6 +5,7 @@ from typing import Any
 
 from quiesce.base.table import format_table
 from quiesce.engine.bench import Bench
+from quiesce.engine.board import SCALES_PER_UNIT
 
 EPILOG = """examples:
   quiesce board show sim_hil/data/boards/two_storeys.toml
@@ -22,7 +23,6 @@ SHOWN_UNITS = {
     "mV": ("V", 1e3),
     "mdegC": ("degC", 1e3),
 }
-SCALES_PER_UNIT = 1000
 NO_LIMIT_PCT = 100
 AXES = "xyz"
 
