@@ -166,12 +166,15 @@ def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def judged(bench: Bench, plan: Plan, name: str, law: str) -> tuple[scenarios.Scenario, laws.Law]:
-    """What is compared and timed: these; where all that was asked for are rigs, one of those."""
+def judged(
+    bench: Bench, plan: Plan, runs: list[Run], name: str, law: str
+) -> tuple[scenarios.Scenario, laws.Law]:
+    """What is compared and timed: these; where all that was asked for are rigs, of the first one
+    the law with the most different commands."""
     if not plan.has_rigs_only:
         return scenarios.load(bench, name), laws.find(law)
-    cases = [case for case in plan.cases() if case.scenario is plan.scenarios[0]]
-    chosen = next((case for case in cases if case.law.name == law), cases[-1])
+    of_first = [run for run in runs if run.case.scenario is plan.scenarios[0]]
+    chosen = max(of_first, key=lambda run: run.figures["distinct_commands"]).case
     return chosen.scenario, chosen.law
 
 
@@ -186,7 +189,7 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
         name = target_name(plan.checked_target)
         words = compared_text(plan.telemetry_every)
         say(f"comparing {words}, {name} against host, {count} seeds")
-        scenario, law = judged(bench, plan, scenarios.TRACE_EQUALITY, TRACE_LAW)
+        scenario, law = judged(bench, plan, runs, scenarios.TRACE_EQUALITY, TRACE_LAW)
         equal = compare_traces(
             bench,
             scenario,
@@ -195,8 +198,10 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
             plan.options_of(plan.checked_target, scenario),
         )
         equal["telemetry_every"] = plan.telemetry_every
+        if plan.has_rigs_only:
+            equal["case"] = f"{scenario.name}, {law.label}"
     say("measuring speed, nothing else running")
-    speed = measure_speed(bench, *judged(bench, plan, STEP, SPEED_LAW), plan)
+    speed = measure_speed(bench, *judged(bench, plan, runs, STEP, SPEED_LAW), plan)
     if "mps2" in plan.targets and not plan.is_quick and not plan.has_rigs_only:
         say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
         uart = measure_uart(bench, UART_EXCHANGES)

@@ -152,11 +152,13 @@ def trace_line(result: Result) -> str:
             f"FAILED, {equal['mismatches']} mismatches, first: seed {first['seed']}, tick "
             f"{first['tick']}, {first['field']}"
         )
+    faults = ", ".join(map(str, equal["faults_seen"])) or "none"
+    # A rig is compared in its own scenario, which is named; the others in one made for it.
+    what = equal.get("case", f"a frequency step, faults {faults} and recovery")
     return (
         f"trace equality, {' and '.join(equal['targets'])}: {verdict} "
         f"({equal['ticks']} ticks, {len(equal['seeds'])} seeds,\n"
-        f"  {equal['distinct_commands']} distinct commands, a frequency step, faults "
-        f"{', '.join(map(str, equal['faults_seen'])) or 'none'} and recovery)"
+        f"  {equal['distinct_commands']} distinct commands, {what})"
     )
 
 

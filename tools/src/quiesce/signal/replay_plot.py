@@ -101,11 +101,13 @@ def rig_curves(replayed: Replayed, board: Board) -> list[tuple[str, dict[str, np
     strokes = of(board.dampers, STROKE, 1e-6)
     moved = of(board.bodies, DISPLACEMENT, 1e-6)
     moved |= {f"{name}, stroke": values for name, values in strokes.items()}
-    currents = {name: 1e-3 * trace[f"{name}_current_cmd_mA"] for name in board.dampers}
+    currents = [
+        ("current (A)", {name: 1e-3 * trace[f"{name}_current_cmd_mA"]}) for name in board.dampers
+    ]
     return [
         ("acceleration\n(m/s²)", of(board.bodies, ACCEL, 1e-6)),
         ("displacement\n(mm)", moved),
-        ("current (A)", currents),
+        *currents,
     ]
 
 
@@ -121,11 +123,11 @@ def panels(
     if replayed.board is None:
         first = (2, partial(draw_accel, replayed=replayed))
         return [first, *middle, (2, partial(draw_current, replayed=replayed))]
-    accel, moved, currents = (
+    accel, moved, *currents = (
         (2, partial(draw_curves, time_s=replayed.time_s, curves=curves, unit=unit))
         for unit, curves in rig_curves(replayed, replayed.board)
     )
-    return [accel, moved, *middle, currents]
+    return [accel, moved, *middle, *currents]
 
 
 def plot_replay(
