@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from quiesce.signal.replay import sensor_counts
+from quiesce.signal.replay import own_sensor
 from quiesce_benchmarks.cli import main
 from quiesce_benchmarks.seeds import generator
 from quiesce_benchmarks.signal import benchmark, recorded, response, truth
@@ -267,7 +267,7 @@ def test_conditioning_removes_gravity_and_keeps_the_band() -> None:
     }  # fmt: skip
     ticks = 20000
     accel = 9.81 + tone(np.array([1.0, 10.0]), np.zeros(2), 0, ticks, 1000)
-    rest = conditioned(sensor_counts(accel, params), params)[:, ticks // 2 :]
+    rest = conditioned(own_sensor(params).counts(accel), params)[:, ticks // 2 :]
     gain = np.sqrt(2.0 * np.mean(np.square(rest), axis=1))
     assert gain == pytest.approx([1.0 / np.hypot(1.0, 0.2), 1.0], abs=2e-3)
     assert np.abs(rest.mean(axis=1)).max() < 2e-3

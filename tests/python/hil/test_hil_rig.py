@@ -91,6 +91,17 @@ def test_image_for_boards_answers_like_the_host(build: Path, image: Path, tmp_pa
     assert equal["mismatches"] == 0 and equal["distinct_commands"] > 100
 
 
+@pytest.mark.slow
+def test_linux_controller_answers_like_the_host(build: Path, tmp_path: Path) -> None:
+    require(build / "host/targets/linux/quiesced/quiesced")
+    options = ["--scenario", RIG, "--law", "fuzzy", "--quick", "--target", "linux"]
+    result = run_quiesce(tmp_path, "hil", *options, "--out", "a")
+    assert result.returncode == 0, result.stdout + result.stderr
+    metrics = json.loads((tmp_path / "a/metrics.json").read_text())
+    assert metrics["trace_equal"]["mismatches"] == 0
+    assert {row["target"] for row in metrics["rigs"]} == {"host", "linux"}
+
+
 @pytest.fixture(scope="module")
 def scenario(build: Path) -> scenarios.Scenario:
     with pytest.MonkeyPatch.context() as patch:
@@ -162,9 +173,17 @@ def test_board_that_does_not_fit_the_plant_is_refused(own, refused, tmp_path: Pa
     assert "'attic' of the board" in message and "floor, roof" in message
 
 
-def test_noise_of_one_sensor_is_refused_for_a_board(refused) -> None:
-    message = refused("hil", "--scenario", RIG, "--target", "host", "--noise-mg", "1")
-    assert "--noise-mg" in message and "[noise]" in message
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (["--target", "host", "--noise-mg", "1"], ["--noise-mg", "[noise]"]),
+        (["--target", "host", "--set", "accel_polarity=-1"], ["comes from the board file"]),
+    ],
+)
+def test_option_that_does_not_go_with_a_board_is_refused(refused, options, expected) -> None:
+    message = refused("hil", "--scenario", RIG, *options)
+    for text in expected:
+        assert text in message
 
 
 @pytest.mark.parametrize(

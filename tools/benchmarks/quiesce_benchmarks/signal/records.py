@@ -12,7 +12,7 @@ import numpy as np
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.params import effective_params
 from quiesce.engine.trace import read_trace
-from quiesce.signal.replay import sensor_counts
+from quiesce.signal.replay import own_sensor
 
 # In place of a count: no sample came in this tick (quiesce_bench replay).
 NO_SAMPLE = np.iinfo(np.int32).min
@@ -62,7 +62,7 @@ class Rig:
 
         missing: where no sample comes. Words are int32; no column may need 32 unsigned bits.
         """
-        counts = sensor_counts(accel_m_s2, self.params)
+        counts = own_sensor(self.params).counts(accel_m_s2)
         if missing is not None:
             counts[missing] = NO_SAMPLE
         step = max(1, _CALL_TICKS // counts.shape[1])

@@ -6,7 +6,7 @@ whole 10 ms blocks.
 """
 
 import numpy as np
-from quiesce.signal.replay import sensor_counts
+from quiesce.signal.replay import own_sensor
 
 from quiesce_benchmarks.signal.records import Rig
 
@@ -41,7 +41,7 @@ def rms_error(rig: Rig, accel_m_s2: np.ndarray, rms_um_s2: np.ndarray) -> float:
     params = rig.params
     block_ticks = params["tick_rate_Hz"] * BLOCK_ms // 1000
     window_blocks = params["rms_window_ms"] // BLOCK_ms
-    values = conditioned(sensor_counts(accel_m_s2, params), params)
+    values = conditioned(own_sensor(params).counts(accel_m_s2), params)
     expected = windowed_rms(values, block_ticks, window_blocks)
     told = rms_um_s2[:, block_ticks - 1 :: block_ticks] * 1e-6
     told = told[:, window_blocks - 1 : window_blocks - 1 + expected.shape[1]]

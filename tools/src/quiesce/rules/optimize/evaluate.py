@@ -16,8 +16,8 @@ from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.laws import CONSTANT_BEST, OPEN_LOOP, find
 from quiesce.engine.scenarios import Scenario, read_toml
 from quiesce.engine.trace import Trace, read_trace
-from quiesce.hil.metrics import mean_current_A, reduction_pct
-from quiesce.hil.runs import TRACE_COLUMNS, Case, Run
+from quiesce.hil.metrics import mean_current_A
+from quiesce.hil.runs import TRACE_COLUMNS, Case, Run, reduction_pct
 from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase
