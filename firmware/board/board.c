@@ -146,6 +146,9 @@ static bool check_sensor(place_t at, const quiesce_board_t *board,
     if (sensor->min_noise_counts != 0 && sensor->period_us > SLOWEST_NOISE_us) {
         return refuse(at, "min_noise_counts", "needs ten samples a second, or 0");
     }
+    if (sensor->stuck_us != 0 && sensor->stuck_us < 2 * (int64_t)sensor->period_us) {
+        return refuse(at, "stuck_us", "below two periods: every sample would be a fault; or 0");
+    }
     if (sensor->max_age_us < sensor->period_us) {
         return refuse(at, "max_age_us", "below period_us: it would be too old between two samples");
     }

@@ -120,6 +120,20 @@ static quiesce_table_verdict_t use_shipped(control_t *self) {
     return QUIESCE_TABLE_OK;
 }
 
+quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
+    const track_table_kind_t *map = forces_kind(&self->forces);
+    if (map != NULL && magic == map->magic) {
+        self->forces.table = NULL;
+        return QUIESCE_TABLE_OK;
+    }
+    const law_table_kind_t *kind = self->law->kind;
+    if (kind == NULL || kind->shipped == NULL || magic != kind->shipped[0]) {
+        return QUIESCE_TABLE_MAGIC;
+    }
+    use_law_table(self, kind->shipped);
+    return QUIESCE_TABLE_OK;
+}
+
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
     if (words == NULL) {
         return use_shipped(self);

@@ -30,6 +30,9 @@ void control_init(control_t *self, const places_t *places, const quiesce_params_
 /// nothing.
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count);
 
+/// As quiesce_table_drop.
+quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic);
+
 /// Whether law and tracker see what they need, the tracker's table included.
 bool control_sees(const control_t *self, const view_t *view);
 

@@ -271,6 +271,10 @@ quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words
     return control_use(control_of(self), words, count);
 }
 
+quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic) {
+    return control_drop(control_of(self), magic);
+}
+
 bool quiesce_learnt_save(const quiesce_t *self, quiesce_learnt_t *out) {
     return control_save(known_of(self), out);
 }
@@ -318,7 +322,7 @@ void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out) {
         out->damper[i].current_mA = damper->current_mA;
         out->damper[i].voltage_mV = damper->voltage_mV;
         out->damper[i].temperature_mdegC = damper->temperature_mdegC;
-        out->damper[i].current_law_mA = c->request.value[i];
+        out->damper[i].current_law_mA = i < dampers_of(c) ? c->request.value[i] : 0;
         out->damper[i].current_cmd_mA = drive_current_cmd_mA(&c->drive[i]);
     }
 }

@@ -2,6 +2,12 @@
 
 #define RATE_IF_REFUSED_Hz 1000u
 
+// Of a deviation; beyond half of what the damper may get nothing would be one.
+static int32_t error_mA(const drive_t *self, const quiesce_params_t *p) {
+    const int32_t most_mA = self->guard.cfg.max_mA / 2;
+    return p->current_error_mA < most_mA ? p->current_error_mA : clamp_i32(most_mA, 1, most_mA);
+}
+
 void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quiesce_params_t *p,
                 bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : RATE_IF_REFUSED_Hz;
@@ -18,7 +24,7 @@ void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quies
     const current_monitor_cfg_t monitor = {
         .is_on = is_accepted && damper->measures_current != 0,
         .tick_rate_Hz = rate_Hz,
-        .error_mA = p->current_error_mA,
+        .error_mA = error_mA(self, p),
         .lag_us = is_accepted ? damper->coil_lag_us : 0,
         .fault_ticks = (uint32_t)p->current_fault_ticks,
     };

@@ -51,6 +51,12 @@ static uint32_t ticks_in_us(int32_t time_us, int32_t tick_rate_Hz) {
     return (uint32_t)((int64_t)time_us * tick_rate_Hz / 1000000);
 }
 
+// Ceiling: a sample is late only after the longest gap between two of them.
+static uint32_t period_ticks(int32_t period_us, int32_t tick_rate_Hz) {
+    const int64_t millionths = (int64_t)period_us * tick_rate_Hz;
+    return period_us == 0 ? 1u : (uint32_t)((millionths + 999999) / 1000000);
+}
+
 static uint32_t at_least_one(uint32_t value) {
     return value > 0 ? value : 1u;
 }
@@ -63,7 +69,7 @@ static uint32_t stuck_samples(int32_t stuck_us, int32_t tick_rate_Hz, uint32_t p
 static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
                          const quiesce_params_t *p, bool is_accel) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
-    const uint32_t period = at_least_one(ticks_in_us(sensor->period_us, p->tick_rate_Hz));
+    const uint32_t period = period_ticks(sensor->period_us, p->tick_rate_Hz);
     condition_init(
         &self->condition,
         &(condition_cfg_t){

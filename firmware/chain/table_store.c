@@ -31,10 +31,14 @@ bool quiesce_table_store_write(quiesce_table_store_t *store, uint32_t offset, co
     return true;
 }
 
-static quiesce_table_verdict_t use_slot(quiesce_table_store_t *store, quiesce_t *self,
+// What ships is of the kind that is in use now: tables of other kinds are none of this store's.
+static quiesce_table_verdict_t use_slot(const quiesce_table_store_t *store, quiesce_t *self,
                                         uint32_t slot, uint32_t count) {
-    const uint32_t *words = slot == SHIPPED ? NULL : store->words[slot];
-    return quiesce_table_use(self, words, count);
+    if (slot != SHIPPED) {
+        return quiesce_table_use(self, store->words[slot], count);
+    }
+    return store->in_use != SHIPPED ? quiesce_table_drop(self, store->words[store->in_use][0])
+                                    : quiesce_table_use(self, NULL, 0);
 }
 
 // What is in use must not become the spare slot: a table of another kind would not take its place.

@@ -213,6 +213,10 @@ typedef enum {
 /// is a signal which the law lacks.
 quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count);
 
+/// Back to the table that ships of one kind, by its first word, or to none where none ships; tables
+/// of other kinds stay in use. Returns QUIESCE_TABLE_MAGIC iff nothing here works with that kind.
+quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic);
+
 /// Whether words are a damper's map.
 quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count);
 

@@ -140,7 +140,8 @@ void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_
         flag = classify(self, counts, is_fresh);
         judge(self, counts, flag);
         self->flag = flag;
-        if (self->cfg.max_lost_pct < 100u) {
+        // A slow sensor's sample is lost once, however long the wait for the next one is.
+        if (self->cfg.max_lost_pct < 100u && self->waited_ticks % self->cfg.period_ticks == 0u) {
             follow_losses(self, flag == CONDITION_LOST);
         }
     }

@@ -50,7 +50,10 @@ void FaultInjector::apply(double time_s, lockstep_stimulus_t &stimulus) {
             apply(placed->fault.kind, placed->sensor, stimulus);
         }
     }
-    std::copy_n(stimulus.counts, last_counts_.size(), last_counts_.begin());
+    for (std::size_t i = 0; i < last_counts_.size(); ++i) {
+        last_counts_[i] =
+            (stimulus.flags & LOCKSTEP_FRESH << i) != 0 ? stimulus.counts[i] : last_counts_[i];
+    }
 }
 
 void FaultInjector::apply(FaultKind kind, std::size_t sensor, lockstep_stimulus_t &stimulus) const {

@@ -53,6 +53,29 @@ void require_all_dampers(const Rig &rig, const PlantModel &plant) {
     }
 }
 
+Eigen::VectorXd shape_of(const Rig &rig, const PlantModel &plant, std::int32_t body) {
+    if (body == QUIESCE_GROUND) {
+        return Eigen::VectorXd::Zero(plant.structure.mode_count());
+    }
+    return plant.places[rig.place_of[static_cast<std::size_t>(body)]].shape;
+}
+
+/// A board that thinks a damper somewhere else, or the other way round, would see other strokes.
+void require_same_ends(const Rig &rig, const PlantModel &plant) {
+    constexpr double kRounding = 1e-6;
+    for (std::size_t i = 0; i < rig.damper_of.size(); ++i) {
+        const quiesce_board_damper_t &wired = rig.board().damper[i];
+        const PlantDamper &damper = plant.dampers[rig.damper_of[i]];
+        const Eigen::VectorXd stroke =
+            shape_of(rig, plant, wired.end_a) - shape_of(rig, plant, wired.end_b);
+        if ((stroke - damper.stroke).norm() > kRounding * (1.0 + damper.stroke.norm())) {
+            throw InputError("damper '" + rig.file.dampers[i] +
+                             "': its ends on the board, end_a and end_b, are not those of the "
+                             "plant, a and b");
+        }
+    }
+}
+
 std::vector<double> noise_of(const BoardFile &file, const PlantModel &plant) {
     for (const auto &[name, rms] : plant.noise) {
         if (std::find(file.sensors.begin(), file.sensors.end(), name) == file.sensors.end()) {
@@ -103,6 +126,7 @@ Rig make_rig(BoardFile board, const PlantModel &plant) {
         rig.damper_of.push_back(index_in(plant.dampers, name, "damper"));
     }
     require_all_dampers(rig, plant);
+    require_same_ends(rig, plant);
     rig.noise = noise_of(rig.file, plant);
     return rig;
 }

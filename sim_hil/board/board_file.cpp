@@ -40,6 +40,16 @@ Names read_bodies(TomlTable &root) {
     return bodies;
 }
 
+// They have columns of their own in traces: a body and a damper of one name would share them.
+void require_other_names(const std::vector<TomlTable> &tables, const Names &names,
+                         const Names &bodies) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (std::find(bodies.begin(), bodies.end(), names[i]) != bodies.end()) {
+            tables[i].fail("name", "a body has the name '" + names[i] + "' already");
+        }
+    }
+}
+
 Names read_names(std::vector<TomlTable> &tables) {
     Names names;
     for (TomlTable &table : tables) {
@@ -233,6 +243,7 @@ void Reader::read_root() {
     file_.bodies = read_bodies(root_);
     file_.sensors = read_names(sensors_);
     file_.dampers = read_names(dampers_);
+    require_other_names(dampers_, file_.dampers, file_.bodies);
     require_counts(root_, file_);
     read_numbers(root_, root_keys(), file_.board);
 }

@@ -44,12 +44,18 @@ static int64_t tuned_q20(const selftune_t *self, const quiesce_params_t *params,
     return clamp_i64(current_q20, 0, (int64_t)params->max_current_mA << 20);
 }
 
+// Which body is tracked is known in a tick only: a need of the law cannot name it. Without its
+// motion the rules' current goes on.
+static bool sees_motion(const view_t *view) {
+    return (view->valid & VIEW_VELOCITY << view->tone.body) != 0;
+}
+
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
     selftune_t *self = state;
     const quiesce_params_t *params = &setup->params;
     const int32_t rules_mA = rule_base_step(&self->rules, setup->table, &view->tone);
     const int64_t base_q20 = (int64_t)rule_base_or_unlock_mA(setup, view, rules_mA) << 20;
-    self->current_mA_q20 = is_tuning(params, view)
+    self->current_mA_q20 = is_tuning(params, view) && sees_motion(view)
                                ? tuned_q20(self, params, &view->body[view->tone.body], base_q20)
                                : base_q20;
     law_demand_all(out, (int32_t)(self->current_mA_q20 >> 20));

@@ -117,6 +117,14 @@ TEST(Rig, what_the_plant_lacks_is_named) {
     expect_in("noise.cellar", refusal({}, [](PlantModel &model) { model.noise["cellar"] = 1.0; }));
 }
 
+TEST(Rig, ends_are_those_of_the_plant) {
+    expect_in("damper 'upper': its ends", refusal([](BoardFile &file) {
+                  std::swap(file.board.damper[1].end_a, file.board.damper[1].end_b);
+              }));
+    expect_in("damper 'lower': its ends",
+              refusal([](BoardFile &file) { file.board.damper[0].end_a = 1; }));
+}
+
 TEST(Rig, sensors_show_their_places_in_counts) {
     const Seen seen = run_idle(setup_with([](BoardFile &file) {
         file.board.sensor[0].polarity = -1;
@@ -159,6 +167,15 @@ TEST(Rig, a_slow_sensor_has_a_sample_a_period) {
         EXPECT_EQ(is_fresh, i * 1000 / 2500 != (i - 1) * 1000 / 2500 || i == 0) << i;
     }
     EXPECT_EQ(samples, 400u);
+}
+
+TEST(Rig, a_slow_sensor_is_stuck_at_its_last_sample) {
+    RunSetup setup = setup_with([](BoardFile &file) { file.board.sensor[2].period_us = 5000; });
+    setup.scenario.faults = {{FaultKind::stuck, 0.5, 0.2, "upper_stroke"}};
+    const Seen seen = run_idle(setup);
+    EXPECT_NE(seen.stimuli[495].counts[2], 0);
+    EXPECT_EQ(seen.stimuli[500].counts[2], seen.stimuli[495].counts[2]);
+    EXPECT_EQ(seen.stimuli[690].counts[2], seen.stimuli[495].counts[2]);
 }
 
 TEST(Rig, latencies_are_ticks_of_the_past) {

@@ -126,6 +126,10 @@ static void test_board_sensors_contradict(void) {
     assert_refused("sensor", 2, "at", "does not have");
     board.sensor[1].at = 0;
     assert_refused("sensor", 1, "at", "an earlier sensor");
+    board.sensor[2].period_us = 130000;
+    board.sensor[2].max_age_us = 500000;
+    board.sensor[2].stuck_us = 250000;
+    assert_refused("sensor", 2, "stuck_us", "two periods");
     board.sensor[2].scale = 1000000000;
     assert_refused("sensor", 2, "scale", "2^30");
     board.sensor[2].period_us = 20000;

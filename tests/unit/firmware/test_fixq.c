@@ -65,8 +65,7 @@ static void test_scale_applies_a_ratio_and_saturates(void) {
     TEST_ASSERT_INT32_WITHIN(1, -57751000, scale_apply(&scale, -1000000, INT32_MAX));
     TEST_ASSERT_EQUAL_INT32(500, scale_apply(&scale, 1000, 500));
     TEST_ASSERT_EQUAL_INT32(-500, scale_apply(&scale, -1000, 500));
-    TEST_ASSERT_EQUAL_INT32(1000000000,
-                            scale_apply(&large, 1000, INT32_MAX));
+    TEST_ASSERT_EQUAL_INT32(1000000000, scale_apply(&large, 1000, INT32_MAX));
     TEST_ASSERT_INT32_WITHIN(1, 8388, scale_apply(&small, 8388607, INT32_MAX));
 }
 

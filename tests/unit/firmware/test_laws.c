@@ -19,7 +19,7 @@ void setUp(void) {
     setup.table = rule_base_kind.shipped;
     memset(&state, 0, sizeof state);
     view = (view_t){
-        .valid = VIEW_RMS | VIEW_TONE,
+        .valid = VIEW_RMS | VIEW_TONE | VIEW_VELOCITY,
         .body = {{.velocity_um_s = 1000, .accel_um_s2 = 20000}},
         .tone = {.freq_uHz = 5000000, .rms_um_s2 = 60000},
     };
@@ -100,6 +100,13 @@ static void test_selftune_leaves_the_base_alone_above_its_frequency_and_unlocked
     TEST_ASSERT_EQUAL_INT32(5000, run(&law_fuzzy_selftune, 1));
 }
 
+static void test_selftune_without_the_motion_leaves_the_base(void) {
+    const int32_t tuned_mA = run(&law_fuzzy_selftune, 200);
+    TEST_ASSERT_GREATER_THAN_INT32(base_mA, tuned_mA);
+    view.valid &= ~VIEW_VELOCITY;
+    TEST_ASSERT_EQUAL_INT32(base_mA, run(&law_fuzzy_selftune, 1));
+}
+
 static void test_selftune_deadband_holds(void) {
     params->selftune_deadband_um_s2 = 30000;
     state.current_mA_q20 = INT64_C(1500) << 20;
@@ -155,6 +162,7 @@ int main(void) {
     RUN_TEST(test_selftune_follows_table_x);
     RUN_TEST(test_selftune_stays_between_zero_and_the_limit);
     RUN_TEST(test_selftune_leaves_the_base_alone_above_its_frequency_and_unlocked);
+    RUN_TEST(test_selftune_without_the_motion_leaves_the_base);
     RUN_TEST(test_selftune_deadband_holds);
     RUN_TEST(test_selftune_leak_returns_to_the_base);
     RUN_TEST(test_selftune_leak_arrives_at_both_ends);

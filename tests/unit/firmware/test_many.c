@@ -164,6 +164,26 @@ static void test_many_current_of_either_damper_is_watched(void) {
     }
 }
 
+// A parameter must not make the check of a small damper blind: half of its ceiling is the most.
+static void test_many_a_small_damper_is_watched_whatever_the_parameter(void) {
+    for (int32_t i = 0; i < 2; i++) {
+        params.current_error_mA = i == 0 ? 500 : 20000;
+        make_board();
+        board.damper[0].ceiling_mA = board.damper[0].continuous_mA = 400;
+        board.damper[0].measures_current = 1;
+        start();
+        in.driver[0].is_measured = true;
+        for (uint32_t t = 0; t < 1000u; t++) {
+            in.driver[0].current_mA = out.damper[0].current_cmd_mA;
+            tick();
+        }
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
+        in.driver[0].current_mA = i == 0 ? 0 : 700;
+        run(100);
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, out.telemetry.state);
+    }
+}
+
 // Largest of a signal over two cycles.
 static int32_t largest(const int32_t *value) {
     int32_t most = 0;
@@ -358,6 +378,38 @@ static void test_many_a_budget_of_lost_samples(void) {
     TEST_ASSERT_TRUE(is_valid(VIEW_STROKE));
 }
 
+// Samples, not ticks, are lost; a period of two and a half ticks is no loss.
+static void test_many_a_budget_of_a_slow_sensor(void) {
+    const struct {
+        int32_t period_us;
+        uint32_t lost_of_10;
+        int32_t max_lost_pct;
+        bool is_good;
+    } cases[] = {
+        {2500, 0, 5, true},
+        {10000, 1, 20, true},
+        {10000, 4, 20, false},
+        {10000, 4, 60, true},
+    };
+    for (uint32_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        board.sensor[2].period_us = cases[i].period_us;
+        board.sensor[2].max_age_us = 60000;
+        board.sensor[2].max_lost_pct = cases[i].max_lost_pct;
+        test_law.needs = 0;
+        start();
+        uint32_t period = 0;
+        for (uint32_t t = 0; t < 8000u; t++) {
+            const uint32_t now = t * 1000u / (uint32_t)cases[i].period_us;
+            in.tick++;
+            in.sensor[2] = (quiesce_sample_t){5, now != period && now % 10u >= cases[i].lost_of_10};
+            period = now;
+            quiesce_step(&controller, &in, &out);
+        }
+        quiesce_picture(&controller, &picture);
+        TEST_ASSERT_EQUAL(cases[i].is_good, is_valid(VIEW_STROKE));
+    }
+}
+
 static void test_many_a_copy_of_the_state_is_the_controller(void) {
     run(1000);
     static quiesce_t copy;
@@ -380,6 +432,7 @@ int main(void) {
     RUN_TEST(test_many_each_damper_has_its_command_ceiling_and_safe_current);
     RUN_TEST(test_many_one_driver_that_fails_stops_all);
     RUN_TEST(test_many_current_of_either_damper_is_watched);
+    RUN_TEST(test_many_a_small_damper_is_watched_whatever_the_parameter);
     RUN_TEST(test_many_bodies_and_strokes_are_seen);
     RUN_TEST(test_many_a_blind_law_falls_back_then_faults_and_comes_back);
     RUN_TEST(test_many_a_sensor_that_nobody_needs_may_fail);
@@ -387,6 +440,7 @@ int main(void) {
     RUN_TEST(test_many_measured_quantities_arrive);
     RUN_TEST(test_many_a_slow_sensor_is_held);
     RUN_TEST(test_many_a_budget_of_lost_samples);
+    RUN_TEST(test_many_a_budget_of_a_slow_sensor);
     RUN_TEST(test_many_a_copy_of_the_state_is_the_controller);
     return UNITY_END();
 }
