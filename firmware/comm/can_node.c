@@ -29,6 +29,10 @@ void can_node_init(can_node_t *self, const quiesce_board_t *board, const quiesce
         .dampers = dampers_of_board(board),
     };
     can_receive_init(&self->receive, rate_Hz(params));
+    for (int32_t i = 0; board != NULL && i < QUIESCE_SENSORS && i < board->sensors; i++) {
+        self->receive.sensor[i].period_us = (uint32_t)board->sensor[i].period_us;
+    }
+    can_receive_use_rate(&self->receive, rate_Hz(params));
     can_service_init(&self->service, params);
     can_freeze_init(&self->freeze, safe_current_mA(board, params, 0));
     can_schedule_init(&self->schedule, rate_Hz(params));

@@ -23,13 +23,21 @@ static uint32_t timeout_ticks(uint32_t message, uint32_t tick_rate_Hz) {
     return (quiesce_can_messages[message].timeout_ms * tick_rate_Hz + 999u) / 1000u;
 }
 
+// Four periods of a slow sensor: its alive counter must not be forgotten between its samples.
+static uint32_t sensor_timeout_ticks(uint32_t period_us, uint32_t tick_rate_Hz) {
+    const uint32_t usual = timeout_ticks(QUIESCE_CAN_AT_ACCEL_SAMPLE, tick_rate_Hz);
+    const uint32_t slow =
+        (uint32_t)(((uint64_t)period_us * 4u * tick_rate_Hz + 999999u) / 1000000u);
+    return slow > usual ? slow : usual;
+}
+
 void can_receive_use_rate(can_receive_t *self, uint32_t tick_rate_Hz) {
     self->stop.timeout_ticks = timeout_ticks(QUIESCE_CAN_AT_EMERGENCY_STOP, tick_rate_Hz);
     self->operator_command.timeout_ticks =
         timeout_ticks(QUIESCE_CAN_AT_OPERATOR_COMMAND, tick_rate_Hz);
     for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
         self->sensor[i].from.timeout_ticks =
-            timeout_ticks(QUIESCE_CAN_AT_ACCEL_SAMPLE, tick_rate_Hz);
+            sensor_timeout_ticks(self->sensor[i].period_us, tick_rate_Hz);
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         self->driver[i].from.timeout_ticks =

@@ -39,6 +39,7 @@ typedef struct {
 
 typedef struct {
     can_receiver_t from;
+    uint32_t period_us; ///< between samples, as the board says; 0: one a tick
     int32_t counts;
     bool is_fresh; ///< since the last tick
 } can_sensor_t;

@@ -78,6 +78,10 @@ void read_output(Section &section, OutputConfig &output) {
     }
     const bool is_pwm = output.output == CurrentOutput::pwm;
     section.text(is_pwm ? "chip" : "device", output.device, true);
+    if (output.device.find('/') != std::string::npos) {
+        section.wrong(is_pwm ? "chip" : "device",
+                      "expected a name without '/'; found '" + output.device + "'");
+    }
     section.integer("channel", 0, 63, output.channel);
     section.integer("full_scale_mA", 1, kMaxCurrent_mA, output.full_scale_mA, true);
     if (is_pwm) {
@@ -189,7 +193,8 @@ void check_output(Section &section, const OutputConfig &output,
 
 bool is_same_device(const SensorConfig &a, const SensorConfig &b) {
     const bool is_shared = a.source == SensorSource::iio && (!a.channel.empty() || !a.use_buffer) &&
-                           (!b.channel.empty() || !b.use_buffer); // single reads
+                           (!b.channel.empty() || !b.use_buffer) && // single reads
+                           (a.channel != b.channel || a.channel.empty());
     return a.source == b.source && a.source != SensorSource::can && a.device == b.device &&
            !a.device.empty() && !is_shared;
 }

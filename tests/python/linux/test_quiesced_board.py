@@ -138,6 +138,9 @@ def test_refused(rig: Quiesced, old: str, new: str, words: str) -> None:
 def test_check_lists_sensors_dampers_and_load(rig: Quiesced) -> None:
     result = rig.run("--check")
     assert result.returncode == 0
-    for line in ("sensor roof_accel: can", "damper upper: can, ceiling 2000 mA, safe 60 mA"):
+    for line in (
+        "sensor roof_accel: can 0x031",
+        "damper upper: can 0x011, ceiling 2000 mA, safe 60 mA",
+    ):
         assert line in result.stdout.splitlines()
     assert "CAN load: 67.1 % at 500000 bit/s" in result.stdout

@@ -192,6 +192,25 @@ static void test_each_sender_has_its_own_counter(void) {
     TEST_ASSERT_EQUAL_UINT32(15, can_node_counters(&node.can)->accepted);
 }
 
+// A node that hangs repeats its last frame; between the samples of a slow one its counter stays
+// known.
+static void test_a_slow_sensor_that_hangs_is_not_fresh(void) {
+    wiring.sensor[5].period_us = 20000;
+    wiring.sensor[5].max_age_us = 100000;
+    wiring.sensor[5].stuck_us = 0;
+    start(ALL_SENSORS);
+    uint32_t fresh = 0;
+    for (uint32_t t = 0; t < 1000; t++) {
+        if (t % 20u == 0) {
+            receive(make_sample(5, 1, (uint8_t)(t < 400u ? t / 20u % 16u : 3u)));
+        }
+        tick();
+        fresh += node.in.sensor[5].is_fresh ? 1u : 0u;
+    }
+    // 20 live ones, the last with counter 3, and 30 of the same.
+    TEST_ASSERT_EQUAL_UINT32(20, fresh);
+}
+
 // The CRC is over the id, too: a frame under another's id is no frame of it.
 static void test_no_frame_counts_as_anothers(void) {
     start(ALL_SENSORS);
@@ -356,6 +375,7 @@ int main(void) {
     RUN_TEST(test_busiest_tick_has_room_for_all);
     RUN_TEST(test_each_sensor_is_where_it_was_set_up);
     RUN_TEST(test_each_sender_has_its_own_counter);
+    RUN_TEST(test_a_slow_sensor_that_hangs_is_not_fresh);
     RUN_TEST(test_no_frame_counts_as_anothers);
     RUN_TEST(test_each_measured_current_is_gone_after_its_timeout);
     RUN_TEST(test_one_driver_that_fails_switches_all_off);

@@ -138,7 +138,17 @@ def described(board: Board) -> str:
         f"tracked {board['sensors'][board['tracked']]['name']}; "
         f"bus {time_text(board['bus_latency_us'])}"
     )
-    return "\n\n".join([head, *tables])
+    return "\n\n".join([head, *tables, *notes(board)])
+
+
+def notes(board: Board) -> list[str]:
+    limited = [
+        damper["name"]
+        for damper in board["dampers"]
+        if damper["trip_mA"] or damper["continuous_mA"] < damper["ceiling_mA"]
+    ]
+    said = f"{', '.join(limited)}: trip and continuous current are stated, nothing acts on them yet"
+    return [said] if limited else []
 
 
 def run(args: argparse.Namespace) -> int:
