@@ -92,6 +92,26 @@ quiesce_params_t params_for_board(const Arguments &arguments, quiesce_params_t b
     return params_from(arguments, base);
 }
 
+namespace {
+
+void require_board_for(const PlantModel &plant) {
+    if (plant.dampers.size() > 1) {
+        throw InputError("plant " + plant.name + " has " + std::to_string(plant.dampers.size()) +
+                         " dampers: name a board, --board FILE, or board = \"FILE\" in the "
+                         "scenario");
+    }
+}
+
+/// Noise is the plant's, of each sensor by its name.
+void refuse_noise(const Arguments &arguments, const Scenario &scenario) {
+    if (scenario.noise_mg || arguments.text("noise-mg")) {
+        throw InputError("noise_mg is of a plant's own accelerometer; with a board [noise] of the "
+                         "plant says it for each sensor");
+    }
+}
+
+} // namespace
+
 RunSetup run_setup(const Arguments &arguments) {
     RunSetup setup{};
     setup.scenario = load_scenario(arguments.required("scenario"));
@@ -101,10 +121,11 @@ RunSetup run_setup(const Arguments &arguments) {
     quiesce_params_default(&setup.params);
     arguments.required("law");
     if (board.empty()) {
-        require_one_damper(setup.plant);
+        require_board_for(setup.plant);
         fit_to_sensor(setup.params, setup.plant.sensor);
         setup.params = params_from(arguments, setup.params);
     } else {
+        refuse_noise(arguments, setup.scenario);
         setup.rig = make_rig(load_board(board), setup.plant);
         setup.params = params_for_board(arguments, setup.params);
         require_signals(setup.rig->file, setup.params);

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT, require, run_quiesce
+from quiesce.base.errors import UsageError
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench
 from quiesce.hil.rig import by_window, rig_rows
@@ -219,3 +220,36 @@ def test_record_has_a_column_for_each_sensor(quiesce, tmp_path: Path) -> None:
     assert peaks[2] == pytest.approx(
         1e3 * (peaks[1] - peaks[0]) / (2.0 * 3.14159265 * 3.0) ** 2, rel=0.05
     )
+
+
+def test_laws_of_the_firmware_have_their_own_names() -> None:
+    for label in ("off", "constant", "fuzzy_selftune"):
+        assert laws.find(label) == laws.Law(label, label, label)
+    with pytest.raises(UsageError, match="no law 'magic'; there are: .*phase.*constant"):
+        laws.find("magic")
+
+
+def test_a_setting_chooses_no_law(build: Path) -> None:
+    result = run_quiesce(
+        ROOT, "hil", "--scenario", str(RIG), "--target", "host", "--set", "law=off"
+    )
+    assert result.returncode == 2
+    assert result.stderr.strip().endswith("--law NAME chooses them")
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("board = ", "noise_mg = 3.0\nboard = "), "[noise] of the plant"),
+        (('board = "../boards/two_storeys.toml"', ""), 'board = "FILE" in the scenario'),
+    ],
+)
+def test_what_a_rig_lacks_is_said(
+    build: Path, tmp_path: Path, change: tuple[str, str], expected: str
+) -> None:
+    text = RIG.read_text().replace(*change).replace('"../', f'"{RIG.parents[1]}/')
+    (tmp_path / "mine.toml").write_text(text)
+    result = run_quiesce(tmp_path, "hil", "--scenario", "mine.toml", "--target", "host", "--quick")
+    assert result.returncode == 2
+    assert expected in result.stderr
+    assert "Traceback" not in result.stderr

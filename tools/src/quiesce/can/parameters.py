@@ -1,30 +1,11 @@
 """Parameters by name and index, as firmware/param/parameters.toml has them."""
 
-import tomllib
 import zlib
 from collections.abc import Sequence
-from functools import cache
 from typing import Any
 
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import root
-from quiesce.engine.params import expected, parse_value
-
-FILE = "firmware/param/parameters.toml"
-
-
-@cache
-def parameters() -> tuple[dict[str, Any], ...]:
-    """In the order of their indices, in the shape of quiesce.params."""
-    with (root() / FILE).open("rb") as file:
-        rows = tomllib.load(file)["parameter"]
-    return tuple(parameter_of(index, row) for index, row in enumerate(rows))
-
-
-def parameter_of(index: int, row: dict[str, Any]) -> dict[str, Any]:
-    """One with labels takes their numbers."""
-    numbers = {"min": 0, "max": len(row["labels"]) - 1} if "labels" in row else {}
-    return {"choices": None, "labels": None, **numbers, **row, "index": index}
+from quiesce.engine.params import expected, parameters, parse_value
 
 
 def name_of(index: int) -> str:

@@ -124,6 +124,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
+    if any(setting.partition("=")[0] == "law" for setting in args.set):
+        raise UsageError("--set law=..: every run has a law of its own; --law NAME chooses them")
     chosen = [laws.find(name) for name in dict.fromkeys(args.law)] or list(laws.LAWS)
     if all(law.name != laws.OPEN_LOOP for law in chosen):
         chosen.insert(0, laws.find(laws.OPEN_LOOP))

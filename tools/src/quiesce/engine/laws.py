@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from quiesce.base.errors import UsageError
+from quiesce.engine.params import parameters
 
 OPEN_LOOP = "open_loop"
 CONSTANT_BEST = "constant_best"
@@ -51,8 +52,17 @@ def names() -> list[str]:
     return [law.name for law in LAWS]
 
 
+def labels() -> list[str]:
+    """Of the firmware: one that was added is found."""
+    return next(one["labels"] for one in parameters() if one["name"] == "law")
+
+
 def find(name: str) -> Law:
+    """One that is compared by default, or one of the firmware with its parameters as they are."""
     for law in LAWS:
         if law.name == name:
             return law
-    raise UsageError(f"no law '{name}'; there are: {', '.join(names())}")
+    if name in labels():
+        return Law(name, name, name)
+    known = ", ".join([*names(), *(label for label in labels() if label not in names())])
+    raise UsageError(f"no law '{name}'; there are: {known}")

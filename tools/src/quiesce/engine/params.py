@@ -1,10 +1,29 @@
 """Parameters as `--set NAME=VALUE` gives them, checked against what the firmware says of itself."""
 
+import tomllib
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 from quiesce.base.errors import UsageError
+from quiesce.base.paths import root
 from quiesce.engine.bench import Bench
+
+FILE = "firmware/param/parameters.toml"
+
+
+@cache
+def parameters() -> tuple[dict[str, Any], ...]:
+    """In the order of their indices, as the bench tells them, without it."""
+    with (root() / FILE).open("rb") as file:
+        rows = tomllib.load(file)["parameter"]
+    return tuple(parameter_of(index, row) for index, row in enumerate(rows))
+
+
+def parameter_of(index: int, row: dict[str, Any]) -> dict[str, Any]:
+    """One with labels takes their numbers."""
+    numbers = {"min": 0, "max": len(row["labels"]) - 1} if "labels" in row else {}
+    return {"choices": None, "labels": None, **numbers, **row, "index": index}
 
 
 def allowed(param: dict[str, Any]) -> str:
