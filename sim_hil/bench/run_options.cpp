@@ -86,7 +86,7 @@ quiesce_params_t params_for_board(const Arguments &arguments, quiesce_params_t b
     for (const std::string &assignment : arguments.all("set")) {
         const std::string name = assignment.substr(0, assignment.find('='));
         if (is_of_board(name)) {
-            throw InputError("--set " + assignment + ": " + name + " comes from the board file");
+            throw InputError("--set " + assignment + ": that comes from the board file");
         }
     }
     return params_from(arguments, base);
@@ -96,9 +96,10 @@ namespace {
 
 void require_board_for(const PlantModel &plant) {
     if (plant.dampers.size() > 1) {
-        throw InputError("plant " + plant.name + " has " + std::to_string(plant.dampers.size()) +
-                         " dampers: name a board, --board FILE, or board = \"FILE\" in the "
-                         "scenario");
+        std::ostringstream message;
+        message << "plant " << plant.name << " has " << plant.dampers.size()
+                << " dampers: name a board, --board FILE, or board = \"FILE\" in the scenario";
+        throw InputError(message.str());
     }
 }
 
@@ -125,8 +126,8 @@ RunSetup run_setup(const Arguments &arguments) {
         fit_to_sensor(setup.params, setup.plant.sensor);
         setup.params = params_from(arguments, setup.params);
     } else {
-        refuse_noise(arguments, setup.scenario);
         setup.rig = make_rig(load_board(board), setup.plant);
+        refuse_noise(arguments, setup.scenario);
         setup.params = params_for_board(arguments, setup.params);
         require_signals(setup.rig->file, setup.params);
     }

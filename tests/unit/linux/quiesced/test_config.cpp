@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "read_config.h"
 #include "input_error.h"
+#include "read_config.h"
 #include "temporary_folder.h"
 
 namespace quiesced {
