@@ -103,7 +103,8 @@ def test_check_describes_places_and_dampers(quiesce) -> None:
 def test_several_dampers_are_refused_where_one_is_expected(build, refused) -> None:
     with pytest.raises(UsageError, match="plant two_storeys has 2 dampers"):
         Plant(TWO_STOREYS)
-    with pytest.raises(UsageError, match=r"two_storeys.toml: its dampers have names and ends \(\[\[damper\]\]\); this works"):
+    expected = r"two_storeys.toml: its dampers have names and ends \(\[\[damper\]\]\); this works"
+    with pytest.raises(UsageError, match=expected):
         read_plant_data(TWO_STOREYS)
     assert "has 2 dampers" in refused("tune", TWO_STOREYS, "--quick", "--out", "out")
 
