@@ -1,6 +1,10 @@
 # shellcheck shell=bash
 # Builds a CMake preset where something has changed. Sourced by tools/hil, test and quiesce.
 
+# What the bench drives in the emulator.
+# shellcheck disable=SC2034 # for those who source this
+DRIVEN_IMAGES=(quiesce_mps2_shm quiesce_mps2_shm_8x4 quiesce_mps2_uart uart_echo)
+
 # Where ccache is installed, what another preset, another clone or an earlier state of this one has
 # compiled is not compiled again. Paths inside of the project count as relative.
 build_cache() {

@@ -50,7 +50,7 @@ needs_build() {
         plant) host+=(quiesce_plant) ;;
         dampers) host+=(quiesce_dampers) ;;
         linux) host+=(quiesced) ;;
-        images) mps2+=(quiesce_mps2_shm quiesce_mps2_shm_8x4 quiesce_mps2_uart uart_echo) ;;
+        images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
         esac
     done
     ((${#host[@]} == 0)) || build_preset host "${host[@]}"
