@@ -22,10 +22,10 @@ constexpr int kLastAttempts = 1000;       // a millisecond apart
 
 } // namespace
 
-Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange, can_bus_t *bus,
-           watchdog_t *watchdog)
+Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange,
+           TickSource &source, can_bus_t *bus, watchdog_t *watchdog)
     : config_(config), exchange_(exchange), log_(exchange.log), bus_(bus), latch_(exchange),
-      board_(config, exchange, bus, watchdog), changes_(exchange.log) {
+      board_(config, exchange, bus, watchdog), source_(source), changes_(exchange.log) {
     use_axes(
         node_init(&node_, config.wiring(), &params, {config.enable_from, config.sensors_on_bus()}));
     write_commands();

@@ -17,9 +17,9 @@ class Loop {
   public:
     /// Starts the controller from rest: the drivers get their safe currents. Where
     /// exchange.latched_fault has a fault, they stay off until it is acknowledged. exchange
-    /// and its peripherals, bus and watchdog (null: none) must outlive the loop.
-    Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange, can_bus_t *bus,
-         watchdog_t *watchdog);
+    /// and its peripherals, source, bus and watchdog (null: none) must outlive the loop.
+    Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange,
+         TickSource &source, can_bus_t *bus, watchdog_t *watchdog);
     Loop(const Loop &) = delete;
     Loop &operator=(const Loop &) = delete;
 
@@ -68,7 +68,7 @@ class Loop {
     Axes axes_{};
     FaultLatch latch_;
     Board board_;
-    TickSource source_;
+    TickSource &source_;
     ChangeLog changes_;
 
     std::uint32_t rate_Hz_ = 0;

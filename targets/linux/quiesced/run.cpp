@@ -125,7 +125,9 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     become_realtime(config.loop);
     // Last, because it cannot always be stopped again.
     const Watchdog watchdog = config.watchdog ? open_watchdog(*config.watchdog) : nullptr;
-    const auto loop = std::make_unique<Loop>(config, params, *exchange, bus.get(), watchdog.get());
+    TickSource source;
+    const auto loop =
+        std::make_unique<Loop>(config, params, *exchange, source, bus.get(), watchdog.get());
     log_start(config, params, exchange->log);
     log_note(params_note, exchange->log);
     log_note(learnt_note, exchange->log);

@@ -9,6 +9,11 @@ namespace quiesced {
 
 class TickSource {
   public:
+    TickSource() = default;
+    TickSource(const TickSource &) = delete;
+    TickSource &operator=(const TickSource &) = delete;
+    virtual ~TickSource() = default;
+
     /// Starts the timer. has_line: the line's edges start ticks instead.
     void start(std::uint32_t rate_Hz, bool has_line);
 
@@ -19,7 +24,7 @@ class TickSource {
     /// where a signal came first. Edges that come too early are counted, not taken
     /// (tick_linux_begin); without one the tick starts after two periods, one of them lost. A rate
     /// that stays off is logged once. Gives the line up where the kernel has lost it.
-    std::uint32_t wait(Replaceable<Line> &line, LogRing &log);
+    virtual std::uint32_t wait(Replaceable<Line> &line, LogRing &log);
 
     /// The tick's work is done.
     void done() { tick_linux_work_done(&timing_); }

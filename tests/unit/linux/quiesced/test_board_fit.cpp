@@ -164,8 +164,9 @@ TEST_F(BoardFit, apply_refuses_what_the_board_cannot_do) {
         const auto exchange = std::make_unique<Exchange>();
         exchange->peripherals.outputs[0].start_with(std::make_unique<WillingDriver>());
         const Bus bus = open_bus(*config_.can, BusUse::controller);
+        TickSource source;
         const auto loop =
-            std::make_unique<Loop>(config_, config_.params, *exchange, bus.get(), nullptr);
+            std::make_unique<Loop>(config_, config_.params, *exchange, source, bus.get(), nullptr);
         const std::uint32_t index = index_of(row.name);
         Snapshot ignored{};
         send(make_request(QUIESCE_CAN_SERVICE_REQUEST_OPERATION_STAGE_CHOICE,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "loop.h"
+#include "steady_ticks.h"
 
 namespace quiesced {
 namespace {
@@ -59,13 +60,16 @@ class LoopOf : public testing::Test {
         exchange->peripherals.sensors[0].start_with(std::make_unique<FakeAccel>(axes));
     }
 
-    void start() { loop = std::make_unique<Loop>(config, params, *exchange, nullptr, nullptr); }
+    void start() {
+        loop = std::make_unique<Loop>(config, params, *exchange, source, nullptr, nullptr);
+    }
 
     Config config;
     quiesce_params_t params{};
     std::vector<Command> told;
     std::vector<hal_axis_t> axes;
     std::unique_ptr<Exchange> exchange = std::make_unique<Exchange>();
+    SteadyTicks source;
     std::unique_ptr<Loop> loop;
 };
 
