@@ -117,15 +117,11 @@ static bool are_in_range(place_t at, const void *part, const range_t *ranges, si
     return true;
 }
 
-static bool is_of_body(int32_t sense) {
-    return sense <= QUIESCE_SENSE_DISPLACEMENT;
-}
-
 static bool is_place_there(const quiesce_board_t *board, const quiesce_board_sensor_t *sensor) {
     if (sensor->sense == QUIESCE_SENSE_SUPPLY) {
         return sensor->at == 0;
     }
-    return sensor->at < (is_of_body(sensor->sense) ? board->bodies : board->dampers);
+    return sensor->at < (quiesce_sense_is_of_body(sensor->sense) ? board->bodies : board->dampers);
 }
 
 static bool check_sensor(place_t at, const quiesce_board_t *board,

@@ -108,18 +108,6 @@ static void use_law_table(control_t *self, const uint32_t *words) {
     }
 }
 
-static quiesce_table_verdict_t use_shipped(control_t *self) {
-    const law_table_kind_t *kind = self->law->kind;
-    if (kind == NULL ? forces_kind(&self->forces) == NULL : kind->shipped == NULL) {
-        return QUIESCE_TABLE_MAGIC;
-    }
-    self->forces.table = NULL;
-    if (kind != NULL) {
-        use_law_table(self, kind->shipped);
-    }
-    return QUIESCE_TABLE_OK;
-}
-
 quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
     const track_table_kind_t *map = forces_kind(&self->forces);
     if (map != NULL && magic == map->magic) {
@@ -132,6 +120,16 @@ quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
     }
     use_law_table(self, kind->shipped);
     return QUIESCE_TABLE_OK;
+}
+
+// Of the law's kind; of the tracker's where the law has none.
+static quiesce_table_verdict_t use_shipped(control_t *self) {
+    const law_table_kind_t *kind = self->law->kind;
+    const track_table_kind_t *map = forces_kind(&self->forces);
+    if (kind != NULL && kind->shipped != NULL) {
+        return control_drop(self, kind->shipped[0]);
+    }
+    return kind == NULL && map != NULL ? control_drop(self, map->magic) : QUIESCE_TABLE_MAGIC;
 }
 
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {

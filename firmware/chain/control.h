@@ -26,8 +26,8 @@ uint64_t control_needs(const quiesce_params_t *params);
 /// The law of the parameters, which have been checked, with the table that ships, from rest.
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params);
 
-/// Another table, of the law or of the tracker; NULL: what ships. A table that is refused changes
-/// nothing.
+/// Another table, of the law or of the tracker; NULL: the one of the law that ships. A table that
+/// is refused changes nothing.
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count);
 
 /// As quiesce_table_drop.

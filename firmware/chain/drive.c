@@ -4,8 +4,8 @@
 
 // Of a deviation; beyond half of what the damper may get nothing would be one.
 static int32_t error_mA(const drive_t *self, const quiesce_params_t *p) {
-    const int32_t most_mA = self->guard.cfg.max_mA / 2;
-    return p->current_error_mA < most_mA ? p->current_error_mA : clamp_i32(most_mA, 1, most_mA);
+    const int32_t half_mA = self->guard.cfg.max_mA / 2;
+    return clamp_i32(p->current_error_mA, 1, half_mA > 1 ? half_mA : 1);
 }
 
 void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quiesce_params_t *p,

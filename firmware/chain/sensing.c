@@ -90,10 +90,6 @@ static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
     position_init(&self->position, rate_Hz, p->velocity_cutoff_mHz);
 }
 
-static bool is_of_body(int32_t sense) {
-    return sense <= QUIESCE_SENSE_DISPLACEMENT;
-}
-
 #define OF_BODY(field) (offsetof(view_t, body) + offsetof(view_body_t, field))
 #define OF_DAMPER(field) (offsetof(view_t, damper) + offsetof(view_damper_t, field))
 
@@ -113,7 +109,8 @@ static const struct {
 };
 
 static sensor_place_t place_of(const quiesce_board_sensor_t *sensor) {
-    const size_t stride = is_of_body(sensor->sense) ? sizeof(view_body_t) : sizeof(view_damper_t);
+    const size_t stride =
+        quiesce_sense_is_of_body(sensor->sense) ? sizeof(view_body_t) : sizeof(view_damper_t);
     return (sensor_place_t){
         .sense = (uint8_t)sensor->sense,
         .at = (uint8_t)sensor->at,
@@ -126,7 +123,7 @@ static sensor_place_t place_of(const quiesce_board_sensor_t *sensor) {
 static uint8_t list_measured(places_t *self, bool of_bodies, uint8_t count) {
     for (int32_t i = 0; i < sensors_of(self); i++) {
         const sensor_place_t sensor = self->sensor[i];
-        if (!is_accelerometer(sensor) && is_of_body(sensor.sense) == of_bodies) {
+        if (!is_accelerometer(sensor) && quiesce_sense_is_of_body(sensor.sense) == of_bodies) {
             self->measured[count++] = (uint8_t)i;
         }
     }

@@ -209,8 +209,9 @@ typedef enum {
 /// running: the swap is one pointer. quiesce_init goes back to the one that ships.
 ///
 /// Where the law demands forces and parameter tracker is inverse, a damper's map (`quiesce identify
-/// inverse`) is taken beside the law's table. None ships: until there is one, and after NULL, that
-/// is a signal which the law lacks.
+/// inverse`) is taken beside the law's table. None ships: until there is one, that is a signal
+/// which the law lacks. NULL takes it away only where the law has no table of its own;
+/// quiesce_table_drop always does.
 quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count);
 
 /// Back to the table that ships of one kind, by its first word, or to none where none ships; tables

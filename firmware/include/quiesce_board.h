@@ -34,6 +34,11 @@ typedef enum {
     QUIESCE_SENSES
 } quiesce_sense_t;
 
+/// Whether a sensor of that is on a body; else on a damper, or the board's.
+static inline bool quiesce_sense_is_of_body(int32_t sense) {
+    return sense <= QUIESCE_SENSE_DISPLACEMENT;
+}
+
 typedef struct {
     int32_t sense;         ///< quiesce_sense_t
     int32_t at;            ///< body or damper, from 0; 0 for the supply

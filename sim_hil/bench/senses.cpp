@@ -24,17 +24,14 @@ std::size_t ticks_in(std::int32_t time_us, std::int64_t tick_rate_Hz) {
         std::llround(time_us * static_cast<double>(tick_rate_Hz) / kUs));
 }
 
-bool is_of_body(std::int32_t sense) {
-    return sense <= QUIESCE_SENSE_DISPLACEMENT;
-}
-
 } // namespace
 
 BoardSensor::BoardSensor(const Rig &rig, std::size_t index, std::int32_t tick_rate_Hz,
                          std::uint64_t seed)
     : spec_(rig.board().sensor[index]),
-      source_((is_of_body(spec_.sense) ? rig.place_of
-                                       : rig.damper_of)[static_cast<std::size_t>(spec_.at)]),
+      source_((quiesce_sense_is_of_body(spec_.sense)
+                   ? rig.place_of
+                   : rig.damper_of)[static_cast<std::size_t>(spec_.at)]),
       noise_counts_(rig.noise[index] / std::abs(unit_per_count(spec_))),
       tick_rate_Hz_(tick_rate_Hz), on_the_way_(ticks_in(spec_.latency_us, tick_rate_Hz), 0.0),
       noise_(seed) {}

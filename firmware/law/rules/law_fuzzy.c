@@ -11,23 +11,13 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
     return true;
 }
 
-// What the rules said last is forgotten: the same words may hold another table by now.
-static void retable(void *state, const law_setup_t *setup) {
-    (void)setup;
-    ((rule_base_t *)state)->is_known = false;
-}
-
-static void report(const void *state, const law_setup_t *setup, int32_t *word) {
-    rule_base_report(state, setup->table, word);
-}
-
 extern const law_t law_fuzzy;
 const law_t law_fuzzy = {
     .name = "fuzzy",
     .needs = VIEW_RMS,
     .kind = &rule_base_kind,
     .reports = rule_base_reports,
-    .retable = retable,
+    .retable = rule_base_retable,
     .step = step,
-    .report = report,
+    .report = rule_base_report,
 };

@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 _Static_assert(sizeof(selftune_t) <= LAW_STATE_BYTES, "the arena is too small");
+_Static_assert(offsetof(selftune_t, rules) == 0, "it begins with the rules");
 
 static bool is_tuning(const quiesce_params_t *params, const view_t *view) {
     return (view->valid & VIEW_TONE) != 0 &&
@@ -62,23 +63,13 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
     return true;
 }
 
-// As law fuzzy; the tuned current goes on.
-static void retable(void *state, const law_setup_t *setup) {
-    (void)setup;
-    ((selftune_t *)state)->rules.is_known = false;
-}
-
-static void report(const void *state, const law_setup_t *setup, int32_t *word) {
-    rule_base_report(&((const selftune_t *)state)->rules, setup->table, word);
-}
-
 extern const law_t law_fuzzy_selftune;
 const law_t law_fuzzy_selftune = {
     .name = "fuzzy_selftune",
     .needs = VIEW_RMS,
     .kind = &rule_base_kind,
     .reports = rule_base_reports,
-    .retable = retable,
+    .retable = rule_base_retable, // the tuned current goes on
     .step = step,
-    .report = report,
+    .report = rule_base_report,
 };

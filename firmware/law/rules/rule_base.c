@@ -53,10 +53,16 @@ int32_t rule_base_step(rule_base_t *self, const uint32_t *table, const view_tone
     return self->current_mA;
 }
 
-void rule_base_report(const rule_base_t *self, const uint32_t *table, int32_t *word) {
+void rule_base_retable(void *state, const law_setup_t *setup) {
+    (void)setup;
+    ((rule_base_t *)state)->is_known = false;
+}
+
+void rule_base_report(const void *state, const law_setup_t *setup, int32_t *word) {
+    const rule_base_t *self = state;
     uint64_t fired = 0;
     if (self->is_known) {
-        (void)fuzzy_fired(as_table(table), self->input, &fired);
+        (void)fuzzy_fired(as_table(setup->table), self->input, &fired);
     }
     word[0] = self->current_mA;
     word[1] = (int32_t)(uint32_t)fired;

@@ -32,8 +32,12 @@ static inline int32_t rule_base_or_unlock_mA(const law_setup_t *setup, const vie
     return (view->valid & VIEW_TONE) != 0 ? current_mA : setup->params.unlock_current_mA;
 }
 
-/// The last current, and a bit for each rule that fired, in the file's order, the first 32. The
-/// list of rules is made here: some 800 instructions for 16 rules.
-void rule_base_report(const rule_base_t *self, const uint32_t *table, int32_t *word);
+/// As in law_t, of a law whose state begins with a rule_base_t. What the rules said last is
+/// forgotten: the same words may hold another table by now.
+void rule_base_retable(void *state, const law_setup_t *setup);
+
+/// Likewise: the last current, and a bit for each rule that fired, in the file's order, the first
+/// 32. The list of rules is made here: some 800 instructions for 16 rules.
+void rule_base_report(const void *state, const law_setup_t *setup, int32_t *word);
 
 #endif

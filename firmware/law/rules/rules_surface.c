@@ -9,8 +9,9 @@ int32_t quiesce_rules_current_mA(int32_t freq_uHz, int32_t rms_um_s2, uint32_t *
     rule_base_t rules = {0};
     const int32_t current_mA = rule_base_step(&rules, rule_base_kind.shipped, &tone);
     if (rules_fired != NULL) {
+        const law_setup_t setup = {.table = rule_base_kind.shipped};
         int32_t word[QUIESCE_REPORT_WORDS];
-        rule_base_report(&rules, rule_base_kind.shipped, word);
+        rule_base_report(&rules, &setup, word);
         *rules_fired = (uint32_t)word[1];
     }
     return current_mA;

@@ -62,7 +62,8 @@ void say_farewell(const Config &config, const quiesce_params_t &params) {
     const auto node = std::make_unique<can_node_t>();
     can_node_init(node.get(), config.wiring(), &params);
     for (int i = 0; i < kFarewells; ++i) {
-        for (std::uint32_t damper = 0; damper < config.outputs.size(); ++damper) {
+        const auto most = std::min<std::size_t>(config.outputs.size(), QUIESCE_DAMPERS);
+        for (std::uint32_t damper = 0; damper < most; ++damper) {
             can_frame_t frame{};
             can_node_farewell(node.get(), damper, safe_current_mA(config.wiring(), &params, damper),
                               &frame);

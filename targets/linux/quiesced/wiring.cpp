@@ -129,8 +129,8 @@ std::optional<std::size_t> settle(Section &section, const Names &names, const Pa
     return number;
 }
 
-/// One table for each name, in the order of the names. read: the keys of one; check: of one that is
-/// settled.
+/// One table for each name, in the order of the names, then those that belong to none: wrong, and
+/// still to be made safe. read: the keys of one; check: of one that is settled.
 template <typename Part, typename Read, typename Check>
 std::vector<Part> read_parts(Section &root, const char *name, const Names &names, Read &&read,
                              Check &&check) {
@@ -138,6 +138,7 @@ std::vector<Part> read_parts(Section &root, const char *name, const Names &names
     for (Part &part : parts) {
         part.place = {name, 0, "", ""};
     }
+    std::vector<Part> strays;
     std::size_t table = 0;
     root.read(name, false, [&] {
         for (TomlTable &one : root.table().tables(name)) {
@@ -152,6 +153,8 @@ std::vector<Part> read_parts(Section &root, const char *name, const Names &names
             if (number) {
                 check(section, part, *number);
                 parts[*number] = part;
+            } else {
+                strays.push_back(part);
             }
         }
     });
@@ -161,6 +164,7 @@ std::vector<Part> read_parts(Section &root, const char *name, const Names &names
                                  "\" has no table [[" + name + "]]");
         }
     }
+    parts.insert(parts.end(), strays.begin(), strays.end());
     return parts;
 }
 
@@ -268,7 +272,7 @@ Names names_in(Section &root, const char *name, std::size_t most) {
     Names names;
     attempt(root.problems(), [&] {
         for (TomlTable &one : root.table().tables(name)) {
-            names.push_back(one.text("name"));
+            attempt(root.problems(), [&] { names.push_back(one.text("name")); });
         }
     });
     names.resize(std::min(names.size(), most));
@@ -286,15 +290,17 @@ void read_of_board(Section &root, const std::string &board_file, Config &config)
                        "[[damper]]");
         }
     }
+    const Names sensors =
+        wired != nullptr ? config.board->board.sensors : names_in(root, "sensor", QUIESCE_SENSORS);
     config.sensors = read_parts<SensorConfig>(
-        root, "sensor",
-        wired != nullptr ? config.board->board.sensors : names_in(root, "sensor", QUIESCE_SENSORS),
+        root, "sensor", sensors,
         [](Section &section, SensorConfig &sensor) { read_source(section, true, sensor); },
         [&](Section &section, const SensorConfig &sensor, std::size_t number) {
             if (wired != nullptr) {
                 check_source(section, sensor, wired->sensor[number]);
             }
         });
+    config.sensors.resize(sensors.size()); // one that belongs to none is of no use
     config.outputs = read_parts<OutputConfig>(
         root, "damper",
         wired != nullptr ? config.board->board.dampers : names_in(root, "damper", QUIESCE_DAMPERS),

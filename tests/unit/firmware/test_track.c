@@ -451,7 +451,7 @@ static void test_track_without_a_map_the_law_is_blind(void) {
     use_plain_map();
     run(1000, 1000);
     assert_current(1000, 800);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, NULL, 0));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_drop(&controller, map[0]));
     for (uint32_t t = 0; t < 100u; t++) {
         assert_current(1000, UNLOCK_mA);
     }
@@ -474,6 +474,36 @@ static void make_law_table(uint32_t force_mN) {
     memcpy(law_table, law_constant_force.kind->shipped, sizeof law_table);
     law_table[3] = force_mN;
     law_table[1] = crc32_words(&law_table[2], 2);
+}
+
+static void fill(quiesce_table_store_t *store, const uint32_t *words, uint32_t count) {
+    quiesce_table_store_init(store);
+    TEST_ASSERT_TRUE(quiesce_table_store_write(store, 0, words, count));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_store_commit(store, &controller));
+}
+
+static void test_track_reverting_one_kind_leaves_the_other(void) {
+    static quiesce_table_store_t of_law;
+    static quiesce_table_store_t of_map;
+    start();
+    make_law_table(60000);
+    fill(&of_law, law_table, 4);
+    fill(&of_map, map, map[2]);
+    run(1000, 1000);
+    assert_current(1000, 1000);
+    quiesce_table_store_revert(&of_map, &controller);
+    run(200, 1000);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_LAW_BLIND, out.telemetry.fault);
+    use_plain_map();
+    run(1000, 1000);
+    assert_current(1000, 1000); // the law's own table was there all the time
+    quiesce_table_store_revert(&of_law, &controller);
+    assert_current(1000, 800);
+    quiesce_table_store_revert(&of_law, &controller); // nothing is left to go back to
+    assert_current(1000, 800);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, NULL, 0));
+    assert_current(1000, 800);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_MAGIC, quiesce_table_drop(&controller, 1));
 }
 
 static void test_track_tables_of_law_and_tracker_go_to_their_own(void) {
@@ -592,6 +622,7 @@ int main(void) {
     RUN_TEST(test_track_no_other_tracker_is_known);
     RUN_TEST(test_track_a_force_becomes_a_current);
     RUN_TEST(test_track_without_a_map_the_law_is_blind);
+    RUN_TEST(test_track_reverting_one_kind_leaves_the_other);
     RUN_TEST(test_track_tables_of_law_and_tracker_go_to_their_own);
     RUN_TEST(test_track_a_store_holds_one_kind);
     RUN_TEST(test_track_force_is_compared);

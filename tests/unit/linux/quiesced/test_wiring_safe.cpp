@@ -86,6 +86,22 @@ TEST_F(SafeOutputs, one_that_fails_keeps_none_of_the_others_from_it) {
     EXPECT_EQ(farewells({40, 60}), (std::array<int, 4>{5, 5, 0, 0}));
 }
 
+/// Nothing is kept, and the file has a mistake: every output that can be read is still made safe.
+TEST_F(SafeOutputs, a_table_with_a_wrong_name_is_made_safe_all_the_same) {
+    const std::string good = rig.text("q.toml");
+    for (const std::string name : {"lower", "upper"}) {
+        std::string wrong = good;
+        const std::string table = "[[damper]]\nname = \"" + name + "\"";
+        ASSERT_NE(wrong.find(table), std::string::npos);
+        wrong.replace(wrong.find(table), table.size(), "[[damper]]\nname = \"lowr\"");
+        write_text(rig.folder / "q.toml", wrong);
+        leave_outputs_on();
+        EXPECT_EQ(make_safe(rig.config_file(), rig.folders()), 1);
+        EXPECT_EQ(duty(), "0") << name;
+        EXPECT_EQ(code(), "7") << name;
+    }
+}
+
 TEST_F(SafeOutputs, the_board_that_ran_is_kept_with_the_configuration) {
     const ReadConfig read = require_config_text(rig.config_file());
     EXPECT_EQ(read.board_text, rig.text("rig.board.toml"));
