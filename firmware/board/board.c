@@ -25,6 +25,7 @@ static const quiesce_board_damper_t damper_to_ground = {
     .end_b = QUIESCE_GROUND,
     .ceiling_mA = 5000,
     .continuous_mA = 5000,
+    .heat_s = 60,
     .coil_lag_us = 5000,
 };
 
@@ -78,6 +79,7 @@ static const range_t damper_ranges[] = {
     DAMPER(continuous_mA, 1, QUIESCE_HIGHEST_CURRENT_mA),
     DAMPER(trip_mA, 0, 2 * QUIESCE_HIGHEST_CURRENT_mA),
     DAMPER(trip_us, 0, 10000000),
+    DAMPER(heat_s, 5, 10000),
     DAMPER(measures_current, 0, 1),
     DAMPER(coil_lag_us, 0, 1000000),
 };
@@ -189,6 +191,9 @@ static bool check_damper(place_t at, const quiesce_board_t *board,
     }
     if (damper->continuous_mA > damper->ceiling_mA) {
         return refuse(at, "continuous_mA", "above ceiling_mA");
+    }
+    if (damper->continuous_mA < (damper->ceiling_mA + 9) / 10) {
+        return refuse(at, "continuous_mA", "below a tenth of ceiling_mA");
     }
     if (damper->safe_mA > damper->continuous_mA) {
         return refuse(at, "safe_mA", "above continuous_mA: it may stay there for ever");

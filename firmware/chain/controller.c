@@ -7,6 +7,7 @@
 #include "drive.h"
 #include "signal_chain.h"
 #include "supervisor.h"
+#include "twin.h"
 
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
 typedef struct {
@@ -15,6 +16,7 @@ typedef struct {
     control_t control;
     uint32_t recover_ticks; ///< of good samples before the output may be enabled
     supervisor_t supervisor;
+    uint32_t supervisor_twin[TWIN_WORDS(WORDS_OF(supervisor_t))];
     drive_t drive[QUIESCE_DAMPERS];
     law_demand_t request; ///< of the last tick
     uint32_t last_tick;
@@ -46,7 +48,7 @@ static quiesce_board_t board_of(const quiesce_params_t *p) {
     sensor->min_noise_counts = p->sensor_min_noise_counts;
     quiesce_board_damper_t *damper = &board.damper[0];
     damper->ceiling_mA = QUIESCE_HIGHEST_CURRENT_mA;
-    damper->measures_current = p->current_check == QUIESCE_CURRENT_CHECK_ON;
+    damper->measures_current = p->current_check;
     damper->coil_lag_us = p->current_lag_ms * 1000;
     return board;
 }
@@ -62,6 +64,7 @@ static void start_all(controller_t *self, const quiesce_board_t *board,
         drive_init(&self->drive[i], &board->damper[i], params, is_accepted);
     }
     supervisor_init(&self->supervisor, is_accepted ? QUIESCE_FAULT_NONE : QUIESCE_FAULT_PARAMETER);
+    twin_make(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
 }
 
 bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
@@ -96,6 +99,21 @@ bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
     return is_accepted;
 }
 
+bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board,
+                     const quiesce_params_t *params) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    int64_t heat_q20[QUIESCE_DAMPERS];
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        heat_q20[i] = c->drive[i].heat.heat_q20;
+    }
+    const bool is_accepted =
+        board == NULL ? quiesce_init(self, params) : quiesce_init_board(self, board, params);
+    for (uint32_t i = 0; i < dampers_of(c); i++) {
+        c->drive[i].heat.heat_q20 = heat_q20[i];
+    }
+    return is_accepted;
+}
+
 static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
     static const uint8_t fault_of[] = {
         [CONDITION_GOOD] = QUIESCE_FAULT_NONE,
@@ -115,6 +133,8 @@ static quiesce_fault_t watch_drives(controller_t *self, const quiesce_in_t *in) 
         [CURRENT_NOT_FOLLOWING] = QUIESCE_FAULT_DRIVER_NOT_FOLLOWING,
         [CURRENT_OPEN_COIL] = QUIESCE_FAULT_COIL_OPEN,
         [CURRENT_MISSING] = QUIESCE_FAULT_CURRENT_LOST,
+        [CURRENT_OVER] = QUIESCE_FAULT_OVERCURRENT,
+        [CURRENT_HOT] = QUIESCE_FAULT_COIL_HOT,
     };
     quiesce_fault_t found = QUIESCE_FAULT_NONE;
     for (uint32_t i = 0; i < dampers_of(self); i++) {
@@ -163,13 +183,22 @@ static quiesce_fault_t clearing_fault(const findings_t *found) {
     return found->is_blind ? QUIESCE_FAULT_LAW_BLIND : QUIESCE_FAULT_NONE;
 }
 
+static bool is_limited(const controller_t *self) {
+    bool is_limiting = false;
+    for (uint32_t i = 0; i < dampers_of(self); i++) {
+        is_limiting = is_limiting || drive_is_limited(&self->drive[i]);
+    }
+    return is_limiting;
+}
+
 static void supervise(controller_t *self, const quiesce_in_t *in, const findings_t *found) {
     const supervisor_in_t events = {
         .clearing_fault = clearing_fault(found),
         .latched_fault = latched_fault(self, in, found->current_fault),
         .is_ready = found->sample->good_ticks >= self->recover_ticks &&
-                    (self->supervisor.state == QUIESCE_STATE_RUN ||
+                    (supervisor_allows_output(&self->supervisor) ||
                      control_sees(&self->control, &self->view)),
+        .is_limited = is_limited(self),
         .enable = in->enable,
         .fault_reset = in->fault_reset,
     };
@@ -177,6 +206,25 @@ static void supervise(controller_t *self, const quiesce_in_t *in, const findings
         for (uint32_t i = 0; i < dampers_of(self); i++) {
             current_monitor_reset(&self->drive[i].monitor);
         }
+    }
+    twin_make(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
+}
+
+// Whether what decides about currents still is what the last tick left. Where not, nothing that it
+// says is believed any more.
+static bool is_intact(const controller_t *self) {
+    bool is_intact = twin_holds(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
+    for (uint32_t i = 0; i < dampers_of(self); i++) {
+        is_intact = drive_is_intact(&self->drive[i]) && is_intact;
+    }
+    return is_intact;
+}
+
+// The twins stay as they are, so that it stays shut.
+static void shut(controller_t *self, quiesce_out_t *out) {
+    supervisor_init(&self->supervisor, QUIESCE_FAULT_MEMORY);
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        drive_shut(&self->drive[i], &out->damper[i]);
     }
 }
 
@@ -246,8 +294,12 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     found.current_fault = watch_drives(c, in);
     c->view.is_output_on = supervisor_allows_output(&c->supervisor);
     found.is_blind = !control_step(&c->control, &c->view, &c->request);
-    supervise(c, in, &found);
-    command(c, out);
+    if (is_intact(c)) {
+        supervise(c, in, &found);
+        command(c, out);
+    } else {
+        shut(c, out);
+    }
 
     report(c, t);
     t->tick = in->tick;
@@ -285,6 +337,10 @@ bool quiesce_learnt_load(quiesce_t *self, const quiesce_learnt_t *in) {
 
 void quiesce_learnt_freeze(quiesce_t *self, bool is_frozen) {
     ((controller_t *)(void *)self->opaque)->view.may_learn = !is_frozen;
+}
+
+bool quiesce_is_armed(const quiesce_t *self) {
+    return ((const controller_t *)(const void *)self->opaque)->supervisor.is_armed != 0u;
 }
 
 const quiesce_word_t *quiesce_report_words(int32_t law) {

@@ -3,30 +3,85 @@
 #define RATE_IF_REFUSED_Hz 1000u
 
 // Of a deviation; beyond half of what the damper may get nothing would be one.
-static int32_t error_mA(const drive_t *self, const quiesce_params_t *p) {
-    const int32_t half_mA = self->guard.cfg.max_mA / 2;
+static int32_t error_mA(const guard_t *guard, const quiesce_params_t *p) {
+    const int32_t half_mA = guard->max_mA / 2;
     return clamp_i32(p->current_error_mA, 1, half_mA > 1 ? half_mA : 1);
+}
+
+static uint32_t ticks_in_us(int32_t time_us, uint32_t rate_Hz) {
+    const uint32_t ticks = (uint32_t)((int64_t)time_us * rate_Hz / 1000000);
+    return ticks > 0u ? ticks : 1u;
+}
+
+static void start_guard(guard_t *self, const quiesce_board_damper_t *damper,
+                        const quiesce_params_t *p, uint32_t rate_Hz) {
+    const bool is_lower = p->max_current_mA < damper->ceiling_mA;
+    guard_init(self, &(guard_cfg_t){
+                         .max_mA = is_lower ? p->max_current_mA : damper->ceiling_mA,
+                         .safe_mA = damper->safe_mA,
+                         .slew_mA_s = p->slew_mA_s,
+                         .tick_rate_Hz = rate_Hz,
+                     });
+}
+
+static void start_monitor(drive_t *self, const quiesce_board_damper_t *damper,
+                          const quiesce_params_t *p, uint32_t rate_Hz, current_check_t check) {
+    const current_monitor_cfg_t monitor = {
+        .check = check,
+        .tick_rate_Hz = rate_Hz,
+        .error_mA = error_mA(&self->limits.guard, p),
+        .lag_us = damper->coil_lag_us,
+        .fault_ticks = (uint32_t)p->current_fault_ticks,
+        .trip_mA = damper->trip_mA,
+        .trip_ticks = ticks_in_us(damper->trip_us, rate_Hz),
+    };
+    current_monitor_init(&self->monitor, &monitor, 0);
 }
 
 void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quiesce_params_t *p,
                 bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : RATE_IF_REFUSED_Hz;
-    self->ceiling_mA = damper->ceiling_mA;
-    guard_init(&self->guard,
-               &(guard_cfg_t){
-                   .max_mA = p->max_current_mA < damper->ceiling_mA ? p->max_current_mA
-                                                                    : damper->ceiling_mA,
-                   .safe_mA = damper->safe_mA,
-                   .slew_mA_s = p->slew_mA_s,
-                   .tick_rate_Hz = rate_Hz,
-               });
-    self->last_command_mA = self->guard.cfg.safe_mA;
-    const current_monitor_cfg_t monitor = {
-        .is_on = is_accepted && damper->measures_current != 0,
-        .tick_rate_Hz = rate_Hz,
-        .error_mA = error_mA(self, p),
-        .lag_us = is_accepted ? damper->coil_lag_us : 0,
-        .fault_ticks = (uint32_t)p->current_fault_ticks,
-    };
-    current_monitor_init(&self->monitor, &monitor, self->last_command_mA);
+    self->limits.ceiling_mA = damper->ceiling_mA;
+    start_guard(&self->limits.guard, damper, p, rate_Hz);
+    start_monitor(self, damper, p, rate_Hz,
+                  is_accepted ? (current_check_t)damper->measures_current : CURRENT_CHECK_NEVER);
+    heat_init(&self->heat, &(heat_cfg_t){
+                               .tick_rate_Hz = rate_Hz,
+                               .continuous_mA = damper->continuous_mA,
+                               .time_s = damper->heat_s,
+                           });
+    self->last_command_mA = 0; // the driver is off until the first tick
+    twin_make(&self->limits, WORDS_OF(drive_limits_t), self->twin);
+}
+
+int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, current_verdict_t *verdict) {
+    *verdict = current_monitor_step(&self->monitor, self->last_command_mA, driver->current_mA,
+                                    driver->is_measured);
+    const int32_t current_mA = driver->is_measured
+                                   ? clamp_i32(driver->current_mA, -VIEW_LIMIT, VIEW_LIMIT)
+                                   : current_monitor_expected_mA(&self->monitor);
+    heat_step(&self->heat, current_mA);
+    if (*verdict == CURRENT_OK && heat_is_excessive(&self->heat)) {
+        *verdict = CURRENT_HOT;
+    }
+    return current_mA;
+}
+
+static void take(drive_t *self, int32_t command_mA, bool driver_enable, quiesce_command_t *out) {
+    *out = (quiesce_command_t){.current_cmd_mA = command_mA, .driver_enable = driver_enable};
+    // A driver that is switched off is expected to carry nothing.
+    self->last_command_mA = driver_enable ? command_mA : 0;
+}
+
+void drive_command(drive_t *self, int32_t request_mA, bool is_allowed, bool driver_enable,
+                   quiesce_command_t *out) {
+    const int32_t cool_mA = heat_limit_mA(&self->heat, self->limits.ceiling_mA);
+    const int32_t wanted_mA = request_mA < cool_mA ? request_mA : cool_mA;
+    const int32_t guarded_mA = guard_step(&self->limits.guard, wanted_mA, is_allowed);
+    take(self, clamp_i32(guarded_mA, 0, self->limits.ceiling_mA), driver_enable, out);
+    twin_make(&self->limits, WORDS_OF(drive_limits_t), self->twin);
+}
+
+void drive_shut(drive_t *self, quiesce_command_t *out) {
+    take(self, 0, false, out);
 }

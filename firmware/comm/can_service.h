@@ -26,6 +26,7 @@ typedef enum {
     CAN_NODE_BUSY = 6,
     CAN_NODE_NOTHING_TO_SEND = 7,
     CAN_NODE_FAULT_IS_LATCHED = 8,
+    CAN_NODE_IS_ARMED = 9,
 } can_node_result_t;
 
 typedef struct {

@@ -3,28 +3,33 @@
 #include <stddef.h>
 
 // Between a start and the first step: the command, and what messages that go out before say of it.
-static bool start(node_t *node) {
-    const bool is_accepted =
-        node->board == NULL ? quiesce_init(&node->controller, &node->params)
-                            : quiesce_init_board(&node->controller, node->board, &node->params);
+// A driver stays on only where the last step, which has seen the emergency stop, had it on.
+static void rest(node_t *node, bool is_accepted) {
+    quiesce_command_t last[QUIESCE_DAMPERS];
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        last[i] = node->out.damper[i];
+    }
     node->in = (quiesce_in_t){0};
     node->out = (quiesce_out_t){0};
     for (uint32_t i = 0; i < node_dampers(node); i++) {
         node->safe_mA[i] = safe_current_mA(node->board, &node->params, i);
         node->out.damper[i] = (quiesce_command_t){
             .current_cmd_mA = node->safe_mA[i],
-            .driver_enable = is_accepted,
+            .driver_enable = is_accepted && last[i].driver_enable,
         };
     }
     node->out.telemetry.current_cmd_mA = node->safe_mA[0];
-    return is_accepted;
 }
 
 bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_t *params,
                node_sources_t from) {
-    *node = (node_t){.board = board, .params = *params, .from = from};
+    *node = (node_t){
+        .board = board, .params = *params, .most_mA = params->max_current_mA, .from = from};
     can_node_init(&node->can, board, params);
-    return start(node);
+    const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
+                                           : quiesce_init_board(&node->controller, board, params);
+    rest(node, is_accepted);
+    return is_accepted;
 }
 
 uint32_t node_dampers(const node_t *node) {
@@ -34,7 +39,7 @@ uint32_t node_dampers(const node_t *node) {
 void node_restart(node_t *node, const quiesce_params_t *params) {
     node->params = *params;
     node->restarts++;
-    (void)start(node);
+    rest(node, quiesce_restart(&node->controller, node->board, params));
     can_node_use_params(&node->can, node->board, &node->params);
 }
 
@@ -136,6 +141,15 @@ static const quiesce_params_t *accept_staged(node_t *node) {
     int32_t value = 0;
     if (has_latched_fault(node)) {
         can_node_answer(&node->can, CAN_NODE_FAULT_IS_LATCHED, 0);
+        return NULL;
+    }
+    if (quiesce_is_armed(&node->controller)) {
+        can_node_answer(&node->can, CAN_NODE_IS_ARMED, 0);
+        return NULL;
+    }
+    if (staged->max_current_mA > node->most_mA) {
+        can_node_answer(&node->can, CAN_NODE_CONTRADICTION,
+                        offsetof(quiesce_params_t, max_current_mA) / sizeof(int32_t));
         return NULL;
     }
     if (quiesce_params_check(staged, &error)) {

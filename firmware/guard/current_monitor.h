@@ -1,9 +1,12 @@
-/// Compares the measured coil current with what the command should have produced.
+/// Compares the measured coil current with what the command should have produced, and with the
+/// level at which the driver has to be opened.
 ///
 /// The expectation follows the command through a first-order lag (the coil); a deviation beyond
-/// error_mA for fault_ticks in a row is a fault: an open coil where a current of at least twice
-/// error_mA is expected and none flows, else a driver that does not follow. Q16 mA inside, floor.
-/// Bounded, about 40 instructions.
+/// error_mA is a fault after fault_ticks: an open coil where a current of at least twice error_mA
+/// is expected and none flows, else a driver that does not follow. A magnitude above trip_mA is
+/// one after trip_ticks. These counts are leaky: a good tick takes back a quarter of a bad one, an
+/// eighth where it is the trip's, so that no good sample now and then forgives what lasts. Q16 mA
+/// inside, floor. Bounded, about 55 instructions.
 #ifndef CURRENT_MONITOR_H
 #define CURRENT_MONITOR_H
 
@@ -14,22 +17,39 @@ typedef enum {
     CURRENT_NOT_FOLLOWING = 1,
     CURRENT_OPEN_COIL = 2,
     CURRENT_MISSING = 3, ///< no measurement for fault_ticks
+    CURRENT_OVER = 4,    ///< above trip_mA
+    CURRENT_HOT = 5,     ///< the coil is beyond its budget of heat (heat.h)
 } current_verdict_t;
 
+/// When missing and wrong measurements are faults. Those above the trip level always are.
+typedef enum {
+    CURRENT_CHECK_NEVER = 0,
+    CURRENT_CHECK_ALWAYS = 1,
+    CURRENT_CHECK_ONCE_SEEN = 2, ///< from the first measurement on
+} current_check_t;
+
 typedef struct {
-    bool is_on;
+    current_check_t check;
     uint32_t tick_rate_Hz;
     int32_t error_mA;
     int32_t lag_us;
     uint32_t fault_ticks;
+    int32_t trip_mA; ///< 0: no trip
+    uint32_t trip_ticks;
 } current_monitor_cfg_t;
 
 typedef struct {
-    current_monitor_cfg_t cfg;
+    int32_t error_mA;
+    uint32_t fault_ticks;
+    int32_t trip_mA;
+    uint32_t trip_ticks;
     int32_t lag_gain_q16; ///< share of the step that the coil takes in a tick
     int64_t expected_mA_q16;
-    uint32_t wrong_ticks;
-    uint32_t missing_ticks;
+    uint32_t wrong;         ///< leaky
+    uint32_t over;          ///< leaky
+    uint32_t missing_ticks; ///< in a row
+    bool is_on;
+    bool is_on_once_seen;
 } current_monitor_t;
 
 void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,

@@ -15,8 +15,10 @@ typedef struct {
     uint32_t tick_rate_Hz;
 } guard_cfg_t;
 
+/// Words only: it is kept with its twin (base/twin.h).
 typedef struct {
-    guard_cfg_t cfg;
+    int32_t max_mA;
+    int32_t safe_mA;
     int32_t slew_uA; ///< largest change a tick
     int32_t last_uA;
 } guard_t;

@@ -1,89 +1,111 @@
 #include "supervisor.h"
 
-#define STATES 5
+// In last_inputs.
+#define WAS_ENABLED 1u
+#define WAS_RESET 2u
 
 typedef enum {
-    EVENT_NOTHING,
-    EVENT_READY,   // healthy for long enough, not enabled
-    EVENT_ENABLED, // healthy for long enough, enabled
+    EVENT_NOTHING, // not healthy for long enough
+    EVENT_READY,   // healthy for long enough
+    EVENT_ARMED,   // armed, not healthy for long enough
+    EVENT_GO,      // armed and healthy for long enough
+    EVENT_LIMITED, // likewise, but something has less than it should
     EVENT_CLEARING_FAULT,
-    EVENT_LATCHED_FAULT,
-    EVENT_ACKNOWLEDGED,
+    EVENT_LATCHED_FAULT, // also one that is not acknowledged
     EVENTS
 } event_t;
 
+#define INIT QUIESCE_STATE_INIT
+#define IDLE QUIESCE_STATE_IDLE
+#define ARMED QUIESCE_STATE_ARMED
+#define RUN QUIESCE_STATE_RUN
+#define DEGRADED QUIESCE_STATE_DEGRADED
+#define SAFE QUIESCE_STATE_SAFE
+#define FAULT QUIESCE_STATE_FAULT
+
 // next[state][event]. Every entry is written out: a new state or event shows its gaps here.
-static const uint8_t next[STATES][EVENTS] = {
-    // Columns: nothing, ready, enabled, clearing fault, latched fault, acknowledged.
-    [QUIESCE_STATE_INIT] = {QUIESCE_STATE_INIT, QUIESCE_STATE_IDLE, QUIESCE_STATE_IDLE,
-                            QUIESCE_STATE_SAFE, QUIESCE_STATE_FAULT, QUIESCE_STATE_INIT},
-    [QUIESCE_STATE_IDLE] = {QUIESCE_STATE_IDLE, QUIESCE_STATE_IDLE, QUIESCE_STATE_RUN,
-                            QUIESCE_STATE_SAFE, QUIESCE_STATE_FAULT, QUIESCE_STATE_IDLE},
-    [QUIESCE_STATE_RUN] = {QUIESCE_STATE_RUN, QUIESCE_STATE_IDLE, QUIESCE_STATE_RUN,
-                           QUIESCE_STATE_SAFE, QUIESCE_STATE_FAULT, QUIESCE_STATE_RUN},
-    [QUIESCE_STATE_SAFE] = {QUIESCE_STATE_SAFE, QUIESCE_STATE_IDLE, QUIESCE_STATE_IDLE,
-                            QUIESCE_STATE_SAFE, QUIESCE_STATE_FAULT, QUIESCE_STATE_SAFE},
-    [QUIESCE_STATE_FAULT] = {QUIESCE_STATE_FAULT, QUIESCE_STATE_FAULT, QUIESCE_STATE_FAULT,
-                             QUIESCE_STATE_FAULT, QUIESCE_STATE_FAULT, QUIESCE_STATE_INIT},
+static const uint8_t next[QUIESCE_STATE_COUNT][EVENTS] = {
+    // Columns: nothing, ready, armed, go, limited, clearing fault, latched fault. FAULT is left
+    // disarmed.
+    [INIT] = {INIT, IDLE, INIT, ARMED, ARMED, SAFE, FAULT},
+    [IDLE] = {IDLE, IDLE, ARMED, ARMED, ARMED, SAFE, FAULT},
+    [ARMED] = {IDLE, IDLE, ARMED, RUN, DEGRADED, SAFE, FAULT},
+    [RUN] = {IDLE, IDLE, RUN, RUN, DEGRADED, SAFE, FAULT},
+    [DEGRADED] = {IDLE, IDLE, DEGRADED, RUN, DEGRADED, SAFE, FAULT},
+    [SAFE] = {SAFE, IDLE, SAFE, ARMED, ARMED, SAFE, FAULT},
+    [FAULT] = {INIT, INIT, FAULT, FAULT, FAULT, SAFE, FAULT},
 };
 
 void supervisor_init(supervisor_t *self, quiesce_fault_t first_fault) {
     const bool is_refused = first_fault != QUIESCE_FAULT_NONE;
     *self = (supervisor_t){
-        .state = is_refused ? QUIESCE_STATE_FAULT : QUIESCE_STATE_INIT,
-        .fault = first_fault,
+        .state = is_refused ? FAULT : INIT,
+        .fault = (uint8_t)first_fault,
         .fault_count = is_refused ? 1u : 0u,
+        .last_inputs = WAS_ENABLED | WAS_RESET,
     };
 }
 
-static event_t event_of(const supervisor_t *self, const supervisor_in_t *in, bool is_edge) {
-    if (in->latched_fault != QUIESCE_FAULT_NONE) {
+static bool is_final(uint32_t fault) {
+    return fault == QUIESCE_FAULT_PARAMETER || fault == QUIESCE_FAULT_MEMORY;
+}
+
+// The operator's inputs of this tick. Returns true iff enable has risen.
+static bool follow_inputs(supervisor_t *self, const supervisor_in_t *in, bool *is_acknowledged) {
+    const bool has_risen = in->enable && (self->last_inputs & WAS_ENABLED) == 0u;
+    *is_acknowledged = in->fault_reset && (self->last_inputs & WAS_RESET) == 0u;
+    self->last_inputs =
+        (uint8_t)((in->enable ? WAS_ENABLED : 0u) | (in->fault_reset ? WAS_RESET : 0u));
+    return has_risen;
+}
+
+static void arm(supervisor_t *self, bool enable, bool has_risen) {
+    const bool may_arm = self->state == INIT || self->state == IDLE;
+    const bool is_armed = self->is_armed != 0u && self->state != FAULT;
+    self->is_armed = enable && (is_armed || (has_risen && may_arm));
+}
+
+static event_t event_of(const supervisor_t *self, const supervisor_in_t *in, bool is_acknowledged) {
+    const bool stays = self->state == FAULT && (!is_acknowledged || is_final(self->fault));
+    if (stays || in->latched_fault != QUIESCE_FAULT_NONE) {
         return EVENT_LATCHED_FAULT;
-    }
-    if (self->state == QUIESCE_STATE_FAULT) {
-        const bool may_leave = is_edge && self->fault != QUIESCE_FAULT_PARAMETER;
-        return may_leave ? EVENT_ACKNOWLEDGED : EVENT_NOTHING;
     }
     if (in->clearing_fault != QUIESCE_FAULT_NONE) {
         return EVENT_CLEARING_FAULT;
     }
-    // RUN ends at once when the operator lets go; everything else waits for a good sensor.
-    if (self->state == QUIESCE_STATE_RUN && !in->enable) {
-        return EVENT_READY;
+    if (self->is_armed == 0u) {
+        return in->is_ready ? EVENT_READY : EVENT_NOTHING;
     }
     if (!in->is_ready) {
-        return EVENT_NOTHING;
+        return EVENT_ARMED;
     }
-    return in->enable ? EVENT_ENABLED : EVENT_READY;
+    return in->is_limited ? EVENT_LIMITED : EVENT_GO;
 }
 
-static bool is_faulted(quiesce_state_t state) {
-    return state == QUIESCE_STATE_SAFE || state == QUIESCE_STATE_FAULT;
-}
-
-// What switches the driver off does so even where another latched fault already holds FAULT, and an
-// emergency stop is always told; only refused parameters, which no acknowledgement may clear, keep
-// their place.
-static bool is_stop_on_top(const supervisor_t *self, const supervisor_in_t *in) {
-    if (self->fault == QUIESCE_FAULT_PARAMETER || in->latched_fault == self->fault) {
-        return false;
+// An emergency stop is told on top of any other latched fault but a final one; of the others the
+// first stays.
+static void note_fault(supervisor_t *self, const supervisor_in_t *in, event_t event,
+                       uint32_t before) {
+    if (self->state != SAFE && self->state != FAULT) {
+        self->fault = QUIESCE_FAULT_NONE;
+        return;
     }
-    return in->latched_fault == QUIESCE_FAULT_ESTOP ||
-           (supervisor_switches_off(in->latched_fault) && !supervisor_switches_off(self->fault));
+    const bool is_stop = in->latched_fault == QUIESCE_FAULT_ESTOP &&
+                         self->fault != QUIESCE_FAULT_ESTOP && !is_final(self->fault);
+    if (self->state != before || is_stop) {
+        self->fault =
+            (uint8_t)(event == EVENT_LATCHED_FAULT ? in->latched_fault : in->clearing_fault);
+        self->fault_count = increment_sat_u32(self->fault_count);
+    }
 }
 
 bool supervisor_step(supervisor_t *self, const supervisor_in_t *in) {
-    const bool is_edge = in->fault_reset && !self->last_fault_reset;
-    self->last_fault_reset = in->fault_reset;
-
-    const event_t event = event_of(self, in, is_edge);
-    const quiesce_state_t state = (quiesce_state_t)next[self->state][event];
-    if (!is_faulted(state)) {
-        self->fault = QUIESCE_FAULT_NONE;
-    } else if (state != self->state || is_stop_on_top(self, in)) {
-        self->fault = event == EVENT_LATCHED_FAULT ? in->latched_fault : in->clearing_fault;
-        self->fault_count = increment_sat_u32(self->fault_count);
-    }
-    self->state = state;
-    return event == EVENT_ACKNOWLEDGED;
+    bool is_acknowledged;
+    const uint32_t before = self->state;
+    const bool has_risen = follow_inputs(self, in, &is_acknowledged);
+    arm(self, in->enable, has_risen);
+    const event_t event = event_of(self, in, is_acknowledged);
+    self->state = before < QUIESCE_STATE_COUNT ? next[before][event] : (uint8_t)FAULT;
+    note_fault(self, in, event, before);
+    return before == FAULT && self->state != FAULT;
 }

@@ -20,13 +20,18 @@ extern "C" {
 /// Spectral peaks in telemetry, strongest acceleration first.
 #define QUIESCE_PEAKS 3
 
-/// Supervisor states. Only RUN lets a law's request through; all others command safe_current_mA.
+/// Supervisor states. Only RUN and DEGRADED let a law's request through; all others command
+/// safe_current_mA, FAULT with the drivers off. Numbers are never reused.
 typedef enum {
-    QUIESCE_STATE_INIT = 0,  ///< gathering its first samples
-    QUIESCE_STATE_IDLE = 1,  ///< healthy, not enabled
-    QUIESCE_STATE_RUN = 2,   ///< the law's request passes the guard
-    QUIESCE_STATE_SAFE = 3,  ///< a fault that clears by itself is present or has just gone
-    QUIESCE_STATE_FAULT = 4, ///< a latched fault; left only by fault_reset
+    QUIESCE_STATE_INIT = 0,     ///< gathering its first samples
+    QUIESCE_STATE_IDLE = 1,     ///< healthy, not armed
+    QUIESCE_STATE_RUN = 2,      ///< the law's request passes the guard
+    QUIESCE_STATE_SAFE = 3,     ///< a fault that clears by itself is present or has just gone
+    QUIESCE_STATE_FAULT = 4,    ///< a latched fault; left only by fault_reset
+    QUIESCE_STATE_ARMED = 5,    ///< enable has risen; runs as soon as all that it needs is there
+    QUIESCE_STATE_DEGRADED = 6, ///< as RUN, with a coil's current limited by its heat, or without a
+                                ///< sensor that the law does not need
+    QUIESCE_STATE_COUNT
 } quiesce_state_t;
 
 /// Faults: numbers are never reused. docs/reference/faults.md has causes and reactions.
@@ -45,6 +50,9 @@ typedef enum {
     QUIESCE_FAULT_SENSOR_QUIET = 11,  ///< less noise than sensor_min_noise_counts over a second
     QUIESCE_FAULT_DRIVER_FAILED = 12, ///< the current driver says so or takes no command (latched)
     QUIESCE_FAULT_LAW_BLIND = 13,     ///< a signal that the law needs is not valid
+    QUIESCE_FAULT_OVERCURRENT = 14,   ///< measured current above the trip level (latched)
+    QUIESCE_FAULT_COIL_HOT = 15,      ///< a coil beyond its budget of heat (latched)
+    QUIESCE_FAULT_MEMORY = 16, ///< a record of the controller has changed by itself (latched)
     QUIESCE_FAULT_COUNT
 } quiesce_fault_t;
 
@@ -66,7 +74,7 @@ typedef struct {
     uint32_t tick; ///< number of this tick; the last one + 1 (wraps)
     quiesce_sample_t sensor[QUIESCE_SENSORS];
     quiesce_driver_t driver[QUIESCE_DAMPERS];
-    bool enable;      ///< operator enables the output
+    bool enable;      ///< operator enables the output; its rising edge arms, see quiesce_step
     bool estop;       ///< emergency stop
     bool fault_reset; ///< operator acknowledges a latched fault (acts on its rising edge)
 } quiesce_in_t;
@@ -107,7 +115,7 @@ typedef struct {
 /// For a damper's current driver.
 typedef struct {
     int32_t current_cmd_mA; ///< 0 .. max_current_mA
-    bool driver_enable;     ///< false only in FAULT after ESTOP, PARAMETER or DRIVER_FAILED
+    bool driver_enable;     ///< false in FAULT
 } quiesce_command_t;
 
 /// One tick's output.
@@ -179,7 +187,18 @@ typedef struct {
 /// Of the last step. Made when it is asked for, some 200 instructions.
 void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out);
 
+/// The same on a controller that has been running: it starts from rest, disarmed, but does not
+/// forget how hot its coils are. board: that of the start, NULL after quiesce_init.
+bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board, const quiesce_params_t *params);
+
+/// Whether the operator has armed it: it runs, or will as soon as all that it needs is there.
+bool quiesce_is_armed(const quiesce_t *self);
+
 /// One control tick. Bounded; safe in an interrupt. Writes all of *out.
+///
+/// The output needs an arming edge: enable that rises in INIT or IDLE, and stays. After the start,
+/// a latched fault or a restart an enable that is held runs nothing until it has been let go. A
+/// driver is to be off until the first step has said otherwise.
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
 
 /// The current that these parameters make safe, even where they are refused as a whole:

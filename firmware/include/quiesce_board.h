@@ -61,7 +61,8 @@ typedef struct {
     int32_t end_b;         ///< body or QUIESCE_GROUND; the stroke is a - b
     int32_t ceiling_mA;    ///< no command is above it, whatever parameters say
     int32_t safe_mA;       ///< where it is when nothing is commanded, <= ceiling_mA
-    int32_t continuous_mA; ///< that coil and driver carry for ever, <= ceiling_mA
+    int32_t continuous_mA; ///< that coil and driver carry for ever, a tenth of ceiling_mA up to it
+    int32_t heat_s;        ///< time constant of the coil's heat
     int32_t trip_mA;       ///< measured above it for trip_us: driver off; 0: no trip
     int32_t trip_us;
     int32_t measures_current; ///< 1: the driver says what flows

@@ -26,8 +26,9 @@ constexpr std::uint16_t kTelemetryTicks = 20;
 
 lockstep_stimulus_t stimulus_of(std::int64_t tick) {
     const double counts = 50000.0 * std::sin(0.0628 * static_cast<double>(tick)); // 10 Hz
-    return {
-        LOCKSTEP_FRESH | LOCKSTEP_ENABLE, {static_cast<std::int32_t>(std::lround(counts))}, {0}};
+    return {LOCKSTEP_FRESH | (tick > 0 ? LOCKSTEP_ENABLE : 0u),
+            {static_cast<std::int32_t>(std::lround(counts))},
+            {0}};
 }
 
 double run_protocol(QemuUartLink &link, std::int64_t first_tick, std::int64_t count) {

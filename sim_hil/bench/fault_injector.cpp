@@ -75,6 +75,7 @@ void FaultInjector::apply(FaultKind kind, std::size_t sensor, lockstep_stimulus_
         break;
     case FaultKind::fault_reset:
         stimulus.flags |= LOCKSTEP_FAULT_RESET;
+        stimulus.flags &= ~LOCKSTEP_ENABLE; // let go, so that it can arm again
         break;
     case FaultKind::disable:
         stimulus.flags &= ~LOCKSTEP_ENABLE;

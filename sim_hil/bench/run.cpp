@@ -74,7 +74,7 @@ class Loop {
     }
 
     void sense(std::int64_t tick, double time_s) {
-        stimulus_ = {LOCKSTEP_ENABLE, {0}, {0}};
+        stimulus_ = {tick > 0 ? LOCKSTEP_ENABLE : 0u, {0}, {0}}; // its edge arms
         stimulus_.flags |= setup_.wants_report ? LOCKSTEP_REPORT : 0u;
         stimulus_.flags |= setup_.wants_picture ? LOCKSTEP_PICTURE : 0u;
         senses_.read(plant_, tick, stimulus_);

@@ -18,7 +18,7 @@ enum class FaultKind {
     saturate,     ///< samples at positive full scale
     range,        ///< samples beyond full scale
     estop,        ///< emergency stop pressed
-    fault_reset,  ///< operator acknowledges
+    fault_reset,  ///< operator lets enable go and acknowledges
     disable,      ///< operator withdraws the enable
     coil_open,    ///< no current flows
     driver_stuck, ///< the driver keeps its last output

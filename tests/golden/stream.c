@@ -19,9 +19,12 @@ void stream_start(stream_t *self) {
 }
 
 void stream_step(stream_t *self) {
-    self->in.tick++;
+    quiesce_in_t in = self->in;
+    in.tick = ++self->in.tick;
+    // Its edge arms: let go at the start and with each acknowledgement.
+    in.enable = in.enable && self->tick > 0 && !in.fault_reset;
     self->tick++;
-    quiesce_step(&self->controller, &self->in, &self->out);
+    quiesce_step(&self->controller, &in, &self->out);
     record_tick(&self->record, &self->controller, self->law, &self->out);
 }
 

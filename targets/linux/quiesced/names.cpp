@@ -14,8 +14,10 @@ namespace quiesced {
 
 namespace {
 
-constexpr std::array<const char *, 5> kStates = {"INIT", "IDLE", "RUN", "SAFE", "FAULT"};
-constexpr std::array<const char *, 14> kFaults = {"NONE",
+static_assert(QUIESCE_STATE_COUNT == 7, "every state has a name");
+constexpr std::array<const char *, QUIESCE_STATE_COUNT> kStates = {
+    "INIT", "IDLE", "RUN", "SAFE", "FAULT", "ARMED", "DEGRADED"};
+constexpr std::array<const char *, 17> kFaults = {"NONE",
                                                   "PARAMETER",
                                                   "SENSOR_LOST",
                                                   "SENSOR_SATURATED",
@@ -28,7 +30,10 @@ constexpr std::array<const char *, 14> kFaults = {"NONE",
                                                   "ESTOP",
                                                   "SENSOR_QUIET",
                                                   "DRIVER_FAILED",
-                                                  "LAW_BLIND"};
+                                                  "LAW_BLIND",
+                                                  "OVERCURRENT",
+                                                  "COIL_HOT",
+                                                  "MEMORY"};
 static_assert(kFaults.size() == QUIESCE_FAULT_COUNT, "every fault has a name");
 
 template <std::size_t Count>

@@ -101,7 +101,7 @@ static lockstep_stimulus_t draw_stimulus(uint32_t *seed, uint32_t tick, uint32_t
         .current_meas_mA = {signal_noise(seed, 6000)},
     };
     in.flags = random_below(seed, 1000) >= stretch->dropouts ? LOCKSTEP_FRESH : 0u;
-    in.flags |= random_below(seed, 1000) != 0 ? LOCKSTEP_ENABLE : 0u;
+    in.flags |= tick > 0 && random_below(seed, 1000) != 0 ? LOCKSTEP_ENABLE : 0u;
     in.flags |= random_below(seed, 5000) == 0 ? LOCKSTEP_ESTOP : 0u;
     in.flags |= random_below(seed, 100) == 0 ? LOCKSTEP_FAULT_RESET : 0u;
     in.flags |= random_below(seed, 2) == 0 ? LOCKSTEP_HAS_CURRENT : 0u;
@@ -169,11 +169,12 @@ static int run_file(lockstep_t *server, const char *path) {
     quiesce_params_t params;
     quiesce_params_default(&params);
     (void)lockstep_start(server, NULL, &params);
-    lockstep_stimulus_t in = {.flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE};
+    lockstep_stimulus_t in = {.flags = LOCKSTEP_FRESH}; // the edge of enable arms
     while (read_count(file, &in.counts[0])) {
         lockstep_reply_t reply;
         lockstep_exchange(server, &in, &reply);
         append_telemetry(&digest, &reply.telemetry);
+        in.flags |= LOCKSTEP_ENABLE;
     }
     (void)fclose(file);
     put_hex(~digest.crc);

@@ -45,7 +45,7 @@ static bool vibrate(uint32_t count) {
             .tick = ticks,
             .sensor[0].counts = signal_sine(5195, 10000, ticks, 1000) + signal_noise(&seed, 147),
             .sensor[0].is_fresh = true,
-            .enable = true,
+            .enable = ticks > 0, // its edge arms
         };
         quiesce_step(&controller, &in, &out);
         ticks++;

@@ -25,8 +25,10 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
+// Its edge arms: enable comes with the second tick.
 static void tick(int32_t accel_counts, int32_t current_mA) {
-    const lockstep_stimulus_t in = {flags, {accel_counts}, {current_mA}};
+    const uint32_t given = time_ticks > 0 ? flags : flags & ~LOCKSTEP_ENABLE;
+    const lockstep_stimulus_t in = {given, {accel_counts}, {current_mA}};
     lockstep_exchange(&server, &in, &reply);
     time_ticks++;
 }
@@ -151,8 +153,21 @@ static void test_emergency_stop_latches_within_its_tick(void) {
     vibrate(10000, 500);
     assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_ESTOP);
     flags |= LOCKSTEP_FAULT_RESET;
-    vibrate(10000, 3);
+    vibrate(10000, 500); // enable is still held: that restarts nothing
+    assert_state(QUIESCE_STATE_IDLE, QUIESCE_FAULT_NONE);
+    flags = LOCKSTEP_FRESH;
+    vibrate(10000, 1);
+    flags |= LOCKSTEP_ENABLE;
+    vibrate(10000, 2);
     assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+}
+
+static void test_enable_held_from_the_start_runs_nothing(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    start();
+    time_ticks = 1; // the first tick finds it
+    vibrate(10000, 3000);
+    assert_state(QUIESCE_STATE_IDLE, QUIESCE_FAULT_NONE);
 }
 
 static void test_disable_takes_the_current_away_and_enable_returns_it(void) {
@@ -163,6 +178,8 @@ static void test_disable_takes_the_current_away_and_enable_returns_it(void) {
     vibrate(10000, 1);
     assert_state(QUIESCE_STATE_IDLE, QUIESCE_FAULT_NONE);
     flags |= LOCKSTEP_ENABLE;
+    vibrate(10000, 1);
+    assert_state(QUIESCE_STATE_ARMED, QUIESCE_FAULT_NONE);
     vibrate(10000, 1);
     assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
 }
@@ -282,6 +299,7 @@ static void test_arbitrary_input_never_drives_the_command_out_of_range(void) {
         lockstep_exchange(&server, &in, &reply);
         TEST_ASSERT_TRUE(reply.current_cmd_mA[0] >= 0 && reply.current_cmd_mA[0] <= 5000);
         TEST_ASSERT_TRUE(reply.telemetry.state == QUIESCE_STATE_RUN ||
+                         reply.telemetry.state == QUIESCE_STATE_DEGRADED ||
                          reply.current_cmd_mA[0] == 0);
     }
 }
@@ -291,7 +309,7 @@ static void run_wildly(uint32_t ticks) {
     for (uint32_t i = 0; i < ticks; i++) {
         const lockstep_stimulus_t in = {
             .counts = {signal_noise(&seed, 8388606)},
-            .flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | LOCKSTEP_HAS_CURRENT,
+            .flags = LOCKSTEP_FRESH | (i % 300 > 0 ? LOCKSTEP_ENABLE : 0u) | LOCKSTEP_HAS_CURRENT,
             .current_meas_mA = {signal_noise(&seed, 20000)},
         };
         lockstep_exchange(&server, &in, &reply);
@@ -352,8 +370,8 @@ static void run_late(uint32_t late_ticks, int32_t sensor_us, int32_t bus_us, int
     params.law = QUIESCE_LAW_PHASE;
     params.slew_mA_s = 10000000;
     TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
-    in.enable = true;
     for (uint32_t i = 0; i < 6000; i++) {
+        in.enable = i > 0;
         in.tick++;
         in.sensor[0].counts =
             signal_sine(20000, 8000, i + 1000 - late_ticks, 1000) + signal_noise(&seed, 20);
@@ -396,6 +414,7 @@ int main(void) {
     RUN_TEST(test_quiet_sensor_leads_to_safe_and_back);
     RUN_TEST(test_short_dropout_is_bridged);
     RUN_TEST(test_emergency_stop_latches_within_its_tick);
+    RUN_TEST(test_enable_held_from_the_start_runs_nothing);
     RUN_TEST(test_disable_takes_the_current_away_and_enable_returns_it);
     RUN_TEST(test_current_check_tells_its_faults_apart);
     RUN_TEST(test_emergency_stop_can_be_acknowledged_with_the_current_check_on);

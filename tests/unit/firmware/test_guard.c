@@ -1,22 +1,23 @@
-// Guard, current monitor and supervisor.
+// Guard, current monitor and heat.
 #include "current_monitor.h"
 #include "guard.h"
-#include "supervisor.h"
+#include "heat.h"
 #include "unity.h"
 
 static guard_t guard;
 static current_monitor_t monitor;
-static supervisor_t supervisor;
 
 static const guard_cfg_t guard_cfg = {
     .max_mA = 5000, .safe_mA = 700, .slew_mA_s = 1000000, .tick_rate_Hz = 1000};
-static const current_monitor_cfg_t monitor_cfg = {
-    .is_on = true, .tick_rate_Hz = 1000, .error_mA = 500, .lag_us = 5000, .fault_ticks = 20};
+static const current_monitor_cfg_t monitor_cfg = {.check = CURRENT_CHECK_ALWAYS,
+                                                  .tick_rate_Hz = 1000,
+                                                  .error_mA = 500,
+                                                  .lag_us = 5000,
+                                                  .fault_ticks = 20};
 
 void setUp(void) {
     guard_init(&guard, &guard_cfg);
     current_monitor_init(&monitor, &monitor_cfg, 0);
-    supervisor_init(&supervisor, QUIESCE_FAULT_NONE);
 }
 void tearDown(void) {}
 
@@ -83,7 +84,7 @@ static void test_monitor_names_the_fault(void) {
 
 static void test_monitor_off_and_extremes(void) {
     current_monitor_cfg_t off = monitor_cfg;
-    off.is_on = false;
+    off.check = CURRENT_CHECK_NEVER;
     current_monitor_init(&monitor, &off, 0);
     TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 0, true, 1000));
     current_monitor_init(&monitor, &monitor_cfg, 0);
@@ -91,100 +92,117 @@ static void test_monitor_off_and_extremes(void) {
     TEST_ASSERT_EQUAL(CURRENT_NOT_FOLLOWING, run_monitor(20000, INT32_MAX, true, 30));
 }
 
-static quiesce_state_t drive(quiesce_fault_t clearing, quiesce_fault_t latched, bool is_ready,
-                             bool enable, bool reset) {
-    const supervisor_in_t in = {clearing, latched, is_ready, enable, reset};
-    supervisor_step(&supervisor, &in);
-    TEST_ASSERT_EQUAL(supervisor.state == QUIESCE_STATE_RUN, supervisor_allows_output(&supervisor));
-    return supervisor.state;
-}
-
-#define NONE QUIESCE_FAULT_NONE
-
-static void go_to_run(void) {
-    drive(NONE, NONE, true, true, false);
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_RUN, drive(NONE, NONE, true, true, false));
-}
-
-static void test_way_from_init_to_run_and_back(void) {
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_INIT, drive(NONE, NONE, false, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, drive(NONE, NONE, true, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_RUN, drive(NONE, NONE, true, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_RUN, drive(NONE, NONE, false, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, drive(NONE, NONE, false, false, false));
-}
-
-static void test_clearing_fault_returns_by_itself(void) {
-    go_to_run();
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_SAFE,
-                      drive(QUIESCE_FAULT_SENSOR_LOST, NONE, false, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_SENSOR_LOST, supervisor.fault);
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_SAFE, drive(NONE, NONE, false, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_SENSOR_LOST, supervisor.fault);
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, drive(NONE, NONE, true, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_NONE, supervisor.fault);
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_RUN, drive(NONE, NONE, true, true, false));
-    TEST_ASSERT_EQUAL_UINT32(1, supervisor.fault_count);
-}
-
-static void test_latched_fault_needs_an_edge_with_the_cause_gone(void) {
-    go_to_run();
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_FAULT, drive(NONE, QUIESCE_FAULT_ESTOP, true, true, false));
-    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_FAULT, drive(NONE, QUIESCE_FAULT_ESTOP, true, true, true));
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_FAULT, drive(NONE, NONE, true, true, true)); // no new edge
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_FAULT, drive(NONE, NONE, true, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_INIT, drive(NONE, NONE, true, true, true));
-    TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor));
-}
-
-static void test_latched_fault_outranks_a_clearing_one_and_interrupts_safe(void) {
-    drive(QUIESCE_FAULT_SENSOR_STUCK, NONE, false, true, false);
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_FAULT, drive(QUIESCE_FAULT_SENSOR_STUCK,
-                                                 QUIESCE_FAULT_COIL_OPEN, false, true, false));
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_COIL_OPEN, supervisor.fault);
-    TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor));
-    TEST_ASSERT_EQUAL_UINT32(2, supervisor.fault_count);
-}
-
-static void test_emergency_stop_switches_off_on_top_of_any_latched_fault(void) {
-    static const quiesce_fault_t faults[] = {QUIESCE_FAULT_DRIVER_NOT_FOLLOWING,
-                                             QUIESCE_FAULT_COIL_OPEN, QUIESCE_FAULT_CURRENT_LOST};
-    for (uint32_t i = 0; i < 3; i++) {
-        supervisor_init(&supervisor, QUIESCE_FAULT_NONE);
-        drive(NONE, faults[i], true, true, false);
-        TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor));
-        drive(NONE, QUIESCE_FAULT_ESTOP, true, true, false);
-        TEST_ASSERT_EQUAL(QUIESCE_FAULT_ESTOP, supervisor.fault);
-        TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
+// Whatever lies between: 20 A in 49 of 50 ticks, or in one of four.
+static void test_monitor_does_not_forgive_for_a_good_sample(void) {
+    for (uint32_t good = 1; good <= 3; good += 2) {
+        const uint32_t of = good == 1 ? 50 : 4;
+        bool is_seen = false;
+        current_monitor_init(&monitor, &monitor_cfg, 1000);
+        for (uint32_t i = 0; i < 1500 && !is_seen; i++) {
+            const int32_t measured_mA = i % of < good ? 1000 : 20000;
+            is_seen = current_monitor_step(&monitor, 1000, measured_mA, true) != CURRENT_OK;
+        }
+        TEST_ASSERT_TRUE(is_seen);
     }
-    supervisor_init(&supervisor, QUIESCE_FAULT_PARAMETER);
-    drive(NONE, QUIESCE_FAULT_ESTOP, true, true, false);
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_PARAMETER, supervisor.fault);
-    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
 }
 
-static void test_failed_driver_is_switched_off_and_gives_way_to_an_emergency_stop_only(void) {
-    drive(NONE, QUIESCE_FAULT_CURRENT_LOST, true, true, false);
-    TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor));
-    drive(NONE, QUIESCE_FAULT_DRIVER_FAILED, true, true, false);
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_DRIVER_FAILED, supervisor.fault);
-    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
-    drive(NONE, QUIESCE_FAULT_CURRENT_LOST, true, true, false);
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_DRIVER_FAILED, supervisor.fault);
-    drive(NONE, QUIESCE_FAULT_ESTOP, true, true, false);
-    drive(NONE, QUIESCE_FAULT_DRIVER_FAILED, true, true, false);
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_ESTOP, supervisor.fault);
-    TEST_ASSERT_EQUAL_UINT32(3, supervisor.fault_count);
-}
-
-static void test_refused_parameters_never_leave_fault(void) {
-    supervisor_init(&supervisor, QUIESCE_FAULT_PARAMETER);
-    for (uint32_t i = 0; i < 20; i++) {
-        TEST_ASSERT_EQUAL(QUIESCE_STATE_FAULT, drive(NONE, NONE, true, true, i % 2 != 0));
+static void test_monitor_forgets_what_is_rare(void) {
+    for (uint32_t i = 0; i < 100000; i++) {
+        const int32_t measured_mA = i % 10 == 0 ? 20000 : 1000;
+        TEST_ASSERT_EQUAL(CURRENT_OK, current_monitor_step(&monitor, 1000, measured_mA, true));
     }
-    TEST_ASSERT_EQUAL(QUIESCE_FAULT_PARAMETER, supervisor.fault);
-    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
+}
+
+static void start_trip(uint32_t trip_ticks) {
+    current_monitor_cfg_t cfg = monitor_cfg;
+    cfg.check = CURRENT_CHECK_NEVER;
+    cfg.trip_mA = 6000;
+    cfg.trip_ticks = trip_ticks;
+    current_monitor_init(&monitor, &cfg, 0);
+}
+
+static void test_monitor_trips_in_its_time_also_with_the_check_off(void) {
+    start_trip(3);
+    TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 6000, true, 1000));
+    TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 6001, true, 2));
+    TEST_ASSERT_EQUAL(CURRENT_OVER, run_monitor(5000, 6001, true, 1));
+    start_trip(3);
+    TEST_ASSERT_EQUAL(CURRENT_OVER, run_monitor(0, INT32_MIN, true, 3));
+    start_trip(3);
+    for (uint32_t i = 0; i < 2; i++) { // bursts of two
+        TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 5000, true, 1));
+        (void)run_monitor(5000, -20000, true, 2);
+    }
+    TEST_ASSERT_EQUAL(CURRENT_OVER, run_monitor(5000, -20000, true, 1));
+    current_monitor_reset(&monitor);
+    TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, -20000, true, 2));
+}
+
+static void test_monitor_of_a_current_that_may_be_measured(void) {
+    current_monitor_cfg_t cfg = monitor_cfg;
+    cfg.check = CURRENT_CHECK_ONCE_SEEN;
+    current_monitor_init(&monitor, &cfg, 0);
+    TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 0, false, 1000));
+    current_monitor_init(&monitor, &cfg, 5000);
+    TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 5000, true, 1));
+    TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 0, false, 19));
+    TEST_ASSERT_EQUAL(CURRENT_MISSING, run_monitor(5000, 0, false, 1));
+}
+
+static heat_t heat;
+
+static void heat_for(int32_t current_mA, uint32_t ticks) {
+    for (; ticks > 0; ticks--) {
+        heat_step(&heat, current_mA);
+    }
+}
+
+// Of the budget.
+static int32_t heat_permille(void) {
+    return (int32_t)(heat.heat_q20 * 1000 / heat.budget_q20);
+}
+
+static void start_heat(int32_t continuous_mA) {
+    heat_init(&heat, &(heat_cfg_t){500, continuous_mA, 10});
+}
+
+static void test_heat_of_the_continuous_current_ends_at_its_budget(void) {
+    start_heat(2000);
+    heat_for(2000, 100000); // 20 time constants
+    TEST_ASSERT_INT32_WITHIN(1, 1000, heat_permille());
+    TEST_ASSERT_FALSE(heat_is_excessive(&heat));
+    TEST_ASSERT_INT32_WITHIN(25, 2000, heat_limit_mA(&heat, 4000));
+    heat_for(0, 5000); // one
+    TEST_ASSERT_INT32_WITHIN(2, 368, heat_permille());
+    TEST_ASSERT_EQUAL_INT32(4000, heat_limit_mA(&heat, 4000));
+}
+
+static void test_heat_limits_what_may_be_commanded(void) {
+    static const int32_t rows[][2] = {{4000, 2000}, {20000, 2000}, {20000, 20000}, {1000, 100}};
+    for (uint32_t i = 0; i < 4; i++) {
+        int32_t least_mA = INT32_MAX;
+        start_heat(rows[i][1]);
+        for (uint32_t t = 0; t < 50000; t++) {
+            const int32_t limit_mA = heat_limit_mA(&heat, rows[i][0]);
+            TEST_ASSERT_TRUE(limit_mA >= rows[i][1] && limit_mA <= rows[i][0]);
+            TEST_ASSERT_TRUE(limit_mA == rows[i][0] || heat_is_limiting(&heat, rows[i][0]));
+            TEST_ASSERT_FALSE(heat_is_excessive(&heat));
+            TEST_ASSERT_TRUE(heat.heat_q20 <= heat.budget_q20 + heat.budget_q20 / 100);
+            heat_step(&heat, t & 1u ? limit_mA : -limit_mA);
+            least_mA = limit_mA < least_mA ? limit_mA : least_mA;
+        }
+        TEST_ASSERT_INT32_WITHIN(rows[i][1] / 50 + 1, rows[i][1], least_mA);
+    }
+}
+
+static void test_heat_of_a_driver_that_gives_more_is_excessive(void) {
+    start_heat(2000);
+    heat_for(4000, 3000);
+    TEST_ASSERT_TRUE(heat_is_excessive(&heat));
+    TEST_ASSERT_EQUAL_INT32(2000, heat_limit_mA(&heat, 4000));
+    start_heat(4000);
+    heat_for(INT32_MIN, 100); // bounded
+    TEST_ASSERT_TRUE(heat.heat_q20 > 0);
 }
 
 int main(void) {
@@ -196,12 +214,12 @@ int main(void) {
     RUN_TEST(test_monitor_accepts_a_lagging_coil);
     RUN_TEST(test_monitor_names_the_fault);
     RUN_TEST(test_monitor_off_and_extremes);
-    RUN_TEST(test_way_from_init_to_run_and_back);
-    RUN_TEST(test_clearing_fault_returns_by_itself);
-    RUN_TEST(test_latched_fault_needs_an_edge_with_the_cause_gone);
-    RUN_TEST(test_latched_fault_outranks_a_clearing_one_and_interrupts_safe);
-    RUN_TEST(test_emergency_stop_switches_off_on_top_of_any_latched_fault);
-    RUN_TEST(test_failed_driver_is_switched_off_and_gives_way_to_an_emergency_stop_only);
-    RUN_TEST(test_refused_parameters_never_leave_fault);
+    RUN_TEST(test_monitor_does_not_forgive_for_a_good_sample);
+    RUN_TEST(test_monitor_forgets_what_is_rare);
+    RUN_TEST(test_monitor_trips_in_its_time_also_with_the_check_off);
+    RUN_TEST(test_monitor_of_a_current_that_may_be_measured);
+    RUN_TEST(test_heat_of_the_continuous_current_ends_at_its_budget);
+    RUN_TEST(test_heat_limits_what_may_be_commanded);
+    RUN_TEST(test_heat_of_a_driver_that_gives_more_is_excessive);
     return UNITY_END();
 }

@@ -76,7 +76,6 @@ static void make_board(void) {
 static void start(void) {
     TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
     memset(&in, 0, sizeof in);
-    in.enable = true;
 }
 
 void setUp(void) {
@@ -94,6 +93,7 @@ void tearDown(void) {}
 static void tick(void) {
     static uint32_t seed;
     in.tick++;
+    in.enable = in.tick > 1; // its edge arms
     in.sensor[0] = (quiesce_sample_t){
         signal_sine(17316, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20), true};
     in.sensor[1] = (quiesce_sample_t){

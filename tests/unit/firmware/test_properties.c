@@ -45,11 +45,12 @@ static void start(int32_t rate_Hz) {
 
 static void step(side_t *side, int32_t counts, bool is_fresh) {
     const quiesce_in_t in = {
-        .tick = side->tick++,
+        .tick = side->tick,
         .sensor[0].counts = side->gain * counts,
         .sensor[0].is_fresh = is_fresh,
-        .enable = true,
+        .enable = side->tick > 0, // its edge arms
     };
+    side->tick++;
     quiesce_step(&side->controller, &in, &side->out);
 }
 

@@ -29,8 +29,9 @@ void setUp(void) {
 void tearDown(void) {}
 
 static quiesce_out_t step(void) {
-    const quiesce_in_t in = {.tick = ticks++, .sensor[0].is_fresh = true, .enable = true};
+    const quiesce_in_t in = {.tick = ticks, .sensor[0].is_fresh = true, .enable = ticks > 0};
     quiesce_out_t out;
+    ticks++;
     quiesce_step(&controller, &in, &out);
     return out;
 }

@@ -67,7 +67,6 @@ static void make_board(quiesce_sense_t sense) {
 static void start(void) {
     TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
     memset(&in, 0, sizeof in);
-    in.enable = true;
 }
 
 void setUp(void) {
@@ -412,6 +411,7 @@ static void test_track_no_other_tracker_is_known(void) {
 static void run(uint32_t ticks, int32_t counts) {
     for (; ticks > 0; ticks--) {
         in.tick++;
+        in.enable = in.tick > 1; // its edge arms
         in.sensor[0] = (quiesce_sample_t){
             signal_sine(17316, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20), true};
         in.sensor[1] = (quiesce_sample_t){counts, true};
