@@ -339,6 +339,17 @@ void quiesce_learnt_freeze(quiesce_t *self, bool is_frozen) {
     ((controller_t *)(void *)self->opaque)->view.may_learn = !is_frozen;
 }
 
+bool quiesce_params_use(quiesce_t *self, const quiesce_params_t *params) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    quiesce_params_t *used = &c->control.setup.params;
+    if (c->supervisor.fault == QUIESCE_FAULT_PARAMETER || !quiesce_params_check(params, NULL) ||
+        !quiesce_params_differ_live(used, params, NULL)) {
+        return false;
+    }
+    *used = *params;
+    return true;
+}
+
 bool quiesce_is_armed(const quiesce_t *self) {
     return ((const controller_t *)(const void *)self->opaque)->supervisor.is_armed != 0u;
 }

@@ -50,6 +50,11 @@ void can_node_use_params(can_node_t *self, const quiesce_board_t *board,
     }
 }
 
+void can_node_retune(can_node_t *self, const quiesce_params_t *params) {
+    self->param_hash = can_node_param_hash(params);
+    can_service_use_params(&self->service, params);
+}
+
 void can_node_receive(can_node_t *self, const can_frame_t *frame) {
     if (can_receive_frame(&self->receive, frame) &&
         can_service_request(&self->service, frame, self->freeze.is_held)) {

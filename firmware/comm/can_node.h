@@ -44,6 +44,9 @@ void can_node_init(can_node_t *self, const quiesce_board_t *board, const quiesce
 void can_node_use_params(can_node_t *self, const quiesce_board_t *board,
                          const quiesce_params_t *params);
 
+/// Other values of live parameters are in effect; nothing staged. All else goes on.
+void can_node_retune(can_node_t *self, const quiesce_params_t *params);
+
 /// Takes one received frame. Bounded; call it for every frame before the tick.
 void can_node_receive(can_node_t *self, const can_frame_t *frame);
 

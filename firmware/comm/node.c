@@ -135,16 +135,47 @@ static bool misses_signal(const node_t *node, const quiesce_params_t *params) {
     return node->board != NULL && quiesce_missing(node->board, params, &missing);
 }
 
+// What quiesce_params_check refuses.
+static void answer_refused(node_t *node, const quiesce_params_t *staged) {
+    quiesce_param_error_t error = {0};
+    int32_t value = 0;
+    (void)quiesce_params_check(staged, &error);
+    (void)quiesce_param_get(staged, error.index, &value);
+    can_node_answer(&node->can,
+                    can_service_allows(error.index, value) ? CAN_NODE_CONTRADICTION
+                                                           : CAN_NODE_OUT_OF_RANGE,
+                    error.index);
+}
+
+bool node_retune(node_t *node, const quiesce_params_t *params) {
+    if (!quiesce_params_use(&node->controller, params)) {
+        return false;
+    }
+    node->params = *params;
+    node->retunes++;
+    can_node_retune(&node->can, params);
+    return true;
+}
+
+static void accept_live(node_t *node, const quiesce_params_t *staged) {
+    uint32_t index = 0;
+    if (!quiesce_params_differ_live(&node->params, staged, &index)) {
+        can_node_answer(&node->can, CAN_NODE_IS_ARMED, index);
+    } else if (node_retune(node, staged)) {
+        can_node_answer(&node->can, CAN_NODE_DONE, 0);
+    } else {
+        answer_refused(node, staged);
+    }
+}
+
 static const quiesce_params_t *accept_staged(node_t *node) {
     const quiesce_params_t *const staged = can_node_staged(&node->can);
-    quiesce_param_error_t error;
-    int32_t value = 0;
     if (has_latched_fault(node)) {
         can_node_answer(&node->can, CAN_NODE_FAULT_IS_LATCHED, 0);
         return NULL;
     }
     if (quiesce_is_armed(&node->controller)) {
-        can_node_answer(&node->can, CAN_NODE_IS_ARMED, 0);
+        accept_live(node, staged);
         return NULL;
     }
     if (staged->max_current_mA > node->most_mA) {
@@ -152,7 +183,7 @@ static const quiesce_params_t *accept_staged(node_t *node) {
                         offsetof(quiesce_params_t, max_current_mA) / sizeof(int32_t));
         return NULL;
     }
-    if (quiesce_params_check(staged, &error)) {
+    if (quiesce_params_check(staged, NULL)) {
         if (misses_signal(node, staged)) {
             can_node_answer(&node->can, CAN_NODE_CONTRADICTION,
                             offsetof(quiesce_params_t, law) / sizeof(int32_t));
@@ -161,11 +192,7 @@ static const quiesce_params_t *accept_staged(node_t *node) {
         can_node_answer(&node->can, CAN_NODE_DONE, 0);
         return staged;
     }
-    (void)quiesce_param_get(staged, error.index, &value);
-    can_node_answer(&node->can,
-                    can_service_allows(error.index, value) ? CAN_NODE_CONTRADICTION
-                                                           : CAN_NODE_OUT_OF_RANGE,
-                    error.index);
+    answer_refused(node, staged);
     return NULL;
 }
 

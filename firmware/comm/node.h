@@ -54,6 +54,7 @@ typedef struct {
     quiesce_out_t out;    ///< of the last step, or of the start: the command for the driver
     can_node_tick_t said; ///< what the frames of this tick say beyond out
     uint32_t restarts;    ///< with other parameters, since node_init
+    uint32_t retunes;     ///< live parameters changed, likewise
     node_sources_t from;
     node_store_t store; ///< NULL: there is none, SAVE is refused
     void *store_context;
@@ -83,7 +84,8 @@ void node_step(node_t *node, const node_inputs_t *inputs);
 /// controller is to be restarted now, else NULL; then write their safe currents
 /// (safe_current_mA of node->board) to the drivers, whose output stages stay as they are, call
 /// node_restart, write the commands again. Parameters are refused while a fault is latched, which a
-/// restart would forget.
+/// restart would forget, and above the max_current_mA of the start (most_mA); while the controller
+/// is armed all but live ones are, and those take effect here (quiesce_params_use).
 const quiesce_params_t *node_task(node_t *node);
 
 /// The third part: the tick's frames. Returns their number.
@@ -99,6 +101,9 @@ uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
 /// the shipped rules and pulses are in use, and the caller's tick has to run at
 /// params->tick_rate_Hz.
 void node_restart(node_t *node, const quiesce_params_t *params);
+
+/// Other values of live parameters, while it runs (quiesce_params_use); counts in node->retunes.
+bool node_retune(node_t *node, const quiesce_params_t *params);
 
 /// The last frames before leaving, one a damper: safe current, driver off. The drivers themselves
 /// come first. Returns their number.

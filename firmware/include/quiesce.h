@@ -191,6 +191,12 @@ void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out);
 /// forget how hot its coils are. board: that of the start, NULL after quiesce_init.
 bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board, const quiesce_params_t *params);
 
+/// Other parameters between two steps, also while it runs: those that are live
+/// (quiesce_param_info_t). Nothing starts anew; the slew limit bounds what they do to the command.
+/// Returns false, and changes nothing, iff quiesce_params_check refuses them, others differ from
+/// those in use, or the start was refused.
+bool quiesce_params_use(quiesce_t *self, const quiesce_params_t *params);
+
 /// Whether the operator has armed it: it runs, or will as soon as all that it needs is there.
 bool quiesce_is_armed(const quiesce_t *self);
 

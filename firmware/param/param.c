@@ -109,6 +109,23 @@ static bool check_together(const quiesce_params_t *params, quiesce_param_error_t
     return true;
 }
 
+bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_t *b,
+                                uint32_t *index) {
+    for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
+        int32_t value_a = 0;
+        int32_t value_b = 0;
+        (void)quiesce_param_get(a, i, &value_a);
+        (void)quiesce_param_get(b, i, &value_b);
+        if (value_a != value_b && !param_table[i].is_live) {
+            if (index != NULL) {
+                *index = i;
+            }
+            return false;
+        }
+    }
+    return true;
+}
+
 bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t *error) {
     return check_each(params, error) && check_together(params, error);
 }

@@ -71,6 +71,7 @@ const std::vector<DamperKey> &damper_keys() {
         {"ceiling_mA", "mA", &Damper::ceiling_mA, true},
         {"safe_mA", "mA", &Damper::safe_mA, true},
         {"continuous_mA", "mA", &Damper::continuous_mA, false},
+        {"heat_s", "s", &Damper::heat_s, false},
         {"trip_mA", "mA", &Damper::trip_mA, false},
         {"trip_us", "us", &Damper::trip_us, false},
         {"coil_lag_us", "us", &Damper::coil_lag_us, false},

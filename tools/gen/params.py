@@ -63,6 +63,7 @@ typedef struct {{
     const int32_t *choices; ///< the only values allowed, or NULL
     uint32_t choice_count;
     const char *const *labels; ///< names of the values 0 .. max, or NULL
+    bool is_live;              ///< may change while the controller is armed (quiesce_params_use)
 }} quiesce_param_info_t;
 
 /// Why parameters were refused.
@@ -78,6 +79,11 @@ void quiesce_params_default(quiesce_params_t *params);
 /// Returns false iff a value is outside its range or choices, or two values contradict each other;
 /// *error then names the first one. error may be NULL.
 bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t *error);
+
+/// Whether a and b differ in nothing but live parameters; *index is the first other one, where it
+/// is not NULL.
+bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_t *b,
+                                uint32_t *index);
 
 /// Description of parameter index. Returns NULL iff index >= QUIESCE_PARAM_COUNT.
 const quiesce_param_info_t *quiesce_param_info(uint32_t index);
@@ -124,7 +130,7 @@ def table(params: list[dict], digest: str) -> str:
             arrays += f"static const char *const {labels}[] = {{{values}}};\n"
         rows += (
             f'    {{"{p["name"]}", "{p["unit"]}", {p["min"]}, {p["max"]}, {p["default"]}, '
-            f"{choices}, {count}, {labels}}},\n"
+            f"{choices}, {count}, {labels}, {'true' if p.get('live') else 'false'}}},\n"
         )
     return f"""// clang-format off
 // {banner(digest)}
@@ -147,7 +153,9 @@ def page(params: list[dict], digest: str) -> str:
             span = ", ".join(str(v) for v in p["choices"])
         else:
             span = f"{p['min']} .. {p['max']}"
-        rows += f"| {i} | `{p['name']}` | {p['unit']} | {span} | {p['default']} | {p['help']} |\n"
+        live = "yes" if p.get("live") else ""
+        head = f"| {i} | `{p['name']}` | {p['unit']} | {span} | {p['default']}"
+        rows += f"{head} | {live} | {p['help']} |\n"
     return f"""# Parameters
 
 {banner(digest)}
@@ -155,9 +163,12 @@ def page(params: list[dict], digest: str) -> str:
 Set one with `--set NAME=VALUE` on any command that runs the controller. A value outside its range
 is refused by name and nothing starts.
 
-| # | name | unit | range | default | meaning |
-|---|---|---|---|---|---|
+| # | name | unit | range | default | live | meaning |
+|---|---|---|---|---|---|---|
 {rows}
+Live: may also change while the controller is armed, between two ticks; the slew limit bounds what that does.
+All others are refused then: disarm first.
+
 Values that must also agree with each other: `band_low_mHz` < `band_high_mHz`;
 `constant_current_mA`, `safe_current_mA` and `unlock_current_mA` <= `max_current_mA`; with
 `current_check` on, `current_error_mA` <= `max_current_mA` / 2;

@@ -28,6 +28,7 @@ Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &excha
       board_(config, exchange, bus, watchdog), source_(source), changes_(exchange.log) {
     use_axes(
         node_init(&node_, config.wiring(), &params, {config.enable_from, config.sensors_on_bus()}));
+    node_.most_mA = config.params.max_current_mA;
     write_commands();
     node_.store = store;
     node_.store_context = this;
@@ -126,11 +127,25 @@ void Loop::use_params(const quiesce_params_t &params) {
         return;
     }
     quiesce_param_error_t error{};
-    keep_learnt();
-    if (quiesce_params_check(&params, &error)) {
-        restart(params);
-    } else {
+    if (!quiesce_params_check(&params, &error)) {
         log_.log(LogLevel::error, "parameters stay: %s: %s", error.name, error.reason);
+    } else if (quiesce_is_armed(&node_.controller)) {
+        use_live(params);
+    } else {
+        keep_learnt();
+        node_.most_mA = params.max_current_mA; // the file is who may raise it
+        restart(params);
+    }
+}
+
+void Loop::use_live(const quiesce_params_t &params) {
+    std::uint32_t index = 0;
+    if (quiesce_params_differ_live(&node_.params, &params, &index)) {
+        (void)node_retune(&node_, &params);
+    } else {
+        log_.log(LogLevel::error,
+                 "parameters stay: %s may not change while the controller is armed; disarm first",
+                 quiesce_param_info(index)->name);
     }
 }
 
@@ -142,10 +157,19 @@ void Loop::take_new_params() {
     }
 }
 
-void Loop::after_restart() {
-    if (node_.restarts == restarts_) {
-        return;
+void Loop::after_change() {
+    if (node_.retunes != retunes_) {
+        retunes_ = node_.retunes;
+        has_new_params_ = true;
+        log_.log(LogLevel::info, "other live parameters, hash %08x",
+                 static_cast<unsigned>(can_node_param_hash(&node_.params)));
     }
+    if (node_.restarts != restarts_) {
+        after_restart();
+    }
+}
+
+void Loop::after_restart() {
     restarts_ = node_.restarts;
     has_new_params_ = true;
     log_.log(LogLevel::info, "restarted with new parameters, hash %08x",
@@ -263,7 +287,7 @@ void Loop::tick(std::uint32_t elapsed) {
     board_.write_lines(node_.out.damper[0].driver_enable,
                        node_.out.telemetry.fault != QUIESCE_FAULT_NONE, is_due_each_second());
     latch_.after_tick(node_);
-    after_restart();
+    after_change();
     board_.look_after(rate_Hz_, is_due_each_second(), changes_);
     report(monotonic_ns());
 }
@@ -271,6 +295,7 @@ void Loop::tick(std::uint32_t elapsed) {
 void Loop::run(std::uint64_t ticks) {
     rate_Hz_ = static_cast<std::uint32_t>(node_.params.tick_rate_Hz);
     restarts_ = node_.restarts;
+    retunes_ = node_.retunes;
     board_.use_rate(rate_Hz_);
     source_.start(rate_Hz_, config_.gpio.data_ready_input.has_value());
     std::uint64_t done = 0;

@@ -39,10 +39,12 @@ class Loop {
     void use_axes(bool is_accepted);
     void restart(const quiesce_params_t &params);
     void take_new_params();
+    void use_live(const quiesce_params_t &params);
     void use_params(const quiesce_params_t &params);
     void answer_store();
     void keep_learnt();
     void prepare_apply();
+    void after_change();
     void after_restart();
     void send();
     void report(std::int64_t now_ns);
@@ -73,6 +75,7 @@ class Loop {
 
     std::uint32_t rate_Hz_ = 0;
     std::uint32_t restarts_ = 0;
+    std::uint32_t retunes_ = 0;
     std::uint32_t learnt_age_s_ = 0;
     bool store_is_pending_ = false;
     bool has_new_params_ = false; ///< that the other thread does not know yet

@@ -38,20 +38,12 @@ std::string output_text(const OutputConfig &output, std::size_t number) {
     return out;
 }
 
-/// What the board says and this controller does not do yet.
-bool is_beyond_this(const quiesce_board_damper_t &damper) {
-    return damper.trip_mA != 0 || damper.continuous_mA < damper.ceiling_mA;
-}
-
 std::string damper_text(const Config &config, std::size_t damper) {
     const quiesce_board_t *board = config.wiring();
     std::string out = output_text(config.outputs[damper], damper);
     if (board != nullptr) {
         out += ", ceiling " + std::to_string(board->damper[damper].ceiling_mA) + " mA, safe " +
                std::to_string(board->damper[damper].safe_mA) + " mA";
-        out += is_beyond_this(board->damper[damper])
-                   ? "; trip_mA and continuous_mA are stated, and nothing acts on them yet"
-                   : "";
     }
     return out;
 }

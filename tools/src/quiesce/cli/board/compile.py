@@ -27,7 +27,8 @@ SENSOR_FIELDS = (
     "min_noise_counts max_lost_pct latency_us"
 ).split()
 DAMPER_FIELDS = (
-    "end_a end_b ceiling_mA safe_mA continuous_mA trip_mA trip_us measures_current coil_lag_us"
+    "end_a end_b ceiling_mA safe_mA continuous_mA heat_s trip_mA trip_us measures_current "
+    "coil_lag_us"
 ).split()
 
 Board = dict[str, Any]

@@ -98,13 +98,20 @@ def trip_text(damper: Board) -> str:
     return f"{amperes(damper['trip_mA'])} for {time_text(damper['trip_us'])}"
 
 
+def continuous_text(damper: Board) -> str:
+    """What the coil carries for ever, and its heat's time constant where that limits anything."""
+    continuous = amperes(damper["continuous_mA"])
+    is_limit = damper["continuous_mA"] < damper["ceiling_mA"]
+    return f"{continuous}, {damper['heat_s']} s" if is_limit else continuous
+
+
 def damper_row(damper: Board) -> list[str]:
     return [
         damper["name"],
         f"{damper['from']} - {damper['to']}",
         amperes(damper["ceiling_mA"]),
         amperes(damper["safe_mA"]),
-        amperes(damper["continuous_mA"]),
+        continuous_text(damper),
         "measured" if damper["measures_current"] else "modelled",
         trip_text(damper),
         time_text(damper["coil_lag_us"]),
@@ -138,17 +145,7 @@ def described(board: Board) -> str:
         f"tracked {board['sensors'][board['tracked']]['name']}; "
         f"bus {time_text(board['bus_latency_us'])}"
     )
-    return "\n\n".join([head, *tables, *notes(board)])
-
-
-def notes(board: Board) -> list[str]:
-    limited = [
-        damper["name"]
-        for damper in board["dampers"]
-        if damper["trip_mA"] or damper["continuous_mA"] < damper["ceiling_mA"]
-    ]
-    said = f"{', '.join(limited)}: trip and continuous current are stated, nothing acts on them yet"
-    return [said] if limited else []
+    return "\n\n".join([head, *tables])
 
 
 def run(args: argparse.Namespace) -> int:

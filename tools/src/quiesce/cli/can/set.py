@@ -90,6 +90,8 @@ def why_refused(reply: Any, operation: str) -> str:
     name, known = name_of(reply.param_index), parameters()
     if reply.result == "FAULT_IS_LATCHED":
         return "the controller is in a latched fault; acknowledge that first"
+    if reply.result == "IS_ARMED":
+        return f"the controller is armed, and {name} may not change then; disarm it first"
     if reply.result == "NO_SUCH_PARAMETER":
         return f"this controller's firmware has no parameter {name}"
     if reply.result in ("OUT_OF_RANGE", "CONTRADICTION") and reply.param_index < len(known):
