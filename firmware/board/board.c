@@ -8,6 +8,7 @@
 #define LONGEST_us 100000000
 #define SCALES_PER_UNIT 1000
 #define SLOWEST_NOISE_us 100000
+#define HIGHEST_ACCEL_um_s2 500000000
 #define HIGHEST_VALUE ((1 << 30) - 1)
 
 static const quiesce_board_sensor_t accelerometer = {
@@ -18,7 +19,7 @@ static const quiesce_board_sensor_t accelerometer = {
     .full_scale_counts = HIGHEST_COUNTS,
     .max_age_us = 10000,
     .stuck_us = 250000,
-    .max_lost_pct = 100,
+    .max_lost_pct = 50,
 };
 
 static const quiesce_board_damper_t damper_to_ground = {
@@ -138,8 +139,11 @@ static bool check_sensor(place_t at, const quiesce_board_t *board,
         return refuse(at, "at", "names a body or damper that the board does not have");
     }
     const int64_t reach = (int64_t)sensor->full_scale_counts * sensor->scale / SCALES_PER_UNIT;
-    if (reach > HIGHEST_VALUE && sensor->sense != QUIESCE_SENSE_ACCEL) {
-        return refuse(at, "scale", "full scale is beyond 2^30 units");
+    if (reach > (sensor->sense == QUIESCE_SENSE_ACCEL ? HIGHEST_ACCEL_um_s2 : HIGHEST_VALUE)) {
+        return refuse(at, "scale",
+                      sensor->sense == QUIESCE_SENSE_ACCEL
+                          ? "full scale is beyond 500 m/s2, where accelerations saturate"
+                          : "full scale is beyond 2^30 units");
     }
     if (sensor->min_noise_counts != 0 && sensor->period_us > SLOWEST_NOISE_us) {
         return refuse(at, "min_noise_counts", "needs ten samples a second, or 0");

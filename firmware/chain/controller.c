@@ -48,6 +48,7 @@ static quiesce_board_t board_of(const quiesce_params_t *p) {
     sensor->min_noise_counts = p->sensor_min_noise_counts;
     quiesce_board_damper_t *damper = &board.damper[0];
     damper->ceiling_mA = QUIESCE_HIGHEST_CURRENT_mA;
+    damper->continuous_mA = QUIESCE_HIGHEST_CURRENT_mA; // what a coil carries only a board says
     damper->measures_current = p->current_check;
     damper->coil_lag_us = p->current_lag_ms * 1000;
     return board;

@@ -61,9 +61,10 @@ static uint32_t at_least_one(uint32_t value) {
     return value > 0 ? value : 1u;
 }
 
-// A time that is shorter than a sample must not switch the check off.
+// A time that is shorter than two samples must not switch the check off, nor make a fault of each.
 static uint32_t stuck_samples(int32_t stuck_us, int32_t tick_rate_Hz, uint32_t period_ticks) {
-    return stuck_us == 0 ? 0 : at_least_one(ticks_in_us(stuck_us, tick_rate_Hz) / period_ticks);
+    const uint32_t samples = ticks_in_us(stuck_us, tick_rate_Hz) / period_ticks;
+    return stuck_us == 0 ? 0 : samples < 2u ? 2u : samples;
 }
 
 static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,

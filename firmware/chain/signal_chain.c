@@ -98,6 +98,13 @@ static void look_for_lock(signal_chain_t *self, const signal_chain_out_t *out) {
     }
 }
 
+// A component that has left the band, by more than a sixteenth of its edge, is none of the laws'.
+static bool has_left_band(const signal_chain_t *self) {
+    const uint32_t step_turn = self->lock.step_turn;
+    return step_turn < self->lowest_step_turn - self->lowest_step_turn / 16u ||
+           step_turn > self->highest_step_turn + self->highest_step_turn / 16u;
+}
+
 // Locks on to what the estimator trusts, or to what looks alike, and holds on to it by itself.
 static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool has_gap) {
     const condition_out_t *sample = out->sample;
@@ -108,6 +115,9 @@ static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool ha
         half_cycles_reset(&self->half_cycles);
     }
     lock_in_step(&self->lock, sample->raw, sample->flag == CONDITION_GOOD);
+    if (self->lock.is_locked && has_left_band(self)) {
+        lock_in_release(&self->lock);
+    }
     look_for_lock(self, out);
     if (estimator->has_published && estimator_is_valid(estimator) &&
         is_elsewhere(&self->lock, tone->step_turn)) {

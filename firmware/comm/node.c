@@ -23,8 +23,10 @@ static void rest(node_t *node, bool is_accepted) {
 
 bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_t *params,
                node_sources_t from) {
-    *node = (node_t){
-        .board = board, .params = *params, .most_mA = params->max_current_mA, .from = from};
+    *node = (node_t){.board = board,
+                     .params = *params,
+                     .most_mA = board == NULL ? params->max_current_mA : QUIESCE_HIGHEST_CURRENT_mA,
+                     .from = from};
     can_node_init(&node->can, board, params);
     const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
                                            : quiesce_init_board(&node->controller, board, params);

@@ -45,9 +45,9 @@ typedef bool (*node_store_t)(void *context, const quiesce_params_t *params);
 typedef struct {
     quiesce_t controller;
     can_node_t can;
-    const quiesce_board_t *board;     ///< the caller's, NULL: what parameters say
-    quiesce_params_t params;          ///< in effect
-    int32_t most_mA;                  ///< no APPLY raises max_current_mA above it
+    const quiesce_board_t *board; ///< the caller's, NULL: what parameters say
+    quiesce_params_t params;      ///< in effect
+    int32_t most_mA; ///< no APPLY raises max_current_mA above it; a board has ceilings of its own
     int32_t safe_mA[QUIESCE_DAMPERS]; ///< each damper's safe current with these parameters
     can_node_inputs_t bus;            ///< what the bus says in this tick
     quiesce_in_t in;                  ///< of the last step; counts and currents: the last ones had

@@ -86,6 +86,23 @@ static bool check_each(const quiesce_params_t *params, quiesce_param_error_t *er
     return true;
 }
 
+// Conditioned accelerations saturate there (sense/condition.h).
+#define MOST_ACCEL_um_s2 INT64_C(500000000)
+
+static bool check_sensor(const quiesce_params_t *params, quiesce_param_error_t *error) {
+    const int64_t full_scale_nm_s2 =
+        (int64_t)params->accel_scale_nm_s2 * params->accel_full_scale_counts;
+    if (full_scale_nm_s2 > 1000 * MOST_ACCEL_um_s2) {
+        return refuse(error, offsetof(quiesce_params_t, accel_scale_nm_s2),
+                      "full scale is beyond 500 m/s2, where accelerations saturate");
+    }
+    if (params->sensor_stuck_ticks == 1) {
+        return refuse(error, offsetof(quiesce_params_t, sensor_stuck_ticks),
+                      "every sample would be a fault; 0 or from 2 on");
+    }
+    return true;
+}
+
 static bool check_together(const quiesce_params_t *params, quiesce_param_error_t *error) {
     if (params->band_low_mHz >= params->band_high_mHz) {
         return refuse(error, offsetof(quiesce_params_t, band_high_mHz),
@@ -127,5 +144,6 @@ bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_
 }
 
 bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t *error) {
-    return check_each(params, error) && check_together(params, error);
+    return check_each(params, error) && check_sensor(params, error) &&
+           check_together(params, error);
 }

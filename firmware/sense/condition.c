@@ -114,9 +114,8 @@ static bool is_due(condition_t *self, bool is_fresh) {
 
 // An average over some 256 samples, floor.
 static void follow_losses(condition_t *self, bool is_lost) {
-    self->lost_q16 += is_lost ? (65536u - self->lost_q16) / 256u : 0u;
-    self->lost_q16 -= is_lost ? 0u : (self->lost_q16 + 255u) / 256u;
-    self->is_sparse = self->lost_q16 > self->cfg.max_lost_pct * 65536u / 100u;
+    self->lost_q16 += ((is_lost ? 65536 : 0) - self->lost_q16) >> 8;
+    self->is_sparse = self->lost_q16 * 100 > (int32_t)self->cfg.max_lost_pct * 65536;
 }
 
 static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
@@ -140,8 +139,10 @@ void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_
         flag = classify(self, counts, is_fresh);
         judge(self, counts, flag);
         self->flag = flag;
-        // A slow sensor's sample is lost once, however long the wait for the next one is.
-        if (self->cfg.max_lost_pct < 100u && self->waited_ticks % self->cfg.period_ticks == 0u) {
+        // A slow sensor's sample is lost once, however long the wait for the next one is. A gap that
+        // is a fault by itself does not count: after it the sensor starts anew.
+        if (self->waited_ticks % self->cfg.period_ticks == 0u &&
+            self->bad_ticks <= self->cfg.max_age_ticks) {
             follow_losses(self, flag == CONDITION_LOST);
         }
     }

@@ -74,7 +74,7 @@ typedef struct {
     condition_flag_t flag; ///< of the newest sample
     bool is_sparse;        ///< more are lost than may be
     uint32_t waited_ticks; ///< for a sample
-    uint32_t lost_q16;     ///< share of the samples, 65536 is 1
+    int32_t lost_q16;      ///< share of the samples, 65536 is 1
     uint32_t bad_ticks;    ///< since the last good sample; 0 while a slow one is not due
     uint32_t good_ticks;   ///< good samples in a row, saturating; a single missing one takes
                            ///< 4 off

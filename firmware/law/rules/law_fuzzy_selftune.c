@@ -56,7 +56,8 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
     const quiesce_params_t *params = &setup->params;
     const int32_t rules_mA = rule_base_step(&self->rules, setup->table, &view->tone);
     const int64_t base_q20 = (int64_t)rule_base_or_unlock_mA(setup, view, rules_mA) << 20;
-    self->current_mA_q20 = is_tuning(params, view) && sees_motion(view)
+    // With the output off the structure answers to nothing: there is nothing to tune by.
+    self->current_mA_q20 = view->is_output_on && is_tuning(params, view) && sees_motion(view)
                                ? tuned_q20(self, params, &view->body[view->tone.body], base_q20)
                                : base_q20;
     law_demand_all(out, (int32_t)(self->current_mA_q20 >> 20));

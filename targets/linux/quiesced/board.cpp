@@ -8,7 +8,6 @@ namespace quiesced {
 
 namespace {
 
-constexpr int kMaxEdges = 64; // a tick; the rest waits for the next one
 constexpr std::uint64_t kSecond_us = 1'000'000;
 
 } // namespace
@@ -18,20 +17,13 @@ Board::Board(const Config &config, Exchange &exchange, can_bus_t *bus, watchdog_
       bus_(bus), watchdog_(watchdog), estop_(config.gpio.estop_input.has_value()) {}
 
 bool Board::read_enable() {
-    if (!config_.gpio.enable_input) {
-        return true;
-    }
     (void)devices_.enable_input.pick_up();
+    EnableInput *input = devices_.enable_input.get();
     bool level = false;
-    gpio_line_t *line = devices_.enable_input.get();
-    if (line != nullptr && !gpio_get(line, &level)) {
+    if (input != nullptr && !input->read(level)) {
         log_.log(LogLevel::error, "enable_input is gone: not enabled");
         devices_.enable_input.give_up();
         return false;
-    }
-    // Nobody reads its edges; they must not pile up.
-    gpio_edge_t edge;
-    for (int i = 0; line != nullptr && i < kMaxEdges && gpio_next_edge(line, &edge); ++i) {
     }
     return level;
 }

@@ -109,6 +109,22 @@ class DacCurrent final : public CurrentDevice {
     current_dac_t *self_;
 };
 
+class EnableLine final : public EnableInput {
+  public:
+    explicit EnableLine(Line line) : line_(std::move(line)) {}
+    bool read(bool &is_active) override {
+        // Nobody reads its edges; they must not pile up.
+        constexpr int kMaxEdges = 64; // a tick; the rest waits for the next one
+        gpio_edge_t edge;
+        for (int i = 0; i < kMaxEdges && gpio_next_edge(line_.get(), &edge); ++i) {
+        }
+        return gpio_get(line_.get(), &is_active);
+    }
+
+  private:
+    Line line_;
+};
+
 } // namespace
 
 std::unique_ptr<SensorDevice> open_sensor(const SensorConfig &config,
@@ -148,6 +164,10 @@ Line open_input(const LineConfig &config, const char *key) {
     const gpio_spec_t spec = config.spec();
     linux_error_t error{};
     return Line(require(gpio_open_input(&spec, &error), key, error));
+}
+
+std::unique_ptr<EnableInput> open_enable(const LineConfig &config, const char *key) {
+    return std::make_unique<EnableLine>(open_input(config, key));
 }
 
 Watchdog open_watchdog(const WatchdogConfig &config) {

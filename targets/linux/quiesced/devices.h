@@ -25,6 +25,14 @@ class CurrentDevice {
     hal_current_t handle{};
 };
 
+/// The operator's enable at this machine.
+class EnableInput {
+  public:
+    virtual ~EnableInput() = default;
+    /// Returns false, with is_active left alone, iff it is gone.
+    virtual bool read(bool &is_active) = 0;
+};
+
 struct LineCloser {
     void operator()(gpio_line_t *line) const { gpio_close(line); }
 };
@@ -41,6 +49,7 @@ std::unique_ptr<CurrentDevice> open_current(const OutputConfig &config,
 /// key: of the line in the configuration, for the message. Outputs start inactive.
 Line open_output(const LineConfig &config, const char *key);
 Line open_input(const LineConfig &config, const char *key);
+std::unique_ptr<EnableInput> open_enable(const LineConfig &config, const char *key);
 Watchdog open_watchdog(const WatchdogConfig &config);
 
 } // namespace quiesced

@@ -51,7 +51,7 @@ struct Peripherals {
     Replaceable<Line> enable_output;
     Replaceable<Line> fault_output;
     Replaceable<Line> estop_input;
-    Replaceable<Line> enable_input;
+    Replaceable<std::unique_ptr<EnableInput>> enable_input;
     Replaceable<Line> data_ready_input;
 };
 

@@ -28,7 +28,9 @@ Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &excha
       board_(config, exchange, bus, watchdog), source_(source), changes_(exchange.log) {
     use_axes(
         node_init(&node_, config.wiring(), &params, {config.enable_from, config.sensors_on_bus()}));
-    node_.most_mA = config.params.max_current_mA;
+    if (config.wiring() == nullptr) {
+        node_.most_mA = config.params.max_current_mA;
+    }
     write_commands();
     node_.store = store;
     node_.store_context = this;
@@ -133,7 +135,8 @@ void Loop::use_params(const quiesce_params_t &params) {
         use_live(params);
     } else {
         keep_learnt();
-        node_.most_mA = params.max_current_mA; // the file is who may raise it
+        node_.most_mA =
+            std::max(node_.most_mA, params.max_current_mA); // who may raise it: the file
         restart(params);
     }
 }

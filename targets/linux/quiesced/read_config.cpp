@@ -137,6 +137,15 @@ void check_bus(Section &root, const Config &config) {
     }
 }
 
+/// What is always enabled never has the edge that arms.
+void check_operator(Section &root, const Config &config) {
+    if (config.enable_from != NODE_ENABLE_CAN && !config.gpio.enable_input) {
+        root.wrong("operator",
+                   "enable is \"board\" or \"both\", and gpio.enable_input is missing: its "
+                   "edge arms the controller");
+    }
+}
+
 /// As fast as the ticks that it starts. Beside a timer twice as fast, so that each tick finds a new
 /// sample.
 std::uint32_t default_rate_Hz(const Config &config) {
@@ -170,6 +179,7 @@ void read_root(Section &root, Needs needs, const std::string &board_file, Config
                  [&](Section &s) { read_can(s, config.can.emplace()); });
     read_wiring(root, has_peripherals, board_file, config);
     with_section(root, "gpio", false, [&](Section &s) { read_gpio(s, config.gpio); });
+    config.enable_from = config.gpio.enable_input ? NODE_ENABLE_BOARD : NODE_ENABLE_CAN;
     with_section(root, "operator", false, [&](Section &s) {
         s.choice("enable", {"board", "can", "both"}, config.enable_from);
     });
@@ -189,6 +199,7 @@ void read_root(Section &root, Needs needs, const std::string &board_file, Config
     }
     if (has_peripherals) {
         check_bus(root, config);
+        check_operator(root, config);
     }
     if (has_peripherals && root.problems().empty()) {
         check_fit(root, config);

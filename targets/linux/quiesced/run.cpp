@@ -46,7 +46,9 @@ void open_lines(const GpioConfig &gpio, Peripherals &devices) {
     output(gpio.enable_output, devices.enable_output, "gpio.enable_output");
     output(gpio.fault_output, devices.fault_output, "gpio.fault_output");
     input(gpio.estop_input, devices.estop_input, "gpio.estop_input");
-    input(gpio.enable_input, devices.enable_input, "gpio.enable_input");
+    if (gpio.enable_input) {
+        devices.enable_input.start_with(open_enable(*gpio.enable_input, "gpio.enable_input"));
+    }
     input(gpio.data_ready_input, devices.data_ready_input, "gpio.data_ready_input");
 }
 

@@ -237,7 +237,8 @@ void Service::look_after_devices() {
     output(devices.enable_output, gpio.enable_output, "enable_output");
     output(devices.fault_output, gpio.fault_output, "fault_output");
     input(devices.estop_input, gpio.estop_input, "estop_input");
-    input(devices.enable_input, gpio.enable_input, "enable_input");
+    say(devices.enable_input.maintain(
+        "enable_input", [&] { return open_enable(*gpio.enable_input, "enable_input"); }));
     input(devices.data_ready_input, gpio.data_ready_input, "data_ready_input");
 }
 

@@ -93,7 +93,7 @@ static void send_frame(peer_t *peer, const can_frame_t *frame) {
 static void tick(peer_t *peer, unsigned number) {
     const double counts = 20000.0 * sin(2.0 * PI * 8.0 * number / 1000.0);
     const node_inputs_t inputs = {
-        .enable = true,
+        .enable = number > 0, // its edge arms
         .sensor = {{.counts = (int32_t)counts + (int32_t)(number * 7919u % 13u), .is_fresh = true}},
         .ticks_elapsed = 1,
         .work_us = 20,

@@ -37,7 +37,7 @@ TEST(FaultInjector, each_kind_shows_in_the_stimulus) {
     EXPECT_EQ(during(FaultKind::saturate).counts[0], kFullScale);
     EXPECT_GT(during(FaultKind::range).counts[0], kFullScale);
     EXPECT_NE(during(FaultKind::estop).flags & LOCKSTEP_ESTOP, 0u);
-    EXPECT_NE(during(FaultKind::fault_reset).flags & LOCKSTEP_FAULT_RESET, 0u);
+    EXPECT_EQ(during(FaultKind::fault_reset).flags, LOCKSTEP_FRESH | LOCKSTEP_FAULT_RESET);
     EXPECT_EQ(during(FaultKind::disable).flags, LOCKSTEP_FRESH);
     EXPECT_EQ(during(FaultKind::coil_open).flags, LOCKSTEP_FRESH | LOCKSTEP_ENABLE);
 }

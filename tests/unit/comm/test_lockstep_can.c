@@ -42,11 +42,13 @@ static uint32_t send_param(uint16_t index, int32_t value) {
     return lockstep_can_receive(&server, &frame, replies);
 }
 
+static uint8_t is_enabled;
+
 static uint32_t send_stimulus(int32_t accel_counts, uint8_t sequence) {
     const struct quiesce_can_lockstep_stimulus_t stimulus = {
         .accel_counts = accel_counts,
         .accel_is_fresh = 1,
-        .enable = 1,
+        .enable = is_enabled,
         .sequence = sequence,
     };
     can_frame_t frame =
@@ -107,7 +109,9 @@ static void test_replies_equal_the_server_called_directly(void) {
     for (uint32_t tick = 0; tick < 500; tick++) {
         seed = seed * 1664525u + 1013904223u;
         const int32_t counts = (int32_t)(seed >> 16) - 32768;
-        const lockstep_stimulus_t stimulus = {LOCKSTEP_FRESH | LOCKSTEP_ENABLE, {counts}, {0}};
+        is_enabled = tick > 0; // its edge arms
+        const uint32_t flags = LOCKSTEP_FRESH | (tick > 0 ? LOCKSTEP_ENABLE : 0u);
+        const lockstep_stimulus_t stimulus = {flags, {counts}, {0}};
         lockstep_reply_t expected = {0};
         lockstep_exchange(&direct, &stimulus, &expected);
         TEST_ASSERT_EQUAL_UINT32(1, send_stimulus(counts, (uint8_t)(tick % 16u)));

@@ -57,10 +57,10 @@ static void press(bool enable, bool fault_reset) {
     operator_alive = (uint8_t)((operator_alive + 1u) % 16u);
 }
 
-// The edge of enable arms: the first tick is without it.
+// The edge of enable arms: it is let go in the first tick and with an acknowledgement.
 static void tick(void) {
     node_inputs_t given = board;
-    given.enable = given.enable && node.in.tick > 0;
+    given.enable = given.enable && node.in.tick > 0 && !given.fault_reset;
     node_step(&node, &given);
     write_command();
     const quiesce_params_t *const other = node_task(&node);
@@ -122,6 +122,7 @@ static void test_bus_carries_what_the_driver_is_told(void) {
 static void check_enable(node_enable_t from, bool by_board, bool by_bus, bool expected) {
     start(from);
     board.enable = by_board;
+    run(1);
     for (uint32_t i = 0; i < 20; i++) {
         press(by_bus, false);
         run(100);
@@ -188,6 +189,8 @@ static void test_driver_that_fails_is_switched_off_until_it_is_acknowledged(void
     run(1000);
     check_failed_driver();
     board.fault_reset = true;
+    run(1);
+    board.fault_reset = false;
     run(400);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
     receive(make_driver(0, QUIESCE_CAN_CURRENT_MEASURED_DRIVER_STATUS_SHORT_CHOICE, 0));
@@ -285,8 +288,11 @@ static void test_apply_restarts_from_rest_with_the_safe_current(void) {
     TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(STAGE), INDEX_OF(constant_current_mA), 1000).result);
     TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(STAGE), INDEX_OF(safe_current_mA), 300).result);
     TEST_ASSERT_EQUAL_INT32(1500, driver.command_mA);
+    board.enable = false;
+    run(1);
     receive(make_request(OP(APPLY), 0, 0, 0));
     run(1);
+    board.enable = true;
     TEST_ASSERT_EQUAL_INT32(300, driver.command_mA);
     TEST_ASSERT_TRUE(driver.is_enabled);
     TEST_ASSERT_EQUAL_UINT16(300, demand().current_cmd_mA);
@@ -300,6 +306,7 @@ static void test_apply_restarts_from_rest_with_the_safe_current(void) {
 }
 
 static void test_contradicting_parameters_change_nothing(void) {
+    board.enable = false;
     run(2000);
     (void)ask(OP(STAGE), INDEX_OF(constant_current_mA), 2000);
     (void)ask(OP(STAGE), INDEX_OF(max_current_mA), 1000);
@@ -307,8 +314,63 @@ static void test_contradicting_parameters_change_nothing(void) {
     TEST_ASSERT_EQUAL(CAN_NODE_CONTRADICTION, reply.result);
     TEST_ASSERT_EQUAL_UINT8(INDEX_OF(constant_current_mA), reply.param_index);
     TEST_ASSERT_EQUAL_MEMORY(&params, &node.params, sizeof params);
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_IDLE, state());
     TEST_ASSERT_EQUAL_UINT32(0, node.restarts);
+}
+
+static void test_armed_takes_live_parameters_only(void) {
+    run(2000);
+    (void)ask(OP(STAGE), INDEX_OF(max_current_mA), 4000);
+    const struct quiesce_can_service_reply_t refused = ask(OP(APPLY), 0, 0);
+    TEST_ASSERT_EQUAL(CAN_NODE_IS_ARMED, refused.result);
+    TEST_ASSERT_EQUAL_UINT8(INDEX_OF(max_current_mA), refused.param_index);
+    (void)ask(OP(DISCARD), 0, 0);
+    (void)ask(OP(STAGE), INDEX_OF(constant_current_mA), 1200);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(APPLY), 0, 0).result);
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state()); // nothing has started anew
+    TEST_ASSERT_EQUAL_INT32(1200, driver.command_mA);
+    TEST_ASSERT_EQUAL_UINT32(0, node.restarts);
+    TEST_ASSERT_EQUAL_UINT32(1, node.retunes);
+    TEST_ASSERT_EQUAL_INT32(1200, node.params.constant_current_mA);
+    TEST_ASSERT_EQUAL_HEX32(can_node_param_hash(&node.params), node.can.param_hash);
+    (void)ask(OP(STAGE), INDEX_OF(constant_current_mA), 5001);
+    TEST_ASSERT_EQUAL(CAN_NODE_CONTRADICTION, ask(OP(APPLY), 0, 0).result);
+    TEST_ASSERT_EQUAL_UINT32(1, node.retunes);
+}
+
+static void test_no_message_raises_the_ceiling_of_the_start(void) {
+    board.enable = false;
+    run(400);
+    (void)ask(OP(STAGE), INDEX_OF(unlock_current_mA), 1000);
+    for (int32_t max_mA = 4000; max_mA <= 5000; max_mA += 1000) {
+        (void)ask(OP(STAGE), INDEX_OF(max_current_mA), max_mA);
+        TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(APPLY), 0, 0).result);
+    }
+    (void)ask(OP(STAGE), INDEX_OF(max_current_mA), 5001);
+    const struct quiesce_can_service_reply_t reply = ask(OP(APPLY), 0, 0);
+    TEST_ASSERT_EQUAL(CAN_NODE_CONTRADICTION, reply.result);
+    TEST_ASSERT_EQUAL_UINT8(INDEX_OF(max_current_mA), reply.param_index);
+    TEST_ASSERT_EQUAL_INT32(5000, node.params.max_current_mA);
+}
+
+static void test_driver_is_off_until_a_tick_has_seen_the_emergency_stop(void) {
+    start(NODE_ENABLE_BOARD);
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    board.estop = true;
+    run(1);
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    params.slew_mA_s = -1;
+    TEST_ASSERT_FALSE(
+        node_init(&node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD}));
+    run(10);
+    (void)ask(OP(STAGE), INDEX_OF(slew_mA_s), 5000);
+    receive(make_request(OP(APPLY), 0, 0, 0)); // while the stop is pressed
+    for (uint32_t i = 0; i < 5; i++) {
+        run(1);
+        TEST_ASSERT_FALSE(driver.is_enabled);
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, node.restarts);
 }
 
 static void test_a_latched_fault_is_not_forgotten_by_apply(void) {
@@ -346,6 +408,8 @@ static void test_refused_parameters_are_mended_over_the_bus(void) {
 }
 
 static void stage_and_apply(void) {
+    board.enable = false; // else it is armed
+    run(1);
     (void)ask(OP(STAGE), INDEX_OF(safe_current_mA), 300);
     receive(make_request(OP(APPLY), 0, 0, 0));
 }
@@ -360,7 +424,7 @@ static void test_task_hands_parameters_over_before_anything_restarts(void) {
     TEST_ASSERT_EQUAL_INT32(300, quiesce_params_safe_current_mA(other));
     TEST_ASSERT_EQUAL_UINT32(0, node.restarts);
     TEST_ASSERT_EQUAL_MEMORY(&params, &node.params, sizeof params);
-    TEST_ASSERT_EQUAL_INT32(1500, node.out.damper[0].current_cmd_mA);
+    TEST_ASSERT_EQUAL_INT32(250, node.out.damper[0].current_cmd_mA);
     TEST_ASSERT_NULL(node_task(&node));
     node_restart(&node, other);
     TEST_ASSERT_EQUAL_UINT32(1, node.restarts);
@@ -471,6 +535,9 @@ int main(void) {
     RUN_TEST(test_the_boards_measurement_goes_before_the_buss);
     RUN_TEST(test_raw_stream_has_the_samples_that_the_controller_got);
     RUN_TEST(test_apply_restarts_from_rest_with_the_safe_current);
+    RUN_TEST(test_armed_takes_live_parameters_only);
+    RUN_TEST(test_no_message_raises_the_ceiling_of_the_start);
+    RUN_TEST(test_driver_is_off_until_a_tick_has_seen_the_emergency_stop);
     RUN_TEST(test_contradicting_parameters_change_nothing);
     RUN_TEST(test_a_latched_fault_is_not_forgotten_by_apply);
     RUN_TEST(test_refused_parameters_are_mended_over_the_bus);

@@ -344,6 +344,7 @@ static void test_all_parameters_at_their_ends_together_run(void) {
             const quiesce_param_info_t *info = quiesce_param_info(i);
             quiesce_param_set(&params, i, end ? info->max : info->min);
         }
+        params.accel_scale_nm_s2 = end ? 50000 : params.accel_scale_nm_s2; // 500 m/s2
         params.constant_current_mA = 0;
         params.law = QUIESCE_LAW_FUZZY_SELFTUNE;
         params.current_check = (int32_t)end; // the smallest limits leave it nothing to see

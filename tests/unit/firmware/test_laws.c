@@ -19,6 +19,7 @@ void setUp(void) {
     setup.table = rule_base_kind.shipped;
     memset(&state, 0, sizeof state);
     view = (view_t){
+        .is_output_on = true,
         .valid = VIEW_RMS | VIEW_TONE | VIEW_VELOCITY,
         .body = {{.velocity_um_s = 1000, .accel_um_s2 = 20000}},
         .tone = {.freq_uHz = 5000000, .rms_um_s2 = 60000},
@@ -107,6 +108,14 @@ static void test_selftune_without_the_motion_leaves_the_base(void) {
     TEST_ASSERT_EQUAL_INT32(base_mA, run(&law_fuzzy_selftune, 1));
 }
 
+// Nothing answers to it: it must not wind up until the output is on.
+static void test_selftune_waits_at_the_base_while_the_output_is_off(void) {
+    view.is_output_on = false;
+    TEST_ASSERT_EQUAL_INT32(1000, run(&law_fuzzy_selftune, 50));
+    view.is_output_on = true;
+    TEST_ASSERT_EQUAL_INT32(1200, run(&law_fuzzy_selftune, 1));
+}
+
 static void test_selftune_deadband_holds(void) {
     params->selftune_deadband_um_s2 = 30000;
     state.current_mA_q20 = INT64_C(1500) << 20;
@@ -163,6 +172,7 @@ int main(void) {
     RUN_TEST(test_selftune_stays_between_zero_and_the_limit);
     RUN_TEST(test_selftune_leaves_the_base_alone_above_its_frequency_and_unlocked);
     RUN_TEST(test_selftune_without_the_motion_leaves_the_base);
+    RUN_TEST(test_selftune_waits_at_the_base_while_the_output_is_off);
     RUN_TEST(test_selftune_deadband_holds);
     RUN_TEST(test_selftune_leak_returns_to_the_base);
     RUN_TEST(test_selftune_leak_arrives_at_both_ends);

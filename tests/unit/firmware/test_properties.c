@@ -213,7 +213,7 @@ static void test_delayed_input_gives_the_same_output_later(void) {
 
 // The largest acceleration there is, for longer than the longest window, at the highest rate.
 static void test_full_scale_overflows_nothing(void) {
-    plain.params.accel_scale_nm_s2 = 1000000000; // everything saturates, at 500 m/s2
+    plain.params.accel_scale_nm_s2 = 59604; // full scale is 500 m/s2, the most there is
     plain.params.rms_window_ms = 4000;
     plain.params.velocity_cutoff_mHz = 50;
     plain.params.sensor_stuck_ticks = 0;

@@ -79,7 +79,7 @@ inline lockstep_stimulus_t varied_stimulus(std::uint32_t tick) {
     const std::uint32_t noise = (tick * 2654435761u) >> 12;
     lockstep_stimulus_t stimulus{0, {static_cast<std::int32_t>(noise % 400001u) - 200000}, {0}};
     stimulus.flags = LOCKSTEP_REPORT | (tick % 97 < 93 ? LOCKSTEP_FRESH : 0u);
-    stimulus.flags |= tick % 1500 < 1400 ? LOCKSTEP_ENABLE : 0u;
+    stimulus.flags |= tick > 0 && tick % 1500 < 1400 ? LOCKSTEP_ENABLE : 0u;
     stimulus.flags |= tick == 1700 ? LOCKSTEP_ESTOP : 0u;
     stimulus.flags |= tick == 1800 ? LOCKSTEP_FAULT_RESET : 0u;
     if (tick % 3 == 0) {

@@ -66,7 +66,7 @@ static void receive_all(rig_t *rig, uint32_t i, uint32_t what) {
 static void control(rig_t *rig) {
     quiesce_in_t *const in = &rig->node.in;
     in->tick++;
-    in->enable = true;
+    in->enable = in->tick > 1; // its edge arms
     in->sensor[0] = rig->board.sensor[0];
     quiesce_step(&rig->node.controller, in, &rig->node.out);
     rig->tick.accel_is_fresh = rig->node.bus.sensor[0].is_fresh;

@@ -173,7 +173,7 @@ void cost_stimulus_next(cost_stimulus_t *self, quiesce_in_t *in) {
         .tick = self->tick,
         .sensor[0].counts = vibration(self),
         .sensor[0].is_fresh = true,
-        .enable = true,
+        .enable = self->tick > 0, // its edge arms
     };
     disturb(self, in);
     self->tick++;

@@ -32,7 +32,7 @@ TEST(Config, the_least_that_is_needed_has_documented_defaults) {
     EXPECT_EQ(config.can->restart_ms, 100U);
     EXPECT_FALSE(config.gpio.estop_input);
     EXPECT_FALSE(config.watchdog);
-    EXPECT_EQ(config.enable_from, NODE_ENABLE_BOARD);
+    EXPECT_EQ(config.enable_from, NODE_ENABLE_CAN); // without gpio.enable_input
     EXPECT_EQ(config.state.folder, "/var/lib/quiesced");
     EXPECT_EQ(config.log.to, "journal");
     quiesce_params_t params;
@@ -93,7 +93,8 @@ TEST(Config, iio_and_pwm_are_read) {
     const ConfigReading reading =
         read("[accel]\nsource = \"iio\"\ndevice = \"adxl355\"\nuse_buffer = false\n"
              "trigger = \"t0\"\n[current]\noutput = \"pwm\"\nchip = \"pwmchip0\"\nchannel = 1\n"
-             "period_ns = 50000\nfull_scale_mA = 5000\nis_inverted = true\n");
+             "period_ns = 50000\nfull_scale_mA = 5000\nis_inverted = true\n"
+             "[gpio]\nenable_input = { line = \"E\" }\n");
     ASSERT_TRUE(reading.problems.empty()) << reading.problems.front();
     EXPECT_FALSE(reading.config.can); // nothing needs a bus
     EXPECT_EQ(reading.config.sensors.front().trigger, "t0");

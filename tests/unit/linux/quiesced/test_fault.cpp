@@ -57,7 +57,7 @@ class Rig {
 
     std::uint32_t tick(bool is_pressed, bool is_reset) {
         node_inputs_t inputs{};
-        inputs.enable = true;
+        inputs.enable = count_ > 0 && !is_reset; // its edge arms
         inputs.estop = is_pressed;
         inputs.fault_reset = is_reset;
         inputs.ticks_elapsed = 1;

@@ -76,9 +76,9 @@ class LoopOf : public testing::Test {
 const Command kSafeOn = {250, true};
 const Command kSafeOff = {250, false};
 
-TEST_F(LoopOf, the_driver_has_its_safe_current_before_the_first_tick) {
+TEST_F(LoopOf, the_driver_is_off_at_its_safe_current_until_the_first_tick) {
     start();
-    EXPECT_EQ(told, std::vector<Command>{kSafeOn});
+    EXPECT_EQ(told, std::vector<Command>{kSafeOff});
     EXPECT_TRUE(axes.empty());
 }
 
@@ -101,7 +101,7 @@ TEST_F(LoopOf, a_fault_of_an_earlier_run_leaves_the_driver_off) {
 TEST_F(LoopOf, a_command_a_tick_then_the_safe_current_with_the_driver_off) {
     start();
     loop->run(3);
-    const std::vector<Command> expected = {kSafeOn,  kSafeOn,  kSafeOn, kSafeOn,
+    const std::vector<Command> expected = {kSafeOff, kSafeOn,  kSafeOn, kSafeOn,
                                            kSafeOff, kSafeOff, kSafeOff};
     EXPECT_EQ(told, expected);
 }
@@ -115,7 +115,7 @@ TEST_F(LoopOf, a_restart_begins_with_the_safe_current) {
     start();
     ASSERT_TRUE(exchange->new_params.put(other));
     loop->run(1);
-    const std::vector<Command> expected = {kSafeOff,     {300, false}, {300, true}, {300, true},
+    const std::vector<Command> expected = {kSafeOff,     {300, false}, {300, false}, {300, true},
                                            {300, false}, {300, false}, {300, false}};
     EXPECT_EQ(told, expected);
 }
@@ -126,7 +126,7 @@ TEST_F(LoopOf, refused_parameters_change_nothing) {
     start();
     ASSERT_TRUE(exchange->new_params.put(other));
     loop->run(1);
-    const std::vector<Command> expected = {kSafeOn, kSafeOn, kSafeOff, kSafeOff, kSafeOff};
+    const std::vector<Command> expected = {kSafeOff, kSafeOn, kSafeOff, kSafeOff, kSafeOff};
     EXPECT_EQ(told, expected);
 }
 

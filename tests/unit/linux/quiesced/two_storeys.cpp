@@ -81,7 +81,7 @@ SystemFolders TwoStoreys::folders() const {
 
 void TwoStoreys::write_config(const std::string &begin) const {
     write_text(config_file(), "[board]\nfile = \"rig.board.toml\"\n[state]\nfolder = \"" +
-                                  folder.path() + "\"\n" + begin + kSensors + kDampers);
+                                  folder.path() + "\"\n" + begin + kSensors + kDampers + kEnable);
 }
 
 } // namespace quiesced

@@ -43,6 +43,9 @@ period_ns = 20000
 full_scale_mA = 2000
 )";
 
+/// What arms it.
+inline const std::string kEnable = "[gpio]\nenable_input = { line = \"ENABLE\" }\n";
+
 /// Safe currents of 40 and 60 mA, ceilings of 2 A.
 class TwoStoreys {
   public:
