@@ -19,29 +19,41 @@ static uint32_t add_sat(uint32_t a, uint32_t b) {
     return a > UINT32_MAX - b ? UINT32_MAX : a + b;
 }
 
-static uint32_t timeout_ticks(uint32_t message, uint32_t tick_rate_Hz) {
-    return (quiesce_can_messages[message].timeout_ms * tick_rate_Hz + 999u) / 1000u;
+static int32_t time_us(uint32_t time_ms) {
+    return (int32_t)(time_ms * 1000u);
 }
 
-// Four periods of a slow sensor: its alive counter must not be forgotten between its samples.
-static uint32_t sensor_timeout_ticks(uint32_t period_us, uint32_t tick_rate_Hz) {
-    const uint32_t usual = timeout_ticks(QUIESCE_CAN_AT_ACCEL_SAMPLE, tick_rate_Hz);
-    const uint32_t slow =
-        (uint32_t)(((uint64_t)period_us * 4u * tick_rate_Hz + 999999u) / 1000000u);
-    return slow > usual ? slow : usual;
+static int32_t most(int32_t a, int32_t b) {
+    return a > b ? a : b;
+}
+
+// No message comes more often than once a tick.
+static void use_cycle(const can_receive_t *self, freshness_t *from, uint32_t message) {
+    const quiesce_can_message_t *row = &quiesce_can_messages[message];
+    freshness_use(from, most(time_us(row->cycle_ms), self->tick_us), time_us(row->timeout_ms));
+}
+
+// A slow sensor has the board's period, and four of them as its timeout.
+static void use_sensor_cycle(const can_receive_t *self, can_sensor_t *sensor, uint32_t message) {
+    if (sensor->period_us == 0u) {
+        use_cycle(self, &sensor->from, message);
+        return;
+    }
+    const int32_t period_us = most((int32_t)sensor->period_us, self->tick_us);
+    const int32_t usual_us = time_us(quiesce_can_messages[message].timeout_ms);
+    freshness_use(&sensor->from, period_us, most(usual_us, 4 * period_us));
 }
 
 void can_receive_use_rate(can_receive_t *self, uint32_t tick_rate_Hz) {
-    self->stop.timeout_ticks = timeout_ticks(QUIESCE_CAN_AT_EMERGENCY_STOP, tick_rate_Hz);
-    self->operator_command.timeout_ticks =
-        timeout_ticks(QUIESCE_CAN_AT_OPERATOR_COMMAND, tick_rate_Hz);
+    const uint32_t stop_ms = quiesce_can_messages[QUIESCE_CAN_AT_EMERGENCY_STOP].timeout_ms;
+    self->tick_us = (int32_t)(1000000u / tick_rate_Hz);
+    self->stop.timeout_ticks = (stop_ms * tick_rate_Hz + 999u) / 1000u;
+    use_cycle(self, &self->operator_command.from, QUIESCE_CAN_AT_OPERATOR_COMMAND);
     for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
-        self->sensor[i].from.timeout_ticks =
-            sensor_timeout_ticks(self->sensor[i].period_us, tick_rate_Hz);
+        use_sensor_cycle(self, &self->sensor[i], QUIESCE_CAN_AT_ACCEL_SAMPLE + i);
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        self->driver[i].from.timeout_ticks =
-            timeout_ticks(QUIESCE_CAN_AT_CURRENT_MEASURED, tick_rate_Hz);
+        use_cycle(self, &self->driver[i].from, QUIESCE_CAN_AT_CURRENT_MEASURED + i);
     }
 }
 
@@ -50,51 +62,41 @@ void can_receive_init(can_receive_t *self, uint32_t tick_rate_Hz) {
     can_receive_use_rate(self, tick_rate_Hz);
 }
 
-static void count_refused(can_node_counters_t *counters, e2e_verdict_t verdict) {
-    switch (verdict) {
-    case E2E_WRONG_SHAPE:
-        count(&counters->rejected_shape);
-        break;
-    case E2E_WRONG_CRC:
-        count(&counters->rejected_crc);
-        break;
-    case E2E_REPEATED:
-    case E2E_JUMPED:
-        count(&counters->rejected_alive);
-        break;
-    case E2E_OK:
-    default:
-        break;
-    }
-}
-
-static e2e_verdict_t judge(can_receive_t *self, e2e_receiver_t *receiver, uint32_t message,
-                           const can_frame_t *frame) {
-    const quiesce_can_message_t *row = &quiesce_can_messages[message];
-    const e2e_verdict_t verdict = e2e_check(receiver, &row->e2e, row->max_lost, frame);
-    count_refused(&self->counters, verdict);
-    return verdict;
-}
-
-// Whether what the frame says may be used; its sender is heard even where not.
-static bool is_good(can_receive_t *self, can_receiver_t *receiver, uint32_t message,
-                    const can_frame_t *frame) {
-    const e2e_verdict_t verdict = judge(self, &receiver->e2e, message, frame);
-    if (verdict != E2E_WRONG_SHAPE && verdict != E2E_WRONG_CRC) {
-        receiver->silent_ticks = 0;
+static bool is_whole(can_receive_t *self, uint32_t message, const can_frame_t *frame) {
+    const e2e_verdict_t verdict = e2e_check(&quiesce_can_messages[message].e2e, frame);
+    if (verdict == E2E_WRONG_SHAPE) {
+        count(&self->counters.rejected_shape);
+    } else if (verdict == E2E_WRONG_CRC) {
+        count(&self->counters.rejected_crc);
     }
     return verdict == E2E_OK;
 }
 
-static void accept(can_receive_t *self, can_receiver_t *receiver) {
-    count(&self->counters.accepted);
-    receiver->age_ticks = 0;
-    receiver->is_present = true;
+// All that a message of up to 5 bytes says, whose last byte is the CRC.
+static uint32_t content(const can_frame_t *frame) {
+    uint32_t word = 0;
+    for (uint32_t i = 0; i < 4u && i < frame->length; i++) {
+        word |= (uint32_t)frame->data[i] << 8u * i;
+    }
+    return word;
+}
+
+static freshness_verdict_t judge(can_receive_t *self, freshness_t *from, uint32_t message,
+                                 const can_frame_t *frame) {
+    const e2e_layout_t *layout = &quiesce_can_messages[message].e2e;
+    const freshness_verdict_t verdict =
+        freshness_judge(from, e2e_alive(layout, frame), content(frame));
+    if (verdict == FRESHNESS_COUNTS) {
+        count(&self->counters.accepted);
+    } else if (verdict == FRESHNESS_REFUSED) {
+        count(&self->counters.rejected_alive);
+    }
+    return verdict;
 }
 
 static void take_stop(can_receive_t *self, const can_frame_t *frame) {
     struct quiesce_can_emergency_stop_t stop;
-    if (!is_good(self, &self->stop, QUIESCE_CAN_AT_EMERGENCY_STOP, frame)) {
+    if (!is_whole(self, QUIESCE_CAN_AT_EMERGENCY_STOP, frame)) {
         return;
     }
     (void)quiesce_can_emergency_stop_unpack(&stop, frame->data, frame->length);
@@ -102,18 +104,21 @@ static void take_stop(can_receive_t *self, const can_frame_t *frame) {
         count(&self->counters.rejected_shape);
         return;
     }
-    accept(self, &self->stop);
-    self->is_stop_seen = true;
+    count(&self->counters.accepted);
+    self->stop.age_ticks = 0;
+    self->stop.is_present = true;
+    self->stop.is_seen = true;
 }
 
 static void take_sample(can_receive_t *self, uint32_t number, const can_frame_t *frame) {
     struct quiesce_can_accel_sample_t sample;
     can_sensor_t *const sensor = &self->sensor[number];
-    if (!is_good(self, &sensor->from, QUIESCE_CAN_AT_ACCEL_SAMPLE + number, frame)) {
+    const uint32_t message = QUIESCE_CAN_AT_ACCEL_SAMPLE + number;
+    if (!is_whole(self, message, frame) ||
+        judge(self, &sensor->from, message, frame) != FRESHNESS_COUNTS) {
         return;
     }
     (void)quiesce_can_accel_sample_unpack(&sample, frame->data, frame->length);
-    accept(self, &sensor->from);
     if (sample.is_bad == 0u) {
         sensor->counts = sample.accel_counts;
         sensor->is_fresh = true;
@@ -130,25 +135,56 @@ static bool is_failure(uint32_t driver_status) {
 static void take_current(can_receive_t *self, uint32_t number, const can_frame_t *frame) {
     struct quiesce_can_current_measured_t current;
     can_driver_t *const driver = &self->driver[number];
-    if (!is_good(self, &driver->from, QUIESCE_CAN_AT_CURRENT_MEASURED + number, frame)) {
+    const uint32_t message = QUIESCE_CAN_AT_CURRENT_MEASURED + number;
+    if (!is_whole(self, message, frame)) {
         return;
     }
     (void)quiesce_can_current_measured_unpack(&current, frame->data, frame->length);
-    accept(self, &driver->from);
-    driver->current_mA = current.current_meas_mA;
-    driver->has_failed = is_failure(current.driver_status);
+    const bool has_failed = is_failure(current.driver_status);
+    driver->failure_is_seen = driver->failure_is_seen || has_failed;
+    if (judge(self, &driver->from, message, frame) == FRESHNESS_COUNTS) {
+        driver->current_mA = current.current_meas_mA;
+        driver->has_failed = has_failed;
+    }
+}
+
+static can_press_t next_press(can_press_t press, bool fault_reset) {
+    if (!fault_reset) {
+        return CAN_PRESS_RELEASED;
+    }
+    return press == CAN_PRESS_RELEASED ? CAN_PRESS_ONCE
+           : press == CAN_PRESS_ONCE   ? CAN_PRESS_TWICE
+                                       : CAN_PRESS_NONE;
+}
+
+// Of a sender that is not known a press means nothing, nor what was said before its row.
+static void hear_stranger(can_operator_t *panel, freshness_verdict_t verdict, bool enable) {
+    if (!freshness_is_known(&panel->from)) {
+        panel->was_enabled = enable && verdict == FRESHNESS_ON_TRIAL;
+        panel->press = CAN_PRESS_NONE;
+    }
 }
 
 static void take_operator(can_receive_t *self, const can_frame_t *frame) {
     struct quiesce_can_operator_command_t command;
-    if (!is_good(self, &self->operator_command, QUIESCE_CAN_AT_OPERATOR_COMMAND, frame)) {
+    can_operator_t *const panel = &self->operator_command;
+    if (!is_whole(self, QUIESCE_CAN_AT_OPERATOR_COMMAND, frame)) {
         return;
     }
     (void)quiesce_can_operator_command_unpack(&command, frame->data, frame->length);
-    accept(self, &self->operator_command);
-    self->enable = command.enable != 0u;
-    self->is_reset_edge = self->is_reset_edge || (command.fault_reset != 0u && self->is_released);
-    self->is_released = command.fault_reset == 0u;
+    const bool enable = command.enable != 0u;
+    panel->enable = panel->enable && enable;
+    panel->was_enabled = panel->was_enabled && enable;
+    const freshness_verdict_t verdict =
+        judge(self, &panel->from, QUIESCE_CAN_AT_OPERATOR_COMMAND, frame);
+    if (verdict != FRESHNESS_COUNTS) {
+        hear_stranger(panel, verdict, enable);
+        return;
+    }
+    panel->enable = panel->was_enabled;
+    panel->was_enabled = enable;
+    panel->is_reset_edge = panel->is_reset_edge || panel->press == CAN_PRESS_TWICE;
+    panel->press = next_press(panel->press, command.fault_reset != 0u);
 }
 
 // Of a sensor or a damper that the build has: messages of others are none of the controller's.
@@ -177,7 +213,7 @@ bool can_receive_frame(can_receive_t *self, const can_frame_t *frame) {
         take_operator(self, frame);
         return false;
     case QUIESCE_CAN_SERVICE_REQUEST_FRAME_ID:
-        if (judge(self, &self->service, QUIESCE_CAN_AT_SERVICE_REQUEST, frame) != E2E_OK) {
+        if (!is_whole(self, QUIESCE_CAN_AT_SERVICE_REQUEST, frame)) {
             return false;
         }
         count(&self->counters.accepted);
@@ -188,49 +224,52 @@ bool can_receive_frame(can_receive_t *self, const can_frame_t *frame) {
     }
 }
 
-static void age(can_receiver_t *self, uint32_t ticks) {
+static void age_stop(can_stop_t *self, uint32_t ticks) {
     self->age_ticks = add_sat(self->age_ticks, ticks);
-    self->silent_ticks = add_sat(self->silent_ticks, ticks);
     self->is_present = self->is_present && self->age_ticks <= self->timeout_ticks;
-    if (self->silent_ticks > self->timeout_ticks) {
-        e2e_forget(&self->e2e);
-    }
 }
 
-static quiesce_sample_t hand_over_sample(can_sensor_t *self, uint32_t ticks) {
-    age(&self->from, ticks);
-    const bool is_fresh = self->is_fresh && self->from.is_present;
+static int32_t ticks_us(const can_receive_t *self, uint32_t ticks) {
+    const uint32_t most_ticks = (uint32_t)(INT32_MAX / self->tick_us);
+    return (int32_t)(ticks < most_ticks ? ticks : most_ticks) * self->tick_us;
+}
+
+static quiesce_sample_t hand_over_sample(can_sensor_t *self, int32_t passed_us) {
+    freshness_pass(&self->from, passed_us);
+    const bool is_fresh = self->is_fresh && freshness_is_known(&self->from);
     self->is_fresh = false;
     return (quiesce_sample_t){.counts = is_fresh ? self->counts : 0, .is_fresh = is_fresh};
 }
 
-static quiesce_driver_t hand_over_driver(can_driver_t *self, uint32_t ticks) {
-    age(&self->from, ticks);
-    const bool is_measured = self->from.is_present;
+static quiesce_driver_t hand_over_driver(can_driver_t *self, int32_t passed_us) {
+    freshness_pass(&self->from, passed_us);
+    const bool is_measured = freshness_is_known(&self->from);
+    const bool has_failed = self->failure_is_seen || (is_measured && self->has_failed);
+    self->failure_is_seen = false;
     return (quiesce_driver_t){
         .current_mA = is_measured ? self->current_mA : 0,
         .is_measured = is_measured,
-        .has_failed = is_measured && self->has_failed,
+        .has_failed = has_failed,
     };
 }
 
 void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *inputs) {
-    age(&self->stop, ticks);
-    age(&self->operator_command, ticks);
+    const int32_t passed_us = ticks_us(self, ticks);
+    age_stop(&self->stop, ticks);
+    freshness_pass(&self->operator_command.from, passed_us);
 
-    const bool is_operated = self->operator_command.is_present;
+    const bool is_operated = freshness_is_known(&self->operator_command.from);
     *inputs = (can_node_inputs_t){
-        .enable = is_operated && self->enable,
-        .fault_reset = is_operated && self->is_reset_edge,
-        .estop = self->stop.is_present || self->is_stop_seen,
+        .enable = is_operated && self->operator_command.enable,
+        .fault_reset = is_operated && self->operator_command.is_reset_edge,
+        .estop = self->stop.is_present || self->stop.is_seen,
     };
     for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
-        inputs->sensor[i] = hand_over_sample(&self->sensor[i], ticks);
+        inputs->sensor[i] = hand_over_sample(&self->sensor[i], passed_us);
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        inputs->driver[i] = hand_over_driver(&self->driver[i], ticks);
+        inputs->driver[i] = hand_over_driver(&self->driver[i], passed_us);
     }
-    self->is_stop_seen = false;
-    self->is_reset_edge = false;
-    self->is_released = self->is_released && is_operated;
+    self->stop.is_seen = false;
+    self->operator_command.is_reset_edge = false;
 }

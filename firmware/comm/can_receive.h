@@ -1,9 +1,11 @@
 /// What other nodes tell the controller tick by tick: emergency stop, samples of sensors, measured
-/// currents of dampers, the operator. Each is as old as its last accepted frame, and gone after its
-/// timeout.
+/// currents of dampers, the operator. A frame counts if its counter and its time fit (freshness.h),
+/// and what it says is gone after its timeout. What stops needs neither: a good EmergencyStop, an
+/// OperatorCommand without enable and a CurrentMeasured with a failure act at once.
 #ifndef CAN_RECEIVE_H
 #define CAN_RECEIVE_H
 
+#include "freshness.h"
 #include "quiesce.h"
 #include "quiesce_can_tables.h"
 
@@ -21,45 +23,59 @@ typedef struct {
 /// Counters of what was refused, saturating at 2^32 - 1.
 typedef struct {
     uint32_t rejected_crc;
-    uint32_t rejected_alive;
+    uint32_t rejected_alive; ///< the counter or the time of arrival does not fit
     uint32_t rejected_shape;
-    uint32_t unknown; ///< ids that are not for the controller: other nodes' traffic, no error
-    uint32_t accepted;
+    uint32_t unknown;  ///< ids that are not for the controller: other nodes' traffic, no error
+    uint32_t accepted; ///< neither refused nor of a sender on trial
 } can_node_counters_t;
 
-/// Of one message. Two ages: of what it said, and of its sender. A sender that hangs is still
-/// heard; its alive counter is not forgotten, so that it never counts as a new one.
+/// EmergencyStop: its counter is not judged, one good frame is enough.
 typedef struct {
-    e2e_receiver_t e2e;
     uint32_t timeout_ticks;
-    uint32_t age_ticks;    ///< since the last accepted frame
-    uint32_t silent_ticks; ///< since the last frame with a right CRC
+    uint32_t age_ticks; ///< since the last good frame
     bool is_present;
-} can_receiver_t;
+    bool is_seen; ///< since the last tick: a stop counts however long that tick is late
+} can_stop_t;
 
 typedef struct {
-    can_receiver_t from;
-    uint32_t period_us; ///< between samples, as the board says; 0: one a tick
+    freshness_t from;
+    uint32_t period_us; ///< between samples, as the board says; 0: as usual on the bus
     int32_t counts;
     bool is_fresh; ///< since the last tick
 } can_sensor_t;
 
 typedef struct {
-    can_receiver_t from;
+    freshness_t from;
     int32_t current_mA;
     bool has_failed;
+    bool failure_is_seen; ///< since the last tick, whatever the frame's counter and time
 } can_driver_t;
 
+/// Where fault_reset is on its way: released, pressed in two frames, and it acts with the one after
+/// them, which shows that the second was nobody else's.
+typedef enum {
+    CAN_PRESS_NONE = 0, ///< not known, or held
+    CAN_PRESS_RELEASED = 1,
+    CAN_PRESS_ONCE = 2,
+    CAN_PRESS_TWICE = 3,
+} can_press_t;
+
+/// What starts something has to be said by two frames in a row: nobody runs or acknowledges because
+/// of a single one.
 typedef struct {
-    can_receiver_t stop;
+    freshness_t from;
+    bool enable;
+    bool was_enabled;   ///< the last frame of the row had enable = 1
+    can_press_t press;  ///< of fault_reset, in the frames of the row
+    bool is_reset_edge; ///< since the last tick
+} can_operator_t;
+
+typedef struct {
+    can_stop_t stop;
     can_sensor_t sensor[QUIESCE_SENSORS];
     can_driver_t driver[QUIESCE_DAMPERS];
-    can_receiver_t operator_command;
-    e2e_receiver_t service;
-    bool is_stop_seen; ///< since the last tick: a stop counts however long that tick is late
-    bool enable;
-    bool is_released;   ///< the last OperatorCommand had fault_reset = 0
-    bool is_reset_edge; ///< since the last tick
+    can_operator_t operator_command;
+    int32_t tick_us;
     can_node_counters_t counters;
 } can_receive_t;
 

@@ -74,6 +74,7 @@ static can_node_result_t act(can_service_t *self, int32_t value, bool has_freeze
         return discard(self);
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_SAVE_CHOICE:
         self->task = CAN_NODE_SAVE;
+        self->save_ms = CAN_SERVICE_SAVE_MS;
         return CAN_NODE_DONE;
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_RAW_STREAM_CHOICE:
         return stream(self, value);
@@ -125,6 +126,10 @@ static uint32_t minus(uint32_t from, uint32_t amount) {
 void can_service_elapse(can_service_t *self, uint32_t passed_ms) {
     self->quiet_ms = minus(self->quiet_ms, passed_ms);
     self->raw_ms = minus(self->raw_ms, passed_ms);
+    self->save_ms = minus(self->save_ms, passed_ms);
+    if (self->task == CAN_NODE_SAVE && self->save_ms == 0u) {
+        can_service_answer(self, CAN_NODE_STORE_FAILED, 0);
+    }
 }
 
 static void pack(const can_service_reply_t *reply, can_frame_t *frame, uint8_t *alive) {

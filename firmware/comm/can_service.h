@@ -7,6 +7,8 @@
 #include "quiesce.h"
 
 #define CAN_SERVICE_MAX_RAW_S 3600
+/// A SAVE that is not answered by then has failed.
+#define CAN_SERVICE_SAVE_MS 2000u
 
 /// What the node cannot do by itself; the application does it and answers with can_node_answer.
 typedef enum {
@@ -48,6 +50,7 @@ typedef struct {
     bool has_busy;
     uint32_t quiet_ms; ///< until the next reply may be sent
     uint32_t raw_ms;   ///< left of the stream of raw samples
+    uint32_t save_ms;  ///< left for the SAVE that is worked on
 } can_service_t;
 
 void can_service_init(can_service_t *self, const quiesce_params_t *params);
@@ -62,7 +65,7 @@ bool can_service_request(can_service_t *self, const can_frame_t *frame, bool has
 /// Answers the task in hand; nothing happens where there is none.
 void can_service_answer(can_service_t *self, can_node_result_t result, uint32_t param_index);
 
-/// Time passes.
+/// Time passes. A SAVE that takes too long is answered STORE_FAILED; the service is free again.
 void can_service_elapse(can_service_t *self, uint32_t passed_ms);
 
 /// The next reply, packed but not protected, and its alive counter. Returns false iff none is due.

@@ -34,29 +34,15 @@ static bool has_shape(const e2e_layout_t *layout, const can_frame_t *frame) {
     return frame->length == layout->length && !frame->is_extended && !frame->is_remote;
 }
 
-e2e_verdict_t e2e_check(e2e_receiver_t *self, const e2e_layout_t *layout, uint32_t max_lost,
-                        const can_frame_t *frame) {
+e2e_verdict_t e2e_check(const e2e_layout_t *layout, const can_frame_t *frame) {
     if (!has_shape(layout, frame)) {
         return E2E_WRONG_SHAPE;
     }
-    if (frame->data[layout->crc_byte] != e2e_crc(layout, frame)) {
-        return E2E_WRONG_CRC;
-    }
-    const uint32_t bits = (uint32_t)frame->data[layout->alive_bit / 8u] >> layout->alive_bit % 8u;
-    const uint32_t alive = bits & ALIVE_MASK;
-    const uint32_t step = (alive - self->alive) & ALIVE_MASK;
-    const bool is_first = !self->has_alive;
-    self->has_alive = true;
-    self->alive = (uint8_t)alive;
-    if (is_first || layout->alive_is_free) {
-        return E2E_OK;
-    }
-    if (step == 0u) {
-        return E2E_REPEATED;
-    }
-    return step - 1u <= max_lost ? E2E_OK : E2E_JUMPED;
+    const bool is_right = frame->data[layout->crc_byte] == e2e_crc(layout, frame);
+    return is_right ? E2E_OK : E2E_WRONG_CRC;
 }
 
-void e2e_forget(e2e_receiver_t *self) {
-    *self = (e2e_receiver_t){0};
+uint8_t e2e_alive(const e2e_layout_t *layout, const can_frame_t *frame) {
+    const uint32_t bits = (uint32_t)frame->data[layout->alive_bit / 8u] >> layout->alive_bit % 8u;
+    return (uint8_t)(bits & ALIVE_MASK);
 }

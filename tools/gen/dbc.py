@@ -51,7 +51,6 @@ TABLES_H = """\
 typedef struct {{
     e2e_layout_t e2e;
     bool is_protected;  ///< else alive_bit and crc_byte mean nothing
-    uint8_t max_lost;   ///< frames that its timeout lets be missing in a row, 0 .. 14
     uint16_t cycle_ms;  ///< 0: on request
     uint16_t start_ms;  ///< into its cycle, so that cyclic messages do not meet
     uint16_t delay_ms;  ///< least time between two of them, 0: none
@@ -88,9 +87,8 @@ const quiesce_can_message_t quiesce_can_messages[QUIESCE_CAN_MESSAGES] = {{
 ROW = """\
     {{
         .e2e = {{.id = 0x{id:03x}u, .length = {length}, .alive_bit = {alive_bit}, \
-.crc_byte = {crc_byte}, .alive_is_free = {alive_is_free}}},
+.crc_byte = {crc_byte}}},
         .is_protected = {is_protected},
-        .max_lost = {max_lost},
         .cycle_ms = {cycle_ms},
         .start_ms = {start_ms},
         .delay_ms = {delay_ms},
@@ -241,19 +239,16 @@ def bus_messages(database: Database) -> list[Message]:
 
 def table_row(message: Message) -> str:
     alive = find_signal(message, "alive")
-    cycle_ms, timeout_ms = (attribute(message, f) for f in ("GenMsgCycleTime", "QuiesceTimeoutMs"))
     return ROW.format(
         id=message.frame_id,
         length=message.length,
         alive_bit=alive.start if alive else 0,
         crc_byte=message.length - 1 if alive else 0,
-        alive_is_free=str(attribute(message, "QuiesceAliveIsFree") == 1).lower(),
         is_protected=str(alive is not None).lower(),
-        max_lost=min(14, timeout_ms // cycle_ms) if cycle_ms else 0,
-        cycle_ms=cycle_ms,
+        cycle_ms=attribute(message, "GenMsgCycleTime"),
         start_ms=attribute(message, "GenMsgStartDelayTime"),
         delay_ms=attribute(message, "GenMsgDelayTime"),
-        timeout_ms=timeout_ms,
+        timeout_ms=attribute(message, "QuiesceTimeoutMs"),
     )
 
 

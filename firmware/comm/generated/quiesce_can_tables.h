@@ -9,7 +9,6 @@
 typedef struct {
     e2e_layout_t e2e;
     bool is_protected;  ///< else alive_bit and crc_byte mean nothing
-    uint8_t max_lost;   ///< frames that its timeout lets be missing in a row, 0 .. 14
     uint16_t cycle_ms;  ///< 0: on request
     uint16_t start_ms;  ///< into its cycle, so that cyclic messages do not meet
     uint16_t delay_ms;  ///< least time between two of them, 0: none

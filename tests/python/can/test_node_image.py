@@ -16,8 +16,7 @@ from conftest import require
 
 DATABASE = load_database()
 DEADLINE_S = 60.0
-SAMPLE_EVERY_DEMANDS = 4
-OPERATOR_EVERY_DEMANDS = 50
+COMMAND_EVERY_DEMANDS = 100
 ASK_AGAIN_AFTER_DEMANDS = 500  # a reply may be lost where this machine reads too slowly
 # A constant current that the demand shows; a sensor on a busy machine is late now and then.
 PARAMETERS = {
@@ -41,6 +40,7 @@ class Rig:
         self.bus = bus
         self.alive: dict[str, int] = {}
         self.demands = 0
+        self.command_due = 0
         self.seen: dict[str, dict] = {}
         self.pages: dict[int, dict] = {}
         self.last_alive: dict[int, int] = {}
@@ -60,13 +60,15 @@ class Rig:
         self.noise = self.noise * 1664525 + 1013904223 & 0xFFFFFFFF
         self.send("AccelSample", accel_counts=(self.noise >> 16) - 32768)
 
-    def on_demand(self) -> None:
-        self.demands += 1
-        if self.demands % SAMPLE_EVERY_DEMANDS == 0:
-            self.send_sample()
-        if self.demands % OPERATOR_EVERY_DEMANDS == 1:
-            # Pressed and released in turn: a press counts only after a release that was heard.
-            is_pressed = self.is_acknowledging and self.alive.get("OperatorCommand", 0) % 2
+    def on_demand(self, alive: int) -> None:
+        """The demand's counter is the controller's clock, lost frames included."""
+        self.demands += (alive - self.demands - 1) % 16 + 1
+        self.send_sample()
+        if self.demands >= self.command_due:
+            self.command_due = max(self.command_due, self.demands - COMMAND_EVERY_DEMANDS)
+            self.command_due += COMMAND_EVERY_DEMANDS
+            # Pressed and released in turn: two frames that press count, after one that does not.
+            is_pressed = self.is_acknowledging and self.alive.get("OperatorCommand", 0) // 2 % 2
             self.send("OperatorCommand", enable=self.enable, fault_reset=int(is_pressed))
             if self.is_stopping:
                 self.send("EmergencyStop", code="STOP")
@@ -83,7 +85,7 @@ class Rig:
         if message.name == "FaultFreeze":
             self.pages[values["page"]] = values
         if message.name == "CurrentDemand":
-            self.on_demand()
+            self.on_demand(values["alive"])
         return message.name
 
     def until(self, what: str, holds: Callable[[str], bool]) -> None:

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import threading
+import time
 import tty
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -23,6 +24,7 @@ ROOT = Path(__file__).resolve().parents[3]
 DBC = cantools.database.load_file(ROOT / "firmware/comm/quiesce.dbc")
 BUILD = Path(os.environ.get("QUIESCE_BUILD", ROOT / "build")).resolve()
 DEMAND_ID = DBC.get_message_by_name("CurrentDemand").frame_id
+COMMAND_S = DBC.get_message_by_name("OperatorCommand").cycle_time / 1000.0
 SAMPLE_ID = DBC.get_message_by_name("AccelSample").frame_id
 PATIENCE_S = 60.0  # for events on a machine with other work; nothing is asserted about it
 
@@ -94,7 +96,7 @@ class Frame:
 @dataclass
 class Peer:
     """The bus's other nodes. Each sensor node sends a sample for every demand frame; the operator
-    repeats what he commands, and acknowledges again and again where he does."""
+    repeats what he commands in its cycle, and acknowledges again and again where he does."""
 
     master: int
     line: str
@@ -109,6 +111,8 @@ class Peer:
         self._changed = threading.Condition()
         self._alive: dict[str, int] = {}
         self._demands = 0
+        self._commands = 0
+        self._command_due_s = 0.0
         self._marks = 0
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -194,12 +198,20 @@ class Peer:
         if self.feeds_sensor:
             for sensor in range(self.sensors):
                 self.send_raw(slcan(*accel_sample(self._demands, sensor)))
-        if self._demands % 5 == 0:
-            if self.operator is not None:
-                is_pressed = self.acknowledges and self._demands // 50 % 2
-                self.send("OperatorCommand", **{**self.operator, "fault_reset": int(is_pressed)})
-            if self.estop:
-                self.send("EmergencyStop", code=23205)
+        if self.operator is not None:
+            self._command(self.operator, time.monotonic())
+        if self.estop and self._demands % 5 == 0:
+            self.send("EmergencyStop", code=23205)
+
+    def _command(self, what: dict[str, int], now_s: float) -> None:
+        """Once in its cycle: what comes at another time counts for nothing. A button is pressed for
+        two frames."""
+        if now_s < self._command_due_s:
+            return
+        self._command_due_s = max(self._command_due_s, now_s - COMMAND_S) + COMMAND_S
+        self._commands += 1
+        is_pressed = self.acknowledges and self._commands // 2 % 2
+        self.send("OperatorCommand", **{**what, "fault_reset": int(is_pressed)})
 
     def close(self, slave: int) -> None:
         """Ends with its line. Else it would serve the next one whose file has the same number."""

@@ -226,6 +226,29 @@ static void test_hash_is_of_the_parameters_in_effect(void) {
     TEST_ASSERT_EQUAL_HEX32(crc32_of(&params), node.param_hash);
 }
 
+// A store that never says how it went does not keep the service busy.
+static void test_a_save_without_an_answer_has_failed_after_two_seconds(void) {
+    struct quiesce_can_service_reply_t reply;
+    request(OP(SAVE), 0, 0, 5);
+    for (uint32_t i = 0; i < 1999; i++) {
+        TEST_ASSERT_FALSE(next_reply(&reply));
+        TEST_ASSERT_EQUAL(CAN_NODE_SAVE, can_node_task(&node));
+    }
+    TEST_ASSERT_TRUE(next_reply(&reply));
+    TEST_ASSERT_EQUAL_UINT8(OP(SAVE), reply.operation);
+    TEST_ASSERT_EQUAL_UINT8(5, reply.alive);
+    TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, reply.result);
+    TEST_ASSERT_EQUAL(CAN_NODE_NOTHING, can_node_task(&node));
+    can_node_answer(&node, CAN_NODE_DONE, 0); // late
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(READ), 0, 0).result);
+    request(OP(SAVE), 0, 0, 6);
+    for (uint32_t i = 0; i < 1500; i++) {
+        TEST_ASSERT_FALSE(next_reply(&reply));
+    }
+    can_node_answer(&node, CAN_NODE_DONE, 0);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, reply_soon().result);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_parameter_is_read);
@@ -242,5 +265,6 @@ int main(void) {
     RUN_TEST(test_unknown_operations_are_refused);
     RUN_TEST(test_freeze_frame_without_a_fault_is_nothing_to_send);
     RUN_TEST(test_hash_is_of_the_parameters_in_effect);
+    RUN_TEST(test_a_save_without_an_answer_has_failed_after_two_seconds);
     return UNITY_END();
 }

@@ -198,21 +198,32 @@ static void test_driver_that_fails_is_switched_off_until_it_is_acknowledged(void
     check_failed_driver();
 }
 
+// A command, and the operator's cycle.
+static void command(bool enable, bool fault_reset) {
+    press(enable, fault_reset);
+    run(100);
+}
+
 static void test_stop_is_acknowledged_over_the_bus_once_it_is_released(void) {
     run(2000);
+    for (uint32_t i = 0; i < 3; i++) {
+        command(false, false);
+    }
     receive(make_stop(STOP, 0));
     run(1);
-    press(false, false);
-    run(1);
-    press(false, true); // still pressed
-    run(200);
+    command(false, true); // still pressed
+    command(false, true);
+    run(100);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
-    press(false, true); // held, no edge
-    run(1);
+    for (uint32_t i = 0; i < 5; i++) {
+        command(false, true); // held, no edge
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
+    }
+    command(false, false);
+    command(false, true);
+    command(false, true);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
     press(false, false);
-    run(1);
-    press(false, true);
     run(1);
     TEST_ASSERT_NOT_EQUAL(QUIESCE_STATE_FAULT, state());
 }
@@ -223,12 +234,24 @@ static void run_without_a_board(void) {
     tick();
 }
 
+// The driver's and the sensor's next frames are of counter 0.
+static void introduce_nodes(void) {
+    for (uint8_t i = 14; i < 16; i++) {
+        receive(make_current(1, i));
+        for (uint32_t k = 0; k < 10; k++) {
+            receive(make_accel(1, false, false, (uint8_t)((i * 10u + k + 4u) % 16u)));
+            run_without_a_board();
+        }
+    }
+}
+
 static void test_bus_sample_is_there_for_its_tick(void) {
     TEST_ASSERT_TRUE(node_init(&node, NULL, &params, (node_sources_t){.sensors_on_bus = 1}));
     run_without_a_board();
     TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
     TEST_ASSERT_FALSE(node.in.driver[0].is_measured);
-    receive(make_accel(-4321, false, false, 0));
+    introduce_nodes();
+    receive(make_accel(-4321, false, false, 4));
     receive(make_current(-99, 0));
     run_without_a_board();
     TEST_ASSERT_TRUE(node.in.sensor[0].is_fresh);
@@ -242,7 +265,8 @@ static void test_bus_sample_is_there_for_its_tick(void) {
 }
 
 static void test_the_sensor_is_where_it_was_set_up(void) {
-    receive(make_accel(-4321, false, false, 0));
+    introduce_nodes();
+    receive(make_accel(-4321, false, false, 4));
     run_without_a_board(); // a sample on the bus is no sample of the board's sensor
     TEST_ASSERT_FALSE(node.in.sensor[0].is_fresh);
     TEST_ASSERT_TRUE(node_init(&node, NULL, &params, (node_sources_t){.sensors_on_bus = 1}));
@@ -251,9 +275,10 @@ static void test_the_sensor_is_where_it_was_set_up(void) {
 }
 
 static void test_the_boards_measurement_goes_before_the_buss(void) {
+    introduce_nodes();
+    receive(make_current(-99, 0));
     board.driver[0].is_measured = true;
     board.driver[0].current_mA = 77;
-    receive(make_current(-99, 0));
     run(1);
     TEST_ASSERT_EQUAL_INT32(77, node.in.driver[0].current_mA);
     board.driver[0].is_measured = false;

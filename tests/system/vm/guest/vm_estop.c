@@ -17,14 +17,13 @@ enum {
     PERIOD_NS = 1000000,
     PHASES = 16,
     RAMP_TICKS = 50,        /* with the output on before a press */
-    ACKNOWLEDGE_TICKS = 20, /* from one command to the next */
+    COMMAND_TICKS = 100,    /* from one command to the next */
 };
 
 typedef struct {
     int bus;
     int pull;
     uint8_t alive;
-    bool reset;
     uint32_t ticks;
 } probe_t;
 
@@ -42,17 +41,16 @@ static guest_frame_t next_demand(const probe_t *probe) {
     return in;
 }
 
-/* Commands with fault_reset in turn 1 and 0 until the output has been on for a while. */
+/* Commands with fault_reset in turn two of 1 and two of 0 until the output has been on for a while. */
 static void wait_running(probe_t *probe) {
     uint32_t on_ticks = 0;
     while (on_ticks < RAMP_TICKS) {
         const guest_frame_t in = next_demand(probe);
         const guest_demand_t demand = guest_demand(&in.frame);
         on_ticks = demand.is_enabled && demand.current_mA > 0 ? on_ticks + 1 : 0;
-        if (probe->ticks++ % ACKNOWLEDGE_TICKS == 0) {
+        if (probe->ticks++ % COMMAND_TICKS == 0) {
             can_frame_t out;
-            probe->reset = !probe->reset && on_ticks == 0;
-            guest_command(&out, true, probe->reset, &probe->alive);
+            guest_command(&out, true, probe->alive / 2 % 2 != 0 && on_ticks == 0, &probe->alive);
             guest_bus_send(probe->bus, &out);
         }
     }

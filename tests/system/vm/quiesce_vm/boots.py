@@ -30,7 +30,7 @@ ENABLE_LINE, FAULT_LINE, ESTOP_LINE = 1, 2, 5
 LOCKSTEP_SEED = 1
 RAW_STREAM_S = 1
 FREEZE_PAGES = 6
-ACKNOWLEDGE_EVERY = 50  # demand frames
+ACKNOWLEDGE_EVERY = 250  # demand frames, five commands
 
 Results = dict[str, dict[str, Any]]
 

@@ -16,7 +16,7 @@ from quiesce_vm.serial_line import SerialLine
 END_ID = 0x7F0  # ends a step of the guest's script
 ECHO_ID = 0x100  # comes back under the next id
 CREDIT = 8  # frames under way at the most
-COMMAND_EVERY = 10  # demand frames
+COMMAND_EVERY = 50  # demand frames of 2 ms: its cycle, as what comes faster counts for nothing
 ATTEMPTS, ATTEMPT_FRAMES = 5, 1000  # of a request; demand frames until it is repeated
 MOST_FRAMES = 50_000  # of the controller, until a condition must have come true
 
@@ -30,7 +30,7 @@ class Peer:
         self.traffic = Traffic(self.database)
         self.refused: list[str] = []  # frames that the DBC cannot explain
         self.freeze: dict[int, dict[str, Any]] = {}  # pages of the freeze frame, as they came last
-        self._fault_reset = False
+        self._fault_resets = 0  # commands that still have it
         self._alive: dict[str, int] = {}
         self.demands = 0  # demand frames that came
 
@@ -106,8 +106,8 @@ class Peer:
         return str(demand.get("state")) == "RUN" and demand["driver_is_enabled"] == 1
 
     def acknowledge(self) -> None:
-        """The operator's next command acknowledges a fault."""
-        self._fault_reset = True
+        """The operator's next two commands acknowledge a fault."""
+        self._fault_resets = 2
 
     def request(self, operation: str, index: int = 0, value: int = 0) -> dict[str, Any]:
         """A service request; what the controller replied. BenchFailure where it never does."""
@@ -152,8 +152,8 @@ class Peer:
         self.demands += 1
         self.send_message("AccelSample", accel_counts=_counts(self.demands))
         if self.demands % COMMAND_EVERY == 0:
-            self.send_message("OperatorCommand", enable=1, fault_reset=int(self._fault_reset))
-            self._fault_reset = False
+            self.send_message("OperatorCommand", enable=1, fault_reset=int(self._fault_resets > 0))
+            self._fault_resets = max(0, self._fault_resets - 1)
 
 
 def _counts(number: int) -> int:
