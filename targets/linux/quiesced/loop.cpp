@@ -81,15 +81,21 @@ bool Loop::store(void *self, const quiesce_params_t *params) {
     auto &loop = *static_cast<Loop *>(self);
     if (!loop.store_is_pending_ && loop.exchange_.to_store.put(*params)) {
         loop.store_is_pending_ = true;
+        loop.restarts_at_store_ = loop.node_.restarts;
         loop.exchange_.wake();
     }
     return true;
 }
 
+/// A disk that took too long may answer when another request is worked on, or for parameters that
+/// are no longer in effect: then it is asked again.
 void Loop::answer_store() {
     const StoreResult result = exchange_.store_result.exchange(StoreResult::none);
-    if (store_is_pending_ && result != StoreResult::none) {
-        store_is_pending_ = false;
+    if (!store_is_pending_ || result == StoreResult::none) {
+        return;
+    }
+    store_is_pending_ = false;
+    if (can_node_task(&node_.can) == CAN_NODE_SAVE && restarts_at_store_ == node_.restarts) {
         can_node_answer(&node_.can,
                         result == StoreResult::stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED, 0);
     }

@@ -78,7 +78,8 @@ class Loop {
     std::uint32_t retunes_ = 0;
     std::uint32_t learnt_age_s_ = 0;
     bool store_is_pending_ = false;
-    bool has_new_params_ = false; ///< that the other thread does not know yet
+    std::uint32_t restarts_at_store_ = 0; ///< when it was asked for
+    bool has_new_params_ = false;         ///< that the other thread does not know yet
     quiesce_learnt_t learnt_{};
     bool has_learnt_ = false;
 };
