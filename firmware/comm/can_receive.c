@@ -150,7 +150,8 @@ static void take_current(can_receive_t *self, uint32_t number, const can_frame_t
 
 static can_press_t next_press(can_press_t press, bool fault_reset) {
     if (!fault_reset) {
-        return CAN_PRESS_RELEASED;
+        const bool was_released = press == CAN_PRESS_RELEASED_ONCE || press == CAN_PRESS_RELEASED;
+        return was_released ? CAN_PRESS_RELEASED : CAN_PRESS_RELEASED_ONCE;
     }
     return press == CAN_PRESS_RELEASED ? CAN_PRESS_ONCE
            : press == CAN_PRESS_ONCE   ? CAN_PRESS_TWICE

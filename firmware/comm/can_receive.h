@@ -51,13 +51,14 @@ typedef struct {
     bool failure_is_seen; ///< since the last tick, whatever the frame's counter and time
 } can_driver_t;
 
-/// Where fault_reset is on its way: released, pressed in two frames, and it acts with the one after
-/// them, which shows that the second was nobody else's.
+/// Where fault_reset is on its way: released in two frames, pressed in two, and it acts with the
+/// one after them, which shows that the last was nobody else's.
 typedef enum {
     CAN_PRESS_NONE = 0, ///< not known, or held
-    CAN_PRESS_RELEASED = 1,
-    CAN_PRESS_ONCE = 2,
-    CAN_PRESS_TWICE = 3,
+    CAN_PRESS_RELEASED_ONCE = 1,
+    CAN_PRESS_RELEASED = 2,
+    CAN_PRESS_ONCE = 3,
+    CAN_PRESS_TWICE = 4,
 } can_press_t;
 
 /// What starts something has to be said by two frames in a row: nobody runs or acknowledges because

@@ -79,7 +79,6 @@ node_inputs_t Board::read(const Axes &axes, std::uint32_t elapsed, const hal_tic
     inputs.lateness_us = timing.lateness_ns / 1000U;
     inputs.work_us = timing.work_ns / 1000U;
     if (bus_ != nullptr) {
-        inputs.tx_dropped = can_bus_counters(bus_)->tx_dropped;
         inputs.bus_off_count = can_bus_counters(bus_)->bus_off;
     }
     for (std::size_t i = 0; i < config_.sensors.size(); ++i) {

@@ -38,6 +38,7 @@ struct Snapshot {
     std::uint64_t ticks;
     can_bus_state_t bus_state;
     can_bus_counters_t bus;
+    std::uint32_t tx_shed; ///< of bus.tx_dropped: telemetry, and what newer frames replaced
     can_node_counters_t node;
     std::array<FaultEvent, kFaults> faults; ///< the newest first
     std::uint32_t fault_events;             ///< since the start

@@ -216,7 +216,13 @@ bool Loop::is_safe_command() const {
 void Loop::send() {
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
     const std::uint32_t count = node_frames(&node_, frames);
-    const std::int64_t demand_ns = send_frames(bus_, frames, count);
+    std::int64_t demand_ns = 0;
+    if (bus_ != nullptr) {
+        const auto sink = [](void *bus, const can_frame_t *frame) {
+            return can_bus_send(static_cast<can_bus_t *>(bus), frame);
+        };
+        demand_ns = sender_.send(sink, bus_, frames, count, monotonic_ns());
+    }
     board_.command_left(demand_ns, is_safe_command(), node_.in.tick);
 }
 
@@ -236,6 +242,8 @@ Snapshot Loop::snapshot() const {
     if (bus_ != nullptr) {
         snapshot.bus_state = can_bus_state(bus_);
         snapshot.bus = *can_bus_counters(bus_);
+        snapshot.bus.tx_dropped = sender_.counters().lost + sender_.counters().shed;
+        snapshot.tx_shed = sender_.counters().shed;
     }
     snapshot.node = *can_node_counters(&node_.can);
     snapshot.faults = changes_.faults();
@@ -286,6 +294,7 @@ void Loop::tick(std::uint32_t elapsed) {
     answer_store();
     prepare_apply();
     node_inputs_t inputs = board_.read(axes_, elapsed, source_.timing());
+    inputs.tx_dropped = sender_.counters().lost; // telemetry may well be shed
     latch_.before_tick(inputs);
     node_step(&node_, &inputs);
     write_commands();

@@ -9,6 +9,7 @@
 #include "bus.h"
 #include "change_log.h"
 #include "fault_latch.h"
+#include "frame_sender.h"
 #include "tick_source.h"
 
 namespace quiesced {
@@ -72,6 +73,7 @@ class Loop {
     Board board_;
     TickSource &source_;
     ChangeLog changes_;
+    FrameSender sender_;
 
     std::uint32_t rate_Hz_ = 0;
     std::uint32_t restarts_ = 0;

@@ -109,8 +109,8 @@ void put_bus(std::ostream &out, const Snapshot &snapshot) {
     out << "  \"can\": {\n"
         << "    \"state\": \"" << bus_state_name(snapshot.bus_state) << "\",\n"
         << "    \"received\": " << bus.received << ", \"sent\": " << bus.sent << ",\n"
-        << "    \"tx_dropped\": " << bus.tx_dropped << ", \"rx_dropped\": " << bus.rx_dropped
-        << ",\n"
+        << "    \"tx_dropped\": " << bus.tx_dropped << ", \"tx_shed\": " << snapshot.tx_shed
+        << ", \"rx_dropped\": " << bus.rx_dropped << ",\n"
         << "    \"error_frames\": " << bus.error_frames << ", \"malformed\": " << bus.malformed
         << ",\n"
         << "    \"bus_off\": " << bus.bus_off << ", \"restarts\": " << bus.restarts

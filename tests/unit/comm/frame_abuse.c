@@ -201,7 +201,7 @@ static bool is_used(const trial_t *trial, const stream_t *stream, const abuse_t 
            value(&trial->abused, sender) == abuse->says &&
            !is_said(&trial->lost, &trial->abused, sender) &&
            !is_said(&trial->in_time, &trial->abused, sender) &&
-           is_alive(&trial->truth, stream, now_ms, stream->cycle_ms * 5u / 4u) &&
+           is_alive(&trial->truth, stream, now_ms, stream->cycle_ms * 9u / 8u) &&
            value(&trial->in_time, sender) == stream->says[trial->truth.next - 1u];
 }
 

@@ -220,6 +220,7 @@ static void test_stop_is_acknowledged_over_the_bus_once_it_is_released(void) {
         TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());
     }
     command(false, false);
+    command(false, false);
     command(false, true);
     command(false, true);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, state());

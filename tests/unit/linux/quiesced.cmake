@@ -12,6 +12,7 @@ add_executable(
   quiesced/test_config.cpp
   quiesced/test_edge_rate.cpp
   quiesced/test_fault.cpp
+  quiesced/test_frame_sender.cpp
   quiesced/test_handover.cpp
   quiesced/test_log.cpp
   quiesced/test_loop.cpp

@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "frame_sender.h"
 #include "input_error.h"
 #include "kept_config.h"
 #include "make_safe.h"
@@ -100,53 +99,6 @@ TEST(FallbackFolder, is_what_the_service_manager_says) {
     (void)setenv("STATE_DIRECTORY", "/a:/b", 1);
     EXPECT_EQ(fallback_state_folder(), "/a");
     (void)unsetenv("STATE_DIRECTORY");
-}
-
-/// An SLCAN adapter that takes no more than its line does.
-class SlowBus {
-  public:
-    SlowBus() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
-        if (grantpt(master_) != 0 || unlockpt(master_) != 0) {
-            std::abort();
-        }
-        const std::string interface = std::string("slcan:") + ptsname(master_);
-        can_bus_options_t options{};
-        options.interface = interface.c_str();
-        linux_error_t error{};
-        bus_ = can_bus_open(&options, &error);
-    }
-    SlowBus(const SlowBus &) = delete;
-    SlowBus &operator=(const SlowBus &) = delete;
-    ~SlowBus() {
-        can_bus_close(bus_);
-        close(master_);
-    }
-
-    can_bus_t *get() const { return bus_; }
-
-    void fill() {
-        const can_frame_t frame{0x123, 8, false, false, {}};
-        while (can_bus_send(bus_, &frame)) {
-        }
-    }
-
-  private:
-    int master_;
-    can_bus_t *bus_ = nullptr;
-};
-
-TEST(FrameSender, knows_whether_the_demand_has_left) {
-    SlowBus bus;
-    ASSERT_NE(bus.get(), nullptr);
-    const can_frame_t reply{QUIESCE_CAN_SERVICE_REPLY_FRAME_ID, 8, false, false, {}};
-    const can_frame_t demand{QUIESCE_CAN_CURRENT_DEMAND_FRAME_ID, 8, false, false, {}};
-    const can_frame_t both[] = {reply, demand};
-    EXPECT_EQ(send_frames(bus.get(), &reply, 1), 0);
-    EXPECT_EQ(send_frames(bus.get(), nullptr, 0), 0);
-    EXPECT_EQ(send_frames(nullptr, both, 2), 0);
-    EXPECT_GT(send_frames(bus.get(), both, 2), 0);
-    bus.fill();
-    EXPECT_EQ(send_frames(bus.get(), both, 2), 0);
 }
 
 } // namespace
