@@ -16,8 +16,8 @@
 enum {
     PERIOD_NS = 1000000,
     PHASES = 16,
-    RAMP_TICKS = 50,        /* with the output on before a press */
-    COMMAND_TICKS = 100,    /* from one command to the next */
+    RAMP_TICKS = 50,     /* with the output on before a press */
+    COMMAND_TICKS = 100, /* from one command to the next */
 };
 
 typedef struct {
@@ -41,7 +41,8 @@ static guest_frame_t next_demand(const probe_t *probe) {
     return in;
 }
 
-/* Commands with fault_reset in turn two of 1 and two of 0 until the output has been on for a while. */
+/* Commands with fault_reset, in turn two of 1 and two of 0, until the output has been on a while.
+ */
 static void wait_running(probe_t *probe) {
     uint32_t on_ticks = 0;
     while (on_ticks < RAMP_TICKS) {
