@@ -2,21 +2,24 @@
 #include "current_backends.h"
 #include "current_scale.h"
 #include "sysfs.h"
+#include "sysfs_output.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#define UNKNOWN INT64_MIN
+#define NS_PER_MS 1000000
 
 struct current_dac {
     current_dac_options_t options;
-    int fd;
-    int64_t code; ///< as written last, or UNKNOWN
+    sysfs_output_t code;
+    refresh_t refresh;
     uint32_t failures;
 };
+
+static void count_failure(current_dac_t *self) {
+    self->failures += self->failures < UINT32_MAX ? 1u : 0u;
+}
 
 /// There is no output stage to switch off: zero current instead.
 static void write_current(void *backend, int32_t current_mA, bool enable) {
@@ -24,13 +27,14 @@ static void write_current(void *backend, int32_t current_mA, bool enable) {
     const current_dac_options_t *const options = &self->options;
     const int64_t code = current_scale(enable ? current_mA : 0, options->full_scale_mA,
                                        options->zero_code, options->full_scale_code);
-    if (code == self->code) {
-        return;
+    if (refresh_is_due(&self->refresh)) {
+        if (!sysfs_output_holds(&self->code)) {
+            count_failure(self);
+        }
+        self->code.is_known = false;
     }
-    self->code = code;
-    if (!sysfs_write_kept(self->fd, code)) {
-        self->code = UNKNOWN;
-        self->failures += self->failures < UINT32_MAX ? 1u : 0u;
+    if (!sysfs_output_put(&self->code, code)) {
+        count_failure(self);
     }
 }
 
@@ -49,14 +53,17 @@ static bool set_up(current_dac_t *self, linux_error_t *error) {
         !sysfs_path(&raw, error, "%s/out_voltage%u_raw", folder.text, options->channel)) {
         return false;
     }
-    self->fd = open(raw.text, O_WRONLY | O_CLOEXEC);
-    if (self->fd < 0) {
-        return linux_fail(error, "%s: %s", raw.text, strerror(errno));
+    if (!sysfs_output_open(&self->code, raw.text, error)) {
+        return false;
     }
     write_current(self, 0, false);
     if (self->failures != 0u) {
         return linux_fail(error, "%s: cannot write %d: %s", raw.text, (int)options->zero_code,
                           strerror(errno));
+    }
+    if (!sysfs_output_holds(&self->code)) {
+        return linux_fail(error, "%s: does not hold the %d that was written", raw.text,
+                          (int)options->zero_code);
     }
     return power_up(&folder, options->channel, error);
 }
@@ -75,7 +82,11 @@ current_dac_t *current_dac_open(const current_dac_options_t *options, hal_curren
         (void)linux_fail(error, "out of memory");
         return NULL;
     }
-    *self = (current_dac_t){.options = *options, .fd = -1, .code = UNKNOWN};
+    *self = (current_dac_t){
+        .options = *options,
+        .code = SYSFS_OUTPUT_NONE,
+        .refresh = {.period_ns = (int64_t)options->refresh_ms * NS_PER_MS},
+    };
     if (!set_up(self, error)) {
         current_dac_close(self);
         return NULL;
@@ -88,9 +99,9 @@ void current_dac_close(current_dac_t *self) {
     if (self == NULL) {
         return;
     }
-    if (self->fd >= 0) {
-        write_current(self, 0, false);
-        (void)close(self->fd);
+    if (self->code.fd >= 0) {
+        (void)sysfs_output_write(&self->code, self->options.zero_code);
+        sysfs_output_close(&self->code);
     }
     free(self);
 }

@@ -4,11 +4,15 @@
 // duty cycle moves. An inverted driver has its full current at 0 % and so where the output is off:
 // it is kept on, at 100 %.
 //
+// The kernel drops a write of what it believes the chip to hold. So that it does reach the chip
+// again the duty cycle goes a nanosecond beside first, at each refresh.
+//
 // A channel that has just been exported belongs to root until udev's rule has given it to the
 // program's group, a moment later: opening waits for that.
 #include "current_backends.h"
 #include "current_scale.h"
 #include "sysfs.h"
+#include "sysfs_output.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -17,7 +21,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define UNKNOWN (-1)
+#define NS_PER_MS 1000000
 #define ACCESS_TRIES 100
 #define ACCESS_PAUSE_NS 10000000 // 1 s in all
 
@@ -27,25 +31,32 @@ struct current_pwm {
     int64_t zero_ns; ///< duty cycle at 0 mA and at full scale
     int64_t full_ns;
     bool is_inverted;
-    int duty_fd;
-    int enable_fd;
-    int64_t duty_ns; ///< as written last, or UNKNOWN
-    int64_t enable;
+    sysfs_output_t duty_ns;
+    sysfs_output_t enable;
+    refresh_t refresh;
     uint32_t failures;
 };
 
-/// Writes where the value is another one than before, or unknown.
-static bool put(current_pwm_t *self, int fd, int64_t *last, int64_t value) {
-    if (*last == value) {
-        return true;
+static bool noted(current_pwm_t *self, bool is_right) {
+    self->failures += !is_right && self->failures < UINT32_MAX ? 1u : 0u;
+    return is_right;
+}
+
+/// A nanosecond of less current; where there is none, of more.
+static int64_t beside(const current_pwm_t *self, int64_t duty_ns) {
+    const int64_t less_ns = self->is_inverted ? duty_ns + 1 : duty_ns - 1;
+    const bool has_less = self->is_inverted ? duty_ns < self->zero_ns : duty_ns > 0;
+    return has_less ? less_ns : 2 * duty_ns - less_ns;
+}
+
+/// What is held is looked at, and everything is written anew.
+static void begin_refresh(current_pwm_t *self, int64_t duty_ns) {
+    (void)noted(self, sysfs_output_holds(&self->duty_ns));
+    (void)noted(self, sysfs_output_holds(&self->enable));
+    if (self->duty_ns.is_known && self->duty_ns.value == duty_ns) {
+        (void)noted(self, sysfs_output_write(&self->duty_ns, beside(self, duty_ns)));
     }
-    if (!sysfs_write_kept(fd, value)) {
-        *last = UNKNOWN;
-        self->failures += self->failures < UINT32_MAX ? 1u : 0u;
-        return false;
-    }
-    *last = value;
-    return true;
+    self->enable.is_known = false;
 }
 
 static void write_current(void *backend, int32_t current_mA, bool enable) {
@@ -53,11 +64,15 @@ static void write_current(void *backend, int32_t current_mA, bool enable) {
     const int64_t duty_ns =
         enable ? current_scale(current_mA, self->full_scale_mA, self->zero_ns, self->full_ns)
                : self->zero_ns;
-    if (!enable && !self->is_inverted) {
-        (void)put(self, self->enable_fd, &self->enable, 0);
+    const bool is_on = enable || self->is_inverted;
+    if (refresh_is_due(&self->refresh)) {
+        begin_refresh(self, duty_ns);
     }
-    if (put(self, self->duty_fd, &self->duty_ns, duty_ns) && (enable || self->is_inverted)) {
-        (void)put(self, self->enable_fd, &self->enable, 1);
+    if (!is_on) {
+        (void)noted(self, sysfs_output_put(&self->enable, 0));
+    }
+    if (noted(self, sysfs_output_put(&self->duty_ns, duty_ns)) && is_on) {
+        (void)noted(self, sysfs_output_put(&self->enable, 1));
     }
 }
 
@@ -165,16 +180,11 @@ static bool set_period(const current_pwm_t *self, int64_t period_ns, linux_error
            set(self, "duty_cycle", self->zero_ns, error);
 }
 
-static int open_kept(const current_pwm_t *self, const char *file, linux_error_t *error) {
+static bool open_kept(const current_pwm_t *self, const char *file, sysfs_output_t *output,
+                      linux_error_t *error) {
     sysfs_path_t path;
-    if (!sysfs_path(&path, error, "%s/%s", self->folder.text, file)) {
-        return -1;
-    }
-    const int fd = open(path.text, O_WRONLY | O_CLOEXEC);
-    if (fd < 0) {
-        (void)linux_fail(error, "%s: %s", path.text, strerror(errno));
-    }
-    return fd;
+    return sysfs_path(&path, error, "%s/%s", self->folder.text, file) &&
+           sysfs_output_open(output, path.text, error);
 }
 
 static bool set_up(current_pwm_t *self, const current_pwm_options_t *options,
@@ -186,13 +196,13 @@ static bool set_up(current_pwm_t *self, const current_pwm_options_t *options,
     if (!set_period(self, options->period_ns, error)) {
         return false;
     }
-    self->duty_fd = open_kept(self, "duty_cycle", error);
-    self->enable_fd = self->duty_fd >= 0 ? open_kept(self, "enable", error) : -1;
-    if (self->enable_fd < 0) {
+    if (!open_kept(self, "duty_cycle", &self->duty_ns, error) ||
+        !open_kept(self, "enable", &self->enable, error)) {
         return false;
     }
     write_current(self, 0, false);
-    return self->failures == 0u ||
+    const bool is_held = sysfs_output_holds(&self->duty_ns) && sysfs_output_holds(&self->enable);
+    return (self->failures == 0u && is_held) ||
            linux_fail(error, "%s: cannot switch to zero current", self->folder.text);
 }
 
@@ -223,10 +233,9 @@ current_pwm_t *current_pwm_open(const current_pwm_options_t *options, hal_curren
         .zero_ns = options->is_inverted ? options->period_ns : 0,
         .full_ns = options->is_inverted ? 0 : options->period_ns,
         .is_inverted = options->is_inverted,
-        .duty_fd = -1,
-        .enable_fd = -1,
-        .duty_ns = UNKNOWN,
-        .enable = UNKNOWN,
+        .duty_ns = SYSFS_OUTPUT_NONE,
+        .enable = SYSFS_OUTPUT_NONE,
+        .refresh = {.period_ns = (int64_t)options->refresh_ms * NS_PER_MS},
     };
     if (!set_up(self, options, error)) {
         current_pwm_close(self);
@@ -240,13 +249,11 @@ void current_pwm_close(current_pwm_t *self) {
     if (self == NULL) {
         return;
     }
-    if (self->duty_fd >= 0) {
-        (void)put(self, self->duty_fd, &self->duty_ns, self->zero_ns);
-        (void)close(self->duty_fd);
+    if (self->duty_ns.fd >= 0) {
+        (void)sysfs_output_write(&self->duty_ns, self->zero_ns);
     }
-    if (self->enable_fd >= 0) {
-        (void)close(self->enable_fd);
-    }
+    sysfs_output_close(&self->duty_ns);
+    sysfs_output_close(&self->enable);
     free(self);
 }
 

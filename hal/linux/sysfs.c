@@ -90,6 +90,7 @@ bool sysfs_read_kept(int fd, int64_t low, int64_t high, int64_t *number) {
         return false;
     }
     text[bytes] = '\0';
+    text[strcspn(text, "\n")] = '\0';
     return sysfs_parse(text, low, high, number);
 }
 

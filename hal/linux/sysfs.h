@@ -34,7 +34,7 @@ bool sysfs_set(const char *path, int64_t number, linux_error_t *error);
 /// A whole decimal number with nothing but white space at its end, in low .. high.
 bool sysfs_parse(const char *text, int64_t low, int64_t high, int64_t *number);
 
-/// Reads one from a file that is kept open, at its start. Returns false where that fails.
+/// Reads one from a file that is kept open: its first line. Returns false where that fails.
 bool sysfs_read_kept(int fd, int64_t low, int64_t high, int64_t *number);
 
 /// Writes one to a file that is kept open, at its start.

@@ -30,7 +30,7 @@ class Board {
     /// where a driver is at this machine, when it was written. is_safe: safe currents, drivers off.
     void command_left(std::int64_t demand_ns, bool is_safe, std::uint32_t tick);
 
-    /// rewrite: even where nothing has changed, to notice that a line is gone.
+    /// rewrite: even where nothing has changed.
     void write_lines(bool is_driver_on, bool has_fault, bool rewrite);
     /// Ticks in a second; before the first tick and whenever it is another.
     void use_rate(std::uint32_t rate_Hz);

@@ -6,6 +6,8 @@ namespace quiesced {
 
 namespace {
 
+constexpr std::uint32_t kRefresh_ms = 50;
+
 [[noreturn]] void refuse(const std::string &key, const linux_error_t &error) {
     throw quiesce::InputError(key + ": " + error.text);
 }
@@ -74,9 +76,9 @@ class Adxl355Accel final : public SensorDevice {
 class PwmCurrent final : public CurrentDevice {
   public:
     PwmCurrent(const OutputConfig &config, const SystemFolders &folders) {
-        const current_pwm_options_t options = {config.device.c_str(), config.channel,
-                                               config.period_ns,      config.full_scale_mA,
-                                               config.is_inverted,    folders.pwm.c_str()};
+        const current_pwm_options_t options = {
+            config.device.c_str(), config.channel,     config.period_ns,   config.full_scale_mA,
+            kRefresh_ms,           config.is_inverted, folders.pwm.c_str()};
         linux_error_t error{};
         self_ =
             require(current_pwm_open(&options, &handle, &error), config.place.key("chip"), error);
@@ -93,9 +95,9 @@ class PwmCurrent final : public CurrentDevice {
 class DacCurrent final : public CurrentDevice {
   public:
     DacCurrent(const OutputConfig &config, const SystemFolders &folders) {
-        const current_dac_options_t options = {config.device.c_str(), config.channel,
-                                               config.zero_code,      config.full_scale_code,
-                                               config.full_scale_mA,  folders.iio.c_str()};
+        const current_dac_options_t options = {
+            config.device.c_str(), config.channel, config.zero_code,   config.full_scale_code,
+            config.full_scale_mA,  kRefresh_ms,    folders.iio.c_str()};
         linux_error_t error{};
         self_ =
             require(current_dac_open(&options, &handle, &error), config.place.key("device"), error);

@@ -303,7 +303,7 @@ void Loop::tick(std::uint32_t elapsed) {
     }
     send();
     board_.write_lines(node_.out.damper[0].driver_enable,
-                       node_.out.telemetry.fault != QUIESCE_FAULT_NONE, is_due_each_second());
+                       node_.out.telemetry.fault != QUIESCE_FAULT_NONE, is_refresh_due());
     latch_.after_tick(node_);
     after_change();
     board_.look_after(rate_Hz_, is_due_each_second(), changes_);

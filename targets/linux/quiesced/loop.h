@@ -3,6 +3,7 @@
 #ifndef QUIESCED_LOOP_H
 #define QUIESCED_LOOP_H
 
+#include <algorithm>
 #include <optional>
 
 #include "board.h"
@@ -32,6 +33,8 @@ class Loop {
     void run(std::uint64_t ticks);
 
   private:
+    static constexpr std::uint32_t kRefreshes_Hz = 20;
+
     void tick(std::uint32_t elapsed);
     void receive();
     void write_current(std::size_t damper, std::int32_t current_mA, bool enable);
@@ -59,6 +62,10 @@ class Loop {
 
     bool is_safe_command() const;
     bool is_due_each_second() const { return exchange_.ticks.load() % rate_Hz_ == 0; }
+    /// Of an output that has not changed: every 50 ms.
+    bool is_refresh_due() const {
+        return exchange_.ticks.load() % std::max(1U, rate_Hz_ / kRefreshes_Hz) == 0;
+    }
 
     static bool store(void *self, const quiesce_params_t *params);
 

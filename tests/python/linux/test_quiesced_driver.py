@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from quiesced_peer import Quiesced, on_a_pty
-from quiesced_steps import FAULT, RUN, preload
+from quiesced_steps import FAULT, IDLE, RUN, preload
 
 DRIVER_FAILED = 12
 
@@ -107,8 +107,7 @@ def test_driver_that_takes_no_command_is_a_latched_fault(quiesced, environment, 
 
     after = peer.count()
     (tmp_path / "broken").touch()
-    # A steady command is not written again; another one is, and fails.
-    peer.operator = {"enable": 0}
+    # A steady command is written again, too, and fails.
     failed = peer.wait("CurrentDemand", lambda s: s["state"] == FAULT, after)
     assert failed.signals["driver_is_enabled"] == 0
     assert failed.signals["current_cmd_mA"] == 0
@@ -131,3 +130,22 @@ def test_driver_that_takes_no_command_is_a_latched_fault(quiesced, environment, 
     peer.wait("CurrentDemand", lambda s: s["state"] == RUN and s["current_cmd_mA"] == 4000, after)
     assert quiesced.stop() == 0
     assert first_number(channel / "enable") == 0
+
+
+def test_disturbed_output_is_a_latched_fault(quiesced, environment, tmp_path) -> None:
+    """Something else switches the output to full current: it does not stay so."""
+    peer, channel = quiesced.peer, tmp_path / "pwm/pwmchip0/pwm0"
+    peer.operator = {"enable": 1}
+    quiesced.start(env=environment)
+    peer.wait("CurrentDemand", lambda s: s["state"] == RUN and s["current_cmd_mA"] == 4000)
+    peer.operator = {"enable": 0}
+    peer.wait("CurrentDemand", lambda s: s["state"] == IDLE, peer.count())
+    after = peer.count()
+    (channel / "duty_cycle").write_text("50000\n")
+    (channel / "enable").write_text("1\n")
+    peer.wait("CurrentDemand", lambda s: s["state"] == FAULT, after)
+    peer.wait("Status", lambda s: s["fault"] == DRIVER_FAILED, after)
+    quiesced.wait_log("writes failed or were not held")
+    quiesced.wait_log("current output is back")
+    assert (first_number(channel / "duty_cycle"), first_number(channel / "enable")) == (0, 0)
+    assert quiesced.stop() == 0

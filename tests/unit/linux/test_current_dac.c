@@ -7,18 +7,22 @@
 #include <signal.h>
 #include <stdio.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 #define DEVICE "sys/iio:device1"
+#define NEVER_MS 3600000u
 
 static char root[SCRATCH_BYTES];
 static hal_current_t current;
 static current_dac_t *driver;
+static uint32_t refresh_ms;
 static linux_error_t error;
 
 void setUp(void) {
     error.text[0] = '\0';
     driver = NULL;
+    refresh_ms = NEVER_MS;
     scratch_make();
     scratch_folder(DEVICE);
     scratch_write(DEVICE "/name", "ad5693r\n");
@@ -37,6 +41,7 @@ static current_dac_options_t options_of(int32_t zero_code, int32_t full_scale_co
         .zero_code = zero_code,
         .full_scale_code = full_scale_code,
         .full_scale_mA = 3000,
+        .refresh_ms = refresh_ms,
         .sysfs_root = root,
     };
 }
@@ -127,9 +132,62 @@ static void test_refused_writes_are_counted_and_tried_again(void) {
     TEST_ASSERT_EQUAL_UINT32(2, current_dac_failures(driver));
 }
 
+static void disturb(const char *text) {
+    scratch_write(DEVICE "/out_voltage0_raw", text);
+}
+
+static void test_disturbed_output_is_written_again_and_counted(void) {
+    refresh_ms = 0;
+    open_driver(1000, 2000);
+    for (int i = 0; i < 60000; i++) {
+        if (i == 30000) {
+            disturb("2000");
+        }
+        hal_current_write(&current, 0, false);
+    }
+    assert_code("1000");
+    TEST_ASSERT_EQUAL_UINT32(1, current_dac_failures(driver));
+    hal_current_write(&current, 3000, true);
+    disturb("1000");
+    hal_current_write(&current, 3000, true);
+    assert_code("2000");
+    TEST_ASSERT_EQUAL_UINT32(2, current_dac_failures(driver));
+}
+
+static void test_steady_output_is_written_again_after_the_pause(void) {
+    const struct timespec pause = {.tv_nsec = 2000000};
+    refresh_ms = 1;
+    open_driver(1000, 2000);
+    hal_current_write(&current, 1500, true);
+    disturb("1100");
+    TEST_ASSERT_EQUAL_INT(0, nanosleep(&pause, NULL));
+    hal_current_write(&current, 1500, true);
+    assert_code("1500");
+}
+
+static void test_output_that_cannot_be_read_is_written_all_the_same(void) {
+    refresh_ms = 0;
+    TEST_ASSERT_EQUAL_INT(0, unlink(scratch_path(DEVICE "/out_voltage0_raw")));
+    TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", scratch_path(DEVICE "/out_voltage0_raw")));
+    open_driver(1000, 2000);
+    hal_current_write(&current, 3000, true);
+    hal_current_write(&current, 3000, true);
+    TEST_ASSERT_EQUAL_UINT32(0, current_dac_failures(driver));
+}
+
 static void assert_refused(const current_dac_options_t *options, const char *part) {
     TEST_ASSERT_NULL(current_dac_open(options, &current, &error));
     assert_one_line(&error, part);
+}
+
+/// Stands for such a device: what is written in decimal is read in hexadecimal there.
+static void test_output_that_does_not_hold_its_code_is_refused(void) {
+    const current_dac_options_t options = options_of(100, 2000);
+    const char *const raw = scratch_path(DEVICE "/out_voltage0_raw");
+    TEST_ASSERT_EQUAL_INT(0, unlink(raw));
+    TEST_ASSERT_EQUAL_INT(0, symlink("/proc/self/coredump_filter", raw));
+    TEST_ASSERT_NULL(current_dac_open(&options, &current, &error));
+    assert_one_line(&error, "does not hold the 100 that was written");
 }
 
 static void test_wrong_options_are_one_line(void) {
@@ -157,6 +215,10 @@ int main(void) {
     RUN_TEST(test_disabled_is_zero_current);
     RUN_TEST(test_dac_is_powered_up_after_zero_current);
     RUN_TEST(test_refused_writes_are_counted_and_tried_again);
+    RUN_TEST(test_disturbed_output_is_written_again_and_counted);
+    RUN_TEST(test_steady_output_is_written_again_after_the_pause);
+    RUN_TEST(test_output_that_cannot_be_read_is_written_all_the_same);
+    RUN_TEST(test_output_that_does_not_hold_its_code_is_refused);
     RUN_TEST(test_wrong_options_are_one_line);
     return UNITY_END();
 }

@@ -17,12 +17,14 @@
 #define CHIP "pwm/pwmchip0"
 #define CHANNEL CHIP "/pwm1"
 #define NOBODY 65534
+#define NEVER_MS 3600000u
 
 static char root[SCRATCH_BYTES];
 static char order[256];
 static int watch;
 static hal_current_t current;
 static current_pwm_t *driver;
+static uint32_t refresh_ms;
 static linux_error_t error;
 
 static void make_channel(const char *period, const char *duty, const char *enable,
@@ -40,6 +42,7 @@ static void make_channel(const char *period, const char *duty, const char *enabl
 void setUp(void) {
     error.text[0] = '\0';
     driver = NULL;
+    refresh_ms = NEVER_MS;
     scratch_make();
     scratch_folder(CHIP);
     scratch_write(CHIP "/npwm", "2\n");
@@ -79,6 +82,7 @@ static current_pwm_options_t options_of(bool is_inverted) {
         .channel = 1,
         .period_ns = 50000,
         .full_scale_mA = 3000,
+        .refresh_ms = refresh_ms,
         .is_inverted = is_inverted,
         .sysfs_root = root,
     };
@@ -217,6 +221,50 @@ static void test_refused_writes_are_counted_and_tried_again(void) {
     hal_current_write(&current, 0, false);
     TEST_ASSERT_EQUAL_UINT32(4, current_pwm_failures(driver));
     assert_output("0", "0");
+}
+
+static void test_disturbed_output_is_written_again_and_counted(void) {
+    refresh_ms = 0;
+    make_channel("0\n", "0\n", "0\n", NULL);
+    open_driver(false);
+    for (int i = 0; i < 60000; i++) {
+        if (i == 30000) {
+            scratch_write(CHANNEL "/duty_cycle", "50000\n");
+            scratch_write(CHANNEL "/enable", "1\n");
+        }
+        hal_current_write(&current, 0, false);
+    }
+    assert_output("0", "0");
+    TEST_ASSERT_EQUAL_UINT32(2, current_pwm_failures(driver)); // both
+    hal_current_write(&current, 1500, true);
+    scratch_write(CHANNEL "/enable", "0\n");
+    hal_current_write(&current, 1500, true);
+    assert_output("25000", "1");
+    TEST_ASSERT_EQUAL_UINT32(3, current_pwm_failures(driver));
+}
+
+static void test_disturbed_inverted_output_is_written_again_and_counted(void) {
+    refresh_ms = 0;
+    make_channel("0\n", "0\n", "0\n", "normal\n");
+    open_driver(true);
+    scratch_write(CHANNEL "/duty_cycle", "0\n"); // full current
+    hal_current_write(&current, 0, false);
+    assert_output("50000", "1");
+    TEST_ASSERT_EQUAL_UINT32(1, current_pwm_failures(driver));
+}
+
+/// Else the kernel, which compares with what it believes, would not write to the chip.
+static void test_refresh_of_a_steady_duty_goes_beside_it(void) {
+    refresh_ms = 0;
+    make_channel("0\n", "0\n", "0\n", NULL);
+    open_driver(false);
+    hal_current_write(&current, 1500, true);
+    (void)writes();
+    hal_current_write(&current, 1500, true);
+    // One name for the two writes in a row.
+    TEST_ASSERT_EQUAL_STRING("duty_cycle enable", writes());
+    assert_output("25000", "1");
+    TEST_ASSERT_EQUAL_UINT32(0, current_pwm_failures(driver));
 }
 
 static void assert_refused(const current_pwm_options_t *options, const char *part) {
@@ -366,6 +414,9 @@ int main(void) {
     RUN_TEST(test_inverted_driver_that_runs_is_never_at_less_duty);
     RUN_TEST(test_close_leaves_zero_current);
     RUN_TEST(test_refused_writes_are_counted_and_tried_again);
+    RUN_TEST(test_disturbed_output_is_written_again_and_counted);
+    RUN_TEST(test_disturbed_inverted_output_is_written_again_and_counted);
+    RUN_TEST(test_refresh_of_a_steady_duty_goes_beside_it);
     RUN_TEST(test_wrong_options_are_one_line);
     RUN_TEST(test_channel_that_does_not_appear_is_one_line);
     RUN_TEST(test_malformed_files_are_one_line);
