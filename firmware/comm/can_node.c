@@ -223,6 +223,9 @@ uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quie
 
 void can_node_farewell(can_node_t *self, uint32_t damper, int32_t safe_mA, can_frame_t *frame) {
     const uint32_t message = QUIESCE_CAN_AT_CURRENT_DEMAND + damper;
-    can_pack_demand(self->freeze.state, safe_mA, false, frame);
+    // Nobody controls from here on: of the states with the driver off the one that is true.
+    const uint32_t state = self->freeze.state;
+    const bool is_stopped = state == QUIESCE_STATE_SAFE || state == QUIESCE_STATE_FAULT;
+    can_pack_demand(is_stopped ? state : QUIESCE_STATE_IDLE, safe_mA, false, frame);
     finish(message, &self->alive[message], frame);
 }

@@ -31,18 +31,20 @@ static size_t file_bytes(size_t bytes) {
     return HEADER_BYTES + (bytes + 3u) / 4u * 4u;
 }
 
-/// CRC-32 (IEEE 802.3, reflected, as zlib's). Bit by bit: nobody waits for it.
-static uint32_t crc_of(const record_t *record, size_t bytes) {
-    const uint8_t *const from = (const uint8_t *)record;
-    const size_t end = file_bytes(bytes);
+uint32_t nvm_crc(const void *bytes, size_t count) {
+    const uint8_t *const from = bytes;
     uint32_t crc = UINT32_MAX;
-    for (size_t i = CRC_FROM; i < end; i++) {
+    for (size_t i = 0; i < count; i++) {
         crc ^= from[i];
         for (int bit = 0; bit < 8; bit++) {
             crc = crc >> 1 ^ ((crc & 1u) != 0u ? 0xEDB88320u : 0u);
         }
     }
     return ~crc;
+}
+
+static uint32_t crc_of(const record_t *record, size_t bytes) {
+    return nvm_crc((const uint8_t *)record + CRC_FROM, file_bytes(bytes) - CRC_FROM);
 }
 
 /// A record without checksum and data.
@@ -152,8 +154,7 @@ static bool write_aside(const char *path, const record_t *record) {
     return is_written && is_closed;
 }
 
-/// Makes the renaming last.
-static bool sync_folder(const char *path) {
+bool nvm_sync_folder(const char *path) {
     char folder[PATH_MAX];
     (void)snprintf(folder, sizeof folder, "%s", path);
     const int fd = open(dirname(folder), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -185,6 +186,6 @@ bool nvm_file_write(const char *path, const char *kind, uint32_t version, const 
         (void)unlink(aside);
         return linux_fail(error, "%s: cannot save: %s", path, strerror(number));
     }
-    return sync_folder(path) ||
+    return nvm_sync_folder(path) ||
            linux_fail(error, "%s: saved, but a power cut may undo it: %s", path, strerror(errno));
 }

@@ -65,7 +65,8 @@ void ChangeLog::overruns(std::uint32_t overruns, std::int64_t now_ns) {
 void ChangeLog::failed_writes(std::size_t number, const char *title, std::uint32_t failures,
                               std::int64_t now_ns) {
     if (failed_writes_[number].is_news(failures, now_ns)) {
-        log_.log(LogLevel::error, "%s: %u writes failed or were not held", title, static_cast<unsigned>(failures));
+        log_.log(LogLevel::error, "%s: %u writes failed or were not held", title,
+                 static_cast<unsigned>(failures));
     }
 }
 

@@ -101,10 +101,32 @@ void note_peripherals(const Config &config) {
     }
 }
 
+/// As much as the first start takes.
+constexpr std::uintmax_t kRoom_B = 64U << 10U;
+
+/// Why a start would refuse the state folder, or the folder that it is to be made in; "": it would
+/// not.
+std::string folder_trouble(const std::string &folder) {
+    std::error_code error;
+    const bool is_there = fs::exists(folder, error);
+    const std::string place = is_there ? folder : fs::path(folder).parent_path().string();
+    if (is_there && !fs::is_directory(folder, error)) {
+        return folder + ": it is no folder";
+    }
+    if (access(place.c_str(), W_OK | X_OK) != 0) {
+        return place + ": " + std::strerror(errno);
+    }
+    const fs::space_info space = fs::space(place, error);
+    const bool has_room = error || space.available >= kRoom_B;
+    return has_room ? "" : place + ": " + std::strerror(ENOSPC);
+}
+
 void note_state(const Config &config) {
     const std::string &folder = config.state.folder;
-    note_access("state.folder",
-                fs::exists(folder) ? folder : fs::path(folder).parent_path().string(), W_OK | X_OK);
+    const std::string trouble = folder_trouble(folder);
+    if (!trouble.empty()) {
+        note("state.folder: " + trouble);
+    }
     if (const long pid = InstanceLock::holder(folder); pid != 0) {
         note("quiesced runs now, process " + std::to_string(pid));
     }

@@ -80,8 +80,8 @@ struct Exchange {
     Mailbox<quiesce_params_t> to_store;
     Mailbox<quiesce_params_t> in_effect; ///< after each restart with others
     /// To be kept until it is acknowledged, QUIESCE_FAULT_NONE: nothing; before the start: what an
-    /// earlier run left.
-    std::atomic<std::uint32_t> latched_fault{QUIESCE_FAULT_NONE};
+    /// earlier run left. In memory that a process shares which is started from here.
+    std::atomic<std::uint32_t> &latched_fault;
 
     // To the loop.
     std::atomic<bool> snapshot_is_wanted{false};

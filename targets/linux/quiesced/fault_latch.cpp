@@ -33,6 +33,13 @@ void FaultLatch::let_go(const node_t &node) {
     }
 }
 
+void FaultLatch::keep_new(const node_t &node) {
+    const std::uint32_t fault = latched_fault(node);
+    if (phase_ == Phase::nothing && fault != QUIESCE_FAULT_NONE) {
+        tell(fault);
+    }
+}
+
 void FaultLatch::after_tick(const node_t &node) {
     switch (phase_) {
     case Phase::holding:

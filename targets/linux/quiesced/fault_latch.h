@@ -24,7 +24,10 @@ class FaultLatch {
 
     /// In each tick: what the board says, before the core gets it.
     void before_tick(node_inputs_t &board);
-    /// And what has become of it.
+    /// Right after the core's step: a fault that it has just entered is kept before anything tells
+    /// of it.
+    void keep_new(const node_t &node);
+    /// At the end: what has become of it.
     void after_tick(const node_t &node);
 
   private:

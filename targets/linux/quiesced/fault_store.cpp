@@ -3,10 +3,10 @@
 #include <cerrno>
 #include <cstring>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "clock.h"
-#include "firmware.h"
 #include "names.h"
 
 namespace quiesced {
@@ -14,46 +14,53 @@ namespace quiesced {
 namespace {
 
 constexpr const char *kKind = "fault";
-constexpr std::uint32_t kVersion = 1;
-
-struct Record {
-    std::uint32_t fault;
-    std::uint32_t reserved;
-    std::int64_t time_ns; ///< CLOCK_REALTIME
-};
 
 } // namespace
 
-std::uint32_t FaultStore::load(std::string &note) const {
-    Record record{};
+std::uint32_t FaultStore::load(std::string &note) {
     linux_error_t error{};
     note.clear();
-    switch (nvm_file_read(file().c_str(), kKind, kVersion, &record, sizeof record, &error)) {
-    case NVM_MISSING:
-        return QUIESCE_FAULT_NONE;
-    case NVM_OK:
-        if (record.fault != QUIESCE_FAULT_NONE) {
-            note = std::string("fault ") + fault_name(record.fault) + " of " +
-                   iso_time(record.time_ns) + " is not acknowledged yet";
-        }
-        return record.fault;
-    default:
+    last_ = {};
+    const nvm_verdict_t verdict =
+        nvm_slots_read(file().c_str(), kKind, &last_, sizeof last_, &error);
+    const bool has_leftover =
+        faccessat(AT_FDCWD, leftover().c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0;
+    if (verdict == NVM_OK && last_.fault != QUIESCE_FAULT_NONE) {
+        note = std::string("fault ") + fault_name(last_.fault) + " of " + iso_time(last_.time_ns) +
+               " is not acknowledged yet";
+    } else if (verdict != NVM_OK && verdict != NVM_MISSING) {
         note = std::string("a fault is not acknowledged yet, its record cannot be read: ") +
                error.text;
-        return QUIESCE_FAULT_ESTOP;
+    } else if (has_leftover) {
+        note = "a fault is not acknowledged yet, the program was killed while it kept it: " +
+               leftover();
     }
+    if (!note.empty() && last_.fault == QUIESCE_FAULT_NONE) {
+        last_ = {QUIESCE_FAULT_ESTOP, 0, realtime_ns()};
+    }
+    return last_.fault;
+}
+
+std::string FaultStore::write(const Record &record) {
+    linux_error_t error{};
+    if (!nvm_slots_are_at(&slots_, file().c_str())) {
+        nvm_slots_close(&slots_);
+        if (!nvm_slots_open(&slots_, file().c_str(), kKind, &record, sizeof record, &error)) {
+            return error.text;
+        }
+    }
+    return nvm_slots_write(&slots_, &record) ? "" : file() + ": " + std::strerror(errno);
 }
 
 std::string FaultStore::keep(std::uint32_t fault) {
-    if (fault == QUIESCE_FAULT_NONE) {
-        const bool is_gone = unlink(file().c_str()) == 0 || errno == ENOENT;
-        return is_gone ? "" : file() + ": " + std::strerror(errno);
+    const Record record = fault == last_.fault ? last_ : Record{fault, 0, realtime_ns()};
+    std::string error = write(record);
+    if (!error.empty()) {
+        return error;
     }
-    const Record record = {fault, 0, realtime_ns()};
-    linux_error_t error{};
-    return nvm_file_write(file().c_str(), kKind, kVersion, &record, sizeof record, &error)
-               ? ""
-               : error.text;
+    last_ = record;
+    const bool is_gone = unlink(leftover().c_str()) == 0 || errno == ENOENT;
+    return is_gone ? "" : leftover() + ": " + std::strerror(errno);
 }
 
 } // namespace quiesced

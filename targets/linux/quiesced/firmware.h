@@ -9,6 +9,7 @@ extern "C" {
 #include "gpio.h"
 #include "node.h"
 #include "nvm_file.h"
+#include "nvm_slots.h"
 #include "quiesce_can.h"
 #include "tick_linux.h"
 #include "watchdog.h"

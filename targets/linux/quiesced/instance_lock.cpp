@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 
@@ -10,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "input_error.h"
 
 namespace quiesced {
@@ -20,10 +22,28 @@ std::string lock_file(const std::string &folder) {
     return folder + "/lock";
 }
 
+constexpr int kCaretakerPatience_ms = 10'000;
+constexpr int kPause_ms = 10;
+
 long written_pid(int fd) {
     std::array<char, 24> text{};
     const ssize_t length = pread(fd, text.data(), text.size() - 1, 0);
     return length > 0 ? std::strtol(text.data(), nullptr, 10) : 0;
+}
+
+/// Where the process that took it is no more its caretaker still makes the outputs safe: a while.
+bool take_lock(int fd, int operation) {
+    for (int waited_ms = 0;; waited_ms += kPause_ms) {
+        if (flock(fd, operation | LOCK_NB) == 0) {
+            return true;
+        }
+        const long pid = written_pid(fd);
+        const bool is_gone = pid > 0 && kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH;
+        if (!is_gone || waited_ms >= kCaretakerPatience_ms) {
+            return false;
+        }
+        sleep_ms(kPause_ms);
+    }
 }
 
 } // namespace
@@ -37,7 +57,7 @@ InstanceLock::InstanceLock(const std::string &folder) : fd_(-1) {
     if (fd_ < 0) {
         throw quiesce::InputError("state.folder: " + file + ": " + std::strerror(errno));
     }
-    if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+    if (!take_lock(fd_, LOCK_EX)) {
         const std::string pid = std::to_string(written_pid(fd_));
         close(fd_);
         throw quiesce::InputError("quiesced runs already (process " + pid + " holds " + file + ")");
@@ -59,7 +79,7 @@ long InstanceLock::holder(const std::string &folder) {
     if (fd < 0) {
         return 0;
     }
-    const bool is_free = flock(fd, LOCK_SH | LOCK_NB) == 0;
+    const bool is_free = take_lock(fd, LOCK_SH);
     const long pid = is_free ? 0 : written_pid(fd);
     close(fd);
     return is_free ? 0 : (pid > 0 ? pid : -1);

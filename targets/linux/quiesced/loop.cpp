@@ -297,6 +297,7 @@ void Loop::tick(std::uint32_t elapsed) {
     inputs.tx_dropped = sender_.counters().lost; // telemetry may well be shed
     latch_.before_tick(inputs);
     node_step(&node_, &inputs);
+    latch_.keep_new(node_);
     write_commands();
     if (const quiesce_params_t *params = node_task(&node_)) {
         restart(*params);

@@ -6,6 +6,7 @@
 #include "bus.h"
 #include "clock.h"
 #include "devices.h"
+#include "fault_store.h"
 #include "input_error.h"
 #include "instance_lock.h"
 #include "kept_config.h"
@@ -61,6 +62,10 @@ void say_farewell(const Config &config, const quiesce_params_t &params) {
     const Bus bus = open_bus(*config.can, BusUse::controller);
     const auto node = std::make_unique<can_node_t>();
     can_node_init(node.get(), config.wiring(), &params);
+    std::string note;
+    if (FaultStore(config.state.folder).load(note) != QUIESCE_FAULT_NONE) {
+        node->freeze.state = QUIESCE_STATE_FAULT;
+    }
     for (int i = 0; i < kFarewells; ++i) {
         const auto most = std::min<std::size_t>(config.outputs.size(), QUIESCE_DAMPERS);
         for (std::uint32_t damper = 0; damper < most; ++damper) {
@@ -156,16 +161,12 @@ Config other_outputs(const Config &config, const Config &other) {
     return left;
 }
 
-int make_safe(const std::string &config_file, const SystemFolders &folders) {
-    install_signals(); // a SIGTERM does not stop it half-way
-    ConfigReading today = read_config(config_file, Needs::peripherals);
+namespace {
+
+int make_outputs_safe(ConfigReading &today, const std::string &folder,
+                      const SystemFolders &folders) {
     today.config.folders = folders;
     complain_about(today);
-    const std::string folder = today.is_toml ? today.config.state.folder : fallback_state_folder();
-    if (const long pid = InstanceLock::holder(folder); pid != 0) {
-        complain("process " + std::to_string(pid) + " controls the outputs; stop it first");
-        return 1;
-    }
     const KeptConfig store(folder);
     auto kept = store.load();
     if (kept) {
@@ -175,6 +176,25 @@ int make_safe(const std::string &config_file, const SystemFolders &folders) {
     const Config left = kept ? other_outputs(today.config, kept->config) : today.config;
     is_safe &= release_outputs(left, params_of(today.config, folder));
     return is_safe ? 0 : 1;
+}
+
+} // namespace
+
+int make_outputs_safe(const std::string &config_file, const std::string &state_folder,
+                      const SystemFolders &folders) {
+    ConfigReading today = read_config(config_file, Needs::peripherals);
+    return make_outputs_safe(today, state_folder, folders);
+}
+
+int make_safe(const std::string &config_file, const SystemFolders &folders) {
+    install_signals(); // a SIGTERM does not stop it half-way
+    ConfigReading today = read_config(config_file, Needs::peripherals);
+    const std::string folder = today.is_toml ? today.config.state.folder : fallback_state_folder();
+    if (const long pid = InstanceLock::holder(folder); pid != 0) {
+        complain("process " + std::to_string(pid) + " controls the outputs; stop it first");
+        return 1;
+    }
+    return make_outputs_safe(today, folder, folders);
 }
 
 } // namespace quiesced

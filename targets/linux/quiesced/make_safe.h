@@ -21,6 +21,10 @@ Config other_outputs(const Config &config, const Config &other);
 /// which it leaves alone.
 int make_safe(const std::string &config_file, const SystemFolders &folders = {});
 
+/// The same, by who knows that no controller runs: it holds the instance lock itself.
+int make_outputs_safe(const std::string &config_file, const std::string &state_folder,
+                      const SystemFolders &folders);
+
 } // namespace quiesced
 
 #endif

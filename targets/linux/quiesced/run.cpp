@@ -6,6 +6,7 @@
 #include <malloc.h>
 
 #include "board_fit.h"
+#include "caretaker.h"
 #include "fault_store.h"
 #include "input_error.h"
 #include "instance_lock.h"
@@ -93,6 +94,16 @@ void keep_config(const ReadConfig &read, const quiesce_params_t &params, LogRing
     }
 }
 
+/// A controller that could not keep a fault does not start.
+std::uint32_t start_faults(FaultStore &faults, std::string &note) {
+    const std::uint32_t fault = faults.load(note);
+    if (const std::string error = faults.keep(fault); !error.empty()) {
+        throw quiesce::InputError("state.folder: a fault could not be kept: " + error +
+                                  "; make room there, or give the right to write");
+    }
+    return fault;
+}
+
 void log_kept_fault(const std::string &note, LogRing &log) {
     if (!note.empty()) {
         log.log(LogLevel::error,
@@ -117,13 +128,15 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     std::string learnt_note;
     const auto learnt = store.load_learnt(learnt_note);
     std::string fault_note;
-    exchange->latched_fault.store(FaultStore(config.state.folder).load(fault_note));
+    FaultStore faults(config.state.folder);
+    exchange->latched_fault.store(start_faults(faults, fault_note));
 
+    Caretaker caretaker(config.file, config.state.folder, exchange->latched_fault);
     open_peripherals(config, exchange->peripherals);
     const Bus bus = config.can ? open_bus(*config.can, BusUse::controller) : nullptr;
     keep_config(read, params, exchange->log);
     exchange->bus = bus.get();
-    const Service service(config, *exchange, sink);
+    const Service service(config, *exchange, faults, caretaker, sink);
     become_realtime(config.loop);
     // Last, because it cannot always be stopped again.
     const Watchdog watchdog = config.watchdog ? open_watchdog(*config.watchdog) : nullptr;

@@ -45,11 +45,12 @@ void Trouble::note(const std::string &error, LogSink &sink) {
     }
 }
 
-Service::Service(const Config &config, Exchange &exchange, LogSink &sink)
+Service::Service(const Config &config, Exchange &exchange, FaultStore &faults, Caretaker &caretaker,
+                 LogSink &sink)
     : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
-      faults_(config.state.folder), kept_(config.state.folder), manager_(exchange.manager),
-      configured_(config.params), stored_fault_(exchange.latched_fault.load()),
-      thread_([this] { run(); }) {}
+      faults_(faults), caretaker_(caretaker), kept_(config.state.folder),
+      manager_(exchange.manager), configured_(config.params),
+      stored_fault_(exchange.latched_fault.load()), thread_([this] { run(); }) {}
 
 Service::~Service() {
     exchange_.loop_has_ended.store(true);
@@ -96,6 +97,10 @@ void Service::work(std::int64_t now_ns) {
     if (now_ns >= next_devices_ns_) {
         next_devices_ns_ = now_ns + kSecond_ns;
         look_after_devices();
+        if (caretaker_.has_ended()) {
+            sink_.write(LogLevel::error, "the caretaker has ended: nothing but --make-safe helps "
+                                         "where this process is killed");
+        }
     }
     tell_manager();
 }

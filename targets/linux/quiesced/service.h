@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "caretaker.h"
 #include "exchange.h"
 #include "fault_store.h"
 #include "kept_config.h"
@@ -31,7 +32,8 @@ class Service {
   public:
     /// Starts the thread. Make it before the calling thread becomes a real-time thread. Everything
     /// that it is given must outlive it.
-    Service(const Config &config, Exchange &exchange, LogSink &sink);
+    Service(const Config &config, Exchange &exchange, FaultStore &faults, Caretaker &caretaker,
+            LogSink &sink);
     Service(const Service &) = delete;
     Service &operator=(const Service &) = delete;
 
@@ -58,7 +60,8 @@ class Service {
     Exchange &exchange_;
     LogSink &sink_;
     StateStore store_;
-    FaultStore faults_;
+    FaultStore &faults_;
+    Caretaker &caretaker_;
     KeptConfig kept_;
     const Notifier &manager_;
     quiesce_params_t configured_; ///< what [parameters] says, last time that it was read

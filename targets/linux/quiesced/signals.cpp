@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
-#include <initializer_list>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -36,11 +35,50 @@ void on_signal(int number) {
     errno = saved;
 }
 
+/// Whatever a process can catch and end after, but what a fault of the program itself raises: there
+/// its caretaker acts.
+bool is_ours(int number) {
+    switch (number) {
+    case SIGKILL:
+    case SIGSTOP:
+    case SIGILL:
+    case SIGTRAP:
+    case SIGABRT:
+    case SIGBUS:
+    case SIGFPE:
+    case SIGSEGV:
+    case SIGSYS:
+        return false;
+    default:
+        return true;
+    }
+}
+
+/// Of the others: no reason to end, or to stop with the driver on.
+bool is_ignored(int number) {
+    switch (number) {
+    case SIGPIPE:
+    case SIGXFSZ:
+    case SIGTSTP:
+    case SIGTTIN:
+    case SIGTTOU:
+    case SIGCHLD:
+    case SIGCONT:
+    case SIGURG:
+    case SIGWINCH:
+        return true;
+    default:
+        return false;
+    }
+}
+
 sigset_t our_signals() {
     sigset_t set;
     sigemptyset(&set);
-    for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) {
-        sigaddset(&set, number);
+    for (int number = 1; number <= SIGRTMAX; ++number) {
+        if (is_ours(number) && !is_ignored(number)) {
+            sigaddset(&set, number);
+        }
     }
     return set;
 }
@@ -51,13 +89,13 @@ void install_signals() {
     const sigset_t set = our_signals();
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
     struct sigaction action {};
-    action.sa_handler = on_signal;
     action.sa_mask = set;
-    for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) {
-        sigaction(number, &action, nullptr);
+    for (int number = 1; number <= SIGRTMAX; ++number) {
+        action.sa_handler = is_ignored(number) ? SIG_IGN : on_signal;
+        if (is_ours(number) && number != SIGCHLD) {
+            (void)sigaction(number, &action, nullptr); // the C library keeps two for itself
+        }
     }
-    action.sa_handler = SIG_IGN;
-    sigaction(SIGPIPE, &action, nullptr);
 }
 
 void take_signals(int wake_fd) {

@@ -5,8 +5,10 @@
 
 namespace quiesced {
 
-/// Blocks SIGTERM, SIGINT, SIGHUP and SIGUSR1 in this thread and those it starts, installs their
-/// handlers, ignores SIGPIPE.
+/// Blocks all that can be caught and ends a process in this thread and those it starts, and
+/// installs handlers: SIGHUP reloads, SIGUSR1 writes the status file, the others request the stop.
+/// Left alone is what a fault of the program raises (SIGSEGV and the like); SIGPIPE, SIGXFSZ and
+/// what would stop the process where it is are ignored.
 void install_signals();
 
 /// Lets this thread take them. wake_fd: an eventfd that each writes to; -1: none.

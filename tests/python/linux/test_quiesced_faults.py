@@ -6,8 +6,19 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from latch_kills import measure
 from quiesced_peer import Peer, Quiesced, on_a_pty, open_pty
-from quiesced_steps import ESTOP, FAULT, RUN, in_a_row, killed, start_running, wait_farewell
+from quiesced_steps import (
+    ESTOP,
+    FAULT,
+    IDLE,
+    RUN,
+    SAFE,
+    in_a_row,
+    killed,
+    start_running,
+    wait_farewell,
+)
 
 
 @pytest.fixture
@@ -108,20 +119,113 @@ def test_damaged_fault_record_counts_as_a_fault(quiesced: Quiesced, record: byte
     quiesced.peer.acknowledges = True
     quiesced.peer.wait_state(RUN, after)
     quiesced.wait_log("the kept fault is forgotten")
-    assert not (quiesced.state / "fault.bin").exists()
     assert quiesced.stop() == 0
+    assert quiesced.run("--clear-fault").stdout == "no fault is kept\n"
 
 
-def test_full_disk_for_the_fault(quiesced: Quiesced) -> None:
+def test_fault_that_cannot_be_written_is_tried_again(quiesced: Quiesced) -> None:
+    """The reserved room was taken away, and there is no other."""
     start_running(quiesced)
-    (quiesced.state / "fault.bin.new").mkdir()
+    (quiesced.state / "fault.bin").unlink()
+    (quiesced.state / "fault.bin.make").mkdir()
     quiesced.peer.estop = True
     quiesced.wait_log("latched fault: not written: ")
-    (quiesced.state / "fault.bin.new").rmdir()
+    (quiesced.state / "fault.bin.make").rmdir()
     quiesced.wait_log("latched fault: written again")
     quiesced.wait_log("fault ESTOP is kept")
     assert quiesced.stop() == 0
     assert quiesced.log_text().count("latched fault: not written: ") == 1
+
+
+def test_leftover_of_a_killed_program_counts_as_a_fault(quiesced: Quiesced) -> None:
+    quiesced.state.mkdir()
+    (quiesced.state / "fault.bin.new").write_bytes(b"half of a rec")
+    assert "a fault is not acknowledged yet" in quiesced.run("--check").stdout
+    quiesced.peer.operator = {"enable": 1}
+    after = quiesced.peer.count()
+    quiesced.start()
+    stays_off(quiesced, after)
+    assert quiesced.stop() == 0
+    cleared = quiesced.run("--clear-fault")
+    assert cleared.stdout.startswith("forgotten: fault ESTOP of 2")
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV, signal.SIGABRT])
+def test_caretaker_says_farewell_and_keeps_the_fault(quiesced: Quiesced, number: int) -> None:
+    """Whatever ends the controller, without a service manager."""
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    quiesced.signal(number)
+    assert quiesced.wait() == -number
+    after = quiesced.peer.count()
+    wait_farewell(quiesced.peer, after, 40)
+    quiesced.peer.wait_state(IDLE, after)
+    assert quiesced.run("--make-safe").returncode == 0  # it waits for the caretaker
+    latch_estop(quiesced)
+    after = quiesced.peer.count()
+    quiesced.signal(number)
+    quiesced.wait()
+    assert "not acknowledged yet" in quiesced.run("--check").stdout
+    quiesced.peer.catch_up()
+    assert quiesced.peer.frames[-1].signals["state"] == FAULT
+    assert "its outputs are made safe" in quiesced.log_text()
+
+
+ENDS = [
+    signal.SIGTERM,
+    signal.SIGINT,
+    signal.SIGQUIT,
+    signal.SIGUSR2,
+    signal.SIGALRM,
+    signal.SIGVTALRM,
+    signal.SIGPROF,
+    signal.SIGIO,
+    signal.SIGPWR,
+    signal.SIGXCPU,
+    signal.SIGRTMIN,
+    signal.SIGRTMAX,
+]
+
+
+@pytest.mark.parametrize("number", ENDS)
+def test_signals_that_can_be_caught_end_in_order(quiesced: Quiesced, number: int) -> None:
+    quiesced.write_config("safe_current_mA = 40\n")
+    start_running(quiesced)
+    quiesced.signal(number)
+    assert quiesced.wait() == 0
+    quiesced.peer.catch_up()
+    last = [f.signals for f in quiesced.peer.frames if f.name == "CurrentDemand"][-3:]
+    assert [s["driver_is_enabled"] for s in last] == [0, 0, 0]
+    assert [s["current_cmd_mA"] for s in last] == [40, 40, 40]
+    assert {s["state"] for s in last} <= {IDLE, SAFE}
+
+
+@pytest.mark.parametrize("number", [signal.SIGTSTP, signal.SIGTTOU, signal.SIGXFSZ, signal.SIGPIPE])
+def test_signals_that_would_leave_the_driver_on_are_ignored(
+    quiesced: Quiesced, number: int
+) -> None:
+    start_running(quiesced)
+    quiesced.signal(number)
+    quiesced.peer.wait("Identification", after=quiesced.peer.count())
+    assert quiesced.stop() == 0
+
+
+def test_caretaker_that_is_killed_is_told(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    assert quiesced.process is not None
+    children = Path(f"/proc/{quiesced.process.pid}/task/{quiesced.process.pid}/children")
+    os.kill(int(children.read_text()), signal.SIGKILL)
+    quiesced.wait_log("the caretaker has ended")
+    assert quiesced.stop() == 0
+
+
+def test_no_latch_is_lost(tmp_path: Path) -> None:
+    """latch_kills.py takes all system calls; here some of them."""
+    figures = measure(tmp_path, every=40)
+    assert figures["latch_kills"] >= 10
+    assert figures["latch_told"] >= 3
+    assert {name: n for name, n in figures.items() if name.endswith("lost") and n} == {}
+    assert all(figures[name] for name in figures if name.endswith("refused"))
 
 
 def test_make_safe_after_a_kill(quiesced: Quiesced) -> None:

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <memory>
+
+#include <sys/resource.h>
 
 #include "fault_latch.h"
 #include "fault_store.h"
@@ -38,10 +41,71 @@ TEST(FaultStore, a_record_that_cannot_be_read_counts_as_an_emergency_stop) {
         EXPECT_EQ(store.load(note), QUIESCE_FAULT_ESTOP);
         EXPECT_NE(note.find("its record cannot be read: "), std::string::npos) << note;
     }
+    // A start keeps it as what it counts as.
+    EXPECT_EQ(store.keep(QUIESCE_FAULT_ESTOP), "");
+    std::string kept;
+    EXPECT_EQ(store.load(kept), QUIESCE_FAULT_ESTOP);
+    EXPECT_EQ(kept.rfind("fault ESTOP of 2", 0), 0U) << kept;
     EXPECT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
     std::string note;
     EXPECT_EQ(store.load(note), QUIESCE_FAULT_NONE);
     EXPECT_NE(FaultStore("/no/such/folder").keep(QUIESCE_FAULT_ESTOP), "");
+}
+
+/// Of a version that wrote records aside, killed before the renaming.
+TEST(FaultStore, a_leftover_counts_as_an_emergency_stop_until_it_is_forgotten) {
+    const TemporaryFolder folder;
+    FaultStore store(folder.path());
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
+    write_text(store.leftover(), "half of a rec");
+    std::string note;
+    EXPECT_EQ(store.load(note), QUIESCE_FAULT_ESTOP);
+    EXPECT_NE(note.find("killed while it kept it"), std::string::npos) << note;
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_ESTOP), ""); // as at a start
+    EXPECT_FALSE(std::filesystem::exists(store.leftover()));
+    EXPECT_EQ(store.load(note), QUIESCE_FAULT_ESTOP);
+}
+
+TEST(FaultStore, a_damaged_half_of_the_record_counts_as_an_emergency_stop) {
+    const TemporaryFolder folder;
+    FaultStore store(folder.path());
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
+    const std::string whole = read_text(store.file());
+    ASSERT_EQ(whole.size(), 8192U);
+    for (const std::size_t at : {0U, 20U, 40U, 4096U, 4120U}) {
+        std::string damaged = whole;
+        damaged[at] = static_cast<char>(damaged[at] ^ 4);
+        write_text(store.file(), damaged);
+        std::string note;
+        EXPECT_EQ(store.load(note), QUIESCE_FAULT_ESTOP) << at;
+    }
+}
+
+TEST(FaultStore, a_record_needs_no_room_and_no_right_to_the_folder_once_it_is_there) {
+    const TemporaryFolder folder;
+    FaultStore store(folder.path());
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
+    struct rlimit before {};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const rlimit none = {8192, before.rlim_max}; // no file grows beyond it
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+    std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_exec);
+    const std::string error = store.keep(QUIESCE_FAULT_ESTOP);
+    std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    EXPECT_EQ(error, "");
+    std::string note;
+    EXPECT_EQ(FaultStore(folder.path()).load(note), QUIESCE_FAULT_ESTOP);
+}
+
+TEST(FaultStore, a_record_that_was_removed_is_made_again) {
+    const TemporaryFolder folder;
+    FaultStore store(folder.path());
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_NONE), "");
+    std::filesystem::remove(store.file());
+    ASSERT_EQ(store.keep(QUIESCE_FAULT_ESTOP), "");
+    std::string note;
+    EXPECT_EQ(FaultStore(folder.path()).load(note), QUIESCE_FAULT_ESTOP);
 }
 
 /// The core with a sensor and no bus, as the loop runs it.
