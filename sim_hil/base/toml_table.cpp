@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <system_error>
 
@@ -299,13 +301,78 @@ void TomlTable::reject_unknown_keys() const {
     }
 }
 
+namespace {
+
+constexpr int kMostParts = 16; // of a key; every value may nest 256 times in the parser
+constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
+
+std::string text_of(const std::string &file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) {
+        throw InputError(on_one_line(file + ": File could not be opened for reading"));
+    }
+    std::string text(kMostBytes + 1, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (text.size() > kMostBytes) {
+        throw InputError(on_one_line(file + ": is greater than any file of settings"));
+    }
+    return text;
+}
+
+/// Position after the string that begins here; where it has no end that of its line, or of the
+/// text.
+std::size_t after_string(const std::string &text, std::size_t at) {
+    const char quote = text[at];
+    const std::string triple(3, quote);
+    const bool is_long = text.compare(at, 3, triple) == 0;
+    at += is_long ? 3 : 1;
+    for (; at < text.size(); ++at) {
+        if (quote == '"' && text[at] == '\\') {
+            ++at;
+        } else if (is_long && text.compare(at, 3, triple) == 0) {
+            const std::size_t end = text.find_first_not_of(quote, at);
+            return std::min({end, at + 5, text.size()}); // it may end with two quotes of its own
+        } else if (!is_long && (text[at] == quote || text[at] == '\n')) {
+            return text[at] == quote ? at + 1 : at;
+        }
+    }
+    return text.size();
+}
+
+/// The parser nests a table for each part of a key, without a bound, and its stack is no greater
+/// than any other.
+void check_nesting(const std::string &file, const std::string &text) {
+    int parts = 1;
+    for (std::size_t at = 0; at < text.size();) {
+        const char c = text[at];
+        if (c == '"' || c == '\'') {
+            at = after_string(text, at);
+            continue;
+        }
+        parts = c == '.' ? parts + 1 : std::strchr("=,[]{}\n", c) != nullptr ? 1 : parts;
+        if (parts > kMostParts) {
+            const auto line =
+                1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+            throw InputError(on_one_line(file + ":" + std::to_string(line) +
+                                         ": a key of more than " + std::to_string(kMostParts) +
+                                         " parts"));
+        }
+        at = c == '#' ? std::min(text.find('\n', at), text.size()) : at + 1;
+    }
+}
+
+} // namespace
+
 TomlFile::TomlFile(const std::string &file) : file_(file) {
     std::error_code unreadable; // the parser tells
     if (std::filesystem::is_directory(file, unreadable)) {
         throw InputError(on_one_line(file + ": is a folder, not a file"));
     }
     try {
-        const auto table = std::make_shared<const toml::table>(toml::parse_file(file));
+        const std::string text = text_of(file);
+        check_nesting(file, text);
+        const auto table = std::make_shared<const toml::table>(toml::parse(text, file));
         table_ = std::shared_ptr<const TomlNode>(table, opaque(table.get()));
     } catch (const toml::parse_error &error) {
         const auto line = error.source().begin.line;

@@ -255,7 +255,7 @@ def test_make_safe_does_what_it_can(quiesced: Quiesced) -> None:
     quiesced.peer.wait("CurrentDemand", lambda s: s["driver_is_enabled"] == 0)
 
 
-@pytest.mark.parametrize("damage", ["[can\n", None])
+@pytest.mark.parametrize("damage", ["[can\n", "a" + ".a" * 50000 + " = 1\n", None])
 def test_make_safe_with_a_file_that_cannot_be_read(quiesced: Quiesced, damage: str | None) -> None:
     """What ran is made safe; systemd says where the state is."""
     quiesced.write_config("safe_current_mA = 40\n")

@@ -131,6 +131,15 @@ void PrintTo(const Malformed &row, std::ostream *out) {
     *out << row.name;
 }
 
+/// A key of so many parts that a parser without a bound overflows its stack.
+std::string deep(const std::string &part) {
+    std::string key = part;
+    for (int i = 0; i < 50000; ++i) {
+        key += "." + part;
+    }
+    return key;
+}
+
 class MalformedConfig : public testing::TestWithParam<Malformed> {};
 
 TEST_P(MalformedConfig, is_one_line_that_names_the_key) {
@@ -184,6 +193,13 @@ const Malformed kMalformed[] = {
      "q.toml:8: parameters.tick_rate_Hz: expected one of: 500, 1000, 2000, 4000; found 700"},
     {"param_contradiction", "[parameters]\nmax_current_mA = 6000\nsafe_current_mA = 7000\n",
      "q.toml:9: parameters.safe_current_mA: "},
+    {"deep_key", deep("a") + " = 1\n", "q.toml:7: a key of more than 16 parts"},
+    {"deep_table", "\n[" + deep("a") + "]\n", "q.toml:8: a key of more than 16 parts"},
+    {"deep_tables", "[[" + deep("\"a#\"") + "]]\n", "q.toml:7: a key of more than 16 parts"},
+    {"deep_inline", "a = [\"\"\"x\"\"\"\"\", {" + deep("a") + "=1}]\n",
+     "q.toml:7: a key of more than 16 parts"},
+    {"dots", "# " + std::string(99, '.') + "\nx = \"\\\"" + std::string(99, '.') + "\"\n",
+     "q.toml:8: current.x: unknown key"},
     {"no_toml", "[parameters\n", "q.toml:7: "},
     {"twice", "[can]\n", "q.toml:7: "},
 };
