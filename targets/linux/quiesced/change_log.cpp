@@ -55,10 +55,10 @@ void ChangeLog::bus(const can_bus_t *bus) {
              static_cast<unsigned>(counters.restarts), static_cast<unsigned>(counters.tx_dropped));
 }
 
-void ChangeLog::overruns(std::uint32_t overruns, std::int64_t now_ns) {
+void ChangeLog::overruns(std::uint32_t overruns, LossCause cause, std::int64_t now_ns) {
     if (overruns_.is_news(overruns, now_ns)) {
-        log_.log(LogLevel::warning, "%u ticks lost since the start",
-                 static_cast<unsigned>(overruns));
+        log_.log(LogLevel::warning, "%u ticks lost since the start, the last one: %s",
+                 static_cast<unsigned>(overruns), loss_text(cause));
     }
 }
 

@@ -14,7 +14,7 @@ class ChangeLog {
 
     void control(const quiesce_telemetry_t &telemetry);
     void bus(const can_bus_t *bus);
-    void overruns(std::uint32_t overruns, std::int64_t now_ns);
+    void overruns(std::uint32_t overruns, LossCause cause, std::int64_t now_ns);
     /// Of an output of the configuration, by its number.
     void failed_writes(std::size_t number, const char *title, std::uint32_t failures,
                        std::int64_t now_ns);

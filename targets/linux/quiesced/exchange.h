@@ -8,6 +8,7 @@
 
 #include "devices.h"
 #include "log_ring.h"
+#include "lost_ticks.h"
 #include "mailbox.h"
 #include "notify.h"
 #include "replaceable.h"
@@ -35,6 +36,8 @@ struct Snapshot {
     std::uint32_t kept_fault; ///< of an earlier run, not acknowledged yet
     std::uint32_t param_hash;
     hal_tick_t timing;
+    LossCounts lost;
+    bool has_priority; ///< of real time
     std::uint64_t ticks;
     can_bus_state_t bus_state;
     can_bus_counters_t bus;

@@ -238,6 +238,8 @@ Snapshot Loop::snapshot() const {
     snapshot.kept_fault = latch_.held();
     snapshot.param_hash = can_node_param_hash(&node_.params);
     snapshot.timing = source_.timing();
+    snapshot.lost = lost_.counts();
+    snapshot.has_priority = this_thread().is_realtime;
     snapshot.ticks = exchange_.ticks.load();
     if (bus_ != nullptr) {
         snapshot.bus_state = can_bus_state(bus_);
@@ -274,7 +276,7 @@ void Loop::put_params() {
 
 void Loop::report(std::int64_t now_ns) {
     changes_.control(node_.out.telemetry);
-    changes_.overruns(source_.timing().overruns, now_ns);
+    changes_.overruns(source_.timing().overruns, lost_.last(), now_ns);
     put_params();
     if (bus_ != nullptr) {
         changes_.bus(bus_);
@@ -288,7 +290,15 @@ void Loop::report(std::int64_t now_ns) {
     }
 }
 
+void Loop::count_lost(std::uint32_t elapsed) {
+    if (elapsed > 1) {
+        lost_.count(elapsed - 1, source_.timing(), config_.gpio.data_ready_input.has_value(),
+                    this_thread());
+    }
+}
+
 void Loop::tick(std::uint32_t elapsed) {
+    count_lost(elapsed);
     take_new_params();
     receive();
     answer_store();

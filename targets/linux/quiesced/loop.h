@@ -36,6 +36,7 @@ class Loop {
     static constexpr std::uint32_t kRefreshes_Hz = 20;
 
     void tick(std::uint32_t elapsed);
+    void count_lost(std::uint32_t elapsed);
     void receive();
     void write_current(std::size_t damper, std::int32_t current_mA, bool enable);
     void write_commands();
@@ -81,6 +82,7 @@ class Loop {
     TickSource &source_;
     ChangeLog changes_;
     FrameSender sender_;
+    LostTicks lost_;
 
     std::uint32_t rate_Hz_ = 0;
     std::uint32_t restarts_ = 0;

@@ -78,6 +78,14 @@ void log_start(const Config &config, const quiesce_params_t &params, LogRing &lo
             config.can ? config.can->interface.c_str() : "no CAN");
 }
 
+void log_scheduling(const LoopConfig &loop, LogRing &log) {
+    if (loop.priority == 0) {
+        log.log(LogLevel::warning,
+                "no real-time priority (loop.priority is 0): a busy machine loses "
+                "ticks, each ends in the safe current");
+    }
+}
+
 void log_note(const std::string &note, LogRing &log) {
     if (!note.empty()) {
         log.log(LogLevel::warning, "%s", note.c_str());
@@ -144,6 +152,7 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const auto loop =
         std::make_unique<Loop>(config, params, *exchange, source, bus.get(), watchdog.get());
     log_start(config, params, exchange->log);
+    log_scheduling(config.loop, exchange->log);
     log_note(params_note, exchange->log);
     log_note(learnt_note, exchange->log);
     log_kept_fault(fault_note, exchange->log);

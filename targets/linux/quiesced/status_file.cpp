@@ -94,10 +94,21 @@ void put_faults(std::ostream &out, const Snapshot &snapshot) {
     out << "],\n";
 }
 
+std::string lost_json(const LossCounts &counts) {
+    std::string out;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        out += (i == 0 ? "" : ", ") + quoted(loss_name(static_cast<LossCause>(i))) + ": " +
+               std::to_string(counts[i]);
+    }
+    return "{" + out + "}";
+}
+
 void put_loop(std::ostream &out, const Snapshot &snapshot) {
     out << "  \"loop\": {\n"
         << "    \"ticks\": " << snapshot.ticks << ",\n"
         << "    \"overruns\": " << snapshot.timing.overruns << ",\n"
+        << "    \"lost\": " << lost_json(snapshot.lost) << ",\n"
+        << "    \"has_real_time_priority\": " << truth(snapshot.has_priority) << ",\n"
         << "    \"early_edges\": " << snapshot.timing.early << ",\n"
         << "    \"lateness\": " << histogram_json(snapshot.timing.lateness) << ",\n"
         << "    \"work\": " << histogram_json(snapshot.timing.work) << "\n  },\n";

@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -165,3 +166,17 @@ def test_the_loop_never_opens_or_closes_the_bus(quiesced: Quiesced, tmp_path: Pa
     assert quiesced.status()["can"]["tx_dropped"] > 0
     os.close(slave)
     os.close(master)
+
+
+def test_lost_ticks_and_missing_priority_are_told(quiesced: Quiesced) -> None:
+    start_running(quiesced)
+    quiesced.wait_log("no real-time priority (loop.priority is 0)")
+    quiesced.signal(signal.SIGSTOP)
+    time.sleep(0.1)  # fifty ticks
+    quiesced.signal(signal.SIGCONT)
+    quiesced.wait_log("other processes had the CPU, and the loop has no real-time priority")
+    assert quiesced.stop() == 0
+    loop = quiesced.status()["loop"]
+    assert loop["has_real_time_priority"] is False
+    assert sum(loop["lost"].values()) == loop["overruns"]
+    assert loop["lost"]["no_priority"] > 0

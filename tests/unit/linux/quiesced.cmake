@@ -16,6 +16,7 @@ add_executable(
   quiesced/test_handover.cpp
   quiesced/test_log.cpp
   quiesced/test_loop.cpp
+  quiesced/test_lost_ticks.cpp
   quiesced/test_make_safe.cpp
   quiesced/test_notify.cpp
   quiesced/test_options.cpp
