@@ -1,5 +1,9 @@
 #include "devices.h"
 
+#include <filesystem>
+#include <map>
+#include <string>
+
 #include "input_error.h"
 
 namespace quiesced {
@@ -127,7 +131,40 @@ class EnableLine final : public EnableInput {
     Line line_;
 };
 
+/// Where the kernel has the device; "" where it has none, which opening tells.
+std::string resolved(const OutputConfig &output, const SystemFolders &folders) {
+    sysfs_path_t folder{};
+    std::error_code missing;
+    if (output.output == CurrentOutput::dac) {
+        const bool is_there =
+            sysfs_find_iio(folders.iio.c_str(), output.device.c_str(), &folder, nullptr);
+        return is_there ? std::filesystem::canonical(folder.text, missing).string() : "";
+    }
+    const auto chip = std::filesystem::path(folders.pwm) / output.device;
+    return std::filesystem::canonical(chip, missing).string();
+}
+
 } // namespace
+
+void refuse_shared_outputs(const Config &config) {
+    std::map<std::string, const OutputConfig *> users;
+    for (const OutputConfig &output : config.outputs) {
+        const std::string place =
+            output.output == CurrentOutput::can ? "" : resolved(output, config.folders);
+        if (place.empty()) {
+            continue;
+        }
+        const auto [user, is_new] =
+            users.emplace(place + ":" + std::to_string(output.channel), &output);
+        if (!is_new) {
+            const bool is_pwm = output.output == CurrentOutput::pwm;
+            throw quiesce::InputError(output.place.key(is_pwm ? "chip" : "device") + ": " +
+                                      output.device + " is the device of " +
+                                      user->second->place.title + ", " + user->second->device +
+                                      " there; expected one of its own");
+        }
+    }
+}
 
 std::unique_ptr<SensorDevice> open_sensor(const SensorConfig &config,
                                           const SystemFolders &folders) {

@@ -42,6 +42,10 @@ struct WatchdogCloser {
 using Line = std::unique_ptr<gpio_line_t, LineCloser>;
 using Watchdog = std::unique_ptr<watchdog_t, WatchdogCloser>;
 
+/// Throws InputError where two outputs lead to one channel of one device, under whatever names:
+/// each would undo what the other is told.
+void refuse_shared_outputs(const Config &config);
+
 /// All throw InputError: "KEY: what, and what to do". Null where the source or output is the bus.
 std::unique_ptr<SensorDevice> open_sensor(const SensorConfig &config, const SystemFolders &folders);
 std::unique_ptr<CurrentDevice> open_current(const OutputConfig &config,

@@ -11,6 +11,7 @@ extern "C" {
 #include "nvm_file.h"
 #include "nvm_slots.h"
 #include "quiesce_can.h"
+#include "sysfs.h"
 #include "tick_linux.h"
 #include "watchdog.h"
 }

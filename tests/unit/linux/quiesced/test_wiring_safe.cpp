@@ -6,6 +6,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "devices.h"
+#include "input_error.h"
 #include "kept_config.h"
 #include "make_safe.h"
 #include "read_config.h"
@@ -151,6 +153,41 @@ TEST(OtherDampers, an_output_is_the_same_for_whatever_damper) {
     const Config left = other_outputs(config, swapped);
     EXPECT_EQ(left.outputs[0].output, CurrentOutput::pwm);
     EXPECT_EQ(left.outputs[1].output, CurrentOutput::can);
+}
+
+/// The DAC by its folder and by its name.
+TEST(SharedOutputs, are_refused_under_two_names) {
+    const TwoStoreys rig;
+    Config config;
+    config.folders = rig.folders();
+    config.outputs.resize(2);
+    for (OutputConfig &output : config.outputs) {
+        output.output = CurrentOutput::dac;
+        output.place = {"damper", 0, "upper", "damper upper"};
+    }
+    config.outputs[0].device = "dac";
+    config.outputs[1].device = "iio:device3";
+    EXPECT_THROW(refuse_shared_outputs(config), quiesce::InputError);
+    config.outputs[1].channel = 1;
+    EXPECT_NO_THROW(refuse_shared_outputs(config));
+    config.outputs[1] = config.outputs[0];
+    config.outputs[1].output = CurrentOutput::can;
+    EXPECT_NO_THROW(refuse_shared_outputs(config));
+}
+
+TEST(SharedOutputs, a_second_name_of_a_pwm_chip_is_the_same_chip) {
+    const TwoStoreys rig;
+    std::filesystem::create_directory_symlink(rig.folders().pwm + "/pwmchip0",
+                                              rig.folders().pwm + "/coil");
+    Config config;
+    config.folders = rig.folders();
+    config.outputs.resize(2);
+    config.outputs[0].output = config.outputs[1].output = CurrentOutput::pwm;
+    config.outputs[0].device = "pwmchip0";
+    config.outputs[1].device = "coil";
+    EXPECT_THROW(refuse_shared_outputs(config), quiesce::InputError);
+    config.outputs[0].device = config.outputs[1].device = "none"; // opening tells
+    EXPECT_NO_THROW(refuse_shared_outputs(config));
 }
 
 } // namespace
