@@ -118,6 +118,12 @@ void can_bus_repair(can_bus_t *bus, int64_t now_ns) {
     }
 }
 
+void can_bus_look(can_bus_t *bus) {
+    if (bus->fd >= 0 && bus->backend->look != NULL) {
+        bus->backend->look(bus);
+    }
+}
+
 can_bus_state_t can_bus_state(const can_bus_t *bus) {
     return bus->state;
 }

@@ -38,6 +38,10 @@ void can_bus_recover(can_bus_t *bus);
 /// Both, where one thread does everything and may block.
 void can_bus_repair(can_bus_t *bus, int64_t now_ns);
 
+/// Once a second, by the user of the bus: asks the kernel what a serial line has lost. One system
+/// call, which does not block.
+void can_bus_look(can_bus_t *bus);
+
 can_bus_state_t can_bus_state(const can_bus_t *bus);
 const can_bus_counters_t *can_bus_counters(const can_bus_t *bus);
 

@@ -38,6 +38,7 @@ typedef struct {
     bool (*send)(can_bus_t *bus, const can_frame_t *frame);
     void (*recover)(can_bus_t *bus);
     void (*adopt)(can_bus_t *bus); ///< the file descriptor is in place already
+    void (*look)(can_bus_t *bus);  ///< may do a system call that does not block; NULL: no need
     void (*close)(can_bus_t *bus);
 } can_backend_t;
 

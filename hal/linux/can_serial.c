@@ -6,10 +6,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/serial.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -37,6 +39,8 @@ typedef struct {
     int64_t read_ns;
     uint8_t unsent[SLCAN_MAX_BYTES]; ///< rest of a line that was sent in part
     size_t unsent_bytes;
+    bool has_overruns; ///< the kernel counts them; this many by the last look
+    uint32_t overruns_seen;
 } can_serial_t;
 
 static bool is_temporary(int number) {
@@ -134,6 +138,23 @@ static int open_line(const can_serial_t *self, int *line_fd) {
     return 0;
 }
 
+/// A pty, and many an adapter, counts nothing.
+static void look(can_bus_t *bus) {
+    can_serial_t *const self = (can_serial_t *)bus;
+    struct serial_icounter_struct counts;
+    if (ioctl(bus->fd, TIOCGICOUNT, &counts) != 0) {
+        return;
+    }
+    const uint32_t seen = (uint32_t)counts.overrun + (uint32_t)counts.buf_overrun;
+    if (self->has_overruns && seen != self->overruns_seen) {
+        can_common_count(&bus->counters.overruns, seen - self->overruns_seen);
+        can_common_note(bus, "serial line: %u bytes lost, nobody took them in time (overrun)",
+                        (unsigned int)bus->counters.overruns);
+    }
+    self->overruns_seen = seen;
+    self->has_overruns = true;
+}
+
 /// The line in self->bus.fd is a new one.
 static void begin(can_serial_t *self) {
     slcan_decoder_init(&self->decoder);
@@ -141,7 +162,9 @@ static void begin(can_serial_t *self) {
     self->read_at = 0;
     self->read_end = 0;
     self->unsent_bytes = 0;
+    self->has_overruns = false;
     self->bus.state = CAN_BUS_UP;
+    look(&self->bus); // what it has lost before is nobody's
 }
 
 static void vanish(can_serial_t *self) {
@@ -256,7 +279,7 @@ static void close_serial(can_bus_t *bus) {
     free(self);
 }
 
-static const can_backend_t backend = {receive, send_frame, recover, adopt, close_serial};
+static const can_backend_t backend = {receive, send_frame, recover, adopt, look, close_serial};
 
 static void refuse(const char *path, int number, linux_error_t *error) {
     switch (number) {

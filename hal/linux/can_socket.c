@@ -119,6 +119,12 @@ static void take_error_frame(can_socket_t *self, const struct canfd_frame *frame
     can_bus_t *const bus = &self->bus;
     const can_bus_state_t before = bus->state;
     can_common_count(&bus->counters.error_frames, 1);
+    if ((frame->can_id & CAN_ERR_CRTL) != 0u &&
+        (frame->data[CONTROLLER_BYTE] & CAN_ERR_CRTL_RX_OVERFLOW) != 0) {
+        can_common_count(&bus->counters.overruns, 1);
+        can_common_note(bus, "controller: %u frames lost, nobody took them in time (overrun)",
+                        (unsigned int)bus->counters.overruns);
+    }
     bus->state = can_error_state(before, frame->can_id, frame->data[CONTROLLER_BYTE]);
     if (bus->state == before) {
         return;
@@ -309,7 +315,7 @@ static void close_socket(can_bus_t *bus) {
     free(self);
 }
 
-static const can_backend_t backend = {receive, send_frame, recover, adopt, close_socket};
+static const can_backend_t backend = {receive, send_frame, recover, adopt, NULL, close_socket};
 
 static bool refuse(const char *name, int number, linux_error_t *error) {
     switch (number) {

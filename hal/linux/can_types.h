@@ -37,6 +37,8 @@ typedef struct {
     uint32_t malformed;    ///< SLCAN lines that are no frame; CAN FD frames of more than 8 bytes
     uint32_t bus_off;
     uint32_t restarts; ///< asked for
+    uint32_t overruns; ///< bytes or frames that the hardware or its driver lost, because nobody
+                       ///< took them in time: of a serial line TIOCGICOUNT, else error frames
     uint32_t down;     ///< times that the interface went down or vanished
 } can_bus_counters_t;
 

@@ -65,7 +65,7 @@ quiesce_sample_t Board::read_sensor(std::size_t sensor, hal_axis_t axis, std::ui
 quiesce_driver_t Board::read_driver(std::size_t damper) {
     CurrentDevice *device = devices_.outputs[damper].get();
     quiesce_driver_t driver{};
-    driver.has_failed = !is_drivable(damper);
+    driver.has_failed = has_failed(damper);
     driver.is_measured = device != nullptr && hal_current_read(&device->handle, &driver.current_mA);
     return driver;
 }
@@ -79,6 +79,7 @@ node_inputs_t Board::read(const Axes &axes, std::uint32_t elapsed, const hal_tic
     inputs.lateness_us = timing.lateness_ns / 1000U;
     inputs.work_us = timing.work_ns / 1000U;
     if (bus_ != nullptr) {
+        bus_watch_.look(can_bus_state(bus_), monotonic_ns());
         inputs.bus_off_count = can_bus_counters(bus_)->bus_off;
     }
     for (std::size_t i = 0; i < config_.sensors.size(); ++i) {
@@ -104,8 +105,7 @@ void Board::write_current(std::size_t damper, std::int32_t current_mA, bool enab
 void Board::command_left(std::int64_t demand_ns, bool is_safe, std::uint32_t tick) {
     std::int64_t left_ns = 0;
     for (std::size_t i = 0; i < config_.outputs.size(); ++i) {
-        const bool is_on_bus = config_.outputs[i].output == CurrentOutput::can;
-        const std::int64_t own_ns = is_on_bus ? demand_ns : outputs_[i].written_ns;
+        const std::int64_t own_ns = is_on_bus(i) ? demand_ns : outputs_[i].written_ns;
         if (own_ns == 0) { // one that has not left: it is not safe yet
             left_ns = 0;
             break;
@@ -115,19 +115,24 @@ void Board::command_left(std::int64_t demand_ns, bool is_safe, std::uint32_t tic
     estop_.command_sent(left_ns != 0 && is_safe, left_ns, tick, log_);
 }
 
-/// Whether the driver takes its current: a CAN driver looks after itself.
-bool Board::is_drivable(std::size_t damper) {
-    if (config_.outputs[damper].output == CurrentOutput::can) {
-        return true;
-    }
+bool Board::is_on_bus(std::size_t damper) const {
+    return config_.outputs[damper].output == CurrentOutput::can;
+}
+
+bool Board::is_written(std::size_t damper) {
     CurrentDevice *device = devices_.outputs[damper].get();
     return device != nullptr && device->failures() == outputs_[damper].failures;
 }
 
+bool Board::has_failed(std::size_t damper) {
+    return is_on_bus(damper) ? bus_watch_.has_failed() : !is_written(damper);
+}
+
+/// Whether every driver takes its current now.
 bool Board::are_drivable() {
     bool are_all = true;
     for (std::size_t i = 0; i < config_.outputs.size(); ++i) {
-        are_all = are_all && is_drivable(i);
+        are_all = are_all && (is_on_bus(i) ? bus_watch_.takes_frames() : is_written(i));
     }
     return are_all;
 }
@@ -198,6 +203,9 @@ void Board::look_after(std::uint32_t rate_Hz, bool once_a_second, ChangeLog &cha
     }
     (void)devices_.data_ready_input.pick_up();
     look_after_bus();
+    if (bus_ != nullptr && once_a_second) {
+        can_bus_look(bus_);
+    }
     feed_watchdogs(monotonic_ns());
 }
 

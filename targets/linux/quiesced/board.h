@@ -3,6 +3,7 @@
 #ifndef QUIESCED_BOARD_H
 #define QUIESCED_BOARD_H
 
+#include "bus_watch.h"
 #include "change_log.h"
 #include "emergency_stop.h"
 #include "exchange.h"
@@ -48,7 +49,9 @@ class Board {
     bool is_due(std::size_t sensor, std::uint32_t elapsed);
     quiesce_sample_t read_sensor(std::size_t sensor, hal_axis_t axis, std::uint32_t elapsed);
     quiesce_driver_t read_driver(std::size_t damper);
-    bool is_drivable(std::size_t damper);
+    bool is_on_bus(std::size_t damper) const;
+    bool is_written(std::size_t damper);
+    bool has_failed(std::size_t damper);
     bool are_drivable();
     void look_after_sensor(std::size_t sensor, std::uint32_t rate_Hz);
     void look_after_output(std::size_t damper, bool once_a_second, ChangeLog &changes);
@@ -59,6 +62,7 @@ class Board {
     Peripherals &devices_;
     LogRing &log_;
     can_bus_t *bus_;
+    BusWatch bus_watch_;
     watchdog_t *watchdog_;
 
     EmergencyStop estop_;

@@ -109,7 +109,8 @@ void Caretaker::take_over(pid_t controller) const {
          " was killed or has crashed: its outputs are made safe");
     keep_fault(); // a moment; the driver is off in the tick of a fault
     try {
-        (void)make_outputs_safe(config_file_, state_folder_, SystemFolders());
+        const bool is_safe = make_outputs_safe(config_file_, state_folder_, SystemFolders()) == 0;
+        tell(is_safe ? "its outputs are safe" : "not all of its outputs could be made safe");
     } catch (const std::exception &error) {
         tell(error.what());
     }

@@ -50,9 +50,10 @@ void ChangeLog::bus(const can_bus_t *bus) {
     bus_event_ = event.number;
     const can_bus_counters_t &counters = *can_bus_counters(bus);
     log_.log(can_bus_state(bus) == CAN_BUS_UP ? LogLevel::info : LogLevel::warning,
-             "CAN: %s (since the start: down %u, bus-off %u, restarts %u, dropped %u)", event.text,
-             static_cast<unsigned>(counters.down), static_cast<unsigned>(counters.bus_off),
-             static_cast<unsigned>(counters.restarts), static_cast<unsigned>(counters.tx_dropped));
+             "CAN: %s (since the start: down %u, bus-off %u, restarts %u, dropped %u, overruns %u)",
+             event.text, static_cast<unsigned>(counters.down),
+             static_cast<unsigned>(counters.bus_off), static_cast<unsigned>(counters.restarts),
+             static_cast<unsigned>(counters.tx_dropped), static_cast<unsigned>(counters.overruns));
 }
 
 void ChangeLog::overruns(std::uint32_t overruns, LossCause cause, std::int64_t now_ns) {

@@ -9,7 +9,9 @@
 #include <unistd.h>
 
 #include "board_fit.h"
+#include "devices.h"
 #include "fault_store.h"
+#include "input_error.h"
 #include "instance_lock.h"
 #include "line_finder.h"
 #include "read_config.h"
@@ -68,6 +70,28 @@ void note_line(const std::optional<LineConfig> &line, const char *key) {
     }
 }
 
+/// Where the line's pull resistor leads a wire that is broken.
+bool is_pulled_active(const LineConfig &line) {
+    return line.bias ==
+           (line.is_active_low ? gpio_spec_t::GPIO_BIAS_PULL_DOWN : gpio_spec_t::GPIO_BIAS_PULL_UP);
+}
+
+/// "as-is" and "off": a resistor of the board, which nobody knows here.
+void note_wires(const GpioConfig &gpio) {
+    const auto has_pull = [](const LineConfig &line) {
+        return line.bias == gpio_spec_t::GPIO_BIAS_PULL_UP ||
+               line.bias == gpio_spec_t::GPIO_BIAS_PULL_DOWN;
+    };
+    if (gpio.estop_input && has_pull(*gpio.estop_input) && !is_pulled_active(*gpio.estop_input)) {
+        note("gpio.estop_input: a broken wire reads as not pressed; use a normally closed contact "
+             "and a pull to the active level");
+    }
+    if (gpio.enable_input && is_pulled_active(*gpio.enable_input)) {
+        note("gpio.enable_input: a broken wire reads as enabled; use a contact that closes to "
+             "enable and a pull to the inactive level");
+    }
+}
+
 void note_sensor(const SensorConfig &sensor, const SystemFolders &folders) {
     if (sensor.source == SensorSource::iio) {
         note_iio(sensor.place.key("device"), sensor.device, folders);
@@ -96,6 +120,7 @@ void note_peripherals(const Config &config) {
     note_line(config.gpio.estop_input, "gpio.estop_input");
     note_line(config.gpio.enable_input, "gpio.enable_input");
     note_line(config.gpio.data_ready_input, "gpio.data_ready_input");
+    note_wires(config.gpio);
     if (config.watchdog) {
         note_access("watchdog.device", config.watchdog->device, W_OK);
     }
@@ -166,8 +191,14 @@ int check(const std::string &config_file) {
     if (!reading.problems.empty()) {
         return 2;
     }
-    (void)std::printf("%s: every key is right\n", config_file.c_str());
     const Config &config = reading.config;
+    try {
+        refuse_shared_outputs(config);
+    } catch (const quiesce::InputError &error) {
+        (void)std::printf("%s: %s\n", config_file.c_str(), error.what());
+        return 2;
+    }
+    (void)std::printf("%s: every key is right\n", config_file.c_str());
     (void)std::printf("%s", wiring_text(config).c_str());
     if (config.can) {
         note_can(*config.can);

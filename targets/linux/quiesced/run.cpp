@@ -54,6 +54,7 @@ void open_lines(const GpioConfig &gpio, Peripherals &devices) {
 }
 
 void open_peripherals(const Config &config, Peripherals &devices) {
+    refuse_shared_outputs(config);
     for (std::size_t i = 0; i < config.outputs.size(); ++i) {
         devices.outputs[i].start_with(open_current(config.outputs[i], config.folders));
     }

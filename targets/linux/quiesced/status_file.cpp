@@ -125,7 +125,7 @@ void put_bus(std::ostream &out, const Snapshot &snapshot) {
         << "    \"error_frames\": " << bus.error_frames << ", \"malformed\": " << bus.malformed
         << ",\n"
         << "    \"bus_off\": " << bus.bus_off << ", \"restarts\": " << bus.restarts
-        << ", \"down\": " << bus.down << ",\n"
+        << ", \"down\": " << bus.down << ", \"overruns\": " << bus.overruns << ",\n"
         << "    \"accepted\": " << node.accepted << ", \"unknown\": " << node.unknown << ",\n"
         << "    \"rejected_crc\": " << node.rejected_crc
         << ", \"rejected_alive\": " << node.rejected_alive

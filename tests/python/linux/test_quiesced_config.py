@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from quiesced_peer import PATIENCE_S, Quiesced, on_a_pty
+from quiesced_peer import PATIENCE_S, ROOT, Quiesced, on_a_pty
 from quiesced_steps import (
     DONE,
     ESTOP,
@@ -215,3 +215,30 @@ def drop_realtime() -> None:
     cap_sys_nice, pr_capbset_drop = 23, 24
     resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))
     ctypes.CDLL(None).prctl(pr_capbset_drop, cap_sys_nice, 0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("line", "word"),
+    [
+        ('estop_input = { line = "A", active_low = true, bias = "pull-up" }', "not pressed"),
+        ('estop_input = { line = "A", bias = "pull-down" }', "not pressed"),
+        ('estop_input = { line = "A", bias = "pull-up" }', None),
+        ('enable_input = { line = "A", bias = "pull-up" }', "enabled"),
+        ('enable_input = { line = "A", active_low = true, bias = "pull-up" }', None),
+    ],
+)
+def test_check_tells_what_a_broken_wire_reads_as(
+    quiesced: Quiesced, line: str, word: str | None
+) -> None:
+    quiesced.write_config(more=f"[gpio]\n{line}\n")
+    notes = quiesced.run("--check").stdout
+    assert ("a broken wire reads as" in notes) == (word is not None)
+    assert word is None or f"reads as {word}" in notes
+
+
+def test_the_example_stops_where_a_wire_breaks(quiesced: Quiesced) -> None:
+    example = (ROOT / "targets/linux/packaging/quiesced.toml").read_text()
+    lines = [row[2:] for row in example.splitlines() if row.startswith(("# estop_", "# enable_i"))]
+    assert len(lines) == 2
+    quiesced.write_config(more="[gpio]\n" + "\n".join(lines) + "\n")
+    assert "a broken wire" not in quiesced.run("--check").stdout

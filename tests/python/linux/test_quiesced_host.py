@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from quiesced_peer import Peer, Quiesced, on_a_pty, open_pty
-from quiesced_steps import RUN, hang_up, preload, start_running
+from quiesced_steps import FAULT, RUN, hang_up, in_a_row, preload, start_running
 
 
 @pytest.fixture
@@ -81,7 +81,7 @@ def test_lost_and_found_serial_line(quiesced: Quiesced, tmp_path: Path) -> None:
     quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, str(link)))
     start_running(quiesced)
     master, slave, line = open_pty()
-    second = Peer(master, line, operator={"enable": 1})
+    second = Peer(master, line, operator={"enable": 1}, acknowledges=True)
     link.unlink()
     link.symlink_to(line)
     hang_up(quiesced)
@@ -90,6 +90,60 @@ def test_lost_and_found_serial_line(quiesced: Quiesced, tmp_path: Path) -> None:
     log = quiesced.log_text()
     assert "CAN: " in log
     second.close(slave)
+
+
+def test_bus_that_stays_down_is_a_failure_of_its_drivers(
+    quiesced: Quiesced, tmp_path: Path
+) -> None:
+    link = tmp_path / "adapter"
+    link.symlink_to(quiesced.peer.line)
+    quiesced.config.write_text(quiesced.config.read_text().replace(quiesced.peer.line, str(link)))
+    start_running(quiesced)
+    link.unlink()
+    hang_up(quiesced)
+    while "fault DRIVER_FAILED is kept" not in quiesced.log_text():
+        time.sleep(0.01)
+    master, slave, line = open_pty()
+    second = Peer(master, line, operator={"enable": 1})
+    link.symlink_to(line)
+    second.wait("CurrentDemand", in_a_row(100, FAULT))
+    second.acknowledges = True
+    second.wait_state(RUN)
+    assert quiesced.stop() == 0
+    second.close(slave)
+
+
+OVERRUNS = r"""
+#define _GNU_SOURCE
+#include <linux/serial.h>
+#include <stdarg.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+int ioctl(int fd, unsigned long what, ...) {
+    static int looks;
+    va_list rest;
+    va_start(rest, what);
+    void *answer = va_arg(rest, void *);
+    va_end(rest);
+    if (what != TIOCGICOUNT) return (int)syscall(SYS_ioctl, fd, what, answer);
+    struct serial_icounter_struct counts;
+    memset(&counts, 0, sizeof counts);
+    counts.overrun = looks++ < 2 ? 100 : 107;
+    memcpy(answer, &counts, sizeof counts);
+    return 0;
+}
+"""
+
+
+def test_overrun_of_the_serial_line_is_told(quiesced: Quiesced, tmp_path: Path) -> None:
+    """The kernel counts what its UART has lost; those before the start are nobody's."""
+    library = preload(tmp_path, "overruns", OVERRUNS)
+    quiesced.start(env={**os.environ, "LD_PRELOAD": library})
+    quiesced.wait_log("CAN: serial line: 7 bytes lost, nobody took them in time (overrun)")
+    assert quiesced.stop() == 0
+    assert quiesced.status()["can"]["overruns"] == 7
 
 
 WITNESS = r"""
@@ -155,7 +209,7 @@ def test_the_loop_never_opens_or_closes_the_bus(quiesced: Quiesced, tmp_path: Pa
     quiesced.peer.wait_state(RUN)
     assert calls.read_text().split("\n") == ["open loop", "set loop", ""]  # before its first tick
     master, slave, line = open_pty()
-    second = Peer(master, line, operator={"enable": 1})
+    second = Peer(master, line, operator={"enable": 1}, acknowledges=True)
     link.unlink()
     link.symlink_to(line)
     hang_up(quiesced)

@@ -87,7 +87,7 @@ def test_sigterm_ends_with_the_safe_frame(faults: FaultRun) -> None:
 
 def test_make_safe_after_a_kill(faults: FaultRun) -> None:
     killed, safe = demand(faults.results["killed"]), demand(faults.results["make_safe"])
-    assert killed["driver_is_enabled"] == 1  # no farewell: it had no time for one
+    assert (killed["current_cmd_mA"], killed["driver_is_enabled"]) == (300, 0)  # the caretaker's
     assert (safe["current_cmd_mA"], safe["driver_is_enabled"]) == (300, 0)
     assert faults.results["make_safe"]["off"] == faults.results["make_safe"]["frames"] >= 1
     assert faults.results["made_safe"] == {

@@ -9,6 +9,7 @@ add_executable(
   test_quiesced
   quiesced/test_board_fit.cpp
   quiesced/test_bus_load.cpp
+  quiesced/test_bus_watch.cpp
   quiesced/test_config.cpp
   quiesced/test_edge_rate.cpp
   quiesced/test_fault.cpp
