@@ -271,6 +271,28 @@ static void test_farewell_is_a_demand_of_the_safe_current_with_the_output_off(vo
     TEST_ASSERT_EQUAL_UINT8(1, demand.alive);
 }
 
+/// Nobody runs once the output is off.
+static void test_farewell_says_the_state_that_is_true(void) {
+    static const struct {
+        uint32_t last;
+        uint32_t said;
+    } rows[] = {
+        {QUIESCE_STATE_INIT, QUIESCE_STATE_IDLE},   {QUIESCE_STATE_IDLE, QUIESCE_STATE_IDLE},
+        {QUIESCE_STATE_RUN, QUIESCE_STATE_IDLE},    {QUIESCE_STATE_SAFE, QUIESCE_STATE_SAFE},
+        {QUIESCE_STATE_FAULT, QUIESCE_STATE_FAULT},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct quiesce_can_current_demand_t demand;
+        can_frame_t frame;
+        start(1000);
+        out.telemetry.state = rows[i].last;
+        (void)can_node_tick(&node, &tick, &out, &controller, frames);
+        can_node_farewell(&node, 0, 0, &frame);
+        (void)quiesce_can_current_demand_unpack(&demand, frame.data, frame.length);
+        TEST_ASSERT_EQUAL_UINT8(rows[i].said, demand.state);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_message_comes_as_often_as_it_should);
@@ -283,5 +305,6 @@ int main(void) {
     RUN_TEST(test_timing_is_the_worst_since_the_last_report);
     RUN_TEST(test_peaks_have_their_own_messages);
     RUN_TEST(test_farewell_is_a_demand_of_the_safe_current_with_the_output_off);
+    RUN_TEST(test_farewell_says_the_state_that_is_true);
     return UNITY_END();
 }
