@@ -51,8 +51,9 @@ int main(int count, char **arguments) {
             break;
         }
         if (!WIFSTOPPED(status)) {
-            end = who == program ? (WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status))
-                                 : end;
+            end = who == program
+                      ? (WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status))
+                      : end;
             continue;
         }
         int is_call = 0;
