@@ -3,7 +3,7 @@
 #
 #   bench    quiesce_bench on this machine     images   what it drives in the emulator
 #   plant    the library of quiesce.plant      linux    the Linux controller
-#   dampers  the module of quiesce.damper
+#   dampers  the module of quiesce.damper          trust    what its benchmark abuses and mutates
 
 # needs_of COMMAND [ACTION] ...: of `quiesce`; nothing where it starts without a build. A command
 # that is not here needs nothing: `quiesce` refuses what it does not know.
@@ -37,6 +37,7 @@ needs_of_benchmark() {
     can | fuzzy | house | signal) echo bench ;;
     controller) echo bench dampers images ;;
     control | sweep) echo bench plant ;;
+    trust) echo bench images trust ;;
     *) echo bench plant dampers ;;
     esac
 }
@@ -50,6 +51,7 @@ needs_build() {
         plant) host+=(quiesce_plant) ;;
         dampers) host+=(quiesce_dampers) ;;
         linux) host+=(quiesced) ;;
+        trust) host+=(trust_programs) ;;
         images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
         esac
     done

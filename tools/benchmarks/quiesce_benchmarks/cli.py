@@ -17,6 +17,7 @@ from quiesce_benchmarks.fuzzy import benchmark as fuzzy_benchmark
 from quiesce_benchmarks.house import benchmark as house_benchmark
 from quiesce_benchmarks.signal import benchmark as signal_benchmark
 from quiesce_benchmarks.sweep import benchmark as sweep_benchmark
+from quiesce_benchmarks.trust import benchmark as trust_benchmark
 
 # Each has NAME, HELP, DESCRIPTION, add_options(parser) and measure(args, folder) -> Report, which
 # writes its plots into the folder. UsageError for bad input, before anything is measured.
@@ -29,6 +30,7 @@ BENCHMARKS = (
     can_benchmark,
     controller_benchmark,
     house_benchmark,
+    trust_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,

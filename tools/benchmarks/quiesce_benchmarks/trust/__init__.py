@@ -1,0 +1,1 @@
+"""Benchmark of trust: what mistakes in the guarding code, abuse and memory faults lead to."""

@@ -1,0 +1,126 @@
+"""`./tools/benchmark trust`: mistakes in the guarding code, abuse, flipped bits, cost."""
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from quiesce.base.command import whole_number
+from quiesce.base.errors import BenchFailure, UsageError
+from quiesce.base.paths import build_folder, root
+from quiesce.engine.bench import Bench
+
+from quiesce_benchmarks.controller import instructions
+from quiesce_benchmarks.report import Figure, Report
+from quiesce_benchmarks.seeds import seed_number
+from quiesce_benchmarks.trust import abuse, flips, mutants
+from quiesce_benchmarks.trust.trial import default_jobs
+
+NAME = "trust"
+HELP = "mistakes in the guarding code that tests notice, abuse, flipped bits, what guarding costs"
+DESCRIPTION = """Makes small mistakes in the code that guards the output and counts how many of them
+the C tests and the golden streams notice; drives controllers with everything that can come in and
+counts ticks in which a rule is broken (range, slew, safe current, driver, stop, latch); flips bits
+of its memory and looks at what it then commands; counts the instructions that guarding costs."""
+
+# Name, unit, goal, better.
+FIGURES = (
+    ("mutants", "1", 300, "higher"),
+    ("mutants_killed_pct", "%", 97, "higher"),
+    ("mutants_equivalent_pct", "%", 2, "lower"),
+    ("abuse_ticks", "ticks", 10**8, "higher"),
+    ("abuse_violations", "ticks", 0, "lower"),
+    ("reaction_ticks_worst_estop", "ticks", 1, "lower"),
+    ("reaction_ticks_worst_record", "ticks", 2, "lower"),
+    ("flips_tried", "1", 10**6, "higher"),
+    ("flips_unsafe", "1", 0, "lower"),
+    ("instr_added", "instructions", 400, "lower"),
+    ("damper_extra_instr", "instructions", 250, "lower"),
+)
+PARTS = ("mutants", "abuse", "flips", "cost")
+QUICK_MUTANTS = 30
+# Worst ticks of the laws before there were guards for all of this.
+BASELINE = Path(__file__).with_name("baseline.json")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--full", action="store_true", help="every mutant, ten times the ticks")
+    parser.add_argument("--part", choices=PARTS, action="append", help="only this; may be repeated")
+    parser.add_argument("--seed", type=seed_number, default=mutants.SEED, help="(%(default)s)")
+    parser.add_argument("--ticks", type=whole_number(1, 10**12), help="of abuse (100,000,000)")
+    parser.add_argument(
+        "--arming", action="store_true", help="abuse: also ask for an edge of enable"
+    )
+    parser.add_argument(
+        "--jobs", type=whole_number(1, 256), default=default_jobs(), help="(%(default)s)"
+    )
+
+
+def measure(args: argparse.Namespace, folder: Path) -> Report:
+    values: dict[str, float] = {}
+    absent: list[str] = []
+    tables: list[str] = []
+    context: dict[str, Any] = {"seed": args.seed}
+
+    def take(part: str, work: Callable[[], dict[str, float]]) -> None:
+        if args.part is not None and part not in args.part:
+            absent.append(f"{part}: left out")
+            return
+        print(f"trust: {part}, seed {args.seed}", file=sys.stderr, flush=True)
+        try:
+            values.update(work())
+        except (BenchFailure, UsageError) as error:
+            absent.append(f"{part}: {error}")
+
+    def mistakes() -> dict[str, float]:
+        found = mutants.measure(
+            root(), build_folder() / "host", count_of(args), args.seed, args.jobs
+        )
+        survivors = [mutants.line_of(one) for one in found.survivors]
+        context["mutants_survived"] = survivors
+        tables.append("\n".join(["mutants that survive:", *survivors]) if survivors else "")
+        return {
+            "mutants": found.tried,
+            "mutants_killed_pct": found.killed_pct,
+            "mutants_equivalent_pct": found.equivalent_pct,
+        }
+
+    take("mutants", mistakes)
+    take("abuse", lambda: abuse.measure(ticks_of(args), args.seed, args.arming, args.jobs))
+    take("flips", lambda: flips.measure(args.seed, args.quick, args.jobs))
+    take("cost", lambda: cost(Bench(), args.quick))
+    figures = [Figure(name, values.get(name), *rest) for name, *rest in FIGURES]
+    context |= {name: value for name, value in values.items() if name not in names()}
+    return Report(NAME, figures, context, [table for table in tables if table], absent)
+
+
+def names() -> set[str]:
+    return {name for name, *_ in FIGURES}
+
+
+def count_of(args: argparse.Namespace) -> int | None:
+    if args.full:
+        return None
+    return QUICK_MUTANTS if args.quick else mutants.COUNT
+
+
+def ticks_of(args: argparse.Namespace) -> int:
+    if args.ticks is not None:
+        return int(args.ticks)
+    if args.full:
+        return abuse.FULL_TICKS
+    return abuse.QUICK_TICKS if args.quick else abuse.TICKS
+
+
+def cost(bench: Bench, quick: bool) -> dict[str, float]:
+    before = json.loads(BASELINE.read_text())["worst_instr"]
+    worst = {law: found[1] for law, found in instructions.of_laws(bench, quick).items()}
+    added = {law: worst[law] - before[law] for law in before}
+    extra = instructions.extra(bench)["damper"]
+    return {
+        "instr_added": max(added.values()),
+        "damper_extra_instr": extra,
+        **{f"{law}_instr_added": value for law, value in added.items()},
+    }
