@@ -3,7 +3,6 @@
 // JSON object.
 //
 //     flips SEED SCENES RANDOM    RANDOM flips elsewhere, spread over the scenes of each kind
-#define _GNU_SOURCE
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -183,18 +182,25 @@ static bool is_stopped(const scene_t *scene, const quiesce_out_t *out) {
     return true;
 }
 
-// E-stop in each of the ticks that follow.
+// Ticks from e-stop, so many ticks on, to drivers off at the safe current.
+static uint32_t stop_ticks(const scene_t *scene, uint32_t from) {
+    quiesce_out_t out = {0};
+    controller = scene->controller;
+    for (uint32_t tick = 0; tick < SCENE_TICKS; tick++) {
+        quiesce_in_t in = scene->in[tick];
+        in.estop = tick >= from;
+        quiesce_step(&controller, &in, &out);
+        if (tick >= from && is_stopped(scene, &out)) {
+            return tick - from + 1u;
+        }
+    }
+    return NOT_NOTICED;
+}
+
 static void time_stops(const scene_t *scene) {
     for (uint32_t from = 0; from < SCENE_TICKS; from++) {
-        quiesce_out_t out = {0};
-        uint32_t tick = 0;
-        controller = scene->controller;
-        for (; tick < SCENE_TICKS && !(tick >= from && is_stopped(scene, &out)); tick++) {
-            quiesce_in_t in = scene->in[tick];
-            in.estop = tick >= from;
-            quiesce_step(&controller, &in, &out);
-        }
-        tally->stop_ticks = tick - from > tally->stop_ticks ? tick - from : tally->stop_ticks;
+        const uint32_t ticks = stop_ticks(scene, from);
+        tally->stop_ticks = ticks > tally->stop_ticks ? ticks : tally->stop_ticks;
     }
 }
 

@@ -1,6 +1,6 @@
 // The controller itself, for what no header says of it: where its records are. It takes the place
 // of the library's.
-#include "controller.c"
+#include "controller.c" // NOLINT(bugprone-suspicious-include)
 
 #include "records.h"
 
