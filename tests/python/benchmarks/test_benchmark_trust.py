@@ -136,6 +136,7 @@ def test_objects_take_the_place_of_those_in_libraries() -> None:
     assert test.command_for(Path("/n/p"), Path("/b")) == ["/n/p", "-q"]
 
 
+@pytest.mark.slow
 def test_a_test_that_hangs_fails(tmp_path: Path) -> None:
     assert is_passed(["true"], tmp_path, 1.0)
     assert not is_passed(["false"], tmp_path, 1.0)
@@ -180,6 +181,7 @@ def small(tmp_path: Path) -> Iterator[tuple[Path, Build]]:
     yield root, Build(build)
 
 
+@pytest.mark.slow
 def test_mutants_are_compiled_linked_and_judged(small: tuple[Path, Build], tmp_path: Path) -> None:
     root, build = small
     block = root / "firmware/block.c"
