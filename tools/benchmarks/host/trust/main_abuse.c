@@ -1,7 +1,7 @@
 // Drives controllers with everything that can come in, and counts the ticks in which a rule is
 // broken. Prints one JSON object. Lives follow each other: a rig, then some thousand ticks of it.
 //
-//     abuse SEED TICKS [--arming]    --arming also asks for an edge of enable before it runs
+//     abuse SEED TICKS
 #include <inttypes.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -85,13 +85,12 @@ static void print(const life_t *life, uint64_t seed, uint64_t lives) {
 
 int main(int argc, char **argv) {
     static life_t life;
-    if (argc < 3) {
-        fprintf(stderr, "usage: abuse SEED TICKS [--arming]\n");
+    if (argc != 3) {
+        fprintf(stderr, "usage: abuse SEED TICKS\n");
         return 2;
     }
     const uint64_t seed = strtoull(argv[1], NULL, 10);
     const uint64_t ticks = strtoull(argv[2], NULL, 10);
-    life.rules.has_arming = argc > 3 && strcmp(argv[3], "--arming") == 0;
     while (life.rules.ticks < ticks) {
         dice_t dice = dice_of(seed, life.number);
         rig_draw(&life.rig, &dice);

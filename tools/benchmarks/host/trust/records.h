@@ -10,7 +10,7 @@ typedef struct {
     uint32_t bytes;
 } record_t;
 
-enum { MOST_RECORDS = 1 + 2 * QUIESCE_DAMPERS };
+enum { MOST_RECORDS = 1 + QUIESCE_DAMPERS };
 
 /// Writes those of a controller with so many dampers. Returns their number.
 uint32_t records_of(uint32_t dampers, record_t records[MOST_RECORDS]);

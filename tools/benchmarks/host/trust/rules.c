@@ -56,11 +56,6 @@ static bool breaks_safe(const rules_t *self, const quiesce_out_t *out) {
     return false;
 }
 
-static bool switches_off(uint32_t fault) {
-    return fault == QUIESCE_FAULT_ESTOP || fault == QUIESCE_FAULT_PARAMETER ||
-           fault == QUIESCE_FAULT_DRIVER_FAILED;
-}
-
 static bool has_failed(const rules_t *self, const quiesce_in_t *in) {
     bool has_failed = false;
     for (uint32_t i = 0; i < rig_dampers(self->rig); i++) {
@@ -70,9 +65,8 @@ static bool has_failed(const rules_t *self, const quiesce_in_t *in) {
 }
 
 static bool breaks_driver(const rules_t *self, const quiesce_in_t *in, const quiesce_out_t *out) {
-    const quiesce_telemetry_t *t = &out->telemetry;
-    const bool is_off = in->estop || has_failed(self, in) ||
-                        (t->state == QUIESCE_STATE_FAULT && switches_off(t->fault));
+    const bool is_off =
+        in->estop || has_failed(self, in) || out->telemetry.state == QUIESCE_STATE_FAULT;
     for (uint32_t i = 0; i < rig_dampers(self->rig); i++) {
         if (is_off && out->damper[i].driver_enable) {
             return true;
@@ -98,7 +92,7 @@ static bool breaks_latch(const rules_t *self, const quiesce_in_t *in, const quie
 }
 
 static bool breaks_arming(const rules_t *self, const quiesce_out_t *out) {
-    return self->has_arming && rules_is_running(out->telemetry.state) && !self->is_armed;
+    return rules_is_running(out->telemetry.state) && !self->is_armed;
 }
 
 static void note_edge(rules_t *self, const quiesce_in_t *in, const quiesce_out_t *out) {

@@ -9,7 +9,7 @@ typedef enum {
     RULE_RANGE,  ///< a command is between 0 and what parameters and board allow; none is unused
     RULE_SLEW,   ///< while it runs, a command changes by no more than the slew limit
     RULE_SAFE,   ///< while it does not run, each damper has its safe current
-    RULE_DRIVER, ///< e-stop, refused parameters and a failed driver keep the drivers off
+    RULE_DRIVER, ///< e-stop, a failed driver and every latched fault keep the drivers off
     RULE_STOP,   ///< e-stop is FAULT in that very tick
     RULE_LATCH,  ///< FAULT is left on a rising edge of the acknowledgement, with no cause present
     RULE_ARMING, ///< running begins after a rising edge of enable since start, e-stop, latched
@@ -21,7 +21,6 @@ extern const char *const rule_names[RULES];
 
 typedef struct {
     const rig_t *rig;
-    bool has_arming; ///< RULE_ARMING is judged
     quiesce_out_t last;
     bool last_enable;
     bool last_reset;
@@ -36,7 +35,7 @@ typedef struct {
 
 /// Whether a law's request passes in a state. The one place that names those states.
 static inline bool rules_is_running(uint32_t state) {
-    return state == QUIESCE_STATE_RUN;
+    return state == QUIESCE_STATE_RUN || state == QUIESCE_STATE_DEGRADED;
 }
 
 /// A controller was started with a rig, which stays the caller's; counts go on.

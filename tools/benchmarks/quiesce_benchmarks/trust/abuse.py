@@ -14,22 +14,21 @@ PART_TICKS = 5 * 10**6
 MANY_EVERY = 4
 
 
-def calls(ticks: int, seed: int, has_arming: bool) -> list[tuple[str, list[object]]]:
+def calls(ticks: int, seed: int) -> list[tuple[str, list[object]]]:
     part = min(PART_TICKS, ticks)
-    options = ["--arming"] if has_arming else []
     return [
         (
             "abuse_many" if number % MANY_EVERY == MANY_EVERY - 1 else "abuse",
-            [seed + number, part, *options],
+            [seed + number, part],
         )
         for number in range(max(MANY_EVERY, -(-ticks // part)))
     ]
 
 
-def measure(ticks: int, seed: int, has_arming: bool, jobs: int) -> dict[str, float]:
+def measure(ticks: int, seed: int, jobs: int) -> dict[str, float]:
     """abuse_ticks, abuse_violations, and what the controllers went through."""
     total: Counter[str] = Counter()
-    for found in run_all(calls(ticks, seed, has_arming), jobs):
+    for found in run_all(calls(ticks, seed), jobs):
         first = found.pop("first")
         seed_used = found.pop("seed")
         total.update(found)

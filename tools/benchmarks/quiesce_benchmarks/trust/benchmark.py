@@ -22,8 +22,9 @@ NAME = "trust"
 HELP = "mistakes in the guarding code that tests notice, abuse, flipped bits, what guarding costs"
 DESCRIPTION = """Makes small mistakes in the code that guards the output and counts how many of them
 the C tests and the golden streams notice; drives controllers with everything that can come in and
-counts ticks in which a rule is broken (range, slew, safe current, driver, stop, latch); flips bits
-of its memory and looks at what it then commands; counts the instructions that guarding costs."""
+counts ticks in which a rule is broken (range, slew, safe current, driver, stop, latch, arming);
+flips bits of its memory and looks at what it then commands; counts the instructions that guarding
+costs."""
 
 # Name, unit, goal, better.
 FIGURES = (
@@ -50,9 +51,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--part", choices=PARTS, action="append", help="only this; may be repeated")
     parser.add_argument("--seed", type=seed_number, default=mutants.SEED, help="(%(default)s)")
     parser.add_argument("--ticks", type=whole_number(1, 10**12), help="of abuse (100,000,000)")
-    parser.add_argument(
-        "--arming", action="store_true", help="abuse: also ask for an edge of enable"
-    )
     parser.add_argument(
         "--jobs", type=whole_number(1, 256), default=default_jobs(), help="(%(default)s)"
     )
@@ -88,7 +86,7 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
         }
 
     take("mutants", mistakes)
-    take("abuse", lambda: abuse.measure(ticks_of(args), args.seed, args.arming, args.jobs))
+    take("abuse", lambda: abuse.measure(ticks_of(args), args.seed, args.jobs))
     take("flips", lambda: flips.measure(args.seed, args.quick, args.jobs))
     take("cost", lambda: cost(Bench(), args.quick))
     figures = [Figure(name, values.get(name), *rest) for name, *rest in FIGURES]
