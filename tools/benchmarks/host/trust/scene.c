@@ -56,8 +56,12 @@ static void lead_to(scene_t *self, scene_kind_t kind, live_t *live) {
     step(self, live, kind == SCENE_STOPPED ? SETTLING_ticks : 0);
 }
 
-static void record(scene_t *self, live_t *live) {
+// Returns false where a fault comes or goes by itself meanwhile: to delay one is no failure to
+// stop.
+static bool record(scene_t *self, scene_kind_t kind, live_t *live) {
+    const bool is_stop = kind == SCENE_STOPPING || kind == SCENE_STOPPED;
     const quiesce_t moment = self->controller;
+    bool is_steady = true;
     for (uint32_t i = 0; i < SCENE_TICKS; i++) {
         step(self, live, 1);
         self->in[i] = live->in;
@@ -66,8 +70,10 @@ static void record(scene_t *self, live_t *live) {
             .fault = live->out.telemetry.fault,
             .is_off = !live->out.damper[0].driver_enable,
         };
+        is_steady = is_steady && self->right[i].is_off == is_stop;
     }
     self->controller = moment;
+    return is_steady;
 }
 
 bool scene_draw(scene_t *self, scene_kind_t kind, dice_t *dice) {
@@ -77,6 +83,5 @@ bool scene_draw(scene_t *self, scene_kind_t kind, dice_t *dice) {
         return false;
     }
     lead_to(self, kind, &live);
-    record(self, &live);
-    return true;
+    return record(self, kind, &live);
 }

@@ -29,7 +29,8 @@ typedef struct {
     scene_tick_t right[SCENE_TICKS];
 } scene_t;
 
-/// Draws one. Returns false iff this rig does not come to run within some seconds: draw again.
+/// Draws one. Returns false iff this rig does not come to run within some seconds, or does not stay
+/// what it is: draw again.
 bool scene_draw(scene_t *self, scene_kind_t kind, dice_t *dice);
 
 #endif
