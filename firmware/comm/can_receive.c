@@ -162,6 +162,7 @@ static can_press_t next_press(can_press_t press, bool fault_reset) {
 static void hear_stranger(can_operator_t *panel, freshness_verdict_t verdict, bool enable) {
     if (!freshness_is_known(&panel->from)) {
         panel->was_enabled = enable && verdict == FRESHNESS_ON_TRIAL;
+        panel->was_let_go = false;
         panel->press = CAN_PRESS_NONE;
     }
 }
@@ -176,14 +177,17 @@ static void take_operator(can_receive_t *self, const can_frame_t *frame) {
     const bool enable = command.enable != 0u;
     panel->enable = panel->enable && enable;
     panel->was_enabled = panel->was_enabled && enable;
+    const bool had_let_go = panel->was_let_go;
+    panel->was_let_go = had_let_go && enable; // a stop that does not count: to be let go for real
     const freshness_verdict_t verdict =
         judge(self, &panel->from, QUIESCE_CAN_AT_OPERATOR_COMMAND, frame);
     if (verdict != FRESHNESS_COUNTS) {
         hear_stranger(panel, verdict, enable);
         return;
     }
-    panel->enable = panel->was_enabled;
+    panel->enable = panel->was_enabled && panel->was_let_go;
     panel->was_enabled = enable;
+    panel->was_let_go = had_let_go || !enable;
     panel->is_reset_edge = panel->is_reset_edge || panel->press == CAN_PRESS_TWICE;
     panel->press = next_press(panel->press, command.fault_reset != 0u);
 }
@@ -273,4 +277,6 @@ void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *
     }
     self->stop.is_seen = false;
     self->operator_command.is_reset_edge = false;
+    // Who comes back pressing has not pressed: it has to be seen let go.
+    self->operator_command.was_let_go = is_operated && self->operator_command.was_let_go;
 }

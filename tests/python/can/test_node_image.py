@@ -212,6 +212,11 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     rig.until("release", lambda _: not rig.seen["Status"]["is_estop"])
     assert rig.seen["Status"]["state"] == "FAULT"
     rig.is_acknowledging = True
+    rig.until("acknowledged", lambda _: rig.seen["Status"]["state"] == "IDLE")
+    assert rig.seen["Status"]["is_enabled"] == 1  # held: that restarts nothing
+    rig.enable = 0
+    rig.until("let go", lambda _: rig.seen["Status"]["is_enabled"] == 0)
+    rig.enable = 1
     rig.until("1234 mA again", lambda _: rig.seen["CurrentDemand"]["current_cmd_mA"] == 1234)
     rig.until_state("RUN")
     assert {DATABASE.get_message_by_frame_id(i).name for i in CONTROLLER} == rig.seen.keys()

@@ -26,6 +26,8 @@ DBC = cantools.database.load_file(ROOT / "firmware/comm/quiesce.dbc")
 BUILD = Path(os.environ.get("QUIESCE_BUILD", ROOT / "build")).resolve()
 DEMAND_ID = DBC.get_message_by_name("CurrentDemand").frame_id
 COMMAND_S = DBC.get_message_by_name("OperatorCommand").cycle_time / 1000.0
+INIT, FAULT = 0, 4  # states of the controller that the operator lets go in
+LET_GO_FRAMES = 4  # the third is the first that counts
 SAMPLE_ID = DBC.get_message_by_name("AccelSample").frame_id
 PATIENCE_S = 60.0  # for events on a machine with other work; nothing is asserted about it
 
@@ -97,7 +99,8 @@ class Frame:
 @dataclass
 class Peer:
     """The bus's other nodes. Each sensor node sends a sample for every demand frame; the operator
-    repeats what he commands in its cycle, and acknowledges again and again where he does."""
+    repeats what he commands in its cycle, and acknowledges again and again where he does. Where he
+    enables he lets go first, at each start and after each fault: the edge arms."""
 
     master: int
     line: str
@@ -114,6 +117,7 @@ class Peer:
         self._demands = 0
         self._commands = 0
         self._command_due_s = 0.0
+        self._let_go = LET_GO_FRAMES
         self._marks = 0
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -191,10 +195,12 @@ class Peer:
                 self.frames += frames
                 self._marks += lines.count(MARK)
                 self._changed.notify_all()
-            for _ in filter(lambda frame: frame.identifier == DEMAND_ID, frames):
-                self._serve()
+            for frame in filter(lambda frame: frame.identifier == DEMAND_ID, frames):
+                self._serve(frame.data[2] >> 1 & 7)
 
-    def _serve(self) -> None:
+    def _serve(self, state: int) -> None:
+        if state in (INIT, FAULT):
+            self._let_go = LET_GO_FRAMES
         self._demands += 1
         if not select.select([], [self.master], [], 0)[1]:
             return  # nobody reads, as after the program's death: this bus loses frames
@@ -214,7 +220,11 @@ class Peer:
         self._command_due_s = max(self._command_due_s, now_s - COMMAND_S) + COMMAND_S
         self._commands += 1
         is_pressed = self.acknowledges and self._commands // 2 % 2
-        self.send("OperatorCommand", **{**what, "fault_reset": int(is_pressed)})
+        said = {**what, "fault_reset": int(is_pressed)}
+        if self._let_go > 0:
+            self._let_go -= 1
+            said["enable"] = 0
+        self.send("OperatorCommand", **said)
 
     def close(self, slave: int) -> None:
         """Ends with its line. Else it would serve the next one whose file has the same number."""

@@ -27,10 +27,11 @@ static void pass(uint32_t ticks) {
     }
 }
 
-// The third frame of an operator, the driver or the sensor is the one that is given.
+// The third frame of an operator, the driver or the sensor is the one that is given. Who enables
+// has let go before: then it is the second of those that enable.
 static void introduce_operator(bool enable, bool fault_reset, uint8_t alive) {
-    for (uint32_t i = 14; i <= 15; i++) {
-        take(make_operator(enable, fault_reset, (uint8_t)((alive + i) % 16u)));
+    for (uint32_t i = enable ? 12 : 14; i <= 15; i++) {
+        take(make_operator(enable && i == 15, fault_reset, (uint8_t)((alive + i) % 16u)));
         pass(100);
     }
 }

@@ -115,7 +115,22 @@ guest_demand_t guest_demand(const can_frame_t *frame) {
     struct quiesce_can_current_demand_t demand;
     quiesce_can_current_demand_unpack(&demand, frame->data, frame->length);
     return (guest_demand_t){.current_mA = demand.current_cmd_mA,
-                            .is_enabled = demand.driver_is_enabled != 0};
+                            .is_enabled = demand.driver_is_enabled != 0,
+                            .wants_release =
+                                demand.state == QUIESCE_CAN_CURRENT_DEMAND_STATE_INIT_CHOICE ||
+                                demand.state == QUIESCE_CAN_CURRENT_DEMAND_STATE_FAULT_CHOICE};
+}
+
+enum { LET_GO_COMMANDS = 4 }; /* the third of a sender is the first that counts */
+
+void guest_hand_see(guest_hand_t *hand, const guest_demand_t *demand) {
+    hand->left = demand->wants_release ? LET_GO_COMMANDS : hand->left;
+}
+
+bool guest_hand_enables(guest_hand_t *hand) {
+    const bool enables = hand->left == 0;
+    hand->left -= enables ? 0 : 1;
+    return enables;
 }
 
 void guest_protect(can_frame_t *frame, uint32_t message, uint8_t *alive) {

@@ -27,12 +27,20 @@ bool guest_bus_send(int bus, const can_frame_t *frame);
 typedef struct {
     int32_t current_mA;
     bool is_enabled;
+    bool wants_release; ///< INIT or FAULT: only an enable that rises after it arms
 } guest_demand_t;
 
 guest_demand_t guest_demand(const can_frame_t *frame);
 
 /// A sensor node's next sample, and an operator's command. *alive is the sender's counter.
 void guest_sample(can_frame_t *frame, int32_t accel_counts, uint8_t *alive);
+/// An operator's hand: lets go for a few commands where a demand wants it, then enables.
+typedef struct {
+    uint32_t left; ///< commands to let go in
+} guest_hand_t;
+void guest_hand_see(guest_hand_t *hand, const guest_demand_t *demand);
+bool guest_hand_enables(guest_hand_t *hand);
+
 void guest_command(can_frame_t *frame, bool enable, bool fault_reset, uint8_t *alive);
 
 /// The frame's protection, again: for frames that were changed after it.

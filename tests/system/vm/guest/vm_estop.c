@@ -25,6 +25,7 @@ typedef struct {
     int pull;
     uint8_t alive;
     uint32_t ticks;
+    guest_hand_t hand;
 } probe_t;
 
 static void pull(const probe_t *probe, const char *level) {
@@ -49,9 +50,11 @@ static void wait_running(probe_t *probe) {
         const guest_frame_t in = next_demand(probe);
         const guest_demand_t demand = guest_demand(&in.frame);
         on_ticks = demand.is_enabled && demand.current_mA > 0 ? on_ticks + 1 : 0;
+        guest_hand_see(&probe->hand, &demand);
         if (probe->ticks++ % COMMAND_TICKS == 0) {
             can_frame_t out;
-            guest_command(&out, true, probe->alive / 2 % 2 != 0 && on_ticks == 0, &probe->alive);
+            const bool acknowledges = probe->alive / 2 % 2 != 0 && on_ticks == 0;
+            guest_command(&out, guest_hand_enables(&probe->hand), acknowledges, &probe->alive);
             guest_bus_send(probe->bus, &out);
         }
     }

@@ -32,6 +32,7 @@ int main(int argc, char **argv) {
     uint32_t noise = 1;
     uint8_t sample_alive = 0;
     uint8_t command_alive = 0;
+    guest_hand_t hand = {0};
     if (argc != 3) {
         return 2;
     }
@@ -44,10 +45,12 @@ int main(int argc, char **argv) {
         if (!guest_bus_receive(bus, &in)) {
             continue; /* the next read waits until the interface is up again */
         }
+        const guest_demand_t demand = guest_demand(&in.frame);
+        guest_hand_see(&hand, &demand);
         guest_sample(&out, next_counts(tick, &noise), &sample_alive);
         guest_bus_send(bus, &out);
         if (has_operator && tick % COMMAND_EVERY == 0) {
-            guest_command(&out, true, resets > 0, &command_alive);
+            guest_command(&out, guest_hand_enables(&hand), resets > 0, &command_alive);
             resets -= resets > 0;
             guest_bus_send(bus, &out);
         }

@@ -16,6 +16,7 @@ from quiesce_vm.serial_line import SerialLine
 END_ID = 0x7F0  # ends a step of the guest's script
 ECHO_ID = 0x100  # comes back under the next id
 CREDIT = 8  # frames under way at the most
+LET_GO_COMMANDS = 4  # the third is the first that counts; then the edge arms
 COMMAND_EVERY = 50  # demand frames of 2 ms: its cycle, as what comes faster counts for nothing
 ATTEMPTS, ATTEMPT_FRAMES = 5, 1000  # of a request; demand frames until it is repeated
 MOST_FRAMES = 50_000  # of the controller, until a condition must have come true
@@ -31,6 +32,7 @@ class Peer:
         self.refused: list[str] = []  # frames that the DBC cannot explain
         self.freeze: dict[int, dict[str, Any]] = {}  # pages of the freeze frame, as they came last
         self._fault_resets = 0  # commands that still have it
+        self._let_go = LET_GO_COMMANDS
         self._alive: dict[str, int] = {}
         self.demands = 0  # demand frames that came
 
@@ -151,9 +153,14 @@ class Peer:
     def _answer_demand(self) -> None:
         self.demands += 1
         self.send_message("AccelSample", accel_counts=_counts(self.demands))
+        if str(self.values("CurrentDemand").get("state")) in ("INIT", "FAULT"):
+            self._let_go = LET_GO_COMMANDS
         if self.demands % COMMAND_EVERY == 0:
-            self.send_message("OperatorCommand", enable=1, fault_reset=int(self._fault_resets > 0))
+            is_pressed = self._fault_resets > 0
+            enable = int(self._let_go == 0)  # its edge arms
+            self.send_message("OperatorCommand", enable=enable, fault_reset=int(is_pressed))
             self._fault_resets = max(0, self._fault_resets - 1)
+            self._let_go = max(0, self._let_go - 1)
 
 
 def _counts(number: int) -> int:
