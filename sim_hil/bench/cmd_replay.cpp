@@ -107,8 +107,8 @@ Plan plan_from(const Arguments &arguments, std::optional<BoardFile> board, std::
 }
 
 /// What the sensors deliver for the counts of a tick.
-lockstep_stimulus_t stimulus_of(const std::int32_t *counts, const Plan &plan) {
-    lockstep_stimulus_t out = {LOCKSTEP_ENABLE, {0}, {0}};
+lockstep_stimulus_t stimulus_of(const std::int32_t *counts, const Plan &plan, bool is_first) {
+    lockstep_stimulus_t out = {is_first ? 0u : LOCKSTEP_ENABLE, {0}, {0}}; // its edge arms
     if (!plan.counts_instructions) {
         out.flags |= LOCKSTEP_REPORT | (plan.board ? LOCKSTEP_PICTURE : 0u);
     }
@@ -135,7 +135,8 @@ void replay_record(const std::int32_t *counts, const Plan &plan, std::int32_t ti
     lockstep_reply_t reply{};
     std::size_t next_row = plan.from_tick;
     for (std::size_t tick = 0; tick < plan.record_ticks; ++tick) {
-        const lockstep_stimulus_t stimulus = stimulus_of(&counts[tick * plan.sensors], plan);
+        const lockstep_stimulus_t stimulus =
+            stimulus_of(&counts[tick * plan.sensors], plan, tick == 0);
         link.exchange(stimulus, reply);
         out.digest.add(reply);
         if (tick == next_row) {

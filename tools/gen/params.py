@@ -166,8 +166,8 @@ is refused by name and nothing starts.
 | # | name | unit | range | default | live | meaning |
 |---|---|---|---|---|---|---|
 {rows}
-Live: may also change while the controller is armed, between two ticks; the slew limit bounds what that does.
-All others are refused then: disarm first.
+Live: may also change while the controller is armed, between two ticks; the slew limit bounds what
+that does. All others are refused then: disarm first.
 
 Values that must also agree with each other: `band_low_mHz` < `band_high_mHz`;
 `constant_current_mA`, `safe_current_mA` and `unlock_current_mA` <= `max_current_mA`; with

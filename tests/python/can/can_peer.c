@@ -2,10 +2,11 @@
 // 1 kHz, with SLCAN on a file descriptor. Runs until its input ends or SIGTERM. Where its reader is
 // slow it waits, so that a busy machine loses no frames; the ticks that it missed do not come.
 //
-// can_peer FD [--drop N] [--corrupt N] [--no-store] [--silent]
+// can_peer FD [--drop N] [--corrupt N] [--no-store] [--silent] [--idle]
 //   --drop N     the bus loses every Nth frame
 //   --corrupt N  every Nth frame has a bit flipped
 //   --silent     answers no requests
+//   --idle       the operator lets go
 #include <errno.h>
 #include <math.h>
 #include <poll.h>
@@ -29,6 +30,7 @@ typedef struct {
     unsigned drop;
     unsigned corrupt;
     bool has_store;
+    bool is_idle; // the operator lets go
     bool is_silent;
     unsigned sent;
     uint32_t dropped;
@@ -93,7 +95,7 @@ static void send_frame(peer_t *peer, const can_frame_t *frame) {
 static void tick(peer_t *peer, unsigned number) {
     const double counts = 20000.0 * sin(2.0 * PI * 8.0 * number / 1000.0);
     const node_inputs_t inputs = {
-        .enable = number > 0, // its edge arms
+        .enable = number > 0 && !peer->is_idle, // its edge arms
         .sensor = {{.counts = (int32_t)counts + (int32_t)(number * 7919u % 13u), .is_fresh = true}},
         .ticks_elapsed = 1,
         .work_us = 20,
@@ -161,6 +163,7 @@ int main(int argc, char **argv) {
     peer.drop = option(argc, argv, "--drop");
     peer.corrupt = option(argc, argv, "--corrupt");
     peer.has_store = !flag(argc, argv, "--no-store");
+    peer.is_idle = flag(argc, argv, "--idle");
     peer.is_silent = flag(argc, argv, "--silent");
     (void)signal(SIGTERM, end);
     slcan_decoder_init(&peer.decoder);

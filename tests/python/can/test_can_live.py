@@ -75,8 +75,16 @@ def test_get_shows_every_parameter(controller: Controller, tool) -> None:
     assert "fuzzy" in table.stdout and "rms_window_ms" not in table.stdout
 
 
-def test_set_changes_all_or_nothing(controller: Controller, tool) -> None:
+def test_armed_controller_takes_live_parameters_only(controller: Controller, tool) -> None:
     controller.start()
+    line = error_line(tool("set", "law=constant"), 1)
+    assert "the controller is armed, and law may not change then; disarm it first" in line
+    assert tool("set", "unlock_current_mA=4000").returncode == 0
+    assert values(tool)["unlock_current_mA"] == 4000
+
+
+def test_set_changes_all_or_nothing(controller: Controller, tool) -> None:
+    controller.start("--idle")
     result = tool("set", "law=constant", "constant_current_mA=1500", "--save")
     assert result.returncode == 0, result.stderr
     assert "law: fuzzy -> constant" in result.stdout and "stored" in result.stderr

@@ -20,6 +20,13 @@ def start_running(quiesced: Quiesced, *arguments: str) -> None:
     quiesced.peer.wait_state(RUN)
 
 
+def disarm(quiesced: Quiesced) -> None:
+    """Lets go: only then may all parameters change."""
+    after = quiesced.peer.count()
+    quiesced.peer.operator = {"enable": 0}
+    quiesced.peer.wait_state(IDLE, after)
+
+
 def in_a_row(count: int, state: int) -> Callable[[dict[str, int]], bool]:
     """Accepts the last of so many demand frames in a row with a state."""
     seen = 0

@@ -6,7 +6,17 @@ from pathlib import Path
 
 import pytest
 from quiesced_peer import ROOT, Quiesced, on_a_pty
-from quiesced_steps import DONE, FAULT, RUN, SAFE, in_a_row, index_of, killed, start_running
+from quiesced_steps import (
+    DONE,
+    FAULT,
+    RUN,
+    SAFE,
+    disarm,
+    in_a_row,
+    index_of,
+    killed,
+    start_running,
+)
 
 SENSORS = ("floor_accel", "roof_accel", "upper_stroke")
 DAMPERS = {"lower": "CurrentDemand", "upper": "CurrentDemand1"}
@@ -78,10 +88,12 @@ def test_every_damper_reaches_its_ceiling_and_leaves_with_a_farewell(rig: Quiesc
 
 def test_no_parameter_raises_a_ceiling(rig: Quiesced) -> None:
     start_running(rig)
+    disarm(rig)
     for name in ("max_current_mA", "constant_current_mA"):
         reply = rig.peer.request("STAGE", index_of(name), 20000)
         assert reply.signals["result"] == DONE
     assert rig.peer.request("APPLY").signals["result"] == DONE
+    rig.peer.operator = {"enable": 1}
     after = rig.peer.count()
     wait_currents(rig, dict.fromkeys(DAMPERS, CEILING_mA), True, after)
     rig.peer.wait("Identification", after=rig.peer.count())

@@ -15,6 +15,7 @@ from quiesced_steps import (
     FAULT,
     RUN,
     STORE_FAILED,
+    disarm,
     read_parameter,
     set_parameter,
     start_running,
@@ -101,8 +102,18 @@ def test_reload_takes_good_parameters_only(quiesced: Quiesced) -> None:
     peer = quiesced.peer
     quiesced.write_config("safe_current_mA = 40\n")
     quiesced.signal(signal.SIGHUP)
+    quiesced.wait_log("safe_current_mA may not change while the controller is armed; disarm first")
+    disarm(quiesced)
+    quiesced.signal(signal.SIGHUP)
     quiesced.wait_log("restarted with new parameters")
     assert read_parameter(peer, "safe_current_mA") == 40
+    peer.operator = {"enable": 1}
+    peer.wait_state(RUN, peer.count())
+
+    quiesced.write_config("safe_current_mA = 40\nunlock_current_mA = 4000\n")
+    quiesced.signal(signal.SIGHUP)  # live: nothing restarts
+    quiesced.wait_log("other live parameters")
+    assert read_parameter(peer, "unlock_current_mA") == 4000
 
     quiesced.write_config("safe_current_mA = -1\nlaw = 'wrong'\n")
     quiesced.signal(signal.SIGHUP)
