@@ -158,11 +158,15 @@ static can_press_t next_press(can_press_t press, bool fault_reset) {
                                        : CAN_PRESS_NONE;
 }
 
-// Of a sender that is not known a press means nothing, nor what was said before its row.
-static void hear_stranger(can_operator_t *panel, freshness_verdict_t verdict, bool enable) {
+// Of a sender that is not known a press means nothing, nor what was said before its row: who comes
+// back pressing has to be seen let go.
+static void hear_stranger(can_operator_t *panel, freshness_verdict_t verdict, bool enable,
+                          bool had_let_go) {
     if (!freshness_is_known(&panel->from)) {
         panel->was_enabled = enable && verdict == FRESHNESS_ON_TRIAL;
-        panel->was_let_go = false;
+        panel->was_let_go = verdict == FRESHNESS_BEGINS
+                                ? !enable
+                                : verdict == FRESHNESS_ON_TRIAL && (had_let_go || !enable);
         panel->press = CAN_PRESS_NONE;
     }
 }
@@ -182,7 +186,7 @@ static void take_operator(can_receive_t *self, const can_frame_t *frame) {
     const freshness_verdict_t verdict =
         judge(self, &panel->from, QUIESCE_CAN_AT_OPERATOR_COMMAND, frame);
     if (verdict != FRESHNESS_COUNTS) {
-        hear_stranger(panel, verdict, enable);
+        hear_stranger(panel, verdict, enable, had_let_go);
         return;
     }
     panel->enable = panel->was_enabled && panel->was_let_go;
@@ -277,6 +281,4 @@ void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *
     }
     self->stop.is_seen = false;
     self->operator_command.is_reset_edge = false;
-    // Who comes back pressing has not pressed: it has to be seen let go.
-    self->operator_command.was_let_go = is_operated && self->operator_command.was_let_go;
 }

@@ -67,7 +67,7 @@ typedef struct {
     freshness_t from;
     bool enable;
     bool was_enabled;   ///< the last frame of the row had enable = 1
-    bool was_let_go;    ///< since it is known, a frame of the row had enable = 0
+    bool was_let_go;    ///< a frame of the row had enable = 0
     can_press_t press;  ///< of fault_reset, in the frames of the row
     bool is_reset_edge; ///< since the last tick
 } can_operator_t;

@@ -74,7 +74,7 @@ static void test_values_arrive_in_the_next_tick(void) {
     take(make_stop(STOP, 3));
     take(make_accel(-8388608, false, false, 7));
     take(make_current(-32768, 9));
-    TEST_ASSERT_EQUAL_UINT32(3, bus.counters.accepted);
+    TEST_ASSERT_EQUAL_UINT32(5, bus.counters.accepted); // two of the operator, who lets go first
     pass(1);
     TEST_ASSERT_TRUE(inputs.estop && inputs.sensor[0].is_fresh && inputs.driver[0].is_measured);
     TEST_ASSERT_EQUAL_INT32(-8388608, inputs.sensor[0].counts);
@@ -97,7 +97,7 @@ static void test_nothing_counts_before_the_third_frame(void) {
     take(make_accel(1, false, false, 0));
     pass(1);
     TEST_ASSERT_TRUE(inputs.sensor[0].is_fresh);
-    TEST_ASSERT_EQUAL_UINT32(3, bus.counters.accepted);
+    TEST_ASSERT_EQUAL_UINT32(5, bus.counters.accepted); // two of the operator, who lets go first
     TEST_ASSERT_EQUAL_UINT32(0, bus.counters.rejected_alive);
 }
 
@@ -108,7 +108,7 @@ static void test_each_is_gone_after_its_timeout(void) {
         const uint32_t per_s = rates_Hz[r];
         can_receive_init(&bus, per_s);
         for (uint8_t i = 0; i < 3; i++) { // all 100 ms, and the driver all 10 ms before the last
-            take(make_operator(true, false, i));
+            take(make_operator(i > 0, false, i));
             pass(i == 0 ? per_s / 10u : i == 1 ? per_s * 8u / 100u : 0);
             if (i > 0) {
                 take(make_current(5, (uint8_t)(2 * i)));
@@ -276,6 +276,43 @@ static void test_enable_takes_two_frames(void) {
     take(make_operator(true, false, 1));
     pass(1);
     TEST_ASSERT_TRUE(inputs.enable);
+}
+
+static void test_enable_that_is_held_is_none_until_it_is_let_go(void) {
+    for (uint8_t i = 0; i < 40; i++) { // from the start on
+        take(make_operator(true, false, i % 16u));
+        pass(100);
+        TEST_ASSERT_FALSE(inputs.enable);
+    }
+    take(make_operator(false, false, 8));
+    pass(100);
+    take(make_operator(true, false, 9));
+    pass(100);
+    take(make_operator(true, false, 10));
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.enable);
+    pass(400); // it falls silent, and comes back pressing
+    for (uint8_t i = 0; i < 40; i++) {
+        take(make_operator(true, false, i % 16u));
+        pass(100);
+        TEST_ASSERT_FALSE(inputs.enable);
+    }
+}
+
+// A stop that somebody inserts stops; what the operator holds does not start it again.
+static void test_enable_after_a_stop_that_does_not_count_has_to_be_let_go(void) {
+    introduce_operator(true, false, 0);
+    take(make_operator(true, false, 0));
+    pass(50);
+    TEST_ASSERT_TRUE(inputs.enable);
+    take(make_operator(false, false, 7)); // out of its row
+    pass(50);
+    TEST_ASSERT_FALSE(inputs.enable);
+    for (uint8_t i = 1; i < 30; i++) {
+        take(make_operator(true, false, i % 16u));
+        pass(100);
+        TEST_ASSERT_FALSE(inputs.enable);
+    }
 }
 
 static void test_stop_is_accepted_whatever_its_counter(void) {
@@ -555,6 +592,8 @@ int main(void) {
     RUN_TEST(test_a_silent_sender_is_on_trial_again);
     RUN_TEST(test_an_operator_who_stops_is_believed_at_once);
     RUN_TEST(test_enable_takes_two_frames);
+    RUN_TEST(test_enable_that_is_held_is_none_until_it_is_let_go);
+    RUN_TEST(test_enable_after_a_stop_that_does_not_count_has_to_be_let_go);
     RUN_TEST(test_stop_is_accepted_whatever_its_counter);
     RUN_TEST(test_stop_counts_however_late_its_tick_is);
     RUN_TEST(test_driver_that_reports_a_fault_has_failed);

@@ -122,7 +122,8 @@ static void test_bus_carries_what_the_driver_is_told(void) {
 static void check_enable(node_enable_t from, bool by_board, bool by_bus, bool expected) {
     start(from);
     board.enable = by_board;
-    run(1);
+    press(false, false);
+    run(100);
     for (uint32_t i = 0; i < 20; i++) {
         press(by_bus, false);
         run(100);
