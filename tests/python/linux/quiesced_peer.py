@@ -26,7 +26,8 @@ DBC = cantools.database.load_file(ROOT / "firmware/comm/quiesce.dbc")
 BUILD = Path(os.environ.get("QUIESCE_BUILD", ROOT / "build")).resolve()
 DEMAND_ID = DBC.get_message_by_name("CurrentDemand").frame_id
 COMMAND_S = DBC.get_message_by_name("OperatorCommand").cycle_time / 1000.0
-INIT, FAULT = 0, 4  # states of the controller that the operator lets go in
+INIT, IDLE, FAULT = 0, 1, 4
+PRESSES_IN_VAIN = 10  # in IDLE, until the operator lets go once more
 LET_GO_FRAMES = 4  # the third is the first that counts
 SAMPLE_ID = DBC.get_message_by_name("AccelSample").frame_id
 PATIENCE_S = 60.0  # for events on a machine with other work; nothing is asserted about it
@@ -118,6 +119,8 @@ class Peer:
         self._commands = 0
         self._command_due_s = 0.0
         self._let_go = LET_GO_FRAMES
+        self._in_vain = 0
+        self._is_idle = False
         self._marks = 0
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -199,8 +202,10 @@ class Peer:
                 self._serve(frame.data[2] >> 1 & 7)
 
     def _serve(self, state: int) -> None:
-        if state in (INIT, FAULT):
+        if state in (INIT, FAULT) or self._in_vain > PRESSES_IN_VAIN:
             self._let_go = LET_GO_FRAMES
+            self._in_vain = 0
+        self._is_idle = state == IDLE
         self._demands += 1
         if not select.select([], [self.master], [], 0)[1]:
             return  # nobody reads, as after the program's death: this bus loses frames
@@ -224,6 +229,7 @@ class Peer:
         if self._let_go > 0:
             self._let_go -= 1
             said["enable"] = 0
+        self._in_vain = self._in_vain + 1 if self._is_idle and said.get("enable") else 0
         self.send("OperatorCommand", **said)
 
     def close(self, slave: int) -> None:

@@ -117,8 +117,7 @@ def test_reload_takes_good_parameters_only(quiesced: Quiesced) -> None:
 
     quiesced.write_config("safe_current_mA = -1\nlaw = 'wrong'\n")
     quiesced.signal(signal.SIGHUP)
-    quiesced.wait_log("parameters stay: ")
-    assert "parameters.safe_current_mA: expected an integer in 0" in quiesced.log_text()
+    quiesced.wait_log("parameters.safe_current_mA: expected an integer in 0")
     assert "(and 1 more: --check)" in quiesced.log_text()
     assert read_parameter(peer, "safe_current_mA") == 40
     peer.wait_state(RUN, peer.count())
