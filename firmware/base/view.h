@@ -67,6 +67,7 @@ typedef struct {
     int32_t supply_mV;
     bool is_output_on; ///< in the last tick: what was requested passed the guard
     bool may_learn;    ///< learning is not frozen
+    bool is_at_rest;   ///< it has hardly vibrated for long (rest.h)
 } view_t;
 
 #endif

@@ -83,6 +83,7 @@ static const range_t damper_ranges[] = {
     DAMPER(heat_s, 5, 10000),
     DAMPER(measures_current, 0, 1),
     DAMPER(coil_lag_us, 0, 1000000),
+    DAMPER(coil_mohm, 0, 1000000),
 };
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
@@ -161,6 +162,15 @@ static bool is_same(const quiesce_board_sensor_t *a, const quiesce_board_sensor_
     return a->sense == b->sense && a->at == b->at;
 }
 
+static bool has_voltage(const quiesce_board_t *board, int32_t damper) {
+    for (int32_t i = 0; i < board->sensors; i++) {
+        if (board->sensor[i].sense == QUIESCE_SENSE_VOLTAGE && board->sensor[i].at == damper) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool are_sensors_good(const quiesce_board_t *board, quiesce_board_error_t *error) {
     for (int32_t i = 0; i < board->sensors; i++) {
         const place_t at = {"sensor", i, error};
@@ -207,6 +217,12 @@ static bool check_damper(place_t at, const quiesce_board_t *board,
     }
     if (damper->trip_mA != 0 && damper->measures_current == 0) {
         return refuse(at, "trip_mA", "needs measures_current");
+    }
+    if (damper->coil_mohm != 0 && damper->measures_current == 0) {
+        return refuse(at, "coil_mohm", "needs measures_current");
+    }
+    if (damper->coil_mohm != 0 && !has_voltage(board, at.number)) {
+        return refuse(at, "coil_mohm", "needs a sensor of its coil voltage");
     }
     return true;
 }

@@ -181,7 +181,7 @@ bool control_step(control_t *self, const view_t *view, law_demand_t *out) {
         self->blind_ticks = 0;
         return true;
     }
-    law_demand_all(out, self->setup.params.unlock_current_mA);
+    law_demand_all(out, law_unlock_mA(&self->setup.params, view));
     self->blind_ticks = view->is_output_on ? increment_sat_u32(self->blind_ticks) : 0u;
     return self->blind_ticks <= self->blind_most_ticks;
 }

@@ -5,8 +5,10 @@
 
 #include "control.h"
 #include "drive.h"
+#include "rest.h"
 #include "signal_chain.h"
 #include "supervisor.h"
+#include "sweep.h"
 #include "twin.h"
 
 // Lives in the caller's opaque words; the library is built with -fno-strict-aliasing for that.
@@ -18,6 +20,8 @@ typedef struct {
     supervisor_t supervisor;
     uint32_t supervisor_twin[TWIN_WORDS(WORDS_OF(supervisor_t))];
     drive_t drive[QUIESCE_DAMPERS];
+    rest_t rest;
+    sweep_t sweep;
     law_demand_t request; ///< of the last tick
     uint32_t last_tick;
     uint32_t bad_sample_count;
@@ -27,6 +31,10 @@ typedef struct {
 _Static_assert(sizeof(controller_t) <= QUIESCE_STATE_BYTES, "QUIESCE_STATE_BYTES is too small");
 _Static_assert(sizeof(quiesce_telemetry_t) % sizeof(uint32_t) == 0, "telemetry is words only");
 _Static_assert(QUIESCE_PEAKS == ESTIMATOR_TONES, "telemetry holds the estimator's components");
+
+// Parts of the sweep.
+enum { SWEPT_PARAMS, SWEPT_LAW_TABLE, SWEPT_FORCE_TABLE, SWEPT_WATCHES };
+_Static_assert(SWEPT_WATCHES + QUIESCE_WATCHES == SWEEP_PARTS, "the caller's parts are the last");
 
 static uint32_t dampers_of(const controller_t *self) {
     return QUIESCE_DAMPERS == 1 ? 1u : self->signal.sensing.places.dampers;
@@ -54,6 +62,23 @@ static quiesce_board_t board_of(const quiesce_params_t *p) {
     return board;
 }
 
+static const uint32_t *own_words(const controller_t *self) {
+    return (const uint32_t *)(const void *)&self->control.setup.params;
+}
+
+static void sweep_params(controller_t *self) {
+    sweep_watch(&self->sweep, SWEPT_PARAMS, own_words(self), QUIESCE_PARAM_COUNT, own_words(self));
+}
+
+// Their third word is the number of words in all; they have been checked.
+static void sweep_tables(controller_t *self) {
+    const uint32_t *const table[] = {self->control.setup.table, self->control.forces.table};
+    for (uint32_t i = 0; i < 2; i++) {
+        sweep_watch(&self->sweep, SWEPT_LAW_TABLE + i, table[i], table[i] != NULL ? table[i][2] : 0,
+                    own_words(self));
+    }
+}
+
 static void start_all(controller_t *self, const quiesce_board_t *board,
                       const quiesce_params_t *params, const quiesce_params_t *used,
                       bool is_accepted) {
@@ -66,6 +91,9 @@ static void start_all(controller_t *self, const quiesce_board_t *board,
     }
     supervisor_init(&self->supervisor, is_accepted ? QUIESCE_FAULT_NONE : QUIESCE_FAULT_PARAMETER);
     twin_make(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
+    sweep_init(&self->sweep, (uint32_t)used->tick_rate_Hz);
+    sweep_params(self);
+    sweep_tables(self);
 }
 
 bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
@@ -103,6 +131,7 @@ bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
 bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board,
                      const quiesce_params_t *params) {
     controller_t *c = (controller_t *)(void *)self->opaque;
+    const sweep_t sweep = c->sweep;
     int64_t heat_q20[QUIESCE_DAMPERS];
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         heat_q20[i] = c->drive[i].heat.heat_q20;
@@ -111,6 +140,9 @@ bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board,
         board == NULL ? quiesce_init(self, params) : quiesce_init_board(self, board, params);
     for (uint32_t i = 0; i < dampers_of(c); i++) {
         c->drive[i].heat.heat_q20 = heat_q20[i];
+    }
+    for (uint32_t i = SWEPT_WATCHES; i < SWEEP_PARTS; i++) {
+        sweep_go_on(&c->sweep, i, &sweep.part[i]);
     }
     return is_accepted;
 }
@@ -127,7 +159,15 @@ static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
     return sample->is_fault ? (quiesce_fault_t)fault_of[sample->flag] : QUIESCE_FAULT_NONE;
 }
 
-// The first fault of any driver.
+// Energy comes out of a damper, as it cannot: force or stroke has the wrong sense.
+static bool is_reversed(controller_t *self, uint32_t i) {
+    const uint64_t both = (VIEW_FORCE | VIEW_STROKE_VELOCITY) << i;
+    const view_damper_t *damper = &self->view.damper[i];
+    return energy_is_negative(&self->drive[i].energy, damper->force_mN, damper->velocity_um_s,
+                              (self->view.valid & both) == both);
+}
+
+// The first fault of any driver, or of the sensors of its damper.
 static quiesce_fault_t watch_drives(controller_t *self, const quiesce_in_t *in) {
     static const uint8_t fault_of[] = {
         [CURRENT_OK] = QUIESCE_FAULT_NONE,
@@ -136,12 +176,19 @@ static quiesce_fault_t watch_drives(controller_t *self, const quiesce_in_t *in) 
         [CURRENT_MISSING] = QUIESCE_FAULT_CURRENT_LOST,
         [CURRENT_OVER] = QUIESCE_FAULT_OVERCURRENT,
         [CURRENT_HOT] = QUIESCE_FAULT_COIL_HOT,
+        [CURRENT_SHORT] = QUIESCE_FAULT_COIL_SHORT,
     };
     quiesce_fault_t found = QUIESCE_FAULT_NONE;
     for (uint32_t i = 0; i < dampers_of(self); i++) {
         current_verdict_t verdict;
-        self->view.damper[i].current_mA = drive_watch(&self->drive[i], &in->driver[i], &verdict);
+        const bool has_voltage = (self->view.valid & VIEW_VOLTAGE << i) != 0;
+        const int32_t *voltage_mV = has_voltage ? &self->view.damper[i].voltage_mV : NULL;
+        self->view.damper[i].current_mA =
+            drive_watch(&self->drive[i], &in->driver[i], voltage_mV, &verdict);
         found = found == QUIESCE_FAULT_NONE ? (quiesce_fault_t)fault_of[verdict] : found;
+        if (is_reversed(self, i) && found == QUIESCE_FAULT_NONE) {
+            found = QUIESCE_FAULT_SENSOR_POLARITY;
+        }
     }
     return found;
 }
@@ -192,29 +239,45 @@ static bool is_limited(const controller_t *self) {
     return is_limiting;
 }
 
+// While they are off no current has been measured for some time, where currents are measured.
+static bool are_quiet(const controller_t *self) {
+    bool are_quiet = true;
+    for (uint32_t i = 0; i < dampers_of(self); i++) {
+        are_quiet = are_quiet && current_monitor_is_quiet(&self->drive[i].monitor);
+    }
+    return are_quiet;
+}
+
+static bool is_ready(const controller_t *self, const findings_t *found) {
+    const bool sees =
+        supervisor_allows_output(&self->supervisor) || control_sees(&self->control, &self->view);
+    return sees && found->sample->good_ticks >= self->recover_ticks &&
+           (supervisor_is_tested(&self->supervisor) || are_quiet(self));
+}
+
 static void supervise(controller_t *self, const quiesce_in_t *in, const findings_t *found) {
     const supervisor_in_t events = {
         .clearing_fault = clearing_fault(found),
         .latched_fault = latched_fault(self, in, found->current_fault),
-        .is_ready = found->sample->good_ticks >= self->recover_ticks &&
-                    (supervisor_allows_output(&self->supervisor) ||
-                     control_sees(&self->control, &self->view)),
+        .is_ready = is_ready(self, found),
         .is_limited = is_limited(self),
         .enable = in->enable,
         .fault_reset = in->fault_reset,
     };
     if (supervisor_step(&self->supervisor, &events)) {
         for (uint32_t i = 0; i < dampers_of(self); i++) {
-            current_monitor_reset(&self->drive[i].monitor);
+            drive_forget(&self->drive[i]);
         }
     }
     twin_make(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
 }
 
-// Whether what decides about currents still is what the last tick left. Where not, nothing that it
-// says is believed any more.
-static bool is_intact(const controller_t *self) {
-    bool is_intact = twin_holds(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
+// Whether what decides about currents still is what the last tick left, and what it reads what was
+// checked. Where not, nothing that it says is believed any more.
+static bool is_intact(controller_t *self) {
+    bool is_intact = sweep_step(&self->sweep, own_words(self));
+    is_intact =
+        is_intact && twin_holds(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
     for (uint32_t i = 0; i < dampers_of(self); i++) {
         is_intact = drive_is_intact(&self->drive[i]) && is_intact;
     }
@@ -294,6 +357,7 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     findings_t found = {.sample = signal.sample, .has_gap = signal_in.has_gap};
     found.current_fault = watch_drives(c, in);
     c->view.is_output_on = supervisor_allows_output(&c->supervisor);
+    c->view.is_at_rest = rest_step(&c->rest, &c->view, &c->control.setup.params);
     found.is_blind = !control_step(&c->control, &c->view, &c->request);
     if (is_intact(c)) {
         supervise(c, in, &found);
@@ -321,11 +385,25 @@ static const control_t *known_of(const quiesce_t *self) {
 }
 
 quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
-    return control_use(control_of(self), words, count);
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    const quiesce_table_verdict_t verdict = control_use(&c->control, words, count);
+    sweep_tables(c);
+    return verdict;
 }
 
 quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic) {
-    return control_drop(control_of(self), magic);
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    const quiesce_table_verdict_t verdict = control_drop(&c->control, magic);
+    sweep_tables(c);
+    return verdict;
+}
+
+void quiesce_watch(quiesce_t *self, uint32_t which, const uint32_t *words, uint32_t count) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    if (which < QUIESCE_WATCHES) {
+        sweep_watch(&c->sweep, SWEPT_WATCHES + which, words, words != NULL ? count : 0,
+                    own_words(c));
+    }
 }
 
 bool quiesce_learnt_save(const quiesce_t *self, quiesce_learnt_t *out) {
@@ -348,11 +426,12 @@ bool quiesce_params_use(quiesce_t *self, const quiesce_params_t *params) {
         return false;
     }
     *used = *params;
+    sweep_params(c);
     return true;
 }
 
 bool quiesce_is_armed(const quiesce_t *self) {
-    return ((const controller_t *)(const void *)self->opaque)->supervisor.is_armed != 0u;
+    return supervisor_is_armed(&((const controller_t *)(const void *)self->opaque)->supervisor);
 }
 
 const quiesce_word_t *quiesce_report_words(int32_t law) {

@@ -1,5 +1,7 @@
 #include "drive.h"
 
+#include <stddef.h>
+
 #define RATE_IF_REFUSED_Hz 1000u
 
 // Of a deviation; beyond half of what the damper may get nothing would be one.
@@ -45,6 +47,8 @@ void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quies
     start_guard(&self->limits.guard, damper, p, rate_Hz);
     start_monitor(self, damper, p, rate_Hz,
                   is_accepted ? (current_check_t)damper->measures_current : CURRENT_CHECK_NEVER);
+    coil_init(&self->coil, damper->coil_mohm, self->monitor.error_mA, self->monitor.fault_ticks);
+    energy_init(&self->energy, rate_Hz);
     heat_init(&self->heat, &(heat_cfg_t){
                                .tick_rate_Hz = rate_Hz,
                                .continuous_mA = damper->continuous_mA,
@@ -54,9 +58,24 @@ void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quies
     twin_make(&self->limits, WORDS_OF(drive_limits_t), self->twin);
 }
 
-int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, current_verdict_t *verdict) {
+// What current and voltage together say of the coil.
+static current_verdict_t judge_coil(drive_t *self, int32_t current_mA, int32_t voltage_mV,
+                                    current_verdict_t verdict) {
+    const bool is_short = coil_is_short(&self->coil, self->last_command_mA, current_mA, voltage_mV);
+    if (verdict == CURRENT_OPEN_COIL &&
+        !coil_is_open(&self->coil, current_monitor_expected_mA(&self->monitor), voltage_mV)) {
+        return CURRENT_NOT_FOLLOWING;
+    }
+    return verdict == CURRENT_OK && is_short ? CURRENT_SHORT : verdict;
+}
+
+int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, const int32_t *voltage_mV,
+                    current_verdict_t *verdict) {
     *verdict = current_monitor_step(&self->monitor, self->last_command_mA, driver->current_mA,
                                     driver->is_measured);
+    if (voltage_mV != NULL && driver->is_measured) {
+        *verdict = judge_coil(self, driver->current_mA, *voltage_mV, *verdict);
+    }
     const int32_t current_mA = driver->is_measured
                                    ? clamp_i32(driver->current_mA, -VIEW_LIMIT, VIEW_LIMIT)
                                    : current_monitor_expected_mA(&self->monitor);
@@ -65,6 +84,12 @@ int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, current_verdi
         *verdict = CURRENT_HOT;
     }
     return current_mA;
+}
+
+void drive_forget(drive_t *self) {
+    current_monitor_reset(&self->monitor);
+    self->coil.bad = 0;
+    energy_forget(&self->energy);
 }
 
 static void take(drive_t *self, int32_t command_mA, bool driver_enable, quiesce_command_t *out) {

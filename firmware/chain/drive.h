@@ -2,7 +2,9 @@
 #ifndef DRIVE_H
 #define DRIVE_H
 
+#include "coil.h"
 #include "current_monitor.h"
+#include "energy.h"
 #include "guard.h"
 #include "heat.h"
 #include "quiesce.h"
@@ -20,6 +22,8 @@ typedef struct {
     drive_limits_t limits;
     uint32_t twin[TWIN_WORDS(WORDS_OF(drive_limits_t))];
     current_monitor_t monitor;
+    coil_t coil;
+    energy_t energy;
     heat_t heat;
     int32_t last_command_mA; ///< that the driver is expected to make
 } drive_t;
@@ -28,9 +32,14 @@ typedef struct {
 void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quiesce_params_t *params,
                 bool is_accepted);
 
-/// A tick's measurement against the command that was in force. Returns the current in the coil, mA:
-/// measured, within VIEW_LIMIT, else as command and lag say. It heats the coil.
-int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, current_verdict_t *verdict);
+/// A tick's measurement against the command that was in force; voltage_mV: across the coil, NULL
+/// where it is not known. Returns the current in the coil, mA: measured, within VIEW_LIMIT, else as
+/// command and lag say. It heats the coil.
+int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, const int32_t *voltage_mV,
+                    current_verdict_t *verdict);
+
+/// Forgets what was wrong (a latched fault has been acknowledged).
+void drive_forget(drive_t *self);
 
 /// Whether the limits still are what they were at the end of the last tick.
 static inline bool drive_is_intact(const drive_t *self) {

@@ -269,8 +269,8 @@ void sensing_step(sensing_t *self, const quiesce_sample_t samples[QUIESCE_SENSOR
     view->valid = VIEW_CURRENT * ((UINT64_C(1) << dampers_of(&self->places)) - 1u);
     for (int32_t i = 0; i < sensors_of(&self->places); i++) {
         channel_t *channel = &self->channel[i];
-        condition_step(&channel->condition, samples[i].counts, samples[i].is_fresh,
-                       &channel->sample);
+        const condition_in_t in = {samples[i].counts, samples[i].is_fresh, samples[i].is_saturated};
+        condition_step(&channel->condition, &in, &channel->sample);
         if (is_accelerometer(self->places.sensor[i])) {
             const int32_t at = QUIESCE_BODIES == 1 ? 0 : self->places.sensor[i].at;
             show_acceleration(channel, at, view);

@@ -121,6 +121,7 @@ static void take_sample(can_receive_t *self, uint32_t number, const can_frame_t 
     (void)quiesce_can_accel_sample_unpack(&sample, frame->data, frame->length);
     if (sample.is_bad == 0u) {
         sensor->counts = sample.accel_counts;
+        sensor->is_saturated = sample.is_saturated != 0u;
         sensor->is_fresh = true;
     }
 }
@@ -247,7 +248,11 @@ static quiesce_sample_t hand_over_sample(can_sensor_t *self, int32_t passed_us) 
     freshness_pass(&self->from, passed_us);
     const bool is_fresh = self->is_fresh && freshness_is_known(&self->from);
     self->is_fresh = false;
-    return (quiesce_sample_t){.counts = is_fresh ? self->counts : 0, .is_fresh = is_fresh};
+    return (quiesce_sample_t){
+        .counts = is_fresh ? self->counts : 0,
+        .is_fresh = is_fresh,
+        .is_saturated = is_fresh && self->is_saturated,
+    };
 }
 
 static quiesce_driver_t hand_over_driver(can_driver_t *self, int32_t passed_us) {

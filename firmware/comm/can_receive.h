@@ -41,6 +41,7 @@ typedef struct {
     freshness_t from;
     uint32_t period_us; ///< between samples, as the board says; 0: as usual on the bus
     int32_t counts;
+    bool is_saturated;
     bool is_fresh; ///< since the last tick
 } can_sensor_t;
 

@@ -3,20 +3,13 @@
 #include <stddef.h>
 
 // Between a start and the first step: the command, and what messages that go out before say of it.
-// A driver stays on only where the last step, which has seen the emergency stop, had it on.
-static void rest(node_t *node, bool is_accepted) {
-    quiesce_command_t last[QUIESCE_DAMPERS];
-    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        last[i] = node->out.damper[i];
-    }
+// The drivers are off; the self-test wants them so.
+static void rest(node_t *node) {
     node->in = (quiesce_in_t){0};
     node->out = (quiesce_out_t){0};
     for (uint32_t i = 0; i < node_dampers(node); i++) {
         node->safe_mA[i] = safe_current_mA(node->board, &node->params, i);
-        node->out.damper[i] = (quiesce_command_t){
-            .current_cmd_mA = node->safe_mA[i],
-            .driver_enable = is_accepted && last[i].driver_enable,
-        };
+        node->out.damper[i].current_cmd_mA = node->safe_mA[i];
     }
     node->out.telemetry.current_cmd_mA = node->safe_mA[0];
 }
@@ -30,7 +23,11 @@ bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_
     can_node_init(&node->can, board, params);
     const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
                                            : quiesce_init_board(&node->controller, board, params);
-    rest(node, is_accepted);
+    if (board != NULL) { // a restart reads it again
+        quiesce_watch(&node->controller, 0, (const uint32_t *)(const void *)board,
+                      sizeof *board / sizeof(uint32_t));
+    }
+    rest(node);
     return is_accepted;
 }
 
@@ -41,7 +38,8 @@ uint32_t node_dampers(const node_t *node) {
 void node_restart(node_t *node, const quiesce_params_t *params) {
     node->params = *params;
     node->restarts++;
-    rest(node, quiesce_restart(&node->controller, node->board, params));
+    (void)quiesce_restart(&node->controller, node->board, params);
+    rest(node);
     can_node_use_params(&node->can, node->board, &node->params);
 }
 
@@ -65,6 +63,7 @@ static bool is_enabled(const node_t *node, const node_inputs_t *board) {
 // What was had last stays where nothing new has come.
 static void take_sample(quiesce_sample_t *sample, const quiesce_sample_t *from) {
     sample->is_fresh = from->is_fresh;
+    sample->is_saturated = from->is_saturated;
     if (from->is_fresh) {
         sample->counts = from->counts;
     }
@@ -198,8 +197,11 @@ static const quiesce_params_t *accept_staged(node_t *node) {
     return NULL;
 }
 
+// Nothing that has changed by itself is kept.
 static void save(node_t *node) {
-    const bool is_stored = node->store != NULL && node->store(node->store_context, &node->params);
+    const bool is_intact = can_node_param_hash(&node->params) == node->can.param_hash;
+    const bool is_stored =
+        is_intact && node->store != NULL && node->store(node->store_context, &node->params);
     if (!is_stored || !node->store_is_slow) {
         can_node_answer(&node->can, is_stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED, 0);
     }

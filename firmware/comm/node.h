@@ -10,6 +10,10 @@
 #include "can_node.h"
 #include "safe_current.h"
 
+/// Words that it has the controller watch (quiesce_watch): its board, number 0. Those from here on
+/// are the target's.
+#define NODE_WATCHES 1u
+
 /// Where the operator's enable comes from.
 typedef enum {
     NODE_ENABLE_BOARD = 0, ///< node_inputs_t.enable: a line, or always
@@ -82,8 +86,8 @@ void node_step(node_t *node, const node_inputs_t *inputs);
 
 /// The second part: what a service request asks for. Returns the parameters with which the
 /// controller is to be restarted now, else NULL; then write their safe currents
-/// (safe_current_mA of node->board) to the drivers, whose output stages stay as they are, call
-/// node_restart, write the commands again. Parameters are refused while a fault is latched, which a
+/// (safe_current_mA of node->board) to the drivers, switched off, call node_restart, write the
+/// commands again. Parameters are refused while a fault is latched, which a
 /// restart would forget, and above the max_current_mA of the start (most_mA); while the controller
 /// is armed all but live ones are, and those take effect here (quiesce_params_use).
 const quiesce_params_t *node_task(node_t *node);
@@ -96,8 +100,8 @@ uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
                    can_frame_t frames[CAN_NODE_MAX_FRAMES]);
 
 /// Starts from rest with the same board and other parameters, which quiesce_params_check accepts:
-/// commands are their safe currents, with the drivers on unless a signal is missing for their law;
-/// counts in node->restarts. As at any start, a latched fault and what was learnt are forgotten,
+/// commands are their safe currents, with the drivers off until the self-test has passed; counts in
+/// node->restarts. As at any start, a latched fault and what was learnt are forgotten,
 /// the shipped rules and pulses are in use, and the caller's tick has to run at
 /// params->tick_rate_Hz.
 void node_restart(node_t *node, const quiesce_params_t *params);

@@ -19,6 +19,7 @@ typedef enum {
     CURRENT_MISSING = 3, ///< no measurement for fault_ticks
     CURRENT_OVER = 4,    ///< above trip_mA
     CURRENT_HOT = 5,     ///< the coil is beyond its budget of heat (heat.h)
+    CURRENT_SHORT = 6,   ///< the coil is short (coil.h)
 } current_verdict_t;
 
 /// When missing and wrong measurements are faults. Those above the trip level always are.
@@ -58,6 +59,11 @@ void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *
 /// Verdict after this tick's measurement. command_mA is the command that was in force up to now.
 current_verdict_t current_monitor_step(current_monitor_t *self, int32_t command_mA,
                                        int32_t measured_mA, bool is_measured);
+
+/// Whether nothing has been wrong for as long as what was is remembered.
+static inline bool current_monitor_is_quiet(const current_monitor_t *self) {
+    return self->wrong == 0u && self->over == 0u && self->missing_ticks == 0u;
+}
 
 /// What should flow now, mA.
 static inline int32_t current_monitor_expected_mA(const current_monitor_t *self) {

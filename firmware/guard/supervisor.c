@@ -1,9 +1,5 @@
 #include "supervisor.h"
 
-// In last_inputs.
-#define WAS_ENABLED 1u
-#define WAS_RESET 2u
-
 typedef enum {
     EVENT_NOTHING, // not healthy for long enough
     EVENT_READY,   // healthy for long enough
@@ -16,6 +12,7 @@ typedef enum {
 } event_t;
 
 #define INIT QUIESCE_STATE_INIT
+#define SELF_TEST QUIESCE_STATE_SELF_TEST
 #define IDLE QUIESCE_STATE_IDLE
 #define ARMED QUIESCE_STATE_ARMED
 #define RUN QUIESCE_STATE_RUN
@@ -27,7 +24,8 @@ typedef enum {
 static const uint8_t next[QUIESCE_STATE_COUNT][EVENTS] = {
     // Columns: nothing, ready, armed, go, limited, clearing fault, latched fault. FAULT is left
     // disarmed.
-    [INIT] = {INIT, IDLE, INIT, ARMED, ARMED, SAFE, FAULT},
+    [INIT] = {SELF_TEST, SELF_TEST, SELF_TEST, SELF_TEST, SELF_TEST, SAFE, FAULT},
+    [SELF_TEST] = {SELF_TEST, IDLE, SELF_TEST, ARMED, ARMED, SAFE, FAULT},
     [IDLE] = {IDLE, IDLE, ARMED, ARMED, ARMED, SAFE, FAULT},
     [ARMED] = {IDLE, IDLE, ARMED, RUN, DEGRADED, SAFE, FAULT},
     [RUN] = {IDLE, IDLE, RUN, RUN, DEGRADED, SAFE, FAULT},
@@ -42,7 +40,7 @@ void supervisor_init(supervisor_t *self, quiesce_fault_t first_fault) {
         .state = is_refused ? FAULT : INIT,
         .fault = (uint8_t)first_fault,
         .fault_count = is_refused ? 1u : 0u,
-        .last_inputs = WAS_ENABLED | WAS_RESET,
+        .flags = SUPERVISOR_WAS_ENABLED | SUPERVISOR_WAS_RESET,
     };
 }
 
@@ -50,19 +48,41 @@ static bool is_final(uint32_t fault) {
     return fault == QUIESCE_FAULT_PARAMETER || fault == QUIESCE_FAULT_MEMORY;
 }
 
-// The operator's inputs of this tick. Returns true iff enable has risen.
-static bool follow_inputs(supervisor_t *self, const supervisor_in_t *in, bool *is_acknowledged) {
-    const bool has_risen = in->enable && (self->last_inputs & WAS_ENABLED) == 0u;
-    *is_acknowledged = in->fault_reset && (self->last_inputs & WAS_RESET) == 0u;
-    self->last_inputs =
-        (uint8_t)((in->enable ? WAS_ENABLED : 0u) | (in->fault_reset ? WAS_RESET : 0u));
-    return has_risen;
+typedef struct {
+    bool has_risen;       ///< enable
+    bool is_acknowledged; ///< fault reset has risen
+} edges_t;
+
+static uint8_t flag(uint32_t which, bool is_set) {
+    return (uint8_t)(is_set ? which : 0u);
+}
+
+static edges_t follow_inputs(supervisor_t *self, const supervisor_in_t *in) {
+    const edges_t edges = {
+        .has_risen = in->enable && (self->flags & SUPERVISOR_WAS_ENABLED) == 0u,
+        .is_acknowledged = in->fault_reset && (self->flags & SUPERVISOR_WAS_RESET) == 0u,
+    };
+    self->flags = (uint8_t)((self->flags & (SUPERVISOR_ARMED | SUPERVISOR_TESTED)) |
+                            flag(SUPERVISOR_WAS_ENABLED, in->enable) |
+                            flag(SUPERVISOR_WAS_RESET, in->fault_reset));
+    return edges;
+}
+
+static void set(supervisor_t *self, uint32_t which, bool is_set) {
+    self->flags = (uint8_t)((self->flags & ~which) | flag(which, is_set));
 }
 
 static void arm(supervisor_t *self, bool enable, bool has_risen) {
-    const bool may_arm = self->state == INIT || self->state == IDLE;
-    const bool is_armed = self->is_armed != 0u && self->state != FAULT;
-    self->is_armed = enable && (is_armed || (has_risen && may_arm));
+    const bool may_arm = self->state == INIT || self->state == SELF_TEST || self->state == IDLE;
+    const bool is_armed = supervisor_is_armed(self) && self->state != FAULT;
+    set(self, SUPERVISOR_ARMED, enable && (is_armed || (has_risen && may_arm)));
+}
+
+// A clearing fault does not end the test, nor does it undo it.
+static void note_test(supervisor_t *self) {
+    const bool is_before = self->state == INIT || self->state == SELF_TEST || self->state == FAULT;
+    const bool has_passed = !is_before && self->state != SAFE;
+    set(self, SUPERVISOR_TESTED, has_passed || (supervisor_is_tested(self) && !is_before));
 }
 
 static event_t event_of(const supervisor_t *self, const supervisor_in_t *in, bool is_acknowledged) {
@@ -73,7 +93,7 @@ static event_t event_of(const supervisor_t *self, const supervisor_in_t *in, boo
     if (in->clearing_fault != QUIESCE_FAULT_NONE) {
         return EVENT_CLEARING_FAULT;
     }
-    if (self->is_armed == 0u) {
+    if (!supervisor_is_armed(self)) {
         return in->is_ready ? EVENT_READY : EVENT_NOTHING;
     }
     if (!in->is_ready) {
@@ -100,12 +120,12 @@ static void note_fault(supervisor_t *self, const supervisor_in_t *in, event_t ev
 }
 
 bool supervisor_step(supervisor_t *self, const supervisor_in_t *in) {
-    bool is_acknowledged;
     const uint32_t before = self->state;
-    const bool has_risen = follow_inputs(self, in, &is_acknowledged);
-    arm(self, in->enable, has_risen);
-    const event_t event = event_of(self, in, is_acknowledged);
+    const edges_t edges = follow_inputs(self, in);
+    arm(self, in->enable, edges.has_risen);
+    const event_t event = event_of(self, in, edges.is_acknowledged);
     self->state = before < QUIESCE_STATE_COUNT ? next[before][event] : (uint8_t)FAULT;
+    note_test(self);
     note_fault(self, in, event, before);
     return before == FAULT && self->state != FAULT;
 }

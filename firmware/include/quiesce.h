@@ -21,9 +21,9 @@ extern "C" {
 #define QUIESCE_PEAKS 3
 
 /// Supervisor states. Only RUN and DEGRADED let a law's request through; all others command
-/// safe_current_mA, FAULT with the drivers off. Numbers are never reused.
+/// safe_current_mA, INIT, SELF_TEST and FAULT with the drivers off. Numbers are never reused.
 typedef enum {
-    QUIESCE_STATE_INIT = 0,     ///< gathering its first samples
+    QUIESCE_STATE_INIT = 0,     ///< nothing is known yet
     QUIESCE_STATE_IDLE = 1,     ///< healthy, not armed
     QUIESCE_STATE_RUN = 2,      ///< the law's request passes the guard
     QUIESCE_STATE_SAFE = 3,     ///< a fault that clears by itself is present or has just gone
@@ -31,6 +31,7 @@ typedef enum {
     QUIESCE_STATE_ARMED = 5,    ///< enable has risen; runs as soon as all that it needs is there
     QUIESCE_STATE_DEGRADED = 6, ///< as RUN, with a coil's current limited by its heat, or without a
                                 ///< sensor that the law does not need
+    QUIESCE_STATE_SELF_TEST = 7, ///< gathering samples; drivers that are off carry no current
     QUIESCE_STATE_COUNT
 } quiesce_state_t;
 
@@ -52,14 +53,17 @@ typedef enum {
     QUIESCE_FAULT_LAW_BLIND = 13,     ///< a signal that the law needs is not valid
     QUIESCE_FAULT_OVERCURRENT = 14,   ///< measured current above the trip level (latched)
     QUIESCE_FAULT_COIL_HOT = 15,      ///< a coil beyond its budget of heat (latched)
-    QUIESCE_FAULT_MEMORY = 16, ///< a record of the controller has changed by itself (latched)
+    QUIESCE_FAULT_MEMORY = 16,     ///< a record, parameter or table has changed by itself (latched)
+    QUIESCE_FAULT_COIL_SHORT = 17, ///< a current without the voltage that it needs (latched)
+    QUIESCE_FAULT_SENSOR_POLARITY = 18, ///< a damper's force and stroke contradict (latched)
     QUIESCE_FAULT_COUNT
 } quiesce_fault_t;
 
 /// What a sensor delivered in a tick.
 typedef struct {
-    int32_t counts; ///< raw ADC counts; ignored unless is_fresh
-    bool is_fresh;  ///< a sample arrived since the last tick
+    int32_t counts;    ///< raw ADC counts; ignored unless is_fresh
+    bool is_fresh;     ///< a sample arrived since the last tick
+    bool is_saturated; ///< the sensor says that it is; ignored unless is_fresh
 } quiesce_sample_t;
 
 /// What a damper's current driver said in a tick.
@@ -115,7 +119,7 @@ typedef struct {
 /// For a damper's current driver.
 typedef struct {
     int32_t current_cmd_mA; ///< 0 .. max_current_mA
-    bool driver_enable;     ///< false in FAULT
+    bool driver_enable;     ///< false in INIT, SELF_TEST and FAULT
 } quiesce_command_t;
 
 /// One tick's output.
@@ -188,7 +192,8 @@ typedef struct {
 void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out);
 
 /// The same on a controller that has been running: it starts from rest, disarmed, but does not
-/// forget how hot its coils are. board: that of the start, NULL after quiesce_init.
+/// forget how hot its coils are, nor what it watches. board: that of the start, NULL after
+/// quiesce_init.
 bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board, const quiesce_params_t *params);
 
 /// Other parameters between two steps, also while it runs: those that are live
@@ -197,14 +202,21 @@ bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board, const quiesc
 /// those in use, or the start was refused.
 bool quiesce_params_use(quiesce_t *self, const quiesce_params_t *params);
 
+/// Words of the caller that are not to change while it runs, such as a board or the program itself:
+/// number which, 0 .. QUIESCE_WATCHES - 1; count 0: none any more. The controller reads them, as it
+/// does its parameters and tables, twice a second, and is in MEMORY once they differ. Reads
+/// them all now.
+#define QUIESCE_WATCHES 2
+void quiesce_watch(quiesce_t *self, uint32_t which, const uint32_t *words, uint32_t count);
+
 /// Whether the operator has armed it: it runs, or will as soon as all that it needs is there.
 bool quiesce_is_armed(const quiesce_t *self);
 
 /// One control tick. Bounded; safe in an interrupt. Writes all of *out.
 ///
-/// The output needs an arming edge: enable that rises in INIT or IDLE, and stays. After the start,
-/// a latched fault or a restart an enable that is held runs nothing until it has been let go. A
-/// driver is to be off until the first step has said otherwise.
+/// The output needs an arming edge: enable that rises before the output is on, and stays. After the
+/// start, a latched fault or a restart an enable that is held runs nothing until it has been let
+/// go. A driver is to be off until the first step has said otherwise.
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
 
 /// The current that these parameters make safe, even where they are refused as a whole:

@@ -67,6 +67,7 @@ typedef struct {
     int32_t trip_us;
     int32_t measures_current; ///< 1: the driver says what flows
     int32_t coil_lag_us;      ///< time constant of the current behind its command
+    int32_t coil_mohm; ///< resistance, with a sensor of its voltage: a short is seen; 0: not known
 } quiesce_board_damper_t;
 
 typedef struct {

@@ -10,7 +10,7 @@
 #include "view.h"
 
 /// Bytes for the state of the law that runs; its file asserts that they are enough.
-#define LAW_STATE_BYTES 1024u
+#define LAW_STATE_BYTES 816u
 
 /// What a law works with; lives beside its state.
 typedef struct {
@@ -33,6 +33,12 @@ static inline void law_demand_all(law_demand_t *out, int32_t value) {
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         out->value[i] = value;
     }
+}
+
+/// What a law demands while it knows no frequency: unlock_current_mA; of a structure at rest, where
+/// that would heat the coil for nothing, safe_current_mA.
+static inline int32_t law_unlock_mA(const quiesce_params_t *params, const view_t *view) {
+    return view->is_at_rest ? params->safe_current_mA : params->unlock_current_mA;
 }
 
 /// One kind of table. Its words begin with magic (kind and version), CRC-32 and their number; its

@@ -42,8 +42,9 @@ static bool is_quiet(condition_noise_t *self, int32_t counts) {
     return self->is_quiet;
 }
 
-static condition_flag_t classify(condition_t *self, int32_t counts, bool is_fresh) {
-    if (!is_fresh) {
+static condition_flag_t classify(condition_t *self, const condition_in_t *in) {
+    const int32_t counts = in->counts;
+    if (!in->is_fresh) {
         return CONDITION_LOST;
     }
     self->same_samples = counts == self->last_counts ? increment_sat_u32(self->same_samples) : 1u;
@@ -53,7 +54,7 @@ static condition_flag_t classify(condition_t *self, int32_t counts, bool is_fres
     if (counts > full_scale || counts < -full_scale - 1) {
         return CONDITION_RANGE;
     }
-    if (counts == full_scale || counts <= -full_scale) {
+    if (counts == full_scale || counts <= -full_scale || in->is_saturated) {
         return CONDITION_SATURATED;
     }
     if (self->cfg.stuck_ticks != 0 && self->same_samples >= self->cfg.stuck_ticks) {
@@ -133,14 +134,14 @@ static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
         is_slip && self->good_ticks > SLIP_COSTS_TICKS ? self->good_ticks - SLIP_COSTS_TICKS : 0u;
 }
 
-void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_out_t *out) {
+void condition_step(condition_t *self, const condition_in_t *in, condition_out_t *out) {
     condition_flag_t flag = self->flag;
-    if (is_due(self, is_fresh)) {
-        flag = classify(self, counts, is_fresh);
-        judge(self, counts, flag);
+    if (is_due(self, in->is_fresh)) {
+        flag = classify(self, in);
+        judge(self, in->counts, flag);
         self->flag = flag;
-        // A slow sensor's sample is lost once, however long the wait for the next one is. A gap that
-        // is a fault by itself does not count: after it the sensor starts anew.
+        // A slow sensor's sample is lost once, however long the wait for the next one is. A gap
+        // that is a fault by itself does not count: after it the sensor starts anew.
         if (self->waited_ticks % self->cfg.period_ticks == 0u &&
             self->bad_ticks <= self->cfg.max_age_ticks) {
             follow_losses(self, flag == CONDITION_LOST);
@@ -156,7 +157,7 @@ void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_
         // The sensor may come back with another offset: the DC part is learnt anew.
         self->has_value = false;
     }
-    out->value = without_dc(self, is_fresh ? flag : CONDITION_LOST);
+    out->value = without_dc(self, in->is_fresh ? flag : CONDITION_LOST);
     out->raw = self->held;
     out->good_ticks = self->good_ticks;
 }

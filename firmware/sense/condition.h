@@ -27,7 +27,7 @@
 typedef enum {
     CONDITION_GOOD = 0,
     CONDITION_LOST = 1,      ///< no sample came
-    CONDITION_SATURATED = 2, ///< at the ADC's full scale
+    CONDITION_SATURATED = 2, ///< at the ADC's full scale, or its sender says so
     CONDITION_STUCK = 3,     ///< the same count for stuck_ticks
     CONDITION_RANGE = 4,     ///< beyond the ADC's full scale
     CONDITION_QUIET = 5,     ///< less noise than the sensor has
@@ -89,12 +89,19 @@ typedef struct {
                            ///< 4 off
 } condition_out_t;
 
+/// What came in a tick.
+typedef struct {
+    int32_t counts; ///< ignored unless is_fresh
+    bool is_fresh;
+    bool is_saturated; ///< its sender says so
+} condition_in_t;
+
 void condition_init(condition_t *self, const condition_cfg_t *cfg);
 
-/// One tick. counts is ignored unless is_fresh.
+/// One tick.
 /// Formats: counts x scale in 64 bit, to nearest, saturated to the limit; DC tracker in Q32,
 /// dc += gain (x - dc), gain = w/(1+w), w = 2 pi cutoff / tick rate (backward Euler); at the start
 /// the plain mean (gain 1/n) until it is the slower one.
-void condition_step(condition_t *self, int32_t counts, bool is_fresh, condition_out_t *out);
+void condition_step(condition_t *self, const condition_in_t *in, condition_out_t *out);
 
 #endif

@@ -75,6 +75,7 @@ const std::vector<DamperKey> &damper_keys() {
         {"trip_mA", "mA", &Damper::trip_mA, false},
         {"trip_us", "us", &Damper::trip_us, false},
         {"coil_lag_us", "us", &Damper::coil_lag_us, false},
+        {"coil_mohm", "mOhm", &Damper::coil_mohm, false},
     };
     return keys;
 }

@@ -16,6 +16,10 @@ extern const quiesce_board_t quiesce_board; // `quiesce board compile` makes it
 #define WIRING NULL
 #endif
 
+// The linker's: code and constants.
+extern const uint32_t program_begin[];
+extern const uint32_t program_end[];
+
 #define UART_BAUD 1000000u
 #define COUNTS_PER_US (CMSDK_CLOCK_HZ / 1000000u)
 /// Some 25 ms of frames: an older demand is of no use to a driver.
@@ -108,6 +112,8 @@ int main(void) {
     slcan_decoder_init(&board.decoder);
     quiesce_params_default(&params);
     (void)node_init(&board.node, WIRING, &params, sources);
+    quiesce_watch(&board.node.controller, NODE_WATCHES, program_begin,
+                  (uint32_t)(program_end - program_begin));
     use_rate(&board);
     for (;;) {
         const uint32_t ticks = hal_tick_elapsed(&board.tick);

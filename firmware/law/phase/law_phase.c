@@ -117,7 +117,7 @@ static int32_t request_mA(phase_t *self, const quiesce_params_t *params, const v
     const view_tone_t *tone = &view->tone;
     if ((view->valid & VIEW_LOCK) == 0 || !view->is_output_on) {
         let_go(self);
-        return params->unlock_current_mA;
+        return law_unlock_mA(params, view);
     }
     if (self->is_stale) {
         refresh(self, params, tone->step_turn);
@@ -128,7 +128,7 @@ static int32_t request_mA(phase_t *self, const quiesce_params_t *params, const v
     // cycle.
     const uint32_t start_turn = (tone->phase_turn + tone->step_turn) << 1;
     const int32_t pulse_mA = phase_pulse_current_mA(&self->pulse, start_turn, tone->step_turn << 1);
-    return blended(self, params->unlock_current_mA, pulse_mA);
+    return blended(self, law_unlock_mA(params, view), pulse_mA);
 }
 
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {

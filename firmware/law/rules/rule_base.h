@@ -26,10 +26,10 @@ typedef struct {
 /// Its current in mA, 0 .. 10^6.
 int32_t rule_base_step(rule_base_t *self, const uint32_t *table, const view_tone_t *tone);
 
-/// That current, or unlock_current_mA while no frequency is known.
+/// That current, or law_unlock_mA while no frequency is known.
 static inline int32_t rule_base_or_unlock_mA(const law_setup_t *setup, const view_t *view,
                                              int32_t current_mA) {
-    return (view->valid & VIEW_TONE) != 0 ? current_mA : setup->params.unlock_current_mA;
+    return (view->valid & VIEW_TONE) != 0 ? current_mA : law_unlock_mA(&setup->params, view);
 }
 
 /// As in law_t, of a law whose state begins with a rule_base_t. What the rules said last is

@@ -60,17 +60,15 @@ void Loop::write_commands() {
     }
 }
 
-/// may_enable: a driver that is on stays on.
-void Loop::write_safe(bool may_enable, const quiesce_params_t &params) {
+void Loop::write_safe(const quiesce_params_t &params) {
     for (std::uint32_t i = 0; i < node_dampers(&node_); ++i) {
-        write_current(i, safe_current_mA(node_.board, &params, i),
-                      may_enable && node_.out.damper[i].driver_enable);
+        write_current(i, safe_current_mA(node_.board, &params, i), false);
     }
 }
 
-/// The drivers have their safe currents while the controller starts.
+/// The drivers are off while the controller starts.
 void Loop::restart(const quiesce_params_t &params) {
-    write_safe(true, params);
+    write_safe(params);
     node_restart(&node_, &params);
     use_axes(true);
     write_commands();
@@ -363,7 +361,7 @@ bool Loop::say_farewell() {
 
 void Loop::leave() {
     for (int i = 0; i < kFarewells; ++i) {
-        write_safe(false, node_.params);
+        write_safe(node_.params);
         board_.release_enable_line();
         if (!say_farewell()) {
             log_.log(LogLevel::error, "CAN: the farewell frame was not taken");

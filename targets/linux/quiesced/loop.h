@@ -40,7 +40,7 @@ class Loop {
     void receive();
     void write_current(std::size_t damper, std::int32_t current_mA, bool enable);
     void write_commands();
-    void write_safe(bool may_enable, const quiesce_params_t &params);
+    void write_safe(const quiesce_params_t &params);
     void use_axes(bool is_accepted);
     void restart(const quiesce_params_t &params);
     void take_new_params();

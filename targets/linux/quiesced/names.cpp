@@ -14,10 +14,10 @@ namespace quiesced {
 
 namespace {
 
-static_assert(QUIESCE_STATE_COUNT == 7, "every state has a name");
+static_assert(QUIESCE_STATE_COUNT == 8, "every state has a name");
 constexpr std::array<const char *, QUIESCE_STATE_COUNT> kStates = {
-    "INIT", "IDLE", "RUN", "SAFE", "FAULT", "ARMED", "DEGRADED"};
-constexpr std::array<const char *, 17> kFaults = {"NONE",
+    "INIT", "IDLE", "RUN", "SAFE", "FAULT", "ARMED", "DEGRADED", "SELF_TEST"};
+constexpr std::array<const char *, 19> kFaults = {"NONE",
                                                   "PARAMETER",
                                                   "SENSOR_LOST",
                                                   "SENSOR_SATURATED",
@@ -33,7 +33,9 @@ constexpr std::array<const char *, 17> kFaults = {"NONE",
                                                   "LAW_BLIND",
                                                   "OVERCURRENT",
                                                   "COIL_HOT",
-                                                  "MEMORY"};
+                                                  "MEMORY",
+                                                  "COIL_SHORT",
+                                                  "SENSOR_POLARITY"};
 static_assert(kFaults.size() == QUIESCE_FAULT_COUNT, "every fault has a name");
 
 template <std::size_t Count>

@@ -21,7 +21,7 @@ def test_there_are_enough_cases_with_names_of_their_own() -> None:
 
 def test_the_board_that_is_spoilt_is_good(capsys) -> None:
     assert main(["board", "check", str(GOOD)]) == 0
-    assert capsys.readouterr().out == f"{GOOD}: ok: every_key, 4 sensors, 2 bodies, 2 dampers\n"
+    assert capsys.readouterr().out == f"{GOOD}: ok: every_key, 5 sensors, 2 bodies, 2 dampers\n"
 
 
 @pytest.mark.parametrize(("edit", "expected"), [case[1:] for case in CASES],

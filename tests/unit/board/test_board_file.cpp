@@ -116,7 +116,7 @@ TEST(BoardFile, what_is_left_out_has_the_default) {
 
 TEST(BoardFile, every_key_reaches_its_field) {
     quiesce_board_t expected = {};
-    expected.sensors = 4;
+    expected.sensors = 5;
     expected.bodies = 2;
     expected.dampers = 2;
     expected.tracked = 1;
@@ -129,12 +129,14 @@ TEST(BoardFile, every_key_reaches_its_field) {
         QUIESCE_SENSE_STROKE, 1, 2, 1, 1000000, 0, 32767, 0, 10000, 250000, 0, 50, 0};
     expected.sensor[3] = {
         QUIESCE_SENSE_SUPPLY, 0, 2, 1, 12500, 0, 4095, 0, 10000, 250000, 0, 50, 0};
-    expected.damper[0] = {0, QUIESCE_GROUND, 2000, 100, 1500, 45, 2500, 1000, 1, 6000};
-    expected.damper[1] = {1, 0, 1800, 0, 1800, 60, 0, 0, 0, 5000};
+    expected.sensor[4] = {
+        QUIESCE_SENSE_VOLTAGE, 0, 2, 1, 12500, 0, 4095, 0, 10000, 250000, 0, 50, 0};
+    expected.damper[0] = {0, QUIESCE_GROUND, 2000, 100, 1500, 45, 2500, 1000, 1, 6000, 2200};
+    expected.damper[1] = {1, 0, 1800, 0, 1800, 60, 0, 0, 0, 5000, 0};
     const BoardFile file = load_board(kEveryKey);
     expect_same(file.board, expected);
-    const std::vector<std::string> sensors = {"floor_accel", "roof_accel", "upper_stroke",
-                                              "supply"};
+    const std::vector<std::string> sensors = {"floor_accel", "roof_accel", "upper_stroke", "supply",
+                                              "lower_voltage"};
     EXPECT_EQ(file.sensors, sensors);
     EXPECT_EQ(file.dampers, (std::vector<std::string>{"lower", "upper"}));
 }

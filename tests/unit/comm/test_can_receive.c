@@ -170,8 +170,12 @@ static void test_bad_sample_is_none_and_a_saturated_one_is_one(void) {
     take(make_accel(8388607, true, false, 1));
     pass(1);
     TEST_ASSERT_TRUE(inputs.sensor[0].is_fresh);
+    TEST_ASSERT_TRUE(inputs.sensor[0].is_saturated);
     TEST_ASSERT_EQUAL_INT32(8388607, inputs.sensor[0].counts);
-    TEST_ASSERT_EQUAL_UINT32(2, bus.counters.accepted);
+    take(make_accel(7, false, false, 2));
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.sensor[0].is_saturated);
+    TEST_ASSERT_EQUAL_UINT32(3, bus.counters.accepted);
 }
 
 static void check_sample(uint8_t alive, bool expected) {

@@ -321,14 +321,15 @@ static void test_apply_restarts_from_rest_with_the_safe_current(void) {
     run(1);
     board.enable = true;
     TEST_ASSERT_EQUAL_INT32(300, driver.command_mA);
-    TEST_ASSERT_TRUE(driver.is_enabled);
+    TEST_ASSERT_FALSE(driver.is_enabled); // to be tested anew
     TEST_ASSERT_EQUAL_UINT16(300, demand().current_cmd_mA);
-    TEST_ASSERT_EQUAL_UINT8(1, demand().driver_is_enabled);
+    TEST_ASSERT_EQUAL_UINT8(0, demand().driver_is_enabled);
     TEST_ASSERT_EQUAL_UINT8(QUIESCE_STATE_INIT, demand().state);
     TEST_ASSERT_EQUAL_UINT32(1, node.restarts);
     run(2000);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
     TEST_ASSERT_EQUAL_INT32(1000, driver.command_mA);
+    TEST_ASSERT_TRUE(driver.is_enabled);
     TEST_ASSERT_EQUAL_HEX32(can_node_param_hash(&node.params), node.can.param_hash);
 }
 
@@ -431,6 +432,8 @@ static void test_refused_parameters_are_mended_over_the_bus(void) {
     TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(APPLY), 0, 0).result);
     run(1);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_NONE, node.out.telemetry.fault);
+    TEST_ASSERT_FALSE(driver.is_enabled);
+    run(300);
     TEST_ASSERT_TRUE(driver.is_enabled);
 }
 
@@ -456,7 +459,7 @@ static void test_task_hands_parameters_over_before_anything_restarts(void) {
     node_restart(&node, other);
     TEST_ASSERT_EQUAL_UINT32(1, node.restarts);
     TEST_ASSERT_EQUAL_INT32(300, node.out.damper[0].current_cmd_mA);
-    TEST_ASSERT_TRUE(node.out.damper[0].driver_enable);
+    TEST_ASSERT_FALSE(node.out.damper[0].driver_enable);
 }
 
 static void test_tick_is_all_three_parts(void) {
@@ -511,6 +514,9 @@ static void test_save_stores_what_is_in_effect(void) {
     (void)ask(OP(STAGE), INDEX_OF(slew_mA_s), 5000);
     TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(SAVE), 0, 0).result);
     TEST_ASSERT_EQUAL_MEMORY(&params, &kept.stored, sizeof params);
+    TEST_ASSERT_EQUAL_UINT32(2, kept.calls);
+    node.params.slew_mA_s ^= 1 << 20; // by itself
+    TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, ask(OP(SAVE), 0, 0).result);
     TEST_ASSERT_EQUAL_UINT32(2, kept.calls);
 }
 

@@ -78,7 +78,8 @@ static void run(uint32_t ticks) {
     for (uint32_t i = 0; i < ticks; i++) {
         for (uint32_t k = 0; k < SENSORS; k++) {
             seed = seed * 1664525u + 1013904223u;
-            board.sensor[k] = (quiesce_sample_t){(int32_t)(seed >> 16) - 32768, true};
+            board.sensor[k] =
+                (quiesce_sample_t){.counts = (int32_t)(seed >> 16) - 32768, .is_fresh = true};
         }
         tick();
     }
@@ -173,7 +174,7 @@ static void test_each_sensor_is_where_it_was_set_up(void) {
     introduce_sensors();
     for (uint32_t i = 0; i < SENSORS; i++) {
         receive(make_sample(i, 1000 + (int32_t)i, 0));
-        board.sensor[i] = (quiesce_sample_t){-1000 - (int32_t)i, true};
+        board.sensor[i] = (quiesce_sample_t){.counts = -1000 - (int32_t)i, .is_fresh = true};
     }
     tick();
     for (uint32_t i = 0; i < SENSORS; i++) {

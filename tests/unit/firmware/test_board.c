@@ -106,6 +106,7 @@ static void test_board_every_field_has_its_range(void) {
         FIELD(quiesce_board_damper_t, trip_us, -1, 10000001),
         FIELD(quiesce_board_damper_t, measures_current, -1, 2),
         FIELD(quiesce_board_damper_t, coil_lag_us, -1, 1000001),
+        FIELD(quiesce_board_damper_t, coil_mohm, -1, 1000001),
     };
     for (int32_t i = 0; i < 2; i++) {
         try_fields("damper", i,
@@ -166,6 +167,11 @@ static void test_board_dampers_contradict(void) {
     assert_refused("damper", 1, "trip_mA", "not above");
     board.damper[1].trip_mA = 7000;
     assert_refused("damper", 1, "trip_mA", "measures_current");
+    board.damper[1].coil_mohm = 2500;
+    assert_refused("damper", 1, "coil_mohm", "measures_current");
+    board.damper[1].measures_current = 1;
+    board.damper[1].coil_mohm = 2500;
+    assert_refused("damper", 1, "coil_mohm", "coil voltage");
 }
 
 int main(void) {

@@ -25,7 +25,7 @@ void setUp(void) {
 void tearDown(void) {}
 
 static void step(int32_t counts) {
-    condition_step(&condition, counts, true, &out);
+    condition_step(&condition, &(condition_in_t){.counts = counts, .is_fresh = true}, &out);
 }
 
 // Good samples that are never equal twice in a row.
@@ -82,7 +82,7 @@ static void test_dropout_holds_the_last_sample_then_faults_after_the_age_limit(v
     step_good(1000);
     step(123456);
     for (uint32_t i = 1; i <= 12; i++) {
-        condition_step(&condition, 999999, false, &out);
+        condition_step(&condition, &(condition_in_t){.counts = 999999, .is_fresh = false}, &out);
         TEST_ASSERT_EQUAL(CONDITION_LOST, out.flag);
         TEST_ASSERT_EQUAL(i > config.max_age_ticks, out.is_fault);
         // Held without moving the DC part; nothing once it is a fault.
@@ -99,7 +99,9 @@ static void test_dropout_holds_the_last_sample_then_faults_after_the_age_limit(v
 static uint32_t good_after_slips(uint32_t period) {
     condition_init(&condition, &config);
     for (uint32_t i = 1; i <= 1000; i++) {
-        condition_step(&condition, (int32_t)(i % 3u), i % period != 0u, &out);
+        condition_step(&condition,
+                       &(condition_in_t){.counts = (int32_t)(i % 3u), .is_fresh = i % period != 0u},
+                       &out);
         TEST_ASSERT_FALSE(out.is_fault);
     }
     return out.good_ticks;
@@ -127,6 +129,14 @@ static void test_saturated_and_out_of_range_samples_are_told_apart(void) {
     step(INT32_MIN);
     TEST_ASSERT_EQUAL(CONDITION_RANGE, out.flag);
     TEST_ASSERT_FALSE(out.is_fault);
+}
+
+static void test_a_sender_may_say_that_it_is_saturated(void) {
+    step(1000);
+    condition_step(&condition,
+                   &(condition_in_t){.counts = 2000, .is_fresh = true, .is_saturated = true}, &out);
+    TEST_ASSERT_EQUAL(CONDITION_SATURATED, out.flag);
+    TEST_ASSERT_EQUAL_INT32(57751, out.raw); // of the sample before
 }
 
 static void test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off(void) {
@@ -224,12 +234,12 @@ static void test_offset_is_learnt_anew_after_a_fault(void) {
 }
 
 static void test_raw_keeps_the_dc_part_holds_and_saturates(void) {
-    condition_step(&condition, 5000, false, &out);
+    condition_step(&condition, &(condition_in_t){.counts = 5000, .is_fresh = false}, &out);
     TEST_ASSERT_EQUAL_INT32(0, out.raw); // nothing measured yet
     step(170000);
     TEST_ASSERT_EQUAL_INT32(9817670, out.raw); // 170000 x 57751 nm/s2
     for (uint32_t i = 0; i < 20; i++) {
-        condition_step(&condition, 5000, i % 2 == 1, &out);
+        condition_step(&condition, &(condition_in_t){.counts = 5000, .is_fresh = i % 2 == 1}, &out);
         TEST_ASSERT_EQUAL_INT32(i == 0 ? 9817670 : 288755, out.raw);
     }
     step(8388607); // full scale: a bad sample
@@ -245,7 +255,7 @@ static void test_raw_keeps_the_dc_part_holds_and_saturates(void) {
 
 static void test_silent_start_passes_nothing_on(void) {
     for (uint32_t i = 0; i < 500; i++) {
-        condition_step(&condition, 0, false, &out);
+        condition_step(&condition, &(condition_in_t){.counts = 0, .is_fresh = false}, &out);
         TEST_ASSERT_EQUAL_INT32(0, out.value);
     }
     step(170000);
@@ -261,6 +271,7 @@ int main(void) {
     RUN_TEST(test_dropout_holds_the_last_sample_then_faults_after_the_age_limit);
     RUN_TEST(test_a_slip_now_and_then_does_not_end_a_run_of_good_samples);
     RUN_TEST(test_saturated_and_out_of_range_samples_are_told_apart);
+    RUN_TEST(test_a_sender_may_say_that_it_is_saturated);
     RUN_TEST(test_stuck_is_a_fault_at_its_limit_and_can_be_switched_off);
     RUN_TEST(test_noise_is_judged_by_its_rms_at_every_rate);
     RUN_TEST(test_a_few_repeating_values_are_quiet_until_the_noise_is_back);

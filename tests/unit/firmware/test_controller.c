@@ -53,7 +53,7 @@ static void test_chain_reaches_the_rule_bases_current(void) {
     params.law = QUIESCE_LAW_FUZZY;
     start();
     vibrate(10000, 200);
-    assert_state(QUIESCE_STATE_INIT, QUIESCE_FAULT_NONE);
+    assert_state(QUIESCE_STATE_SELF_TEST, QUIESCE_FAULT_NONE);
     vibrate(10000, 300);
     assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
     TEST_ASSERT_EQUAL_INT32(5000, reply.current_cmd_mA[0]); // unlock_current_mA
@@ -72,7 +72,7 @@ static void test_unlock_current_is_not_the_safe_current(void) {
     params.safe_current_mA = 123;
     start();
     vibrate(10000, 100);
-    assert_state(QUIESCE_STATE_INIT, QUIESCE_FAULT_NONE);
+    assert_state(QUIESCE_STATE_SELF_TEST, QUIESCE_FAULT_NONE);
     vibrate(10000, 400);
     TEST_ASSERT_EQUAL_INT32(3210, reply.current_cmd_mA[0]);
 }
@@ -192,7 +192,8 @@ static void run_coil(int32_t share_percent, bool is_measured, uint32_t ticks) {
         flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | measured;
         const int32_t noise = signal_noise(&noise_seed, 147);
         tick(signal_sine(5195, 10000, time_ticks, 1000) + noise, (int32_t)(coil_uA / 1000));
-        coil_uA += ((int64_t)reply.current_cmd_mA[0] * 10 * share_percent - coil_uA) / 6;
+        const int64_t driven_mA = reply.drivers_enabled != 0 ? reply.current_cmd_mA[0] : 0;
+        coil_uA += (driven_mA * 10 * share_percent - coil_uA) / 6;
     }
 }
 

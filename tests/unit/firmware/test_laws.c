@@ -3,6 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "rest.h"
 #include "selftune_state.h"
 #include "unity.h"
 
@@ -67,6 +68,39 @@ static void test_plain_laws(void) {
 }
 
 // Table X: rows of signs, printed polarity and reversed.
+static void test_laws_without_a_frequency_are_at_the_safe_current_at_rest(void) {
+    params->safe_current_mA = 300;
+    view.valid = VIEW_RMS | VIEW_VELOCITY;
+    TEST_ASSERT_EQUAL_INT32(5000, run(&law_fuzzy, 10));
+    view.is_at_rest = true;
+    TEST_ASSERT_EQUAL_INT32(300, run(&law_fuzzy, 10));
+    TEST_ASSERT_EQUAL_INT32(300, run(&law_fuzzy_selftune, 10));
+    TEST_ASSERT_EQUAL_INT32(params->constant_current_mA, run(&law_constant, 10));
+}
+
+static void test_rest_begins_after_its_time_and_ends_at_once(void) {
+    rest_t rest = {0};
+    params->rest_ms = 2000;
+    view.tone.rms_um_s2 = params->rest_rms_um_s2 - 1;
+    for (uint32_t i = 1; i < 2000; i++) {
+        TEST_ASSERT_FALSE(rest_step(&rest, &view, params));
+    }
+    TEST_ASSERT_TRUE(rest_step(&rest, &view, params));
+    view.valid = 0;
+    TEST_ASSERT_FALSE(rest_step(&rest, &view, params)); // nothing is known
+    view.valid = VIEW_RMS;
+    for (uint32_t i = 0; i < 5000; i++) {
+        TEST_ASSERT_EQUAL(i >= 1999, rest_step(&rest, &view, params));
+    }
+    view.tone.rms_um_s2++;
+    TEST_ASSERT_FALSE(rest_step(&rest, &view, params));
+    params->rest_rms_um_s2 = 0;
+    view.tone.rms_um_s2 = 0;
+    for (uint32_t i = 0; i < 5000; i++) {
+        TEST_ASSERT_FALSE(rest_step(&rest, &view, params));
+    }
+}
+
 static void test_selftune_follows_table_x(void) {
     const struct {
         int32_t accel_sign, velocity_sign, direction;
@@ -168,6 +202,8 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_label_has_its_law);
     RUN_TEST(test_plain_laws);
+    RUN_TEST(test_laws_without_a_frequency_are_at_the_safe_current_at_rest);
+    RUN_TEST(test_rest_begins_after_its_time_and_ends_at_once);
     RUN_TEST(test_selftune_follows_table_x);
     RUN_TEST(test_selftune_stays_between_zero_and_the_limit);
     RUN_TEST(test_selftune_leaves_the_base_alone_above_its_frequency_and_unlocked);

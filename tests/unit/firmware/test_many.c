@@ -94,11 +94,14 @@ static void tick(void) {
     static uint32_t seed;
     in.tick++;
     in.enable = in.tick > 1; // its edge arms
-    in.sensor[0] = (quiesce_sample_t){
-        signal_sine(17316, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20), true};
-    in.sensor[1] = (quiesce_sample_t){
-        signal_sine(20000, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20), true};
-    in.sensor[2] = (quiesce_sample_t){signal_sine(3000, 5000, in.tick, RATE_Hz), true};
+    in.sensor[0] = (quiesce_sample_t){.counts = signal_sine(17316, 5000, in.tick, RATE_Hz) +
+                                                signal_noise(&seed, 20),
+                                      .is_fresh = true};
+    in.sensor[1] = (quiesce_sample_t){.counts = signal_sine(20000, 5000, in.tick, RATE_Hz) +
+                                                signal_noise(&seed, 20),
+                                      .is_fresh = true};
+    in.sensor[2] =
+        (quiesce_sample_t){.counts = signal_sine(3000, 5000, in.tick, RATE_Hz), .is_fresh = true};
     quiesce_step(&controller, &in, &out);
     quiesce_picture(&controller, &picture);
 }
@@ -153,7 +156,8 @@ static void test_many_current_of_either_damper_is_watched(void) {
         start();
         in.driver[i].is_measured = true;
         for (uint32_t t = 0; t < 1000u; t++) {
-            in.driver[i].current_mA = out.damper[i].current_cmd_mA;
+            in.driver[i].current_mA =
+                out.damper[i].driver_enable ? out.damper[i].current_cmd_mA : 0;
             tick();
         }
         TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
@@ -174,7 +178,8 @@ static void test_many_a_small_damper_is_watched_whatever_the_parameter(void) {
         start();
         in.driver[0].is_measured = true;
         for (uint32_t t = 0; t < 1000u; t++) {
-            in.driver[0].current_mA = out.damper[0].current_cmd_mA;
+            in.driver[0].current_mA =
+                out.damper[0].driver_enable ? out.damper[0].current_cmd_mA : 0;
             tick();
         }
         TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
@@ -311,7 +316,7 @@ static void test_many_measured_quantities_arrive(void) {
     for (uint32_t t = 0; t < 20u; t++) {
         in.tick++;
         for (int32_t i = 0; i < board.sensors; i++) {
-            in.sensor[i] = (quiesce_sample_t){1000 + i, true};
+            in.sensor[i] = (quiesce_sample_t){.counts = 1000 + i, .is_fresh = true};
         }
         quiesce_step(&controller, &in, &out);
     }
@@ -335,7 +340,7 @@ static void test_many_a_slow_sensor_is_held(void) {
     start();
     for (uint32_t t = 0; t < 400u; t++) {
         in.tick++;
-        in.sensor[2] = (quiesce_sample_t){(int32_t)(t / 20u), t % 20u == 0};
+        in.sensor[2] = (quiesce_sample_t){.counts = (int32_t)(t / 20u), .is_fresh = t % 20u == 0};
         quiesce_step(&controller, &in, &out);
         quiesce_picture(&controller, &picture);
         TEST_ASSERT_EQUAL_INT32(1000 * (int32_t)(t / 20u), picture.damper[0].stroke_nm);
@@ -362,7 +367,7 @@ static void test_many_a_budget_of_lost_samples(void) {
     bool was_lost = false;
     for (uint32_t t = 0; t < 3000u; t++) {
         in.tick++;
-        in.sensor[2] = (quiesce_sample_t){5, t % 3u != 0};
+        in.sensor[2] = (quiesce_sample_t){.counts = 5, .is_fresh = t % 3u != 0};
         quiesce_step(&controller, &in, &out);
         quiesce_picture(&controller, &picture);
         was_lost = was_lost || (t > 0 && !is_valid(VIEW_STROKE));
@@ -371,7 +376,7 @@ static void test_many_a_budget_of_lost_samples(void) {
     TEST_ASSERT_FALSE(is_valid(VIEW_STROKE));
     for (uint32_t t = 0; t < 1000u; t++) {
         in.tick++;
-        in.sensor[2] = (quiesce_sample_t){5, t % 10u != 0};
+        in.sensor[2] = (quiesce_sample_t){.counts = 5, .is_fresh = t % 10u != 0};
         quiesce_step(&controller, &in, &out);
         quiesce_picture(&controller, &picture);
     }
@@ -401,7 +406,8 @@ static void test_many_a_budget_of_a_slow_sensor(void) {
         for (uint32_t t = 0; t < 8000u; t++) {
             const uint32_t now = t * 1000u / (uint32_t)cases[i].period_us;
             in.tick++;
-            in.sensor[2] = (quiesce_sample_t){5, now != period && now % 10u >= cases[i].lost_of_10};
+            in.sensor[2] = (quiesce_sample_t){
+                .counts = 5, .is_fresh = now != period && now % 10u >= cases[i].lost_of_10};
             period = now;
             quiesce_step(&controller, &in, &out);
         }

@@ -1,6 +1,6 @@
 // The controller's records of state and limits: a bit that flips is a fault in the next tick, with
-// the driver off, and stays one. It sees the inside of the controller, whose source is a part of
-// it.
+// the driver off, and stays one; of what it only reads, within a second. It sees the inside of the
+// controller, whose source is a part of it.
 #include "controller.c" // NOLINT(bugprone-suspicious-include)
 
 #include <string.h>
@@ -18,7 +18,9 @@ static void tick(quiesce_t *controller) {
     in.tick++;
     in.enable = in.tick > 1; // its edge arms
     in.sensor[0] = (quiesce_sample_t){
-        signal_sine(5195, 10000, in.tick, 1000) + signal_noise(&seed, 147), true};
+        .counts = signal_sine(5195, 10000, in.tick, 1000) + signal_noise(&seed, 147),
+        .is_fresh = true,
+    };
     quiesce_step(controller, &in, &out);
 }
 
@@ -76,10 +78,92 @@ static void test_memory_that_has_changed_stays_a_fault(void) {
     }
 }
 
+// Ticks until the fault, at the most 1001.
+static uint32_t ticks_until_shut(void) {
+    uint32_t ticks = 0;
+    do {
+        tick(&damaged);
+        ticks++;
+    } while (out.telemetry.fault != QUIESCE_FAULT_MEMORY && ticks <= 1000);
+    return ticks;
+}
+
+// words: of the copy that runs, or of the caller; every_words apart.
+static void flip_now_and_then(uint32_t *words, uint32_t count, uint32_t every_words) {
+    const quiesce_in_t before = in;
+    for (uint32_t i = 0; i < count; i += every_words) {
+        damaged = running;
+        in = before;
+        words[i] ^= UINT32_C(1) << i % 32;
+        const uint32_t ticks = ticks_until_shut();
+        words[i] ^= UINT32_C(1) << i % 32;
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(1000, ticks);
+        assert_shut();
+    }
+    in = before;
+}
+
+static void assert_runs_on(uint32_t ticks) {
+    while (ticks-- > 0) {
+        tick(&running);
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_NONE, out.telemetry.fault);
+    }
+}
+
+static void test_memory_parameters(void) {
+    quiesce_params_t *used = &((controller_t *)(void *)damaged.opaque)->control.setup.params;
+    quiesce_params_t other =
+        ((const controller_t *)(const void *)running.opaque)->control.setup.params;
+    flip_now_and_then((uint32_t *)(void *)used, QUIESCE_PARAM_COUNT, 5);
+    other.constant_current_mA = 4000;
+    TEST_ASSERT_TRUE(quiesce_params_use(&running, &other));
+    assert_runs_on(2000);
+    flip_now_and_then((uint32_t *)(void *)used, QUIESCE_PARAM_COUNT, 20);
+}
+
+static void test_memory_rules(void) {
+    static uint32_t rules[QUIESCE_TABLE_WORDS];
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    params.law = QUIESCE_LAW_FUZZY;
+    TEST_ASSERT_TRUE(quiesce_init(&running, &params));
+    const uint32_t *shipped =
+        ((const controller_t *)(const void *)running.opaque)->control.setup.table;
+    memcpy(rules, shipped, shipped[2] * sizeof(uint32_t));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, quiesce_table_use(&running, rules, shipped[2]));
+    assert_runs_on(1500);
+    flip_now_and_then(rules, shipped[2], shipped[2] / 13);
+    rules[5] ^= 1;
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, quiesce_table_drop(&running, shipped[0]));
+    assert_runs_on(2000);
+}
+
+static void test_memory_words_of_the_caller(void) {
+    static uint32_t program[20000];
+    for (uint32_t i = 0; i < 20000; i++) {
+        program[i] = i * i;
+    }
+    quiesce_watch(&running, QUIESCE_WATCHES, program, 0x7FFFFFFF); // no such number
+    quiesce_watch(&running, QUIESCE_WATCHES - 1, program, 20000);
+    assert_runs_on(2000);
+    flip_now_and_then(program, 20000, 1999);
+    quiesce_params_t params =
+        ((const controller_t *)(const void *)running.opaque)->control.setup.params;
+    TEST_ASSERT_TRUE(quiesce_restart(&running, NULL, &params));
+    assert_runs_on(2000);
+    flip_now_and_then(program, 20000, 9999);
+    quiesce_watch(&running, QUIESCE_WATCHES - 1, NULL, 0);
+    program[77]++;
+    assert_runs_on(2000);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_memory_every_bit_of_the_supervisor);
     RUN_TEST(test_memory_every_bit_of_guard_and_ceiling);
+    RUN_TEST(test_memory_parameters);
+    RUN_TEST(test_memory_rules);
+    RUN_TEST(test_memory_words_of_the_caller);
     RUN_TEST(test_memory_that_has_changed_stays_a_fault);
     return UNITY_END();
 }

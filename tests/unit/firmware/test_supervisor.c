@@ -20,8 +20,12 @@ static quiesce_state_t step(const supervisor_in_t *in) {
     const bool may_run =
         supervisor.state == QUIESCE_STATE_RUN || supervisor.state == QUIESCE_STATE_DEGRADED;
     TEST_ASSERT_EQUAL(may_run, supervisor_allows_output(&supervisor));
-    TEST_ASSERT_EQUAL(supervisor.state != QUIESCE_STATE_FAULT,
-                      supervisor_allows_driver(&supervisor));
+    const bool is_off = supervisor.state == QUIESCE_STATE_INIT ||
+                        supervisor.state == QUIESCE_STATE_SELF_TEST ||
+                        supervisor.state == QUIESCE_STATE_FAULT;
+    TEST_ASSERT_FALSE(is_off && supervisor_allows_driver(&supervisor));
+    TEST_ASSERT_TRUE(is_off || supervisor.state == QUIESCE_STATE_SAFE ||
+                     supervisor_allows_driver(&supervisor));
     return (quiesce_state_t)supervisor.state;
 }
 
@@ -44,9 +48,19 @@ static const event_t events[] = {
 };
 
 static void test_supervisor_every_entry_of_its_table(void) {
-    enum { I, D, R, S, F, A, G }; // init, idle (disarmed), run, safe, fault, armed, degraded
+    enum {
+        I,
+        D,
+        R,
+        S,
+        F,
+        A,
+        G,
+        T
+    }; // init, idle (disarmed), run, safe, fault, armed, degraded, test
     static const uint8_t expected[QUIESCE_STATE_COUNT][7] = {
-        [QUIESCE_STATE_INIT] = {I, D, I, A, A, S, F},
+        [QUIESCE_STATE_INIT] = {T, T, T, T, T, S, F},
+        [QUIESCE_STATE_SELF_TEST] = {T, D, T, A, A, S, F},
         [QUIESCE_STATE_IDLE] = {D, D, A, A, A, S, F},
         [QUIESCE_STATE_ARMED] = {D, D, A, R, G, S, F},
         [QUIESCE_STATE_RUN] = {D, D, R, R, G, S, F},
@@ -56,8 +70,9 @@ static void test_supervisor_every_entry_of_its_table(void) {
     };
     for (uint32_t state = 0; state < QUIESCE_STATE_COUNT; state++) {
         for (uint32_t i = 0; i < 7; i++) {
-            supervisor = (supervisor_t){
-                .state = (uint8_t)state, .is_armed = events[i].is_armed, .last_inputs = 1};
+            supervisor = (supervisor_t){.state = (uint8_t)state,
+                                        .flags = SUPERVISOR_WAS_ENABLED |
+                                                 (events[i].is_armed ? SUPERVISOR_ARMED : 0u)};
             TEST_ASSERT_EQUAL_MESSAGE(expected[state][i], step(&events[i].in), "next state");
         }
     }
@@ -72,10 +87,10 @@ static void test_supervisor_leaves_fault_disarmed_with_the_cause_gone(void) {
         in.fault_reset = true;
         supervisor = (supervisor_t){.state = QUIESCE_STATE_FAULT,
                                     .fault = ESTOP,
-                                    .is_armed = 1, // a bit that flipped
-                                    .last_inputs = 1};
+                                    .flags = SUPERVISOR_ARMED | // a bit that flipped
+                                             SUPERVISOR_WAS_ENABLED};
         TEST_ASSERT_EQUAL(expected[i], step(&in));
-        TEST_ASSERT_EQUAL_UINT32(0, supervisor.is_armed);
+        TEST_ASSERT_FALSE(supervisor_is_armed(&supervisor));
     }
 }
 
@@ -86,17 +101,36 @@ static void test_supervisor_of_an_unknown_state_is_in_fault(void) {
 
 static void go_to_run(void) {
     STEP(.is_ready = true);
+    STEP(.is_ready = true);
     STEP(.is_ready = true, .enable = true);
     TEST_ASSERT_EQUAL(QUIESCE_STATE_RUN, STEP(.is_ready = true, .enable = true));
 }
 
 static void test_supervisor_way_from_init_to_run_and_back(void) {
-    TEST_ASSERT_EQUAL(QUIESCE_STATE_INIT, STEP(.is_ready = false));
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_INIT, supervisor.state);
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_SELF_TEST, STEP(.is_ready = true));
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_SELF_TEST, STEP(.is_ready = false));
     TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, STEP(.is_ready = true));
     TEST_ASSERT_EQUAL(QUIESCE_STATE_ARMED, STEP(.is_ready = true, .enable = true));
     TEST_ASSERT_EQUAL(QUIESCE_STATE_RUN, STEP(.is_ready = true, .enable = true));
     TEST_ASSERT_EQUAL(QUIESCE_STATE_RUN, STEP(.enable = true));
     TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, STEP(.enable = false));
+}
+
+static void test_supervisor_has_drivers_off_until_a_test_has_passed(void) {
+    STEP(.is_ready = false);
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_SAFE, STEP(.clearing_fault = LOST, .is_ready = true));
+    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_SAFE, STEP(.is_ready = false));
+    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor));
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, STEP(.is_ready = true));
+    TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor));
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_SAFE, STEP(.clearing_fault = LOST));
+    TEST_ASSERT_TRUE(supervisor_allows_driver(&supervisor)); // the safe current
+    STEP(.latched_fault = ESTOP);
+    STEP(.clearing_fault = LOST, .fault_reset = true);
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_SAFE, supervisor.state);
+    TEST_ASSERT_FALSE(supervisor_allows_driver(&supervisor)); // to be tested anew
 }
 
 static void test_supervisor_starts_nothing_that_is_held_from_the_start(void) {
@@ -241,6 +275,7 @@ int main(void) {
     RUN_TEST(test_supervisor_leaves_fault_disarmed_with_the_cause_gone);
     RUN_TEST(test_supervisor_of_an_unknown_state_is_in_fault);
     RUN_TEST(test_supervisor_way_from_init_to_run_and_back);
+    RUN_TEST(test_supervisor_has_drivers_off_until_a_test_has_passed);
     RUN_TEST(test_supervisor_starts_nothing_that_is_held_from_the_start);
     RUN_TEST(test_supervisor_pressed_while_it_starts_is_armed);
     RUN_TEST(test_supervisor_clearing_fault_returns_by_itself);

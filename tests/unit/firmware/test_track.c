@@ -399,7 +399,8 @@ static void test_track_proportional_follows_what_is_missing(void) {
 static void test_track_no_other_tracker_is_known(void) {
     TEST_ASSERT_NULL(track_find(-1));
     TEST_ASSERT_NULL(track_find(QUIESCE_TRACKER_PROPORTIONAL + 1));
-    const char *const *labels = quiesce_param_info(QUIESCE_PARAM_COUNT - 2u)->labels;
+    const char *const *labels =
+        quiesce_param_info(offsetof(quiesce_params_t, tracker) / sizeof(int32_t))->labels;
     for (int32_t i = 0; i <= QUIESCE_TRACKER_PROPORTIONAL; i++) {
         TEST_ASSERT_EQUAL_STRING(labels[i], track_find(i)->name);
     }
@@ -412,9 +413,10 @@ static void run(uint32_t ticks, int32_t counts) {
     for (; ticks > 0; ticks--) {
         in.tick++;
         in.enable = in.tick > 1; // its edge arms
-        in.sensor[0] = (quiesce_sample_t){
-            signal_sine(17316, 5000, in.tick, RATE_Hz) + signal_noise(&seed, 20), true};
-        in.sensor[1] = (quiesce_sample_t){counts, true};
+        in.sensor[0] = (quiesce_sample_t){.counts = signal_sine(17316, 5000, in.tick, RATE_Hz) +
+                                                    signal_noise(&seed, 20),
+                                          .is_fresh = true};
+        in.sensor[1] = (quiesce_sample_t){.counts = counts, .is_fresh = true};
         quiesce_step(&controller, &in, &out);
     }
 }
@@ -446,7 +448,7 @@ static void test_track_a_force_becomes_a_current(void) {
 static void test_track_without_a_map_the_law_is_blind(void) {
     start();
     run(1000, 1000);
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_INIT, out.telemetry.state);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_SELF_TEST, out.telemetry.state);
     TEST_ASSERT_EQUAL_INT32(SAFE_mA, out.damper[0].current_cmd_mA);
     use_plain_map();
     run(1000, 1000);

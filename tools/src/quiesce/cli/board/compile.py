@@ -28,7 +28,7 @@ SENSOR_FIELDS = (
 ).split()
 DAMPER_FIELDS = (
     "end_a end_b ceiling_mA safe_mA continuous_mA heat_s trip_mA trip_us measures_current "
-    "coil_lag_us"
+    "coil_lag_us coil_mohm"
 ).split()
 
 Board = dict[str, Any]

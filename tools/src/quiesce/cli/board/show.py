@@ -105,6 +105,12 @@ def continuous_text(damper: Board) -> str:
     return f"{continuous}, {damper['heat_s']} s" if is_limit else continuous
 
 
+def coil_text(damper: Board) -> str:
+    """Its lag, and its resistance where that is known."""
+    resistance = f", {damper['coil_mohm'] / 1000:g} Ohm" if damper["coil_mohm"] else ""
+    return time_text(damper["coil_lag_us"]) + resistance
+
+
 def damper_row(damper: Board) -> list[str]:
     return [
         damper["name"],
@@ -114,7 +120,7 @@ def damper_row(damper: Board) -> list[str]:
         continuous_text(damper),
         "measured" if damper["measures_current"] else "modelled",
         trip_text(damper),
-        time_text(damper["coil_lag_us"]),
+        coil_text(damper),
     ]
 
 
