@@ -168,6 +168,56 @@ static void test_many_current_of_either_damper_is_watched(void) {
     }
 }
 
+// Current and voltage of a damper's coil as shares of what is commanded, in percent.
+static void run_coil(int32_t i, int32_t current_pct, int32_t voltage_pct, uint32_t ticks) {
+    for (; ticks > 0; ticks--) {
+        const quiesce_command_t *command = &out.damper[i];
+        const int32_t driven_mA = command->driver_enable ? command->current_cmd_mA : 0;
+        in.driver[i] =
+            (quiesce_driver_t){.current_mA = driven_mA * current_pct / 100, .is_measured = true};
+        in.sensor[3] =
+            (quiesce_sample_t){.counts = 2 * driven_mA * voltage_pct / 100, .is_fresh = true};
+        tick();
+    }
+}
+
+static void test_many_a_coil_that_is_short_or_open_is_told_by_its_voltage(void) {
+    static const struct {
+        int32_t current_pct, voltage_pct;
+        quiesce_fault_t fault;
+    } cases[] = {
+        {100, 0, QUIESCE_FAULT_COIL_SHORT},
+        {0, 100, QUIESCE_FAULT_COIL_OPEN},
+        {0, 0, QUIESCE_FAULT_DRIVER_NOT_FOLLOWING},
+        {100, 130, QUIESCE_FAULT_NONE}, // a warm coil
+    };
+    for (uint32_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        const int32_t i = (int32_t)(k % 2u);
+        make_board();
+        add_sensor(QUIESCE_SENSE_VOLTAGE, i, 1000);
+        board.damper[i].measures_current = 1;
+        board.damper[i].coil_mohm = 2000;
+        board.damper[i].coil_lag_us = 0;
+        start();
+        run_coil(i, 100, 100, 2000);
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
+        run_coil(i, cases[k].current_pct, cases[k].voltage_pct, 100);
+        TEST_ASSERT_EQUAL_UINT32(cases[k].fault, out.telemetry.fault);
+    }
+}
+
+// Before a driver is switched on there must be no current.
+static void test_many_a_driver_that_is_on_by_itself_fails_the_self_test(void) {
+    board.damper[0].measures_current = 1;
+    start();
+    for (uint32_t t = 0; t < 1000u; t++) {
+        in.driver[0] = (quiesce_driver_t){.current_mA = 1500, .is_measured = true};
+        tick();
+        TEST_ASSERT_FALSE(out.damper[0].driver_enable);
+    }
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_DRIVER_NOT_FOLLOWING, out.telemetry.fault);
+}
+
 // A parameter must not make the check of a small damper blind: half of its ceiling is the most.
 static void test_many_a_small_damper_is_watched_whatever_the_parameter(void) {
     for (int32_t i = 0; i < 2; i++) {
@@ -438,6 +488,8 @@ int main(void) {
     RUN_TEST(test_many_each_damper_has_its_command_ceiling_and_safe_current);
     RUN_TEST(test_many_one_driver_that_fails_stops_all);
     RUN_TEST(test_many_current_of_either_damper_is_watched);
+    RUN_TEST(test_many_a_coil_that_is_short_or_open_is_told_by_its_voltage);
+    RUN_TEST(test_many_a_driver_that_is_on_by_itself_fails_the_self_test);
     RUN_TEST(test_many_a_small_damper_is_watched_whatever_the_parameter);
     RUN_TEST(test_many_bodies_and_strokes_are_seen);
     RUN_TEST(test_many_a_blind_law_falls_back_then_faults_and_comes_back);

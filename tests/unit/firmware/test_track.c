@@ -581,6 +581,22 @@ static void test_track_force_is_compared(void) {
     assert_current(30000, 200);
 }
 
+static void test_track_a_force_against_its_damper_is_a_fault(void) {
+    params.tracker = QUIESCE_TRACKER_COMPARE;
+    make_board(QUIESCE_SENSE_FORCE);
+    start();
+    run(1000, 0);
+    for (uint32_t t = 0; t < 10000u; t++) {
+        run(1, out.telemetry.velocity_um_s > 0 ? 20000 : -20000);
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_NONE, out.telemetry.fault);
+    }
+    for (uint32_t t = 0; t < 10000u; t++) {
+        run(1, out.telemetry.velocity_um_s > 0 ? -20000 : 20000);
+    }
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_SENSOR_POLARITY, out.telemetry.fault);
+    TEST_ASSERT_FALSE(out.damper[0].driver_enable);
+}
+
 static void assert_missing(const char *name, int32_t at) {
     quiesce_signal_t missing = {NULL, 0};
     TEST_ASSERT_TRUE(quiesce_missing(&board, &params, &missing));
@@ -628,6 +644,7 @@ int main(void) {
     RUN_TEST(test_track_tables_of_law_and_tracker_go_to_their_own);
     RUN_TEST(test_track_a_store_holds_one_kind);
     RUN_TEST(test_track_force_is_compared);
+    RUN_TEST(test_track_a_force_against_its_damper_is_a_fault);
     RUN_TEST(test_track_what_a_tracker_needs_and_is_not_there_is_named);
     return UNITY_END();
 }

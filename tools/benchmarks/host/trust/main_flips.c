@@ -4,23 +4,15 @@
 //
 //     flips SEED SCENES RANDOM    RANDOM flips elsewhere, spread over the scenes of each kind
 #include <inttypes.h>
-#include <linux/seccomp.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
-#include <sys/time.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include "cage.h"
 #include "records.h"
 #include "rules.h"
 #include "scene.h"
 
-// A batch of trials has a process of its own: a pointer that is flipped leads anywhere.
-enum { BATCH = 256, LONGEST_BATCH_us = 400000, LONGEST_WAIT_s = 60, NOT_NOTICED = SCENE_TICKS };
+enum { BATCH = 256, NOT_NOTICED = SCENE_TICKS };
 
 typedef struct {
     uint64_t done; ///< of the trials of this kind, the one that is tried included
@@ -148,54 +140,17 @@ static void try_one(const trials_t *trials, uint64_t number) {
     }
 }
 
-// From here on this process can compute and end, nothing else: a call that goes astray must not
-// start processes or touch files.
-static void lock_in(void) {
-    const struct itimerval cpu = {.it_value.tv_usec = LONGEST_BATCH_us};
-    const struct itimerval wall = {.it_value.tv_sec = LONGEST_WAIT_s};
-    (void)setitimer(ITIMER_VIRTUAL, &cpu, NULL); // their signals end the process
-    (void)setitimer(ITIMER_REAL, &wall, NULL);
-    for (int file = 0; file <= STDERR_FILENO; file++) {
-        (void)close(file);
-    }
-    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) != 0) {
-        _exit(1);
-    }
-}
+typedef struct {
+    const trials_t *trials;
+    uint64_t end;
+} batch_t;
 
-// Ends one thread, which is all there is: exit_group is not among what is still allowed.
-static void leave(void) {
-    (void)syscall(SYS_exit, 0);
-}
-
-static int wait_for(pid_t child) {
-    int status = 0;
-    if (child < 0 || waitpid(child, &status, 0) != child) {
-        perror("flips");
-        exit(1);
-    }
-    return status;
-}
-
-// Whether a process that is locked in is ended by any call that it is not to make.
-static bool is_lock_tight(void) {
-    const pid_t child = fork();
-    if (child == 0) {
-        lock_in();
-        (void)syscall(SYS_getppid);
-        leave();
-    }
-    const int status = wait_for(child);
-    return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
-}
-
-static void try_batch(const trials_t *trials, uint64_t end) {
-    lock_in();
-    while (tally->done < end) {
+static void try_batch(void *context) {
+    const batch_t *batch = context;
+    while (tally->done < batch->end) {
         const uint64_t number = tally->done++;
-        try_one(trials, number);
+        try_one(batch->trials, number);
     }
-    leave();
 }
 
 // A trial that ends its process is over, and no output: on a target the watchdog follows.
@@ -203,12 +158,8 @@ static void try_all(const trials_t *trials, uint64_t count) {
     tally->done = 0;
     while (tally->done < count) {
         const uint64_t end = tally->done + BATCH < count ? tally->done + BATCH : count;
-        const pid_t child = fork();
-        if (child == 0) {
-            try_batch(trials, end);
-        }
-        const int status = wait_for(child);
-        tally->crashed += status != 0 ? 1u : 0u;
+        batch_t batch = {trials, end};
+        tally->crashed += cage_run(try_batch, &batch) ? 0u : 1u;
     }
 }
 
@@ -282,12 +233,8 @@ int main(int argc, char **argv) {
     const uint64_t seed = strtoull(argv[1], NULL, 10);
     const uint64_t scenes = strtoull(argv[2], NULL, 10) * SCENES;
     const uint64_t flips = scenes == 0 ? 0 : strtoull(argv[3], NULL, 10) / scenes;
-    tally = mmap(NULL, sizeof *tally, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (tally == MAP_FAILED) {
-        perror("flips");
-        return 1;
-    }
-    if (!is_lock_tight()) {
+    tally = cage_share(sizeof *tally);
+    if (!cage_is_tight()) {
         fprintf(stderr, "flips: this system cannot keep a process from making system calls\n");
         return 1;
     }

@@ -15,7 +15,7 @@ from quiesce.engine.bench import Bench
 from quiesce_benchmarks.controller import instructions
 from quiesce_benchmarks.report import Figure, Report
 from quiesce_benchmarks.seeds import seed_number
-from quiesce_benchmarks.trust import abuse, flips, mutants
+from quiesce_benchmarks.trust import abuse, flips, mutants, sweeps
 from quiesce_benchmarks.trust.trial import default_jobs
 
 NAME = "trust"
@@ -23,7 +23,8 @@ HELP = "mistakes in the guarding code that tests notice, abuse, flipped bits, wh
 DESCRIPTION = """Makes small mistakes in the code that guards the output and counts how many of them
 the C tests and the golden streams notice; drives controllers with everything that can come in and
 counts ticks in which a rule is broken (range, slew, safe current, driver, stop, latch, arming);
-flips bits of its memory and looks at what it then commands; counts the instructions that guarding
+flips bits of its memory, and of the parameters, tables and program that it reads, and looks at
+what it then commands; counts the instructions that guarding
 costs."""
 
 # Name, unit, goal, better.
@@ -37,10 +38,13 @@ FIGURES = (
     ("reaction_ticks_worst_record", "ticks", 2, "lower"),
     ("flips_tried", "1", 10**6, "higher"),
     ("flips_unsafe", "1", 0, "lower"),
+    ("flip_noticed_s", "s", 1, "lower"),
+    ("flip_reaction_ticks", "ticks", 2, "lower"),
+    ("flips_swept_unsafe", "1", 0, "lower"),
     ("instr_added", "instructions", 400, "lower"),
     ("damper_extra_instr", "instructions", 250, "lower"),
 )
-PARTS = ("mutants", "abuse", "flips", "cost")
+PARTS = ("mutants", "abuse", "flips", "sweeps", "cost")
 QUICK_MUTANTS = 30
 # Worst ticks of the laws before there were guards for all of this.
 BASELINE = Path(__file__).with_name("baseline.json")
@@ -88,6 +92,7 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
     take("mutants", mistakes)
     take("abuse", lambda: abuse.measure(ticks_of(args), args.seed, args.jobs))
     take("flips", lambda: flips.measure(args.seed, args.quick, args.jobs))
+    take("sweeps", lambda: sweeps.measure(args.seed, args.quick, args.jobs))
     take("cost", lambda: cost(Bench(), args.quick))
     figures = [Figure(name, values.get(name), *rest) for name, *rest in FIGURES]
     context |= {name: value for name, value in values.items() if name not in names()}
