@@ -152,6 +152,76 @@ static void test_times_follow_another_rate(void) {
     TEST_ASSERT_FALSE(inputs.enable);
 }
 
+// Rounded up to a tick.
+static void test_a_stop_holds_for_its_timeout_at_any_rate(void) {
+    static const uint32_t rates_Hz[] = {1, 4, 333, 999, 1001, 4000, 48000};
+    for (uint32_t i = 0; i < sizeof rates_Hz / sizeof rates_Hz[0]; i++) {
+        can_receive_init(&bus, rates_Hz[i]);
+        TEST_ASSERT_EQUAL_UINT32((200u * rates_Hz[i] + 999u) / 1000u, bus.stop.timeout_ticks);
+        TEST_ASSERT_EQUAL_INT32(1000000 / (int32_t)rates_Hz[i], bus.tick_us);
+    }
+}
+
+// Four periods; a fast sensor's is its message's; no cycle is shorter than a tick.
+static void test_slow_sensor_has_its_period_and_four_of_them(void) {
+    static const struct {
+        uint32_t period_us, rate_Hz;
+        int32_t cycle_us, timeout_us;
+    } rows[] = {
+        {0, 1000, 1000, 10000},
+        {0, 4000, 1000, 10000},
+        {0, 100, 10000, 10000},
+        {2500, 1000, 2500, 10000},
+        {2501, 1000, 2501, 10004},
+        {30000, 500, 30000, 120000},
+        {12345, 4000, 12345, 49380},
+        {1000, 500, 2000, 10000},
+        {10000000, 4000, 10000000, 40000000},
+    };
+    for (uint32_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        can_receive_init(&bus, 1000);
+        bus.sensor[0].period_us = rows[i].period_us;
+        can_receive_use_rate(&bus, rows[i].rate_Hz);
+        TEST_ASSERT_EQUAL_INT32(rows[i].cycle_us, bus.sensor[0].from.cycle_us);
+        TEST_ASSERT_EQUAL_INT32(rows[i].timeout_us, bus.sensor[0].from.timeout_us);
+    }
+}
+
+// A tick that comes late: what arrived before it is as old as that.
+static void test_sample_older_than_its_timeout_is_not_fresh(void) {
+    introduce_sensor(0);
+    take(make_accel(1, false, false, 0));
+    can_receive_inputs(&bus, 100, &inputs);
+    TEST_ASSERT_FALSE(inputs.sensor[0].is_fresh);
+    TEST_ASSERT_EQUAL_INT32(0, inputs.sensor[0].counts);
+}
+
+// Whichever byte tells them apart: two frames of one counter are two senders.
+static void check_two_senders(can_frame_t good, uint32_t byte, uint32_t message) {
+    good.data[byte] ^= 0x80u;
+    uint8_t alive = e2e_alive(&quiesce_can_messages[message].e2e, &good);
+    e2e_protect(&quiesce_can_messages[message].e2e, &alive, &good);
+    take(good);
+}
+
+static void test_any_byte_tells_two_senders_apart(void) {
+    for (uint32_t byte = 0; byte < 2; byte++) {
+        setUp();
+        introduce_driver(0);
+        take(make_current(5, 0));
+        check_two_senders(make_current(5, 0), byte, QUIESCE_CAN_AT_CURRENT_MEASURED);
+        pass(1);
+        TEST_ASSERT_FALSE(inputs.driver[0].is_measured);
+    }
+    for (uint32_t byte = 0; byte < 3; byte++) {
+        setUp();
+        introduce_sensor(0);
+        take(make_accel(5, false, false, 0));
+        check_two_senders(make_accel(5, false, false, 0), byte, QUIESCE_CAN_AT_ACCEL_SAMPLE);
+        TEST_ASSERT_FALSE(freshness_is_known(&bus.sensor[0].from));
+    }
+}
+
 static void test_a_sample_is_fresh_once_and_the_newest_counts(void) {
     introduce_sensor(0);
     take(make_accel(1, false, false, 0));
@@ -491,6 +561,8 @@ static void test_wrong_shapes_change_nothing(void) {
         }
     }
     TEST_ASSERT_EQUAL_UINT32(refused, bus.counters.rejected_shape);
+    TEST_ASSERT_EQUAL_UINT32(0, bus.counters.rejected_crc + bus.counters.rejected_alive);
+    TEST_ASSERT_EQUAL_UINT32(0, bus.counters.accepted + bus.counters.unknown);
 }
 
 static void test_every_wrong_crc_changes_nothing(void) {
@@ -503,6 +575,37 @@ static void test_every_wrong_crc_changes_nothing(void) {
         }
     }
     TEST_ASSERT_EQUAL_UINT32(5 * 255, bus.counters.rejected_crc);
+    TEST_ASSERT_EQUAL_UINT32(0, bus.counters.rejected_shape + bus.counters.rejected_alive);
+    TEST_ASSERT_EQUAL_UINT32(0, bus.counters.accepted + bus.counters.unknown);
+}
+
+// What is damaged says nothing of its sender: it gets older as if nothing had come.
+static void test_damaged_frames_leave_a_silent_sender_silent(void) {
+    introduce_operator(true, false, 6);
+    take(make_operator(true, false, 6));
+    pass(100);
+    can_frame_t short_one = make_operator(true, false, 7);
+    can_frame_t damaged = make_operator(false, false, 7);
+    short_one.length--;
+    damaged.data[0] ^= 1u;
+    check_refused(short_one);
+    check_refused(damaged);
+    pass(200);
+    TEST_ASSERT_TRUE(inputs.enable);
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.enable);
+}
+
+// A stop and a request count at once; a stranger's first frame is neither accepted nor refused.
+static void test_each_good_frame_is_counted_once(void) {
+    for (uint32_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+        const bool counts =
+            taken[i] == QUIESCE_CAN_AT_EMERGENCY_STOP || taken[i] == QUIESCE_CAN_AT_SERVICE_REQUEST;
+        const can_node_counters_t expected = {.accepted = counts ? 1u : 0u};
+        can_receive_init(&bus, RATE_HZ);
+        take(make_any(taken[i], 3));
+        TEST_ASSERT_EQUAL_MEMORY(&expected, &bus.counters, sizeof expected);
+    }
 }
 
 static void test_other_ids_are_none_of_our_business(void) {
@@ -588,6 +691,10 @@ int main(void) {
     RUN_TEST(test_each_is_gone_after_its_timeout);
     RUN_TEST(test_lost_ticks_count);
     RUN_TEST(test_times_follow_another_rate);
+    RUN_TEST(test_a_stop_holds_for_its_timeout_at_any_rate);
+    RUN_TEST(test_slow_sensor_has_its_period_and_four_of_them);
+    RUN_TEST(test_sample_older_than_its_timeout_is_not_fresh);
+    RUN_TEST(test_any_byte_tells_two_senders_apart);
     RUN_TEST(test_a_sample_is_fresh_once_and_the_newest_counts);
     RUN_TEST(test_bad_sample_is_none_and_a_saturated_one_is_one);
     RUN_TEST(test_repeated_and_jumped_counters_are_refused);
@@ -608,6 +715,8 @@ int main(void) {
     RUN_TEST(test_a_burst_of_commands_is_none);
     RUN_TEST(test_wrong_shapes_change_nothing);
     RUN_TEST(test_every_wrong_crc_changes_nothing);
+    RUN_TEST(test_damaged_frames_leave_a_silent_sender_silent);
+    RUN_TEST(test_each_good_frame_is_counted_once);
     RUN_TEST(test_other_ids_are_none_of_our_business);
     RUN_TEST(test_flood_of_damaged_frames_disturbs_nothing);
     RUN_TEST(test_counters_saturate);

@@ -118,10 +118,14 @@ class Build:
         return min(found)
 
     def is_drawn_in(self, test: CTest, made: str) -> bool:
-        """Whether a test has an object of a library in it."""
+        """Whether a test has an object of a library in it, and none that takes its place."""
         if archive_of(made) not in test.link:
             return False
-        return bool(self.symbols(made) & self.symbols(test.program))
+        names = self.symbols(made)
+        own = [word for word in test.link if word.endswith(".o")]
+        if any(names & self.symbols(one) for one in own):
+            return False
+        return bool(names & self.symbols(test.program))
 
     def symbols(self, made: str) -> frozenset[str]:
         """Names that it defines for others."""

@@ -22,6 +22,8 @@ FILES = (
     "firmware/chain/drive.[ch]",
     "firmware/comm/e2e.[ch]",
     "firmware/comm/can_receive.[ch]",
+    "firmware/comm/freshness.[ch]",
+    "firmware/base/twin.h",
 )
 STATES = "firmware/include/quiesce.h"
 EQUIVALENTS = Path(__file__).with_name("equivalents.toml")
