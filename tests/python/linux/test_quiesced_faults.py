@@ -14,6 +14,7 @@ from quiesced_steps import (
     IDLE,
     RUN,
     SAFE,
+    disarm,
     in_a_row,
     killed,
     start_running,
@@ -295,9 +296,11 @@ def test_make_safe_with_another_bus_in_the_file(quiesced: Quiesced) -> None:
 
 def test_make_safe_with_parameters_of_a_reload(quiesced: Quiesced) -> None:
     start_running(quiesced)
+    disarm(quiesced)
     quiesced.write_config("safe_current_mA = 40\n")
     quiesced.signal(signal.SIGHUP)
     quiesced.wait_log("restarted with new parameters")
+    quiesced.peer.operator = {"enable": 1}
     quiesced.peer.wait_state(RUN, quiesced.peer.count())
     quiesced.wait_log("parameters for --make-safe are kept")
     quiesced.write_config("safe_current_mA = 60\n")  # nobody has read it
