@@ -68,10 +68,12 @@ void can_pack_timing(uint32_t overruns, uint32_t lateness_max_us, uint32_t work_
 
 void can_pack_health(const can_node_counters_t *counters, const can_node_tick_t *tick,
                      can_frame_t *frame) {
+    const uint32_t shape = counters->rejected_shape;
+    const uint32_t unread = shape > UINT32_MAX - tick->rx_lost ? UINT32_MAX : shape + tick->rx_lost;
     const struct quiesce_can_can_health_t wire = {
         .rejected_crc = quiesce_can_can_health_rejected_crc_sat(counters->rejected_crc),
         .rejected_alive = quiesce_can_can_health_rejected_alive_sat(counters->rejected_alive),
-        .rejected_shape = quiesce_can_can_health_rejected_shape_sat(counters->rejected_shape),
+        .rejected_shape = quiesce_can_can_health_rejected_shape_sat(unread),
         .tx_dropped = quiesce_can_can_health_tx_dropped_sat(tick->tx_dropped),
         .bus_off_count = quiesce_can_can_health_bus_off_count_sat(tick->bus_off_count),
     };

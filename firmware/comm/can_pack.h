@@ -20,6 +20,7 @@ typedef struct {
     uint32_t work_us;     ///< of the last tick
     uint32_t tx_dropped;  ///< frames that the interface did not take, since the start
     uint32_t bus_off_count;
+    uint32_t rx_lost; ///< times that a line or an interface lost what had come, since the start
 } can_node_tick_t;
 
 void can_pack_demand(uint32_t state, int32_t current_mA, bool is_enabled, can_frame_t *frame);

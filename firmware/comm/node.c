@@ -114,6 +114,7 @@ static void note(node_t *node, const node_inputs_t *board) {
         .work_us = board->work_us,
         .tx_dropped = board->tx_dropped,
         .bus_off_count = board->bus_off_count,
+        .rx_lost = board->rx_lost,
     };
 }
 

@@ -41,6 +41,7 @@ typedef struct {
     uint32_t work_us;
     uint32_t tx_dropped;
     uint32_t bus_off_count;
+    uint32_t rx_lost; ///< times that a line or an interface lost what had come
 } node_inputs_t;
 
 /// Stores parameters for the next start. Returns false iff it could not; called from node_task.

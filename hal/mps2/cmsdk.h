@@ -17,6 +17,7 @@ typedef struct {
 #define CMSDK_UART0 ((cmsdk_uart_t *)0x40004000u)
 #define CMSDK_UART_STATE_TX_FULL 1u
 #define CMSDK_UART_STATE_RX_FULL 2u
+#define CMSDK_UART_STATE_RX_OVERRUN 8u ///< cleared by writing it
 #define CMSDK_UART_CONTROL_TX_ENABLE 1u
 #define CMSDK_UART_CONTROL_RX_ENABLE 2u
 

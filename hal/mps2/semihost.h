@@ -5,9 +5,6 @@
 
 #include <stdint.h>
 
-/// Exit code of an image that ended in a fault handler.
-#define SEMIHOST_EXIT_FAULT 99
-
 void semihost_put_char(char c);
 void semihost_put_text(const char *text);
 

@@ -7,6 +7,7 @@
 
 struct hal_uart {
     cmsdk_uart_t *registers;
+    uint32_t overruns; ///< times that bytes were lost before they were read; saturates
 };
 
 /// Switches the UART on, 8N1. baud: up to 1562500 (the clock over 16); the divider rounds down.

@@ -2,6 +2,10 @@
 // timer, acceleration and measured current from other nodes' frames, the demand as a frame. Nobody
 // waits for the host: what it does not read in time is dropped and counted. What is wired to what
 // comes from a board that is linked in (QUIESCE_BOARD), else from parameters.
+//
+// After a fault of the processor (fault.h) it starts anew, in a latched fault, and stays there
+// until the operator acknowledges.
+#include "fault.h"
 #include "node.h"
 #include "slcan.h"
 #include "tick_mps2.h"
@@ -40,7 +44,14 @@ typedef struct {
     queue_t queue;
     node_inputs_t inputs;
     uint32_t restarts;
+    bool is_after_fault; ///< of the processor, and nobody has acknowledged
+    bool is_latched;     ///< it is the controller's fault now
 } board_t;
+
+static void put(queue_t *queue, uint8_t byte) {
+    queue->bytes[(queue->first + queue->count) % QUEUE_BYTES] = byte;
+    queue->count++;
+}
 
 static void enqueue(queue_t *queue, const can_frame_t *frame) {
     uint8_t text[SLCAN_MAX_BYTES];
@@ -50,8 +61,7 @@ static void enqueue(queue_t *queue, const can_frame_t *frame) {
         return;
     }
     for (size_t i = 0; i < length; i++) {
-        queue->bytes[(queue->first + queue->count) % QUEUE_BYTES] = text[i];
-        queue->count++;
+        put(queue, text[i]);
     }
 }
 
@@ -84,6 +94,28 @@ static void use_rate(board_t *board) {
     board->restarts = board->node.restarts;
 }
 
+// A fault of the processor is an emergency stop up to the first tick that has latched it.
+static void keep_fault(board_t *board) {
+    const bool is_fault = board->node.out.telemetry.state == QUIESCE_STATE_FAULT;
+    if (board->is_after_fault && board->is_latched && !is_fault) {
+        board->is_after_fault = false;
+        fault_forget();
+    }
+    board->is_latched = board->is_after_fault && is_fault;
+    board->inputs.estop = board->is_after_fault && !is_fault;
+}
+
+// After a fault: the drivers are told to be off before anything else is done. What the fault has
+// cut off in the middle of a line ends here.
+static void say_farewell(board_t *board) {
+    can_frame_t frames[QUIESCE_DAMPERS];
+    const uint32_t count = node_farewell(&board->node, frames);
+    put(&board->queue, '\r');
+    for (uint32_t i = 0; i < count; i++) {
+        enqueue(&board->queue, &frames[i]);
+    }
+}
+
 static void run_tick(board_t *board, uint32_t ticks) {
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
     const uint32_t begin = board->tick.timer->value;
@@ -91,10 +123,12 @@ static void run_tick(board_t *board, uint32_t ticks) {
     board->inputs.overruns += ticks - 1u;
     board->inputs.lateness_us = us_since(board, board->tick.last_count);
     board->inputs.tx_dropped = board->queue.dropped_frames;
+    board->inputs.rx_lost = board->uart.overruns;
     const uint32_t count = node_tick(&board->node, &board->inputs, frames);
     for (uint32_t i = 0; i < count; i++) {
         enqueue(&board->queue, &frames[i]);
     }
+    keep_fault(board);
     board->inputs.work_us = us_since(board, begin);
     if (board->node.restarts != board->restarts) {
         use_rate(board);
@@ -112,6 +146,11 @@ int main(void) {
     slcan_decoder_init(&board.decoder);
     quiesce_params_default(&params);
     (void)node_init(&board.node, WIRING, &params, sources);
+    board.is_after_fault = fault_is_recorded();
+    board.inputs.estop = board.is_after_fault;
+    if (board.is_after_fault) {
+        say_farewell(&board);
+    }
     quiesce_watch(&board.node.controller, NODE_WATCHES, program_begin,
                   (uint32_t)(program_end - program_begin));
     use_rate(&board);

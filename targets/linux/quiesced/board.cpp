@@ -81,6 +81,7 @@ node_inputs_t Board::read(const Axes &axes, std::uint32_t elapsed, const hal_tic
     if (bus_ != nullptr) {
         bus_watch_.look(can_bus_state(bus_), monotonic_ns());
         inputs.bus_off_count = can_bus_counters(bus_)->bus_off;
+        inputs.rx_lost = can_bus_counters(bus_)->overruns;
     }
     for (std::size_t i = 0; i < config_.sensors.size(); ++i) {
         inputs.sensor[i] = read_sensor(i, axes[i], elapsed);

@@ -173,6 +173,7 @@ static void fill(int32_t word) {
         .work_us = (uint32_t)word,
         .tx_dropped = (uint32_t)word,
         .bus_off_count = (uint32_t)word,
+        .rx_lost = (uint32_t)word,
     };
 }
 
@@ -206,6 +207,7 @@ static void check_words(int32_t word, bool is_high) {
     TEST_ASSERT_EQUAL_UINT32(16777215, timing.work_max_us);
     TEST_ASSERT_EQUAL_UINT8(255, health.tx_dropped);
     TEST_ASSERT_EQUAL_UINT8(255, health.bus_off_count);
+    TEST_ASSERT_EQUAL_UINT16(65535, health.rejected_shape);
     TEST_ASSERT_EQUAL_INT32(is_high ? 8388607 : -8388608, raw.accel_counts);
     TEST_ASSERT_EQUAL_INT16(is_high ? 32767 : -32768, raw.current_meas_mA);
     TEST_ASSERT_EQUAL_INT32(word, motion.freq_uHz);

@@ -1,0 +1,45 @@
+/// What an image does about an exception that it did not expect (HardFault and its like): a record
+/// in memory that start-up leaves alone, then fault_react. Nothing of the program runs any more.
+///
+/// In hal_mps2 fault_react prints the record and ends the emulator: for tests and for images that a
+/// bench drives. An image that runs free links fault_restart.c.
+#ifndef FAULT_H
+#define FAULT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/// Exit code of an image that a fault has ended.
+#define FAULT_EXIT_CODE 99
+
+/// Restarts since the last fault_forget or power-up; after one more fault the image stays silent,
+/// and the drivers' own timeouts hold the safe current.
+#define FAULT_MOST_RESTARTS 3u
+
+typedef struct {
+    uint32_t magic; ///< FAULT_MAGIC
+    uint32_t count; ///< faults since power-up or fault_forget; saturates
+    uint32_t exception;
+    uint32_t pc, lr, xpsr; ///< 0 where the stack was not in memory
+    uint32_t cfsr, hfsr;   ///< configurable and hard fault status
+    uint32_t check;        ///< complement of the sum of the words above
+} fault_record_t;
+
+#define FAULT_MAGIC 0x51464C54u
+
+/// Survives a reset, not a power-up; then fault_is_recorded is false.
+extern fault_record_t fault_record;
+
+/// Whether a fault has ended the program's last run, and nobody has acknowledged it.
+bool fault_is_recorded(void);
+
+/// It is acknowledged.
+void fault_forget(void);
+
+/// Keeps what the core has stacked. stacked: r0 r1 r2 r3 r12 lr pc xpsr; NULL: not in memory.
+void fault_keep(const uint32_t *stacked);
+
+/// After fault_keep, on a fresh stack.
+_Noreturn void fault_react(void);
+
+#endif
