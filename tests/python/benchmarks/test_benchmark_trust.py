@@ -1,5 +1,6 @@
 """`./tools/benchmark trust`: its mutants are what they should be, and are judged as they fare."""
 
+import re
 import subprocess
 from collections import Counter
 from collections.abc import Iterator
@@ -89,7 +90,9 @@ def test_the_pool_has_every_entry_of_the_supervisors_table() -> None:
     entries = [one for one in pool if one.kind == "entry" and "supervisor.c" in one.path]
     states = enums([(ROOT / mutants.STATES).read_bytes()])
     count = next(len(one) for one in states if "QUIESCE_STATE_RUN" in one)
-    assert len(entries) >= count * count * (count - 1)
+    table = (ROOT / "firmware/guard/supervisor.c").read_text()
+    events = len(set(re.findall(r"\bEVENT_\w+", table)))
+    assert events >= 7 and len(entries) == count * events * (count - 1)
     assert len({one.key for one in pool}) == len(pool) >= 300
     tried_first = mutants.drawn(pool, 1)
     assert tried_first == mutants.drawn(pool, 1) != mutants.drawn(pool, 2)
