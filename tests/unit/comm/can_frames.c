@@ -43,7 +43,7 @@ static void fill_all(const int32_t *value, uint32_t *seed) {
         .overruns = other[3],
         .lateness_us = other[4],
         .work_us = other[5],
-        .tx_dropped = other[6],
+        .unsent = {other[6], other[6], other[6]},
         .bus_off_count = other[7],
     };
     fill((uint32_t *)(void *)&node.receive.counters, 5, value, seed);
