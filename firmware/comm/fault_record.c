@@ -6,7 +6,8 @@
 
 #define SUMMED_WORDS (FAULT_RECORD_WORDS - 1u) ///< all but the CRC
 #define DRIVER_IS_ON 16
-#define EMPTY 0x80007FFFu ///< minimum 32767, maximum -32768
+#define IS_LATCHED 0x8000u ///< in word 1
+#define EMPTY 0x80007FFFu  ///< minimum 32767, maximum -32768
 
 _Static_assert(4u * FAULT_RECORD_WORDS <= 2048u, "a record has 2 kB at most");
 _Static_assert(2u * FAULT_RECORD_WORDS % FAULT_RECORD_PAGE_HALVES == 0u, "pages are full");
@@ -170,7 +171,9 @@ static void add_tick(fault_record_t *self, const can_node_tick_t *tick, const qu
 static void begin(fault_record_t *self, const can_node_tick_t *tick, const quiesce_telemetry_t *t) {
     uint32_t *const head = live(self)->head;
     head[0] = 0; // until it is said what runs
-    head[1] = (t->fault & 255u) | (self->state & 255u) << 8 | FAULT_RECORD_BINS << 24;
+    self->is_latched = t->state == QUIESCE_STATE_FAULT;
+    head[1] = (t->fault & 255u) | (self->state & 15u) << 8 | (self->is_latched ? IS_LATCHED : 0u) |
+              FAULT_RECORD_BINS << 24;
     head[2] = t->tick;
     head[7] = t->fault_count;
     head[8] = (uint32_t)tick->accel_counts;
@@ -196,8 +199,9 @@ void fault_record_about(fault_record_t *self, const fault_record_about_t *about)
 
 static void note_fault(fault_record_t *self, const can_node_tick_t *tick,
                        const quiesce_telemetry_t *t) {
-    const bool is_free = !self->is_held || self->is_acknowledged;
-    if (is_free && self->left_bins == 0u && self->summed == SUMMED_WORDS) {
+    const bool is_free = (!self->is_held || self->is_acknowledged) && !fault_record_is_busy(self);
+    const bool outranks = t->state == QUIESCE_STATE_FAULT && !self->is_latched;
+    if (is_free || outranks) {
         begin(self, tick, t);
     } else {
         self->later += self->later < UINT16_MAX ? 1u : 0u;
@@ -328,6 +332,7 @@ bool fault_record_load(fault_record_t *self, const uint32_t words[FAULT_RECORD_W
     ring->filled = FAULT_RECORD_BINS;
     ring->crc = words[SUMMED_WORDS];
     self->number = words[11] & UINT16_MAX;
+    self->is_latched = (words[1] & IS_LATCHED) != 0u;
     self->is_held = true;
     self->is_acknowledged = is_acknowledged;
     return true;

@@ -6,19 +6,18 @@
 /// operator's acknowledgement or a request releases it; faults meanwhile are counted. One that was
 /// acknowledged can be read until the next one takes its place.
 ///
+/// A latched fault takes the place of one that heals by itself: a lost tick must not hide it.
+///
 /// A record is FAULT_RECORD_WORDS words, on the wire and on a disk little-endian:
 ///
 /// | word | what |
 /// |---|---|
 /// | 0 | FAULT_RECORD_MAGIC: kind and version |
-/// | 1 | fault, state of the tick before, bin of the fault, number of bins: a byte each |
-/// | 2 | number of the tick of the fault |
-/// | 3 | ticks a bin; ticks a second from bit 16 on |
-/// | 4 | hash of the parameters, as Identification has it |
-/// | 5 | hash of the table in use (quiesce_table_hash) |
-/// | 6 | version of the firmware, major, minor, patch, and of the CAN interface: a byte each |
-/// | 7 | faults entered since the start |
-/// | 8 | last raw sample, counts |
+/// | 1 | fault, state of the tick before and 128 for a latched fault, bin of the fault, bins: a
+/// byte | | 2 | number of the tick of the fault | | 3 | ticks a bin; ticks a second from bit 16 on
+/// | | 4 | hash of the parameters, as Identification has it | | 5 | hash of the table in use
+/// (quiesce_table_hash) | | 6 | version of the firmware, major, minor, patch, and of the CAN
+/// interface: a byte each | | 7 | faults entered since the start | | 8 | last raw sample, counts |
 /// | 9 | ticks lost since the start |
 /// | 10 | samples refused since the start |
 /// | 11 | number of the record; law and damper from bits 16 and 24 on |
@@ -81,6 +80,7 @@ typedef struct {
     uint32_t left_bins;  ///< until the fault's record is complete, 0: none is being taken
     uint32_t summed;     ///< words that crc covers so far
     bool is_held;
+    bool is_latched;      ///< the fault of the record that was begun last
     bool is_acknowledged; ///< the next fault takes its place
     // The bin that is being filled, in the firmware's units.
     int32_t low[FAULT_RECORD_SIGNALS];

@@ -117,7 +117,7 @@ def sealed(data: bytes) -> bytes:
 
 
 def a_record(fault_bin: int = 50, count: int = 58, bins: int = 58) -> bytes:
-    head = b"QFR1" + bytes([10, 2, fault_bin, count]) + struct.pack("<I2H", 7, 20, 1000)
+    head = b"QFR1" + bytes([10, 130, fault_bin, count]) + struct.pack("<I2H", 7, 20, 1000)
     head += struct.pack("<2I4BIi2IHBB", 1, 2, 0, 1, 0, 3, 1, -5, 0, 0, 4, 3, 0)
     return sealed(head + struct.pack("<hh", -1, 2) * (8 * bins - 1) + b"\xff\x7f\x00\x80")
 
@@ -125,6 +125,7 @@ def a_record(fault_bin: int = 50, count: int = 58, bins: int = 58) -> bytes:
 def test_a_record_is_read() -> None:
     record = record_of(a_record())
     assert (record.fault, record.state_before, record.number, record.law) == (10, 2, 4, 3)
+    assert record.is_latched
     assert (record.accel_counts, record.version, record.interface_version) == (-5, "0.1.0", 3)
     assert record.bins[0] == ((-1, 2),) * 8 and record.bins[57][7] is None
     lines = list(csv_lines(record))

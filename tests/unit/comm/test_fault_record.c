@@ -92,8 +92,9 @@ static void test_a_record_says_what_ran_and_what_failed(void) {
     complete();
     TEST_ASSERT_EQUAL_HEX32(FAULT_RECORD_MAGIC, words[0]);
     TEST_ASSERT_EQUAL_MEMORY("QFR1", words, 4);
-    TEST_ASSERT_EQUAL_HEX32(
-        QUIESCE_FAULT_OVERCURRENT | QUIESCE_STATE_RUN << 8 | 50u << 16 | 58u << 24, words[1]);
+    TEST_ASSERT_EQUAL_HEX32(QUIESCE_FAULT_OVERCURRENT | (128u + QUIESCE_STATE_RUN) << 8 |
+                                50u << 16 | 58u << 24,
+                            words[1]);
     TEST_ASSERT_EQUAL_UINT32(2000, words[2]);
     TEST_ASSERT_EQUAL_HEX32(20u | 1000u << 16, words[3]);
     TEST_ASSERT_EQUAL_HEX32(about.param_hash, words[4]);
@@ -227,6 +228,29 @@ static void test_an_acknowledged_one_can_be_read_until_the_next(void) {
     TEST_ASSERT_EQUAL_UINT32(2, words[11] & 0xFFFFu);
     TEST_ASSERT_EQUAL_HEX32(band(0, 0), bin(49, FAULT_RECORD_COMMAND));
     TEST_ASSERT_FALSE(record.is_acknowledged);
+}
+
+// In every tick of the record of a lost tick, being taken, summed or held.
+static void test_a_latched_fault_takes_the_place_of_one_that_heals(void) {
+    for (uint32_t at = 1; at < AFTER_TICKS + FAULT_RECORD_WORDS + 10u; at++) {
+        setUp();
+        run(100);
+        out.telemetry.state = QUIESCE_STATE_SAFE;
+        enter(QUIESCE_FAULT_TICK_LOST);
+        out.telemetry.fault = QUIESCE_FAULT_NONE;
+        run(at);
+        out.telemetry.state = QUIESCE_STATE_FAULT;
+        enter(QUIESCE_FAULT_COIL_OPEN);
+        run(30);
+        enter(QUIESCE_FAULT_ESTOP); // the first of the latched ones stays
+        complete();
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_COIL_OPEN, words[1] & 0xFFu);
+        TEST_ASSERT_EQUAL_UINT32(50, words[1] >> 16 & 0xFFu);
+        TEST_ASSERT_EQUAL_UINT32(2, words[11] & 0xFFFFu);
+        TEST_ASSERT_EQUAL_UINT32(1, record.later);
+        TEST_ASSERT_EQUAL_HEX32(band(QUIESCE_STATE_FAULT, QUIESCE_STATE_FAULT),
+                                bin(51, FAULT_RECORD_STATE));
+    }
 }
 
 static void test_a_fault_that_healed_waits_for_the_operator(void) {
@@ -415,6 +439,7 @@ int main(void) {
     RUN_TEST(test_what_is_not_known_is_empty);
     RUN_TEST(test_the_first_fault_stays_and_others_are_counted);
     RUN_TEST(test_an_acknowledged_one_can_be_read_until_the_next);
+    RUN_TEST(test_a_latched_fault_takes_the_place_of_one_that_heals);
     RUN_TEST(test_a_fault_that_healed_waits_for_the_operator);
     RUN_TEST(test_a_button_that_is_held_from_the_start_acknowledges_nothing);
     RUN_TEST(test_clearing_forgets_it);

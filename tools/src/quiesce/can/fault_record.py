@@ -23,6 +23,7 @@ MOST_WRONG = 3
 MAGIC = b"QFR1"
 HEAD = struct.Struct("<4s4BI2H2I4BIi2IHBB")
 BINS_HZ = 50
+LATCHED = 128
 EMPTY = (32767, -32768)
 
 
@@ -56,6 +57,7 @@ class WrongRecord(Exception):
 class FaultRecord:
     number: int
     fault: int
+    is_latched: bool
     state_before: int
     tick: int
     tick_rate_Hz: int
@@ -93,7 +95,8 @@ def record_of(data: bytes) -> FaultRecord:
     return FaultRecord(
         number=number,
         fault=fault,
-        state_before=state,
+        is_latched=state >= LATCHED,
+        state_before=state % LATCHED,
         tick=tick,
         tick_rate_Hz=rate_Hz,
         fault_bin=fault_bin,

@@ -68,6 +68,7 @@ def figures_of(record: Any, later: int, database: Any) -> dict[str, Any]:
         "number": record.number,
         "fault": database.label("FaultFreeze", "freeze_fault", record.fault),
         "state_before": database.label("FaultFreeze", "freeze_state", record.state_before),
+        "is_latched": record.is_latched,
         "tick": record.tick,
         "tick_rate_Hz": record.tick_rate_Hz,
         "fault_bin": record.fault_bin,
