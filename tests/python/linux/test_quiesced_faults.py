@@ -99,6 +99,15 @@ def read_record(quiesced: Quiesced) -> FaultRecord:
     return record_of(collector.data())
 
 
+def stop_in_idle(quiesced: Quiesced) -> None:
+    """An emergency stop that stays pressed."""
+    quiesced.peer.operator = {"enable": 0}
+    quiesced.start()
+    quiesced.peer.wait_state(IDLE)
+    quiesced.peer.estop = True
+    quiesced.peer.wait_state(FAULT)
+
+
 def estop_record(quiesced: Quiesced) -> FaultRecord:
     """Of the stop; a busy machine's lost ticks may be recorded before it."""
     while (record := read_record(quiesced)).fault != ESTOP:
@@ -108,8 +117,9 @@ def estop_record(quiesced: Quiesced) -> FaultRecord:
 
 def test_record_of_a_fault_outlives_a_kill(quiesced: Quiesced) -> None:
     """It is the first fault's over restarts, until it is acknowledged; then the next one's."""
-    latch_estop(quiesced)
+    stop_in_idle(quiesced)
     first = estop_record(quiesced)
+    quiesced.peer.estop = False
     assert (first.is_latched, first.fault_bin, len(first.bins)) == (True, 50, 58)
     assert first.tick_rate_Hz == 500
     kept = quiesced.log_text().count(KEPT) or 1
@@ -135,9 +145,7 @@ def test_record_of_a_fault_outlives_a_kill(quiesced: Quiesced) -> None:
 
 
 def test_an_end_in_order_keeps_a_record_that_is_not_complete(quiesced: Quiesced) -> None:
-    start_running(quiesced)
-    quiesced.peer.estop = True
-    quiesced.peer.wait_state(FAULT)
+    stop_in_idle(quiesced)
     assert quiesced.stop() == 0
     quiesced.peer.estop = False
     quiesced.start()
