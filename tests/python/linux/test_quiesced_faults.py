@@ -1,8 +1,9 @@
 """The controller program remembers its faults, and `--make-safe` turns off what it left on."""
 
+import itertools
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import can
@@ -24,6 +25,7 @@ from quiesced_steps import (
     wait_farewell,
 )
 
+FAULT_RECORD_PAGES = 318
 KEPT = "the fault record is kept"
 
 
@@ -81,21 +83,26 @@ def test_latched_fault_outlives_a_kill(quiesced: Quiesced) -> None:
     assert quiesced.log_text().count("is not acknowledged yet: safe current, driver off") == 3
 
 
+def after_some(count: int) -> Callable[[dict[str, int]], bool]:
+    """Accepts the last of so many."""
+    left = itertools.count(-count)
+    return lambda _: next(left) >= 0
+
+
 def read_record(quiesced: Quiesced) -> FaultRecord:
-    """All pages, asked for as often as that takes."""
+    """All pages, asked for as often as that takes: a line that is full sheds them."""
     peer = quiesced.peer
-    after = peer.catch_up()
-    peer.wait("Status", after=after)  # it runs, and takes requests
+    peer.wait("Status", after=peer.catch_up())  # it runs, and takes requests
     collector = Collector(load())
-    while True:
-        reply = peer.request("FAULT_RECORD", value=0)
-        if reply.signals["result"] == DONE:
-            break
-    collector.total = reply.signals["param_value"] & 0xFFFF
-    while collector.missing() is not None:
-        seen = peer.wait("FaultRecord", after=after)
-        after = peer.frames.index(seen, after) + 1
-        collector.take(can.Message(arbitration_id=seen.identifier, data=seen.data))
+    collector.total = FAULT_RECORD_PAGES
+    while (gap := collector.missing()) is not None:
+        after = peer.count()
+        first, count = gap
+        if peer.request("FAULT_RECORD", value=first | count << 16).signals["result"] != DONE:
+            continue
+        peer.wait("Status", after_some(count + 20), after)
+        for frame in peer.frames[after:]:
+            collector.take(can.Message(arbitration_id=frame.identifier, data=frame.data))
     return record_of(collector.data())
 
 
