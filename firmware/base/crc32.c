@@ -7,8 +7,8 @@ static const uint32_t nibble[16] = {
     0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu,
 };
 
-uint32_t crc32_words(const uint32_t *words, uint32_t count) {
-    uint32_t crc = UINT32_MAX;
+uint32_t crc32_continue(uint32_t before, const uint32_t *words, uint32_t count) {
+    uint32_t crc = ~before;
     for (uint32_t i = 0; i < count; i++) {
         crc ^= words[i];
         for (uint32_t k = 0; k < 8u; k++) {
@@ -16,4 +16,8 @@ uint32_t crc32_words(const uint32_t *words, uint32_t count) {
         }
     }
     return ~crc;
+}
+
+uint32_t crc32_words(const uint32_t *words, uint32_t count) {
+    return crc32_continue(0, words, count);
 }

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#define TABLE_CRC_WORD 1 ///< of every kind of table
+
 // Of what a law needs that demands forces: a bit that no view has. Such a law fails the first test
 // of a tick, and the others do not pay for a second one.
 #define FORCES (UINT64_C(1) << 63)
@@ -209,4 +211,10 @@ bool control_load(control_t *self, const quiesce_learnt_t *in) {
         return in == NULL;
     }
     return self->law->load(self->state, &self->setup, in == NULL ? NULL : in->words, count);
+}
+
+uint32_t control_table_hash(const control_t *self) {
+    const uint32_t *const table =
+        self->setup.table != NULL ? self->setup.table : self->forces.table;
+    return table != NULL ? table[TABLE_CRC_WORD] : 0u;
 }

@@ -40,6 +40,9 @@ bool control_sees(const control_t *self, const view_t *view);
 /// no demand: the unlock current. Returns false iff that has lasted for longer than it may.
 bool control_step(control_t *self, const view_t *view, law_demand_t *out);
 
+/// As quiesce_table_hash.
+uint32_t control_table_hash(const control_t *self);
+
 /// As quiesce_report, quiesce_learnt_save and quiesce_learnt_load.
 void control_report(const control_t *self, int32_t word[QUIESCE_REPORT_WORDS]);
 bool control_save(const control_t *self, quiesce_learnt_t *out);

@@ -406,6 +406,10 @@ void quiesce_watch(quiesce_t *self, uint32_t which, const uint32_t *words, uint3
     }
 }
 
+uint32_t quiesce_table_hash(const quiesce_t *self) {
+    return control_table_hash(known_of(self));
+}
+
 bool quiesce_learnt_save(const quiesce_t *self, quiesce_learnt_t *out) {
     return control_save(known_of(self), out);
 }

@@ -35,6 +35,7 @@ void can_node_init(can_node_t *self, const quiesce_board_t *board, const quiesce
     can_receive_use_rate(&self->receive, rate_Hz(params));
     can_service_init(&self->service, params);
     can_freeze_init(&self->freeze, safe_current_mA(board, params, 0));
+    fault_record_init(&self->record, rate_Hz(params));
     can_schedule_init(&self->schedule, rate_Hz(params));
 }
 
@@ -45,6 +46,7 @@ void can_node_use_params(can_node_t *self, const quiesce_board_t *board,
     can_receive_use_rate(&self->receive, rate_Hz(params));
     can_service_use_params(&self->service, params);
     can_freeze_restart(&self->freeze, safe_current_mA(board, params, 0));
+    fault_record_restart(&self->record, rate_Hz(params));
     if (has_new_rate) {
         can_schedule_init(&self->schedule, rate_Hz(params));
     }
@@ -56,9 +58,9 @@ void can_node_retune(can_node_t *self, const quiesce_params_t *params) {
 }
 
 void can_node_receive(can_node_t *self, const can_frame_t *frame) {
-    if (can_receive_frame(&self->receive, frame) &&
-        can_service_request(&self->service, frame, self->freeze.is_held)) {
-        (void)can_freeze_request(&self->freeze);
+    const can_service_held_t held = {&self->freeze, &self->record};
+    if (can_receive_frame(&self->receive, frame)) {
+        can_service_request(&self->service, frame, &held);
     }
 }
 
@@ -139,6 +141,11 @@ static bool pack(can_node_t *self, uint32_t message, const can_node_tick_t *tick
     case QUIESCE_CAN_AT_CAN_HEALTH:
         can_pack_health(&self->receive.counters, tick, frame);
         return true;
+    case QUIESCE_CAN_AT_CAN_SHED:
+        can_pack_shed(&tick->unsent, frame);
+        return true;
+    case QUIESCE_CAN_AT_FAULT_RECORD:
+        return fault_record_page(&self->record, frame);
     case QUIESCE_CAN_AT_IDENTIFICATION:
         can_pack_identification(self->param_hash, frame);
         return true;
@@ -182,7 +189,8 @@ static const uint8_t cyclic[] = {
     QUIESCE_CAN_AT_STATUS,         QUIESCE_CAN_AT_MOTION,         QUIESCE_CAN_AT_SPECTRUM_PEAK0,
     QUIESCE_CAN_AT_SPECTRUM_PEAK1, QUIESCE_CAN_AT_SPECTRUM_PEAK2, QUIESCE_CAN_AT_LAW_STATE,
     QUIESCE_CAN_AT_FAULT_FREEZE,   QUIESCE_CAN_AT_LOOP_TIMING,    QUIESCE_CAN_AT_CAN_HEALTH,
-    QUIESCE_CAN_AT_IDENTIFICATION, QUIESCE_CAN_AT_RAW_SAMPLE,
+    QUIESCE_CAN_AT_IDENTIFICATION, QUIESCE_CAN_AT_CAN_SHED,       QUIESCE_CAN_AT_RAW_SAMPLE,
+    QUIESCE_CAN_AT_FAULT_RECORD,
 };
 
 static uint32_t put_cyclic(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
@@ -199,9 +207,8 @@ static uint32_t put_cyclic(can_node_t *self, const can_node_tick_t *tick, const 
     return count;
 }
 
-uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
-                       const quiesce_t *controller, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
-    const uint32_t passed_ms = can_schedule_tick(&self->schedule);
+static void watch_faults(can_node_t *self, uint32_t passed_ms, const can_node_tick_t *tick,
+                         const quiesce_out_t *out, const quiesce_t *controller) {
     const can_freeze_tick_t frozen = {
         .accel_counts = tick->accel_counts,
         .current_meas_mA = tick->current_meas_mA,
@@ -209,6 +216,22 @@ uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quie
         .out = out,
     };
     can_freeze_watch(&self->freeze, passed_ms, &frozen);
+    fault_record_watch(&self->record, tick, out);
+    if (fault_record_wants_about(&self->record)) {
+        const fault_record_about_t about = {
+            .tick_rate_Hz = rate_Hz(&self->service.in_effect),
+            .param_hash = self->param_hash,
+            .table_hash = quiesce_table_hash(controller),
+            .law = (uint32_t)self->service.in_effect.law,
+        };
+        fault_record_about(&self->record, &about);
+    }
+}
+
+uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,
+                       const quiesce_t *controller, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
+    const uint32_t passed_ms = can_schedule_tick(&self->schedule);
+    watch_faults(self, passed_ms, tick, out, controller);
     watch_timing(self, tick);
     uint32_t count = passed_ms > 0u ? put_cyclic(self, tick, out, controller, frames) : 0u;
 

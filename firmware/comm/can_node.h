@@ -4,7 +4,8 @@
 /// Whatever is malformed, of a wrong CRC, stale or unknown is counted and changes nothing. A tick's
 /// frames come in the order of their ids; the cyclic ones are spread over ticks so that none sends
 /// more than CAN_NODE_MAX_FRAMES. Of its parts, can_receive.h takes, can_service.h answers
-/// requests, can_freeze.h keeps the freeze frame, can_schedule.h says when, can_pack.h says what.
+/// requests, can_freeze.h keeps the freeze frame, fault_record.h the record, can_schedule.h says
+/// when, can_pack.h says what.
 #ifndef CAN_NODE_H
 #define CAN_NODE_H
 
@@ -14,6 +15,7 @@
 #include "can_receive.h"
 #include "can_schedule.h"
 #include "can_service.h"
+#include "fault_record.h"
 #include "quiesce.h"
 
 /// Frames of a tick at the most: a demand for each damper, raw sample, a page of the freeze frame,
@@ -26,6 +28,7 @@ typedef struct {
     can_service_t service;
     can_freeze_t freeze;
     can_schedule_t schedule;
+    fault_record_t record;
     uint8_t alive[QUIESCE_CAN_MESSAGES]; ///< of the next frame of each
     uint32_t dampers;                    ///< that are sent their current
     uint32_t param_hash;

@@ -74,10 +74,30 @@ void can_pack_health(const can_node_counters_t *counters, const can_node_tick_t 
         .rejected_crc = quiesce_can_can_health_rejected_crc_sat(counters->rejected_crc),
         .rejected_alive = quiesce_can_can_health_rejected_alive_sat(counters->rejected_alive),
         .rejected_shape = quiesce_can_can_health_rejected_shape_sat(unread),
-        .tx_dropped = quiesce_can_can_health_tx_dropped_sat(tick->tx_dropped),
         .bus_off_count = quiesce_can_can_health_bus_off_count_sat(tick->bus_off_count),
     };
     (void)quiesce_can_can_health_pack(frame->data, &wire, sizeof frame->data);
+}
+
+void can_unsent_count(can_unsent_t *unsent, uint32_t id) {
+    if (id <= QUIESCE_CAN_STATUS_FRAME_ID) {
+        unsent->demands++;
+    } else if (id == QUIESCE_CAN_SERVICE_REPLY_FRAME_ID ||
+               id == QUIESCE_CAN_FAULT_FREEZE_FRAME_ID) {
+        unsent->answers++;
+    } else {
+        unsent->telemetry++;
+    }
+}
+
+// Each wraps: a counter that stands at its end says nothing any more.
+void can_pack_shed(const can_unsent_t *unsent, can_frame_t *frame) {
+    const struct quiesce_can_can_shed_t wire = {
+        .unsent_demands = (uint16_t)(unsent->demands & UINT16_MAX),
+        .unsent_answers = (uint16_t)(unsent->answers & UINT16_MAX),
+        .unsent_telemetry = unsent->telemetry,
+    };
+    (void)quiesce_can_can_shed_pack(frame->data, &wire, sizeof frame->data);
 }
 
 void can_pack_identification(uint32_t param_hash, can_frame_t *frame) {

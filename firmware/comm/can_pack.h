@@ -7,6 +7,16 @@
 #include "can_receive.h"
 #include "quiesce.h"
 
+/// Frames that never left since the start, by class; wrapping.
+typedef struct {
+    uint32_t demands;   ///< demands and Status, for newer ones
+    uint32_t answers;   ///< service replies, pages of the freeze frame
+    uint32_t telemetry; ///< all others
+} can_unsent_t;
+
+/// Counts a frame of this id.
+void can_unsent_count(can_unsent_t *unsent, uint32_t id);
+
 /// What the target tells the bus beyond the controller's output.
 typedef struct {
     bool enable;          ///< in force in this tick, from wherever it came
@@ -18,9 +28,11 @@ typedef struct {
     uint32_t overruns;    ///< ticks lost since the start
     uint32_t lateness_us; ///< of this tick's start; 0 where the target cannot tell
     uint32_t work_us;     ///< of the last tick
-    uint32_t tx_dropped;  ///< frames that the interface did not take, since the start
+    can_unsent_t unsent;
     uint32_t bus_off_count;
     uint32_t rx_lost; ///< times that a line or an interface lost what had come, since the start
+    uint32_t ticks;   ///< since the last one; 1, more where ticks were lost
+    bool fault_reset; ///< in force in this tick
 } can_node_tick_t;
 
 void can_pack_demand(uint32_t state, int32_t current_mA, bool is_enabled, can_frame_t *frame);
@@ -36,6 +48,7 @@ void can_pack_timing(uint32_t overruns, uint32_t lateness_max_us, uint32_t work_
                      can_frame_t *frame);
 void can_pack_health(const can_node_counters_t *counters, const can_node_tick_t *tick,
                      can_frame_t *frame);
+void can_pack_shed(const can_unsent_t *unsent, can_frame_t *frame);
 void can_pack_identification(uint32_t param_hash, can_frame_t *frame);
 void can_pack_raw(const can_node_tick_t *tick, uint32_t number, can_frame_t *frame);
 

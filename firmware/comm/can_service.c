@@ -61,7 +61,31 @@ static can_node_result_t discard(can_service_t *self) {
     return CAN_NODE_DONE;
 }
 
-static can_node_result_t act(can_service_t *self, int32_t value, bool has_freeze) {
+// value: the first page, plus 65536 times how many.
+static can_node_result_t send_record(fault_record_t *record, int32_t value,
+                                     can_service_reply_t *reply) {
+    const uint32_t pages = (uint32_t)value;
+    if (fault_record_is_busy(record)) {
+        return CAN_NODE_BUSY;
+    }
+    if (!record->is_held) {
+        return CAN_NODE_NOTHING_TO_SEND;
+    }
+    if (!fault_record_request(record, pages & UINT16_MAX, pages >> 16)) {
+        return CAN_NODE_OUT_OF_RANGE;
+    }
+    reply->param_value = (int32_t)(FAULT_RECORD_PAGES | record->later << 16);
+    return CAN_NODE_DONE;
+}
+
+static can_node_result_t clear_record(fault_record_t *record) {
+    if (fault_record_is_busy(record)) {
+        return CAN_NODE_BUSY;
+    }
+    return fault_record_clear(record) ? CAN_NODE_DONE : CAN_NODE_NOTHING_TO_SEND;
+}
+
+static can_node_result_t act(can_service_t *self, int32_t value, const can_service_held_t *held) {
     switch (self->reply.operation) {
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_READ_CHOICE:
         return read_param(self, &self->reply);
@@ -79,13 +103,18 @@ static can_node_result_t act(can_service_t *self, int32_t value, bool has_freeze
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_RAW_STREAM_CHOICE:
         return stream(self, value);
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_FREEZE_FRAME_CHOICE:
-        return has_freeze ? CAN_NODE_DONE : CAN_NODE_NOTHING_TO_SEND;
+        return can_freeze_request(held->freeze) ? CAN_NODE_DONE : CAN_NODE_NOTHING_TO_SEND;
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_FAULT_RECORD_CHOICE:
+        return send_record(held->record, value, &self->reply);
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_CLEAR_RECORD_CHOICE:
+        return clear_record(held->record);
     default:
         return CAN_NODE_NO_SUCH_OPERATION;
     }
 }
 
-bool can_service_request(can_service_t *self, const can_frame_t *frame, bool has_freeze) {
+void can_service_request(can_service_t *self, const can_frame_t *frame,
+                         const can_service_held_t *held) {
     struct quiesce_can_service_request_t request;
     (void)quiesce_can_service_request_unpack(&request, frame->data, frame->length);
     can_service_reply_t reply = {
@@ -99,13 +128,11 @@ bool can_service_request(can_service_t *self, const can_frame_t *frame, bool has
             self->busy = reply;
             self->has_busy = true;
         }
-        return false;
+        return;
     }
     self->is_taken = true;
     self->reply = reply;
-    self->reply.result = act(self, request.param_value, has_freeze);
-    return request.operation == QUIESCE_CAN_SERVICE_REQUEST_OPERATION_FREEZE_FRAME_CHOICE &&
-           has_freeze;
+    self->reply.result = act(self, request.param_value, held);
 }
 
 void can_service_answer(can_service_t *self, can_node_result_t result, uint32_t param_index) {

@@ -1,9 +1,11 @@
-/// ServiceRequest and ServiceReply: parameters, raw samples, freeze frame. One request at a time;
-/// another one before its reply has gone is answered BUSY, and a third is not answered at all.
+/// ServiceRequest and ServiceReply: parameters, raw samples, what is kept of faults. One request at
+/// a time; another one before its reply has gone is answered BUSY, and a third is not answered at
+/// all.
 #ifndef CAN_SERVICE_H
 #define CAN_SERVICE_H
 
-#include "can_frame.h"
+#include "can_freeze.h"
+#include "fault_record.h"
 #include "quiesce.h"
 
 #define CAN_SERVICE_MAX_RAW_S 3600
@@ -58,9 +60,15 @@ void can_service_init(can_service_t *self, const quiesce_params_t *params);
 /// Other parameters are in effect; nothing is staged. A request that is worked on goes on.
 void can_service_use_params(can_service_t *self, const quiesce_params_t *params);
 
-/// Takes a request whose CRC was right. has_freeze: there is a freeze frame to send.
-/// Returns true iff it is to be sent.
-bool can_service_request(can_service_t *self, const can_frame_t *frame, bool has_freeze);
+/// What is kept of faults.
+typedef struct {
+    can_freeze_t *freeze;
+    fault_record_t *record;
+} can_service_held_t;
+
+/// Takes a request whose CRC was right.
+void can_service_request(can_service_t *self, const can_frame_t *frame,
+                         const can_service_held_t *held);
 
 /// Answers the task in hand; nothing happens where there is none.
 void can_service_answer(can_service_t *self, can_node_result_t result, uint32_t param_index);

@@ -112,9 +112,11 @@ static void note(node_t *node, const node_inputs_t *board) {
         .overruns = board->overruns,
         .lateness_us = board->lateness_us,
         .work_us = board->work_us,
-        .tx_dropped = board->tx_dropped,
+        .unsent = board->unsent,
         .bus_off_count = board->bus_off_count,
         .rx_lost = board->rx_lost,
+        .ticks = board->ticks_elapsed,
+        .fault_reset = node->in.fault_reset,
     };
 }
 

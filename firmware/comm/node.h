@@ -39,7 +39,7 @@ typedef struct {
     uint32_t overruns;                        ///< these and the following: see can_node_tick_t
     uint32_t lateness_us;
     uint32_t work_us;
-    uint32_t tx_dropped;
+    can_unsent_t unsent;
     uint32_t bus_off_count;
     uint32_t rx_lost; ///< times that a line or an interface lost what had come
 } node_inputs_t;

@@ -255,6 +255,9 @@ quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words
 /// of other kinds stay in use. Returns QUIESCE_TABLE_MAGIC iff nothing here works with that kind.
 quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic);
 
+/// CRC-32 that the table in use carries: the law's, else its tracker's; 0 where there is none.
+uint32_t quiesce_table_hash(const quiesce_t *self);
+
 /// Whether words are a damper's map.
 quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count);
 

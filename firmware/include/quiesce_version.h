@@ -7,6 +7,6 @@
 #define QUIESCE_VERSION_PATCH 0
 
 /// Of the messages in quiesce.dbc: changes where a node of the old ones would misread the new ones.
-#define QUIESCE_CAN_INTERFACE_VERSION 2
+#define QUIESCE_CAN_INTERFACE_VERSION 3
 
 #endif

@@ -13,6 +13,7 @@
 #define SLOT_STEP 4096 ///< so that two slots are not in one block of a disk
 #define FILE_BYTES (SLOTS * SLOT_STEP)
 #define FILE_MODE 0640
+#define LEAST_BYTES 32u ///< of data, zeros after shorter ones
 
 /// A slot: little-endian as all Linux targets are, zeros after the data.
 typedef struct {
@@ -24,9 +25,15 @@ typedef struct {
     uint8_t data[NVM_SLOT_BYTES];
 } slot_t;
 
-static uint32_t crc_of(const slot_t *slot) {
+/// On the disk.
+static size_t length_of(size_t bytes) {
+    return offsetof(slot_t, data) + (bytes > LEAST_BYTES ? bytes : LEAST_BYTES);
+}
+
+/// bytes: of its data, NVM_SLOT_BYTES at most.
+static uint32_t crc_of(const slot_t *slot, size_t bytes) {
     const size_t from = offsetof(slot_t, kind);
-    return nvm_crc((const uint8_t *)slot + from, sizeof *slot - from);
+    return nvm_crc((const uint8_t *)slot + from, length_of(bytes) - from);
 }
 
 static slot_t make_slot(const char *kind, uint32_t sequence, const void *data, size_t bytes) {
@@ -37,14 +44,14 @@ static slot_t make_slot(const char *kind, uint32_t sequence, const void *data, s
     slot.sequence = sequence;
     slot.bytes = (uint32_t)bytes;
     memcpy(slot.data, data, bytes);
-    slot.crc = crc_of(&slot);
+    slot.crc = crc_of(&slot, bytes);
     return slot;
 }
 
 static bool is_whole(const slot_t *slot, const char *kind, size_t bytes) {
     char expected[sizeof slot->kind] = {0};
     memcpy(expected, kind, strnlen(kind, sizeof expected));
-    return slot->magic == MAGIC && slot->bytes == bytes && slot->crc == crc_of(slot) &&
+    return slot->magic == MAGIC && slot->bytes == bytes && slot->crc == crc_of(slot, bytes) &&
            memcmp(slot->kind, expected, sizeof expected) == 0;
 }
 
@@ -57,11 +64,11 @@ static bool read_slots(int fd, const char *kind, size_t bytes, slot_t slots[SLOT
     }
     *are_whole = S_ISREG(about.st_mode) && about.st_size == FILE_BYTES;
     for (uint32_t i = 0; *are_whole && i < SLOTS; i++) {
-        const ssize_t got = pread(fd, &slots[i], sizeof slots[i], (off_t)i * SLOT_STEP);
+        const ssize_t got = pread(fd, &slots[i], length_of(bytes), (off_t)i * SLOT_STEP);
         if (got < 0) {
             return false;
         }
-        *are_whole = got == (ssize_t)sizeof slots[i] && is_whole(&slots[i], kind, bytes);
+        *are_whole = got == (ssize_t)length_of(bytes) && is_whole(&slots[i], kind, bytes);
     }
     return true;
 }
@@ -108,7 +115,7 @@ static bool fill(const nvm_slots_t *slots, int fd, const void *data) {
     bool is_done = write_whole(fd, zeros, sizeof zeros, 0);
     for (uint32_t i = 0; is_done && i < SLOTS; i++) {
         const slot_t slot = make_slot(slots->kind, i, data, slots->bytes);
-        is_done = write_whole(fd, &slot, sizeof slot, (off_t)i * SLOT_STEP);
+        is_done = write_whole(fd, &slot, length_of(slots->bytes), (off_t)i * SLOT_STEP);
     }
     return is_done && fsync(fd) == 0;
 }
@@ -177,7 +184,7 @@ void nvm_slots_close(nvm_slots_t *slots) {
 bool nvm_slots_write(nvm_slots_t *slots, const void *data) {
     const uint32_t older = 1u - slots->newer;
     const slot_t slot = make_slot(slots->kind, slots->sequence + 1u, data, slots->bytes);
-    if (!write_whole(slots->fd, &slot, sizeof slot, (off_t)older * SLOT_STEP) ||
+    if (!write_whole(slots->fd, &slot, length_of(slots->bytes), (off_t)older * SLOT_STEP) ||
         fdatasync(slots->fd) != 0) {
         return false;
     }

@@ -1,4 +1,4 @@
-/// A small record with its room on the disk: a file of two slots that are written in place, in
+/// A record with its room on the disk: a file of two slots that are written in place, in
 /// turn. Once it is there no write needs more room, or a right to the folder.
 ///
 /// A write replaces the older slot and leaves the newer one alone. Where a slot is damaged, a write
@@ -10,7 +10,7 @@
 #include "linux_error.h"
 #include "nvm_file.h"
 
-#define NVM_SLOT_BYTES 32u ///< of a record's data, at most
+#define NVM_SLOT_BYTES 2048u ///< of a record's data, at most
 
 typedef struct {
     int fd; ///< -1: not open

@@ -33,7 +33,7 @@ typedef struct {
     uint8_t bytes[QUEUE_BYTES];
     uint32_t first;
     uint32_t count;
-    uint32_t dropped_frames;
+    can_unsent_t unsent;
 } queue_t;
 
 typedef struct {
@@ -57,7 +57,7 @@ static void enqueue(queue_t *queue, const can_frame_t *frame) {
     uint8_t text[SLCAN_MAX_BYTES];
     const size_t length = slcan_encode(frame, text);
     if (length > QUEUE_BYTES - queue->count) {
-        queue->dropped_frames++;
+        can_unsent_count(&queue->unsent, frame->id);
         return;
     }
     for (size_t i = 0; i < length; i++) {
@@ -122,7 +122,7 @@ static void run_tick(board_t *board, uint32_t ticks) {
     board->inputs.ticks_elapsed = ticks;
     board->inputs.overruns += ticks - 1u;
     board->inputs.lateness_us = us_since(board, board->tick.last_count);
-    board->inputs.tx_dropped = board->queue.dropped_frames;
+    board->inputs.unsent = board->queue.unsent;
     board->inputs.rx_lost = board->uart.overruns;
     const uint32_t count = node_tick(&board->node, &board->inputs, frames);
     for (uint32_t i = 0; i < count; i++) {

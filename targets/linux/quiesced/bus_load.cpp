@@ -36,7 +36,8 @@ bool is_there(const Config &config, std::uint32_t message) {
         return damper < config.outputs.size() &&
                config.outputs[damper].output == CurrentOutput::can;
     }
-    return message != QUIESCE_CAN_AT_RAW_SAMPLE && quiesce_can_messages[message].cycle_ms != 0;
+    return message != QUIESCE_CAN_AT_RAW_SAMPLE && message != QUIESCE_CAN_AT_FAULT_RECORD &&
+           quiesce_can_messages[message].cycle_ms != 0;
 }
 
 /// Between two frames of a message.

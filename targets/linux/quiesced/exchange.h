@@ -11,6 +11,7 @@
 #include "lost_ticks.h"
 #include "mailbox.h"
 #include "notify.h"
+#include "record_store.h"
 #include "replaceable.h"
 
 namespace quiesced {
@@ -81,6 +82,7 @@ struct Exchange {
     Mailbox<Snapshot> snapshot;
     Mailbox<quiesce_learnt_t> learnt;
     Mailbox<quiesce_params_t> to_store;
+    Mailbox<KeptRecord> record;          ///< after each change of it
     Mailbox<quiesce_params_t> in_effect; ///< after each restart with others
     /// To be kept until it is acknowledged, QUIESCE_FAULT_NONE: nothing; before the start: what an
     /// earlier run left. In memory that a process shares which is started from here.

@@ -11,26 +11,18 @@
 
 namespace quiesced {
 
-namespace {
-
-constexpr const char *kKind = "fault";
-
-} // namespace
-
 std::uint32_t FaultStore::load(std::string &note) {
-    linux_error_t error{};
+    std::string why;
     note.clear();
     last_ = {};
-    const nvm_verdict_t verdict =
-        nvm_slots_read(file().c_str(), kKind, &last_, sizeof last_, &error);
+    const nvm_verdict_t verdict = file_.read(&last_, why);
     const bool has_leftover =
         faccessat(AT_FDCWD, leftover().c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0;
     if (verdict == NVM_OK && last_.fault != QUIESCE_FAULT_NONE) {
         note = std::string("fault ") + fault_name(last_.fault) + " of " + iso_time(last_.time_ns) +
                " is not acknowledged yet";
     } else if (verdict != NVM_OK && verdict != NVM_MISSING) {
-        note = std::string("a fault is not acknowledged yet, its record cannot be read: ") +
-               error.text;
+        note = std::string("a fault is not acknowledged yet, its record cannot be read: ") + why;
     } else if (has_leftover) {
         note = "a fault is not acknowledged yet, the program was killed while it kept it: " +
                leftover();
@@ -41,20 +33,9 @@ std::uint32_t FaultStore::load(std::string &note) {
     return last_.fault;
 }
 
-std::string FaultStore::write(const Record &record) {
-    linux_error_t error{};
-    if (!nvm_slots_are_at(&slots_, file().c_str())) {
-        nvm_slots_close(&slots_);
-        if (!nvm_slots_open(&slots_, file().c_str(), kKind, &record, sizeof record, &error)) {
-            return error.text;
-        }
-    }
-    return nvm_slots_write(&slots_, &record) ? "" : file() + ": " + std::strerror(errno);
-}
-
 std::string FaultStore::keep(std::uint32_t fault) {
     const Record record = fault == last_.fault ? last_ : Record{fault, 0, realtime_ns()};
-    std::string error = write(record);
+    std::string error = file_.write(&record);
     if (!error.empty()) {
         return error;
     }

@@ -7,16 +7,14 @@
 #include <cstdint>
 #include <string>
 
-#include "firmware.h"
+#include "slot_file.h"
 
 namespace quiesced {
 
 class FaultStore {
   public:
-    explicit FaultStore(const std::string &folder) : folder_(folder) {}
-    FaultStore(const FaultStore &) = delete;
-    FaultStore &operator=(const FaultStore &) = delete;
-    ~FaultStore() { nvm_slots_close(&slots_); }
+    explicit FaultStore(const std::string &folder)
+        : file_(folder + "/fault.bin", "fault", sizeof(Record)) {}
 
     /// The fault that an earlier run left, QUIESCE_FAULT_NONE: none. A record that cannot be read
     /// counts as an emergency stop, and so does leftover(). *note says what is kept, in a line;
@@ -28,7 +26,7 @@ class FaultStore {
     /// to write it.
     std::string keep(std::uint32_t fault);
 
-    std::string file() const { return folder_ + "/fault.bin"; }
+    const std::string &file() const { return file_.path(); }
     /// Of a version that wrote its records aside: it was killed while it kept a fault.
     std::string leftover() const { return file() + ".new"; }
 
@@ -39,10 +37,7 @@ class FaultStore {
         std::int64_t time_ns; ///< CLOCK_REALTIME
     };
 
-    std::string write(const Record &record);
-
-    std::string folder_;
-    nvm_slots_t slots_{-1, {}, 0, 0, 0};
+    SlotFile file_;
     Record last_{}; ///< as loaded or kept
 };
 

@@ -10,9 +10,10 @@ constexpr std::uint32_t kFirstDemand = QUIESCE_CAN_AT_CURRENT_DEMAND;
 
 // What is shed last goes first.
 constexpr std::uint32_t kTelemetry[] = {
-    QUIESCE_CAN_AT_CAN_HEALTH,     QUIESCE_CAN_AT_LOOP_TIMING,    QUIESCE_CAN_AT_IDENTIFICATION,
-    QUIESCE_CAN_AT_MOTION,         QUIESCE_CAN_AT_LAW_STATE,      QUIESCE_CAN_AT_SPECTRUM_PEAK0,
-    QUIESCE_CAN_AT_SPECTRUM_PEAK1, QUIESCE_CAN_AT_SPECTRUM_PEAK2, QUIESCE_CAN_AT_RAW_SAMPLE,
+    QUIESCE_CAN_AT_CAN_SHED,       QUIESCE_CAN_AT_CAN_HEALTH,     QUIESCE_CAN_AT_LOOP_TIMING,
+    QUIESCE_CAN_AT_IDENTIFICATION, QUIESCE_CAN_AT_MOTION,         QUIESCE_CAN_AT_LAW_STATE,
+    QUIESCE_CAN_AT_SPECTRUM_PEAK0, QUIESCE_CAN_AT_SPECTRUM_PEAK1, QUIESCE_CAN_AT_SPECTRUM_PEAK2,
+    QUIESCE_CAN_AT_RAW_SAMPLE,     QUIESCE_CAN_AT_FAULT_RECORD,
 };
 
 // Output stage and state are below the alive counter.
@@ -35,14 +36,16 @@ std::uint32_t message_of(const can_frame_t &frame) {
 
 void FrameSender::replace(std::uint32_t message, const can_frame_t &frame) {
     Slot &slot = slots_[message];
-    counters_.shed += slot.waits ? 1U : 0U;
+    if (slot.waits) {
+        can_unsent_count(&counters_.unsent, frame.id);
+    }
     slot = {frame, true};
 }
 
 template <std::size_t kRoom>
 void FrameSender::append(Row<kRoom> &row, const can_frame_t &frame) {
     if (row.count == kRoom) {
-        ++counters_.lost;
+        can_unsent_count(&counters_.unsent, frame.id);
         return;
     }
     row.frames[(row.first + row.count) % kRoom] = frame;

@@ -6,8 +6,8 @@
 /// freeze frame, telemetry. While something still waits from the tick before, a demand that says
 /// what the last one said goes behind the freeze frame until that is kRepeatEvery_ns ago, so that a
 /// line which demands alone would fill carries the others, too. A change of state or of the output
-/// stage always goes first. Telemetry is shed in the order RawSample, SpectrumPeak2 .. 0, LawState,
-/// Motion, and what comes every second.
+/// stage always goes first. Telemetry is shed in the order FaultRecord, RawSample, SpectrumPeak2 ..
+/// 0, LawState, Motion, and what comes every second.
 #ifndef QUIESCED_FRAME_SENDER_H
 #define QUIESCED_FRAME_SENDER_H
 
@@ -20,8 +20,7 @@ namespace quiesced {
 
 /// Frames that never left, since the start.
 struct SendCounters {
-    std::uint32_t shed;    ///< telemetry, and what a newer frame of its message replaced
-    std::uint32_t lost;    ///< replies and pages for which there was no room
+    can_unsent_t unsent;   ///< cyclic ones for newer ones, of replies and pages what had no room
     std::uint32_t refused; ///< attempts that the bus did not take, of frames that waited on
 };
 

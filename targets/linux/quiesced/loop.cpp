@@ -110,6 +110,11 @@ void Loop::use_learnt(const quiesce_learnt_t &learnt) {
                      : "what was learnt before belongs to another law, table or setting");
 }
 
+bool Loop::use_record(const KeptRecord &record) {
+    return record.is_held == 0 ||
+           fault_record_load(&node_.can.record, record.words.data(), record.is_acknowledged != 0);
+}
+
 void Loop::keep_learnt() {
     has_learnt_ = quiesce_learnt_save(&node_.controller, &learnt_);
 }
@@ -242,8 +247,9 @@ Snapshot Loop::snapshot() const {
     if (bus_ != nullptr) {
         snapshot.bus_state = can_bus_state(bus_);
         snapshot.bus = *can_bus_counters(bus_);
-        snapshot.bus.tx_dropped = sender_.counters().lost + sender_.counters().shed;
-        snapshot.tx_shed = sender_.counters().shed;
+        const can_unsent_t &unsent = sender_.counters().unsent;
+        snapshot.tx_shed = unsent.demands + unsent.telemetry;
+        snapshot.bus.tx_dropped = unsent.answers + snapshot.tx_shed;
     }
     snapshot.node = *can_node_counters(&node_.can);
     snapshot.faults = changes_.faults();
@@ -265,6 +271,23 @@ void Loop::put_learnt() {
     }
 }
 
+/// Returns false iff the other thread has not taken the last one yet.
+bool Loop::put_record() {
+    const fault_record_t &record = node_.can.record;
+    if (record.generation == record_generation_) {
+        return true;
+    }
+    KeptRecord kept{};
+    kept.is_held = fault_record_copy(&record, kept.words.data()) ? 1 : 0;
+    kept.is_acknowledged = record.is_acknowledged ? 1 : 0;
+    if (!exchange_.record.put(kept)) {
+        return false;
+    }
+    record_generation_ = record.generation;
+    exchange_.wake();
+    return true;
+}
+
 void Loop::put_params() {
     if (has_new_params_ && exchange_.in_effect.put(node_.params)) {
         has_new_params_ = false;
@@ -276,6 +299,7 @@ void Loop::report(std::int64_t now_ns) {
     changes_.control(node_.out.telemetry);
     changes_.overruns(source_.timing().overruns, lost_.last(), now_ns);
     put_params();
+    (void)put_record();
     if (bus_ != nullptr) {
         changes_.bus(bus_);
     }
@@ -302,7 +326,7 @@ void Loop::tick(std::uint32_t elapsed) {
     answer_store();
     prepare_apply();
     node_inputs_t inputs = board_.read(axes_, elapsed, source_.timing());
-    inputs.tx_dropped = sender_.counters().lost; // telemetry may well be shed
+    inputs.unsent = sender_.counters().unsent;
     latch_.before_tick(inputs);
     node_step(&node_, &inputs);
     latch_.keep_new(node_);
@@ -378,6 +402,10 @@ void Loop::leave() {
 
 /// The outputs are safe: there is time to wait for the other thread now.
 void Loop::put_last() {
+    fault_record_finish(&node_.can.record);
+    for (int i = 0; i < kLastAttempts && !put_record(); ++i) {
+        sleep_ms(1);
+    }
     keep_learnt();
     bool is_put = !has_learnt_;
     for (int i = 0; i < kLastAttempts && !is_put; ++i) {

@@ -28,6 +28,9 @@ class Loop {
     /// Puts back what law phase has learnt, and logs whether it is used.
     void use_learnt(const quiesce_learnt_t &learnt);
 
+    /// Puts back the fault record of an earlier run. Returns false iff it is none of this version.
+    bool use_record(const KeptRecord &record);
+
     /// Runs until a stop is requested or, where ticks is not 0, for so many ticks; then safe
     /// current, output off, lines inactive, farewell on the bus.
     void run(std::uint64_t ticks);
@@ -59,6 +62,7 @@ class Loop {
     void put_params();
     void leave();
     bool say_farewell();
+    bool put_record();
     void put_last();
 
     bool is_safe_command() const;
@@ -91,6 +95,7 @@ class Loop {
     bool store_is_pending_ = false;
     std::uint32_t restarts_at_store_ = 0; ///< when it was asked for
     bool has_new_params_ = false;         ///< that the other thread does not know yet
+    std::uint32_t record_generation_ = 0; ///< that the other thread has
     quiesce_learnt_t learnt_{};
     bool has_learnt_ = false;
 };

@@ -113,6 +113,24 @@ std::uint32_t start_faults(FaultStore &faults, std::string &note) {
     return fault;
 }
 
+/// A record that cannot be kept is no reason not to control.
+KeptRecord start_records(RecordStore &records, std::string &note) {
+    const KeptRecord record = records.load(note);
+    if (const std::string error = records.keep(record); !error.empty()) {
+        note += (note.empty() ? "" : "; ") + ("a fault record could not be kept: " + error);
+    }
+    return record;
+}
+
+void use_record(Loop &loop, const KeptRecord &record, LogRing &log) {
+    if (!loop.use_record(record)) {
+        log.log(LogLevel::warning, "the fault record is not used: another version's");
+    } else if (record.is_held != 0) {
+        log.log(LogLevel::info,
+                "the fault record of an earlier run can be read: quiesce can freeze");
+    }
+}
+
 void log_kept_fault(const std::string &note, LogRing &log) {
     if (!note.empty()) {
         log.log(LogLevel::error,
@@ -140,12 +158,16 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     FaultStore faults(config.state.folder);
     exchange->latched_fault.store(start_faults(faults, fault_note));
 
+    std::string record_note;
+    RecordStore records(config.state.folder);
+    const KeptRecord record = start_records(records, record_note);
+
     Caretaker caretaker(config.file, config.state.folder, exchange->latched_fault);
     open_peripherals(config, exchange->peripherals);
     const Bus bus = config.can ? open_bus(*config.can, BusUse::controller) : nullptr;
     keep_config(read, params, exchange->log);
     exchange->bus = bus.get();
-    const Service service(config, *exchange, faults, caretaker, sink);
+    const Service service(config, *exchange, faults, records, caretaker, sink);
     become_realtime(config.loop);
     // Last, because it cannot always be stopped again.
     const Watchdog watchdog = config.watchdog ? open_watchdog(*config.watchdog) : nullptr;
@@ -157,6 +179,8 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     log_note(params_note, exchange->log);
     log_note(learnt_note, exchange->log);
     log_kept_fault(fault_note, exchange->log);
+    log_note(record_note, exchange->log);
+    use_record(*loop, record, exchange->log);
     if (learnt) {
         loop->use_learnt(*learnt);
     }

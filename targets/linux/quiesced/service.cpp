@@ -45,10 +45,10 @@ void Trouble::note(const std::string &error, LogSink &sink) {
     }
 }
 
-Service::Service(const Config &config, Exchange &exchange, FaultStore &faults, Caretaker &caretaker,
-                 LogSink &sink)
+Service::Service(const Config &config, Exchange &exchange, FaultStore &faults, RecordStore &records,
+                 Caretaker &caretaker, LogSink &sink)
     : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
-      faults_(faults), caretaker_(caretaker), kept_(config.state.folder),
+      faults_(faults), records_(records), caretaker_(caretaker), kept_(config.state.folder),
       manager_(exchange.manager), configured_(config.params),
       stored_fault_(exchange.latched_fault.load()), thread_([this] { run(); }) {}
 
@@ -79,6 +79,7 @@ void Service::wait() {
 
 void Service::work(std::int64_t now_ns) {
     store_fault(now_ns); // first: the program may be killed at any time
+    store_record(now_ns);
     drain_log();
     if (exchange_.bus != nullptr) {
         can_bus_recover(exchange_.bus);
@@ -178,6 +179,25 @@ void Service::store_fault(std::int64_t now_ns) {
                                           " is kept until it is acknowledged");
 }
 
+void Service::store_record(std::int64_t now_ns) {
+    KeptRecord record{};
+    if (exchange_.record.take(record)) {
+        record_ = record;
+    }
+    if (!record_ || now_ns < next_record_ns_) {
+        return;
+    }
+    const std::string error = records_.keep(*record_);
+    record_trouble_.note(error, sink_);
+    if (!error.empty()) {
+        next_record_ns_ = now_ns + kSecond_ns;
+        return;
+    }
+    sink_.write(LogLevel::info, record_->is_held != 0 ? "the fault record is kept"
+                                                      : "the kept fault record is forgotten");
+    record_.reset();
+}
+
 /// What --make-safe has to use.
 void Service::keep_params() {
     quiesce_params_t params;
@@ -261,7 +281,9 @@ void Service::tell_manager() {
 void Service::say_last_words() {
     manager_.send("STOPPING=1");
     next_fault_ns_ = 0;
+    next_record_ns_ = 0;
     store_fault(monotonic_ns());
+    store_record(monotonic_ns());
     drain_log();
     store_params();
     keep_params();

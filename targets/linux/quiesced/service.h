@@ -12,6 +12,7 @@
 #include "fault_store.h"
 #include "kept_config.h"
 #include "log_sink.h"
+#include "record_store.h"
 #include "state_store.h"
 
 namespace quiesced {
@@ -32,8 +33,8 @@ class Service {
   public:
     /// Starts the thread. Make it before the calling thread becomes a real-time thread. Everything
     /// that it is given must outlive it.
-    Service(const Config &config, Exchange &exchange, FaultStore &faults, Caretaker &caretaker,
-            LogSink &sink);
+    Service(const Config &config, Exchange &exchange, FaultStore &faults, RecordStore &records,
+            Caretaker &caretaker, LogSink &sink);
     Service(const Service &) = delete;
     Service &operator=(const Service &) = delete;
 
@@ -52,6 +53,7 @@ class Service {
     void store_learnt();
     void store_params();
     void store_fault(std::int64_t now_ns);
+    void store_record(std::int64_t now_ns);
     void keep_params();
     void tell_manager();
     void say_last_words();
@@ -61,6 +63,7 @@ class Service {
     LogSink &sink_;
     StateStore store_;
     FaultStore &faults_;
+    RecordStore &records_;
     Caretaker &caretaker_;
     KeptConfig kept_;
     const Notifier &manager_;
@@ -72,10 +75,13 @@ class Service {
     Trouble status_trouble_{"status file"};
     Trouble learnt_trouble_{"what was learnt"};
     Trouble fault_trouble_{"latched fault"};
+    Trouble record_trouble_{"fault record"};
     Trouble params_trouble_{"parameters for --make-safe"};
     std::uint32_t told_dropped_ = 0;
     std::int64_t next_status_ns_ = 0;
-    std::int64_t next_fault_ns_ = 0; ///< after a failure
+    std::int64_t next_fault_ns_ = 0;   ///< after a failure
+    std::int64_t next_record_ns_ = 0;  ///< likewise
+    std::optional<KeptRecord> record_; ///< not on the disk yet
     std::int64_t next_devices_ns_ = 0;
     bool is_ready_ = false;
     bool is_stopping_ = false;

@@ -33,7 +33,7 @@ typedef struct {
     bool is_idle; // the operator lets go
     bool is_silent;
     unsigned sent;
-    uint32_t dropped;
+    can_unsent_t unsent;
     slcan_decoder_t decoder;
     node_t node;
 } peer_t;
@@ -88,7 +88,7 @@ static void send_frame(peer_t *peer, const can_frame_t *frame) {
     }
     uint8_t line[SLCAN_MAX_BYTES];
     if (!write_all(peer->fd, line, slcan_encode(&wire, line))) {
-        peer->dropped++;
+        can_unsent_count(&peer->unsent, frame->id);
     }
 }
 
@@ -99,7 +99,7 @@ static void tick(peer_t *peer, unsigned number) {
         .sensor = {{.counts = (int32_t)counts + (int32_t)(number * 7919u % 13u), .is_fresh = true}},
         .ticks_elapsed = 1,
         .work_us = 20,
-        .tx_dropped = peer->dropped,
+        .unsent = peer->unsent,
     };
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
     const uint32_t count = node_tick(&peer->node, &inputs, frames);

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import can
 import pytest
@@ -22,6 +23,7 @@ from quiesce.can.parameters import parameters
 from quiesce.can.readers import read_log
 from quiesce.can.traffic import Traffic
 from quiesce.cli.can.check import Trips, problems_of, row
+from quiesce.cli.can.monitor import View
 from quiesce.cli.main import main
 
 DATABASE = load()
@@ -432,6 +434,15 @@ def test_monitor_draws_a_table_on_a_terminal(controller: Controller, tmp_path: P
     assert b"\x1b[H\x1b[J" in seen and b"state      RUN, fault NONE" in seen
 
 
+def test_monitor_shows_what_was_shed() -> None:
+    view = View(SimpleNamespace(bus=SimpleNamespace(name="a bus"), malformed=0), DATABASE)
+    assert "not sent   - demands, - answers, - telemetry" in view.table(1.0)
+    data = DATABASE.encode("CanShed", unsent_demands=3, unsent_answers=2, unsent_telemetry=70001)
+    view.take(can.Message(timestamp=1.0, arbitration_id=0x133, is_extended_id=False, data=data))
+    assert "not sent   3 demands, 2 answers, 70001 telemetry" in view.table(1.0)
+    assert " shed 70001 bus " in view.line(1.0)
+
+
 # Options
 
 
@@ -505,7 +516,19 @@ def test_list_says_why(quiesce) -> None:
 
 @pytest.mark.parametrize(
     "action",
-    ["list", "decode", "monitor", "check", "record", "replay", "get", "set", "stop", "load"],
+    [
+        "list",
+        "decode",
+        "monitor",
+        "check",
+        "record",
+        "replay",
+        "get",
+        "set",
+        "stop",
+        "freeze",
+        "load",
+    ],
 )
 def test_every_action_has_help_with_examples(
     capsys: pytest.CaptureFixture[str], action: str

@@ -199,7 +199,7 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     }
     assert len(cyclic) == 10
     rig.until("all cyclic messages", lambda _: cyclic <= rig.seen.keys())
-    assert rig.seen["Identification"]["interface_version"] == 2
+    assert rig.seen["Identification"]["interface_version"] == 3
 
     # Parameters: another law, seen in the demand.
     for name, value in PARAMETERS.items():

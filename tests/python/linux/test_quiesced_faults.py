@@ -1,14 +1,19 @@
 """The controller program remembers its faults, and `--make-safe` turns off what it left on."""
 
+import itertools
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import can
 import pytest
 from latch_kills import measure
+from quiesce.can.database import load
+from quiesce.can.fault_record import Collector, FaultRecord, record_of
 from quiesced_peer import Peer, Quiesced, on_a_pty, open_pty
 from quiesced_steps import (
+    DONE,
     ESTOP,
     FAULT,
     IDLE,
@@ -20,6 +25,9 @@ from quiesced_steps import (
     start_running,
     wait_farewell,
 )
+
+FAULT_RECORD_PAGES = 318
+KEPT = "the fault record is kept"
 
 
 @pytest.fixture
@@ -74,6 +82,96 @@ def test_latched_fault_outlives_a_kill(quiesced: Quiesced) -> None:
     peer.wait_state(RUN, after)
     assert quiesced.stop() == 0
     assert quiesced.log_text().count("is not acknowledged yet: safe current, driver off") == 3
+
+
+def after_some(count: int) -> Callable[[dict[str, int]], bool]:
+    """Accepts the last of so many."""
+    left = itertools.count(-count)
+    return lambda _: next(left) >= 0
+
+
+def read_record(quiesced: Quiesced) -> FaultRecord:
+    """All pages, asked for as often as that takes: a line that is full sheds them."""
+    peer = quiesced.peer
+    peer.wait("Status", after=peer.catch_up())  # it runs, and takes requests
+    collector = Collector(load())
+    collector.total = FAULT_RECORD_PAGES
+    while (gap := collector.missing()) is not None:
+        after = peer.count()
+        first, count = gap
+        if peer.request("FAULT_RECORD", value=first | count << 16).signals["result"] != DONE:
+            continue
+        peer.wait("Status", after_some(count + 20), after)
+        for frame in peer.frames[after:]:
+            collector.take(can.Message(arbitration_id=frame.identifier, data=frame.data))
+    return record_of(collector.data())
+
+
+def stop_in_idle(quiesced: Quiesced) -> None:
+    """An emergency stop that stays pressed."""
+    quiesced.peer.operator = {"enable": 0}
+    quiesced.start()
+    quiesced.peer.wait_state(IDLE)
+    quiesced.peer.estop = True
+    quiesced.peer.wait_state(FAULT)
+
+
+def estop_record(quiesced: Quiesced) -> FaultRecord:
+    """Of the stop; a busy machine's lost ticks may be recorded before it."""
+    while (record := read_record(quiesced)).fault != ESTOP:
+        pass
+    return record
+
+
+def test_record_of_a_fault_outlives_a_kill(quiesced: Quiesced) -> None:
+    """It is the first fault's over restarts, until it is acknowledged; then the next one's."""
+    stop_in_idle(quiesced)
+    first = estop_record(quiesced)
+    quiesced.peer.estop = False
+    assert (first.is_latched, first.fault_bin, len(first.bins)) == (True, 50, 58)
+    assert first.tick_rate_Hz == 500
+    kept = quiesced.log_text().count(KEPT) or 1
+    quiesced.wait_log(KEPT, kept)
+    for how in (signal.SIGKILL, signal.SIGTERM):
+        quiesced.signal(how)
+        quiesced.wait()
+        quiesced.start()
+        assert read_record(quiesced) == first
+    quiesced.peer.acknowledges = True
+    quiesced.wait_log(KEPT, kept + 1)  # as acknowledged
+    quiesced.signal(signal.SIGKILL)
+    quiesced.wait()
+    quiesced.peer.acknowledges = False
+    quiesced.start()
+    quiesced.peer.estop = True
+    while (second := estop_record(quiesced)) == first:
+        pass
+    assert second.number > first.number
+    assert quiesced.peer.request("CLEAR_RECORD").signals["result"] == DONE
+    quiesced.wait_log("the kept fault record is forgotten")
+    assert quiesced.stop() == 0
+
+
+def test_an_end_in_order_keeps_a_record_that_is_not_complete(quiesced: Quiesced) -> None:
+    stop_in_idle(quiesced)
+    assert quiesced.stop() == 0
+    quiesced.peer.estop = False
+    quiesced.start()
+    assert read_record(quiesced).is_latched
+    assert quiesced.stop() == 0
+
+
+@pytest.mark.parametrize("damage", [b"", b"damaged", b"\xff" * 8192])
+def test_damaged_record_is_told_and_does_not_stop_a_start(
+    quiesced: Quiesced, damage: bytes
+) -> None:
+    quiesced.state.mkdir(exist_ok=True)
+    (quiesced.state / "record.bin").write_bytes(damage)
+    quiesced.start()
+    quiesced.wait_log("the fault record is not used: ")
+    assert quiesced.peer.wait("Status").signals["fault"] != ESTOP
+    assert quiesced.stop() == 0
+    assert (quiesced.state / "record.bin").stat().st_size == 8192
 
 
 def test_status_says_which_fault_is_kept(quiesced: Quiesced) -> None:

@@ -43,8 +43,9 @@ static void fill_all(const int32_t *value, uint32_t *seed) {
         .overruns = other[3],
         .lateness_us = other[4],
         .work_us = other[5],
-        .tx_dropped = other[6],
+        .unsent = {other[6], other[6], other[6]},
         .bus_off_count = other[7],
+        .ticks = 1,
     };
     fill((uint32_t *)(void *)&node.receive.counters, 5, value, seed);
 }
@@ -55,16 +56,25 @@ static void print_frame(const can_frame_t *frame) {
     printf("%.*s\n", (int)length - 1, (const char *)text);
 }
 
+// Raw samples for a second, the whole record; anything else.
+static int32_t value_of(uint8_t operation, uint32_t *seed) {
+    switch (operation) {
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_RAW_STREAM_CHOICE:
+        return 1;
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_FAULT_RECORD_CHOICE:
+        return 0;
+    default:
+        return (int32_t)next_random(seed);
+    }
+}
+
 static void run(const int32_t *value, uint32_t *seed) {
     can_frame_t frames[CAN_NODE_MAX_FRAMES];
     for (uint32_t i = 0; i < TICKS; i++) {
         if (i % 7u == 0) {
             const can_frame_t request =
                 make_request((uint8_t)(i % 11u), (uint8_t)next_random(seed),
-                             i % 11u == QUIESCE_CAN_SERVICE_REQUEST_OPERATION_RAW_STREAM_CHOICE
-                                 ? 1
-                                 : (int32_t)next_random(seed),
-                             (uint8_t)i);
+                             value_of((uint8_t)(i % 11u), seed), (uint8_t)i);
             can_node_receive(&node, &request);
         }
         can_node_answer(&node, (can_node_result_t)(i % 9u), next_random(seed));

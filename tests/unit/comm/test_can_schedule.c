@@ -78,7 +78,7 @@ static uint32_t expected_count(uint32_t message, int32_t rate_Hz) {
 
 static bool is_always_sent(uint32_t message) {
     return message == QUIESCE_CAN_AT_CURRENT_DEMAND ||
-           (message >= QUIESCE_CAN_AT_STATUS && message <= QUIESCE_CAN_AT_IDENTIFICATION &&
+           (message >= QUIESCE_CAN_AT_STATUS && message <= QUIESCE_CAN_AT_CAN_SHED &&
             message != QUIESCE_CAN_AT_FAULT_FREEZE);
 }
 
@@ -171,7 +171,7 @@ static void fill(int32_t word) {
         .overruns = (uint32_t)word,
         .lateness_us = (uint32_t)word,
         .work_us = (uint32_t)word,
-        .tx_dropped = (uint32_t)word,
+        .unsent = {(uint32_t)word, (uint32_t)word, (uint32_t)word},
         .bus_off_count = (uint32_t)word,
         .rx_lost = (uint32_t)word,
     };
@@ -205,7 +205,6 @@ static void check_words(int32_t word, bool is_high) {
     TEST_ASSERT_EQUAL_UINT16(65535, timing.overruns);
     TEST_ASSERT_EQUAL_UINT32(16777215, timing.lateness_max_us);
     TEST_ASSERT_EQUAL_UINT32(16777215, timing.work_max_us);
-    TEST_ASSERT_EQUAL_UINT8(255, health.tx_dropped);
     TEST_ASSERT_EQUAL_UINT8(255, health.bus_off_count);
     TEST_ASSERT_EQUAL_UINT16(65535, health.rejected_shape);
     TEST_ASSERT_EQUAL_INT32(is_high ? 8388607 : -8388608, raw.accel_counts);
@@ -226,6 +225,26 @@ static void test_health_counts_saturate(void) {
     TEST_ASSERT_EQUAL_UINT16(65535, health.rejected_crc);
     TEST_ASSERT_EQUAL_UINT16(65535, health.rejected_alive);
     TEST_ASSERT_EQUAL_UINT16(65535, health.rejected_shape);
+}
+
+// A minute of a line that takes nothing: each counter moves on, 16 bits of them with a wrap.
+static void test_what_is_not_sent_is_counted_without_an_end(void) {
+    struct quiesce_can_can_shed_t shed;
+    start(1000);
+    for (uint32_t i = 0; i < 70000; i++) {
+        can_unsent_count(&tick.unsent, QUIESCE_CAN_CURRENT_DEMAND_FRAME_ID);
+        can_unsent_count(&tick.unsent, QUIESCE_CAN_RAW_SAMPLE_FRAME_ID);
+        can_unsent_count(&tick.unsent, QUIESCE_CAN_MOTION_FRAME_ID);
+    }
+    can_unsent_count(&tick.unsent, QUIESCE_CAN_CURRENT_DEMAND_FRAME_ID + 3u);
+    can_unsent_count(&tick.unsent, QUIESCE_CAN_STATUS_FRAME_ID);
+    can_unsent_count(&tick.unsent, QUIESCE_CAN_SERVICE_REPLY_FRAME_ID);
+    can_unsent_count(&tick.unsent, QUIESCE_CAN_FAULT_FREEZE_FRAME_ID);
+    can_unsent_count(&tick.unsent, QUIESCE_CAN_FAULT_RECORD_FRAME_ID);
+    (void)quiesce_can_can_shed_unpack(&shed, next(QUIESCE_CAN_AT_CAN_SHED).data, 8);
+    TEST_ASSERT_EQUAL_UINT16(70002 - 65536, shed.unsent_demands);
+    TEST_ASSERT_EQUAL_UINT16(2, shed.unsent_answers);
+    TEST_ASSERT_EQUAL_UINT32(140001, shed.unsent_telemetry);
 }
 
 static void test_timing_is_the_worst_since_the_last_report(void) {
@@ -304,6 +323,7 @@ int main(void) {
     RUN_TEST(test_refused_tick_rate_is_1_kHz);
     RUN_TEST(test_words_beyond_their_signals_saturate);
     RUN_TEST(test_health_counts_saturate);
+    RUN_TEST(test_what_is_not_sent_is_counted_without_an_end);
     RUN_TEST(test_timing_is_the_worst_since_the_last_report);
     RUN_TEST(test_peaks_have_their_own_messages);
     RUN_TEST(test_farewell_is_a_demand_of_the_safe_current_with_the_output_off);

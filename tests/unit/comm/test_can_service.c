@@ -193,11 +193,49 @@ static void test_stream_takes_a_bounded_time(void) {
 
 static void test_unknown_operations_are_refused(void) {
     for (uint32_t operation = 0; operation < 256; operation++) {
-        if (operation < OP(READ) || operation > OP(FREEZE_FRAME)) {
+        if (operation < OP(READ) || operation > OP(CLEAR_RECORD)) {
             TEST_ASSERT_EQUAL(CAN_NODE_NO_SUCH_OPERATION, ask(operation, 0, 0).result);
         }
     }
     TEST_ASSERT_EQUAL(CAN_NODE_NOTHING, can_node_task(&node));
+}
+
+static void test_record_without_a_fault_is_nothing_to_send(void) {
+    TEST_ASSERT_EQUAL(CAN_NODE_NOTHING_TO_SEND, ask(OP(FAULT_RECORD), 0, 0).result);
+    TEST_ASSERT_EQUAL(CAN_NODE_NOTHING_TO_SEND, ask(OP(CLEAR_RECORD), 0, 0).result);
+}
+
+static uint32_t count_pages(uint32_t ticks) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < ticks; i++) {
+        const uint32_t sent = can_node_tick(&node, &tick, &out, &controller, frames);
+        for (uint32_t k = 0; k < sent; k++) {
+            count += message_of(&frames[k]) == QUIESCE_CAN_AT_FAULT_RECORD ? 1u : 0u;
+        }
+    }
+    return count;
+}
+
+static void test_record_is_sent_by_pages_and_cleared(void) {
+    tick.ticks = 1;
+    out.telemetry.fault = QUIESCE_FAULT_ESTOP;
+    out.telemetry.fault_count = 1;
+    TEST_ASSERT_EQUAL_UINT32(0, count_pages(10));
+    TEST_ASSERT_EQUAL(CAN_NODE_BUSY, ask(OP(FAULT_RECORD), 0, 0).result);
+    TEST_ASSERT_EQUAL(CAN_NODE_BUSY, ask(OP(CLEAR_RECORD), 0, 0).result);
+    TEST_ASSERT_EQUAL_UINT32(0, count_pages(1000));
+    out.telemetry.fault_count = 3;
+    TEST_ASSERT_EQUAL_UINT32(0, count_pages(10));
+    const struct quiesce_can_service_reply_t all = ask(OP(FAULT_RECORD), 0, 0);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, all.result);
+    TEST_ASSERT_EQUAL_INT32(FAULT_RECORD_PAGES | 1 << 16, all.param_value);
+    TEST_ASSERT_UINT32_WITHIN(2, FAULT_RECORD_PAGES, count_pages(10u * FAULT_RECORD_PAGES + 20u));
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(FAULT_RECORD), 0, 300 | 5 << 16).result);
+    TEST_ASSERT_UINT32_WITHIN(1, 5, count_pages(100));
+    TEST_ASSERT_EQUAL(CAN_NODE_OUT_OF_RANGE, ask(OP(FAULT_RECORD), 0, 318).result);
+    TEST_ASSERT_EQUAL(CAN_NODE_OUT_OF_RANGE, ask(OP(FAULT_RECORD), 0, -1).result);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(CLEAR_RECORD), 0, 0).result);
+    TEST_ASSERT_EQUAL(CAN_NODE_NOTHING_TO_SEND, ask(OP(FAULT_RECORD), 0, 0).result);
 }
 
 static void test_freeze_frame_without_a_fault_is_nothing_to_send(void) {
@@ -263,6 +301,8 @@ int main(void) {
     RUN_TEST(test_replies_keep_their_distance);
     RUN_TEST(test_stream_takes_a_bounded_time);
     RUN_TEST(test_unknown_operations_are_refused);
+    RUN_TEST(test_record_without_a_fault_is_nothing_to_send);
+    RUN_TEST(test_record_is_sent_by_pages_and_cleared);
     RUN_TEST(test_freeze_frame_without_a_fault_is_nothing_to_send);
     RUN_TEST(test_hash_is_of_the_parameters_in_effect);
     RUN_TEST(test_a_save_without_an_answer_has_failed_after_two_seconds);

@@ -151,6 +151,50 @@ static void test_operator_who_falls_silent_is_not_enabled(void) {
     TEST_ASSERT_EQUAL_UINT16(250, demand().current_cmd_mA);
 }
 
+static void send_cycles(bool enable, uint32_t cycles) {
+    for (uint32_t i = 0; i < cycles; i++) {
+        press(enable, false);
+        run(100);
+    }
+}
+
+// A minute of a congested bus, which loses the operator's frames for up to a second and a half at a
+// time. The button is held: the first gap disarms, and the state stays there until it is let go.
+static void test_held_enable_that_is_lost_again_and_again_does_not_flap(void) {
+    uint32_t ends = 0;
+    uint32_t begins = 0;
+    uint32_t lost = 0;
+    uint32_t last = QUIESCE_STATE_RUN;
+    start(NODE_ENABLE_CAN);
+    send_cycles(false, 3);
+    send_cycles(true, 8);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+    for (uint32_t i = 0; i < 600; i++) {
+        if (lost == 0 && seed % 5u == 0) {
+            lost = seed / 5u % 16u;
+        }
+        if (lost > 0) {
+            lost--;
+            operator_alive = (uint8_t)((operator_alive + 1u) % 16u);
+        } else {
+            press(true, false);
+        }
+        for (uint32_t k = 0; k < 100; k++) {
+            run(1);
+            ends += last == QUIESCE_STATE_RUN && state() != last ? 1u : 0u;
+            begins += last != QUIESCE_STATE_RUN && state() == QUIESCE_STATE_RUN ? 1u : 0u;
+            last = state();
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, ends);
+    TEST_ASSERT_EQUAL_UINT32(0, begins);
+    send_cycles(true, 10);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_IDLE, state());
+    send_cycles(false, 4);
+    send_cycles(true, 8);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
+}
+
 static void test_stop_on_the_bus_acts_in_the_next_tick(void) {
     run(2000);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, state());
@@ -559,6 +603,7 @@ int main(void) {
     RUN_TEST(test_bus_carries_what_the_driver_is_told);
     RUN_TEST(test_enable_comes_from_where_it_is_set_up);
     RUN_TEST(test_operator_who_falls_silent_is_not_enabled);
+    RUN_TEST(test_held_enable_that_is_lost_again_and_again_does_not_flap);
     RUN_TEST(test_stop_on_the_bus_acts_in_the_next_tick);
     RUN_TEST(test_stop_of_the_board_acts_in_its_tick);
     RUN_TEST(test_driver_that_fails_is_switched_off_until_it_is_acknowledged);

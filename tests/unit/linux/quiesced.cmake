@@ -21,6 +21,7 @@ add_executable(
   quiesced/test_make_safe.cpp
   quiesced/test_notify.cpp
   quiesced/test_options.cpp
+  quiesced/test_record.cpp
   quiesced/test_state.cpp
   quiesced/test_tick_source.cpp
   quiesced/test_wiring.cpp

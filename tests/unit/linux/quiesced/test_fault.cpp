@@ -125,7 +125,7 @@ class Rig {
         inputs.estop = is_pressed;
         inputs.fault_reset = is_reset;
         inputs.ticks_elapsed = 1;
-        inputs.sensor[0] = {count_++ % 7, true};
+        inputs.sensor[0] = {count_++ % 7, true, false};
         latch->before_tick(inputs);
         can_frame_t frames[CAN_NODE_MAX_FRAMES];
         (void)node_tick(node.get(), &inputs, frames);

@@ -88,7 +88,8 @@ TEST(FrameSender, goes_by_class) {
     EXPECT_EQ(ids(line),
               (std::vector<std::uint32_t>{kDemandId, kReplyId, QUIESCE_CAN_FAULT_FREEZE_FRAME_ID,
                                           QUIESCE_CAN_RAW_SAMPLE_FRAME_ID}));
-    EXPECT_EQ(sender.counters().shed, 0U);
+    EXPECT_EQ(sender.counters().unsent.telemetry, 0U);
+    EXPECT_EQ(sender.counters().unsent.demands, 0U);
 }
 
 TEST(FrameSender, a_newer_frame_replaces_the_one_that_waits) {
@@ -99,7 +100,8 @@ TEST(FrameSender, a_newer_frame_replaces_the_one_that_waits) {
             sender, line,
             {frame_of(QUIESCE_CAN_AT_CURRENT_DEMAND, i), frame_of(QUIESCE_CAN_AT_MOTION, i)});
     }
-    EXPECT_EQ(sender.counters().shed, 18U);
+    EXPECT_EQ(sender.counters().unsent.demands, 9U);
+    EXPECT_EQ(sender.counters().unsent.telemetry, 9U);
     Line idle(64);
     idle.pass();
     (void)send(sender, idle, {});
@@ -114,7 +116,7 @@ TEST(FrameSender, replies_wait_in_their_order_and_what_has_no_room_is_lost) {
     for (std::uint32_t i = 0; i < 6; ++i) {
         (void)send(sender, line, {frame_of(QUIESCE_CAN_AT_SERVICE_REPLY, i)});
     }
-    EXPECT_EQ(sender.counters().lost, 2U);
+    EXPECT_EQ(sender.counters().unsent.answers, 2U);
     Line idle(64);
     for (int i = 0; i < 2; ++i) {
         idle.pass();
@@ -214,15 +216,33 @@ TEST(FrameSender, half_a_line_loses_no_demand_and_answers_all) {
     RecordProperty("congested_answered", static_cast<int>(found.answered));
     RecordProperty("longest_demand_gap_us", static_cast<int>(found.demand_gap_ns / 1000));
     EXPECT_GE(found.answered * 100, found.replies * 99);
-    EXPECT_EQ(found.counters.lost, 0U);
+    EXPECT_EQ(found.counters.unsent.answers, 0U);
     EXPECT_LT(found.demand_gap_ns, 10 * kTick_ns); // CurrentDemand's timeout
     EXPECT_GE(found.statuses, ticks / 10 * 99 / 100);
-    EXPECT_GT(found.counters.shed, 1000U);
+    EXPECT_GT(found.counters.unsent.telemetry, 1000U);
+}
+
+std::uint32_t said_telemetry(const SendCounters &counters) {
+    can_frame_t frame{};
+    struct quiesce_can_can_shed_t said {};
+    can_pack_shed(&counters.unsent, &frame);
+    (void)quiesce_can_can_shed_unpack(&said, frame.data, sizeof frame.data);
+    return said.unsent_telemetry;
+}
+
+/// CanShed has the same numbers, and they still move in the last second of a minute.
+TEST(FrameSender, what_is_shed_in_a_congested_minute_is_said_to_the_end) {
+    const Congestion almost = run(0.5, 59000);
+    const Congestion minute = run(0.5, 60000);
+    EXPECT_GT(minute.counters.unsent.telemetry, 10000U);
+    EXPECT_EQ(said_telemetry(minute.counters), minute.counters.unsent.telemetry);
+    EXPECT_GT(said_telemetry(minute.counters), said_telemetry(almost.counters));
 }
 
 TEST(FrameSender, a_whole_line_sheds_nothing) {
     const Congestion found = run(1.6, 5000);
-    EXPECT_EQ(found.counters.shed, 0U);
+    EXPECT_EQ(found.counters.unsent.telemetry, 0U);
+    EXPECT_EQ(found.counters.unsent.demands, 0U);
     EXPECT_EQ(found.answered, found.replies);
     EXPECT_LE(found.demand_gap_ns, kTick_ns);
 }

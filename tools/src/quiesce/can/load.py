@@ -21,6 +21,7 @@ from quiesce.can.database import (
 
 ERROR_FRAME_BITS = 31  # with what follows it, the paper's section 3.4
 RAW = "RawSample"
+RECORD = "FaultRecord"  # on request
 SENSOR = "SensorSample"  # of every sensor on the bus
 OF_DAMPERS = ("CurrentDemand", "CurrentMeasured")
 # Rates that serial adapters commonly have.
@@ -68,7 +69,7 @@ def cyclic(database: Database, dampers: int = 1) -> list[Message]:
         m
         for m in database.messages
         if m.send_type in (CYCLIC, CYCLIC_IF_ACTIVE)
-        and m.kind not in (RAW, SENSOR)
+        and m.kind not in (RAW, RECORD, SENSOR)
         and is_there(m, 0, dampers)
     ]
 

@@ -4,7 +4,19 @@ import argparse
 from collections.abc import Callable
 
 from quiesce.base.errors import UsageError
-from quiesce.cli.can import check, decode, get, list, load, monitor, record, replay, set, stop
+from quiesce.cli.can import (
+    check,
+    decode,
+    freeze,
+    get,
+    list,
+    load,
+    monitor,
+    record,
+    replay,
+    set,
+    stop,
+)
 
 # Import name and package.
 PACKAGES = {
@@ -26,6 +38,7 @@ ACTIONS = (
     get,
     set,
     stop,
+    freeze,
     load,
 )
 
@@ -36,6 +49,7 @@ EPILOG = """examples:
   quiesce can decode run.mf4 --only Status
   quiesce can set law=phase --save --bus slcan:socket://127.0.0.1:5556
   quiesce can stop --bus socketcan:can0
+  quiesce can freeze --bus socketcan:can0
 
 The messages are those of firmware/comm/quiesce.dbc; docs/howto/use-can-tools.md has an example of
 each. 'quiesce can ACTION --help' has the options of one.

@@ -118,7 +118,8 @@ class View:
             f"cmd {self.value('CurrentDemand', 'current_cmd_mA', 1e-3)} A "
             f"meas {self.value('CurrentMeasured', 'current_meas_mA', 1e-3)} A "
             f"{rate_Hz:.0f} frames/s lost {self._traffic.total('lost')} "
-            f"crc {self._traffic.total('wrong_crc')} bus {self.bus_text(now_s)}"
+            f"crc {self._traffic.total('wrong_crc')} "
+            f"shed {self.count('CanShed', 'unsent_telemetry')} bus {self.bus_text(now_s)}"
         )
 
     def table(self, now_s: float) -> str:
@@ -132,6 +133,7 @@ class View:
             f"vibration  {self.value('Status', 'rms_um_s2', 1e-6)} m/s2 RMS, displacement "
             f"{self.value('Motion', 'displacement_amp_nm', 1e-3)} um",
             *(self.current(number) for number in self.dampers()),
+            self.unsent(),
             "",
             self.messages(now_s),
         ]
@@ -139,6 +141,16 @@ class View:
         if others or self._link.malformed:
             lines.append(f"{others} frames of unknown ids, {self._link.malformed} malformed lines")
         return "\n".join(lines)
+
+    def unsent(self) -> str:
+        """Frames that the controller could not send, since its start; counters wrap."""
+        classes = ("demands", "answers", "telemetry")
+        counts = (f"{self.count('CanShed', f'unsent_{one}')} {one}" for one in classes)
+        return "not sent   " + ", ".join(counts)
+
+    def count(self, message: str, signal: str) -> str:
+        values = self._traffic.values(message)
+        return str(values[signal]) if values else "-"
 
     def dampers(self) -> list[int]:
         """Those that are heard of, and the first."""
