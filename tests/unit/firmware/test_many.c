@@ -164,6 +164,47 @@ static void test_many_current_of_either_damper_is_watched(void) {
     }
 }
 
+// Measured of damper 0: the command and as much more, for some ticks.
+static void run_with_more(int32_t more_mA, uint32_t ticks) {
+    in.driver[0].is_measured = true;
+    for (uint32_t t = 0; t < ticks; t++) {
+        in.driver[0].current_mA = out.damper[0].current_cmd_mA + more_mA;
+        tick();
+    }
+}
+
+static void assert_all_off(uint32_t fault) {
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_FAULT, out.telemetry.state);
+    TEST_ASSERT_EQUAL_UINT32(fault, out.telemetry.fault);
+    TEST_ASSERT_FALSE(out.damper[0].driver_enable);
+    TEST_ASSERT_FALSE(out.damper[1].driver_enable);
+}
+
+static void test_many_a_current_above_its_trip_level_stops_all(void) {
+    make_board();
+    board.damper[0].measures_current = 1;
+    board.damper[0].trip_mA = 7000;
+    board.damper[0].trip_us = 5000;
+    start();
+    run_with_more(0, 1000);
+    in.driver[0].current_mA = 7001;
+    run(4);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
+    run(1);
+    assert_all_off(QUIESCE_FAULT_OVERCURRENT);
+}
+
+static void test_many_a_coil_that_its_driver_overheats_stops_all(void) {
+    make_board();
+    board.damper[0].measures_current = 1;
+    board.damper[0].continuous_mA = 500;
+    board.damper[0].heat_s = 5;
+    params.current_error_mA = 2500;
+    start();
+    run_with_more(2000, 1000);
+    assert_all_off(QUIESCE_FAULT_COIL_HOT);
+}
+
 // A parameter must not make the check of a small damper blind: half of its ceiling is the most.
 static void test_many_a_small_damper_is_watched_whatever_the_parameter(void) {
     for (int32_t i = 0; i < 2; i++) {
@@ -432,6 +473,8 @@ int main(void) {
     RUN_TEST(test_many_each_damper_has_its_command_ceiling_and_safe_current);
     RUN_TEST(test_many_one_driver_that_fails_stops_all);
     RUN_TEST(test_many_current_of_either_damper_is_watched);
+    RUN_TEST(test_many_a_current_above_its_trip_level_stops_all);
+    RUN_TEST(test_many_a_coil_that_its_driver_overheats_stops_all);
     RUN_TEST(test_many_a_small_damper_is_watched_whatever_the_parameter);
     RUN_TEST(test_many_bodies_and_strokes_are_seen);
     RUN_TEST(test_many_a_blind_law_falls_back_then_faults_and_comes_back);
