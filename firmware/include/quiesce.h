@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "quiesce_board.h"
+#include "quiesce_faults.h"
 #include "quiesce_params.h"
 #include "quiesce_valid.h"
 
@@ -34,30 +35,6 @@ typedef enum {
     QUIESCE_STATE_SELF_TEST = 7, ///< gathering samples; drivers that are off carry no current
     QUIESCE_STATE_COUNT
 } quiesce_state_t;
-
-/// Faults: numbers are never reused. docs/reference/faults.md has causes and reactions.
-typedef enum {
-    QUIESCE_FAULT_NONE = 0,
-    QUIESCE_FAULT_PARAMETER = 1,            ///< a parameter was refused at init (latched)
-    QUIESCE_FAULT_SENSOR_LOST = 2,          ///< no good sample for sensor_max_age_ticks
-    QUIESCE_FAULT_SENSOR_SATURATED = 3,     ///< at full scale for sensor_max_age_ticks
-    QUIESCE_FAULT_SENSOR_STUCK = 4,         ///< the same sample for sensor_stuck_ticks
-    QUIESCE_FAULT_SENSOR_RANGE = 5,         ///< samples beyond full scale for sensor_max_age_ticks
-    QUIESCE_FAULT_DRIVER_NOT_FOLLOWING = 6, ///< measured current off the command (latched)
-    QUIESCE_FAULT_COIL_OPEN = 7,            ///< no current although commanded (latched)
-    QUIESCE_FAULT_CURRENT_LOST = 8,   ///< current_check is on, no measurement arrives (latched)
-    QUIESCE_FAULT_TICK_LOST = 9,      ///< the tick number jumped
-    QUIESCE_FAULT_ESTOP = 10,         ///< emergency stop (latched)
-    QUIESCE_FAULT_SENSOR_QUIET = 11,  ///< less noise than sensor_min_noise_counts over a second
-    QUIESCE_FAULT_DRIVER_FAILED = 12, ///< the current driver says so or takes no command (latched)
-    QUIESCE_FAULT_LAW_BLIND = 13,     ///< a signal that the law needs is not valid
-    QUIESCE_FAULT_OVERCURRENT = 14,   ///< measured current above the trip level (latched)
-    QUIESCE_FAULT_COIL_HOT = 15,      ///< a coil beyond its budget of heat (latched)
-    QUIESCE_FAULT_MEMORY = 16,     ///< a record, parameter or table has changed by itself (latched)
-    QUIESCE_FAULT_COIL_SHORT = 17, ///< a current without the voltage that it needs (latched)
-    QUIESCE_FAULT_SENSOR_POLARITY = 18, ///< a damper's force and stroke contradict (latched)
-    QUIESCE_FAULT_COUNT
-} quiesce_fault_t;
 
 /// What a sensor delivered in a tick.
 typedef struct {

@@ -17,26 +17,6 @@ namespace {
 static_assert(QUIESCE_STATE_COUNT == 8, "every state has a name");
 constexpr std::array<const char *, QUIESCE_STATE_COUNT> kStates = {
     "INIT", "IDLE", "RUN", "SAFE", "FAULT", "ARMED", "DEGRADED", "SELF_TEST"};
-constexpr std::array<const char *, 19> kFaults = {"NONE",
-                                                  "PARAMETER",
-                                                  "SENSOR_LOST",
-                                                  "SENSOR_SATURATED",
-                                                  "SENSOR_STUCK",
-                                                  "SENSOR_RANGE",
-                                                  "DRIVER_NOT_FOLLOWING",
-                                                  "COIL_OPEN",
-                                                  "CURRENT_LOST",
-                                                  "TICK_LOST",
-                                                  "ESTOP",
-                                                  "SENSOR_QUIET",
-                                                  "DRIVER_FAILED",
-                                                  "LAW_BLIND",
-                                                  "OVERCURRENT",
-                                                  "COIL_HOT",
-                                                  "MEMORY",
-                                                  "COIL_SHORT",
-                                                  "SENSOR_POLARITY"};
-static_assert(kFaults.size() == QUIESCE_FAULT_COUNT, "every fault has a name");
 
 template <std::size_t Count>
 const char *name_in(const std::array<const char *, Count> &names, std::size_t index) {
@@ -50,7 +30,14 @@ const char *state_name(std::uint32_t state) {
 }
 
 const char *fault_name(std::uint32_t fault) {
-    return name_in(kFaults, fault);
+#define QUIESCED_FAULT_CASE(name)                                                                  \
+    case QUIESCE_FAULT_##name:                                                                     \
+        return #name;
+    switch (fault) {
+        QUIESCE_EACH_FAULT(QUIESCED_FAULT_CASE)
+    default:
+        return "?";
+    }
 }
 
 const char *bus_state_name(can_bus_state_t state) {
