@@ -2,6 +2,7 @@
 #include "lockstep.h"
 
 #include <stddef.h>
+#include <stdlib.h>
 
 #include "test_signal.h"
 #include "unity.h"
@@ -75,6 +76,29 @@ static void test_unlock_current_is_not_the_safe_current(void) {
     assert_state(QUIESCE_STATE_SELF_TEST, QUIESCE_FAULT_NONE);
     vibrate(10000, 400);
     TEST_ASSERT_EQUAL_INT32(3210, reply.current_cmd_mA[0]);
+}
+
+// A vibration that a lock has followed since it was in the band, further and further out of it.
+static void leave_the_band(uint32_t from_mHz, uint32_t to_mHz) {
+    int64_t phase_turn = 0;
+    params.law = QUIESCE_LAW_PHASE;
+    start();
+    vibrate(from_mHz, 4000);
+    TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.lock_is_on);
+    for (uint32_t i = 0; i < 60000; i++) {
+        const int64_t freq_mHz = from_mHz + ((int64_t)to_mHz - from_mHz) * i / 60000;
+        phase_turn += freq_mHz * (INT64_C(1) << 32) / 1000000;
+        const int32_t x = (int32_t)(uint32_t)phase_turn / 65536; // half turns Q15
+        tick(x * (32768 - abs(x)) / 32768 * 5195 / 8192, 0);
+        const bool is_out = freq_mHz * 17 < params.band_low_mHz * 15 ||
+                            freq_mHz * 15 > (int64_t)params.band_high_mHz * 17;
+        TEST_ASSERT_FALSE(is_out && reply.telemetry.lock_is_on != 0);
+    }
+}
+
+static void test_lock_does_not_leave_the_band(void) {
+    leave_the_band(15000, 60000);
+    leave_the_band(3000, 300);
 }
 
 static void test_refused_parameter_latches_and_keeps_the_safe_current(void) {
@@ -411,6 +435,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_chain_reaches_the_rule_bases_current);
     RUN_TEST(test_unlock_current_is_not_the_safe_current);
+    RUN_TEST(test_lock_does_not_leave_the_band);
     RUN_TEST(test_refused_parameter_latches_and_keeps_the_safe_current);
     RUN_TEST(test_sensor_faults_lead_to_safe_and_back);
     RUN_TEST(test_quiet_sensor_leads_to_safe_and_back);

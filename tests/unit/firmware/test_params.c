@@ -42,6 +42,22 @@ static void test_values_between_the_choices_are_refused(void) {
     TEST_ASSERT_EQUAL_STRING("selftune_polarity", error.name);
 }
 
+static void test_sensors_that_could_not_be_believed_are_refused(void) {
+    params.accel_scale_nm_s2 = 59604; // 2^23 - 1 counts are 499.994 m/s2
+    TEST_ASSERT_TRUE(quiesce_params_check(&params, &error));
+    params.accel_scale_nm_s2 = 59605;
+    TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+    TEST_ASSERT_EQUAL_STRING("accel_scale_nm_s2", error.name);
+    setUp();
+    params.sensor_stuck_ticks = 1;
+    TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+    TEST_ASSERT_EQUAL_STRING("sensor_stuck_ticks", error.name);
+    params.sensor_stuck_ticks = 2;
+    TEST_ASSERT_TRUE(quiesce_params_check(&params, &error));
+    params.sensor_stuck_ticks = 0;
+    TEST_ASSERT_TRUE(quiesce_params_check(&params, &error));
+}
+
 static void test_contradictions_are_named(void) {
     params.band_low_mHz = params.band_high_mHz = 20000;
     TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
@@ -91,6 +107,7 @@ int main(void) {
     RUN_TEST(test_defaults_are_accepted);
     RUN_TEST(test_each_value_outside_its_range_is_named);
     RUN_TEST(test_values_between_the_choices_are_refused);
+    RUN_TEST(test_sensors_that_could_not_be_believed_are_refused);
     RUN_TEST(test_contradictions_are_named);
     RUN_TEST(test_current_check_must_be_able_to_see_an_open_coil);
     RUN_TEST(test_safe_current_of_a_refused_set);

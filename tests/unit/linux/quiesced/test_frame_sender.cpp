@@ -148,6 +148,8 @@ struct Congestion {
     std::uint32_t replies = 0;
     std::uint32_t answered = 0;     ///< within a second
     std::int64_t demand_gap_ns = 0; ///< the longest
+    std::uint32_t demands_late = 0; ///< gaps beyond the driver's timeout
+    std::uint32_t demands = 0;
     std::uint32_t statuses = 0;
     SendCounters counters{};
 };
@@ -200,6 +202,8 @@ Congestion run(double share, std::uint32_t ticks) {
                 found.answered += tick - asked.at(number) <= 1000 ? 1U : 0U;
             } else if (frame.id == kDemandId) {
                 found.demand_gap_ns = std::max(found.demand_gap_ns, now_ns - last_demand_ns);
+                found.demands_late += now_ns - last_demand_ns >= 10 * kTick_ns ? 1U : 0U;
+                ++found.demands;
                 last_demand_ns = now_ns;
             }
             found.statuses += frame.id == QUIESCE_CAN_STATUS_FRAME_ID ? 1U : 0U;
@@ -212,6 +216,8 @@ Congestion run(double share, std::uint32_t ticks) {
 TEST(FrameSender, half_a_line_loses_no_demand_and_answers_all) {
     const std::uint32_t ticks = 30000;
     const Congestion found = run(0.5, ticks);
+    RecordProperty("congested_demand_lost", static_cast<int>(found.demands_late));
+    RecordProperty("congested_demand_replaced", static_cast<int>(ticks - found.demands));
     RecordProperty("congested_replies", static_cast<int>(found.replies));
     RecordProperty("congested_answered", static_cast<int>(found.answered));
     RecordProperty("longest_demand_gap_us", static_cast<int>(found.demand_gap_ns / 1000));

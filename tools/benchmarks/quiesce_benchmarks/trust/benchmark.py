@@ -15,7 +15,15 @@ from quiesce.engine.bench import Bench
 from quiesce_benchmarks.controller import instructions
 from quiesce_benchmarks.report import Figure, Report
 from quiesce_benchmarks.seeds import seed_number
-from quiesce_benchmarks.trust import abuse, flips, mutants, sweeps
+from quiesce_benchmarks.trust import (
+    abuse,
+    congestion,
+    defects,
+    flips,
+    heat,
+    mutants,
+    sweeps,
+)
 from quiesce_benchmarks.trust.trial import default_jobs
 
 NAME = "trust"
@@ -29,6 +37,7 @@ costs."""
 
 # Name, unit, goal, better.
 FIGURES = (
+    ("defects_open", "1", 0, "lower"),
     ("mutants", "1", 300, "higher"),
     ("mutants_killed_pct", "%", 97, "higher"),
     ("mutants_equivalent_pct", "%", 2, "lower"),
@@ -41,10 +50,14 @@ FIGURES = (
     ("flip_noticed_s", "s", 1, "lower"),
     ("flip_reaction_ticks", "ticks", 2, "lower"),
     ("flips_swept_unsafe", "1", 0, "lower"),
+    ("heat_above_s", "s", 0, "lower"),
+    ("heat_hours", "h", 24, "higher"),
+    ("congested_replies_pct", "%", 99, "higher"),
+    ("congested_demand_lost", "1", 0, "lower"),
     ("instr_added", "instructions", 400, "lower"),
     ("damper_extra_instr", "instructions", 250, "lower"),
 )
-PARTS = ("mutants", "abuse", "flips", "sweeps", "cost")
+PARTS = ("defects", "mutants", "abuse", "flips", "sweeps", "heat", "congestion", "cost")
 QUICK_MUTANTS = 30
 # Worst ticks of the laws before there were guards for all of this.
 BASELINE = Path(__file__).with_name("baseline.json")
@@ -89,10 +102,18 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
             "mutants_equivalent_pct": found.equivalent_pct,
         }
 
+    def found() -> dict[str, float]:
+        values, left = defects.measure(root(), build_folder())
+        tables.append("\n".join(["defects that are open:", *left]) if left else "")
+        return {**values, "defects_open": len(left)}
+
+    take("defects", found)
     take("mutants", mistakes)
     take("abuse", lambda: abuse.measure(ticks_of(args), args.seed, args.jobs))
     take("flips", lambda: flips.measure(args.seed, args.quick, args.jobs))
     take("sweeps", lambda: sweeps.measure(args.seed, args.quick, args.jobs))
+    take("heat", lambda: heat.measure(args.seed, args.quick, args.jobs))
+    take("congestion", congestion.measure)
     take("cost", lambda: cost(Bench(), args.quick))
     figures = [Figure(name, values.get(name), *rest) for name, *rest in FIGURES]
     context |= {name: value for name, value in values.items() if name not in names()}
