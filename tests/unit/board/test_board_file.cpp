@@ -130,7 +130,7 @@ TEST(BoardFile, every_key_reaches_its_field) {
     expected.sensor[3] = {
         QUIESCE_SENSE_SUPPLY, 0, 2, 1, 12500, 0, 4095, 0, 10000, 250000, 0, 50, 0};
     expected.sensor[4] = {
-        QUIESCE_SENSE_VOLTAGE, 0, 2, 1, 12500, 0, 4095, 0, 10000, 250000, 0, 50, 0};
+        QUIESCE_SENSE_VOLTAGE, 0, 2, 1, 10000, 0, 4095, 0, 10000, 250000, 0, 50, 0};
     expected.damper[0] = {0, QUIESCE_GROUND, 2000, 100, 1500, 45, 2500, 1000, 1, 6000, 2200};
     expected.damper[1] = {1, 0, 1800, 0, 1800, 60, 0, 0, 0, 5000, 0};
     const BoardFile file = load_board(kEveryKey);

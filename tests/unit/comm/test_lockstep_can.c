@@ -295,7 +295,7 @@ static void test_samples_and_commands_of_further_sensors_and_dampers(void) {
     (void)quiesce_can_lockstep_damper_unpack(&damper, replies[0].data, replies[0].length);
     TEST_ASSERT_EQUAL_UINT8(1, damper.damper_number);
     TEST_ASSERT_EQUAL_UINT16(321, damper.current_cmd_mA);
-    TEST_ASSERT_EQUAL_UINT8(1, damper.driver_is_enabled);
+    TEST_ASSERT_EQUAL_UINT8(0, damper.driver_is_enabled); // the self-test
     TEST_ASSERT_EQUAL_UINT8(0, damper.sequence);
     (void)get_command(&replies[1]);
     // Not twice, not of another tick, not the first sensor's.

@@ -2,7 +2,6 @@
 #include "lockstep.h"
 
 #include <stddef.h>
-#include <stdlib.h>
 
 #include "test_signal.h"
 #include "unity.h"
@@ -88,10 +87,9 @@ static void leave_the_band(uint32_t from_mHz, uint32_t to_mHz) {
     for (uint32_t i = 0; i < 60000; i++) {
         const int64_t freq_mHz = from_mHz + ((int64_t)to_mHz - from_mHz) * i / 60000;
         phase_turn += freq_mHz * (INT64_C(1) << 32) / 1000000;
-        const int32_t x = (int32_t)(uint32_t)phase_turn / 65536; // half turns Q15
-        tick(x * (32768 - abs(x)) / 32768 * 5195 / 8192, 0);
-        const bool is_out = freq_mHz * 17 < params.band_low_mHz * 15 ||
-                            freq_mHz * 15 > (int64_t)params.band_high_mHz * 17;
+        tick(signal_cosine(5195, (uint32_t)phase_turn) + signal_noise(&noise_seed, 147), 0);
+        const bool is_out =
+            freq_mHz * 4 < params.band_low_mHz * 3 || freq_mHz * 3 > params.band_high_mHz * 4;
         TEST_ASSERT_FALSE(is_out && reply.telemetry.lock_is_on != 0);
     }
 }

@@ -237,7 +237,7 @@ const Malformed kTables[] = {
     {"classic_data_bitrate", kCan + "data_bitrate = 500000\n" + kAccel + kCurrent,
      "q.toml:3: can.data_bitrate: only with fd = true"},
     {"full_bus", kCan + "bitrate = 250000\n" + kAccel + kCurrent,
-     "q.toml:2: can.interface: the bus would be 109.3 % full at 250000 bit/s (demands 38.0, "},
+     "q.toml:2: can.interface: the bus would be 109.4 % full at 250000 bit/s (demands 38.0, "},
     {"restart", kCan + "restart_ms = 0\n" + kAccel + kCurrent, "q.toml:3: can.restart_ms: expect"},
     {"source", kCan + "[accel]\nsource = \"usb\"\n" + kCurrent,
      "q.toml:4: accel.source: expected one of: can, iio, adxl355"},

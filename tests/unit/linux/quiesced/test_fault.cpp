@@ -148,7 +148,11 @@ class Rig {
 TEST(FaultLatch, without_a_kept_fault_the_core_starts) {
     Rig rig(QUIESCE_FAULT_NONE);
     EXPECT_FALSE(rig.latch->is_holding());
-    EXPECT_EQ(rig.tick(false, false), QUIESCE_STATE_INIT);
+    EXPECT_EQ(rig.tick(false, false), QUIESCE_STATE_SELF_TEST);
+    EXPECT_FALSE(rig.is_driver_enabled);
+    for (int i = 0; i < 300; ++i) {
+        (void)rig.tick(false, false);
+    }
     EXPECT_TRUE(rig.is_driver_enabled);
     EXPECT_EQ(rig.kept(), QUIESCE_FAULT_NONE);
 }
