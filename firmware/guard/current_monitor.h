@@ -62,7 +62,8 @@ current_verdict_t current_monitor_step(current_monitor_t *self, int32_t command_
 
 /// Whether nothing has been wrong for as long as what was is remembered.
 static inline bool current_monitor_is_quiet(const current_monitor_t *self) {
-    return self->wrong == 0u && self->over == 0u && self->missing_ticks == 0u;
+    const bool is_over = self->trip_mA > 0 && self->over > 0u;
+    return self->wrong == 0u && !is_over && self->missing_ticks == 0u;
 }
 
 /// What should flow now, mA.

@@ -248,6 +248,24 @@ static void test_many_a_coil_that_is_short_or_open_is_told_by_its_voltage(void) 
     }
 }
 
+// The noise of a measured current does not keep a driver off.
+static void test_many_a_little_current_passes_the_self_test(void) {
+    for (int32_t trip_mA = 0; trip_mA <= 6000; trip_mA += 6000) {
+        make_board();
+        board.damper[0].measures_current = 1;
+        board.damper[0].trip_mA = trip_mA;
+        start();
+        for (uint32_t t = 0; t < 1000u; t++) {
+            const int32_t driven_mA =
+                out.damper[0].driver_enable ? out.damper[0].current_cmd_mA : 0;
+            in.driver[0] = (quiesce_driver_t){.current_mA = driven_mA + (int32_t)(t % 2u) * 20 - 10,
+                                              .is_measured = true};
+            tick();
+        }
+        TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
+    }
+}
+
 // Before a driver is switched on there must be no current.
 static void test_many_a_driver_that_is_on_by_itself_fails_the_self_test(void) {
     board.damper[0].measures_current = 1;
@@ -533,6 +551,7 @@ int main(void) {
     RUN_TEST(test_many_a_current_above_its_trip_level_stops_all);
     RUN_TEST(test_many_a_coil_that_its_driver_overheats_stops_all);
     RUN_TEST(test_many_a_coil_that_is_short_or_open_is_told_by_its_voltage);
+    RUN_TEST(test_many_a_little_current_passes_the_self_test);
     RUN_TEST(test_many_a_driver_that_is_on_by_itself_fails_the_self_test);
     RUN_TEST(test_many_a_small_damper_is_watched_whatever_the_parameter);
     RUN_TEST(test_many_bodies_and_strokes_are_seen);
