@@ -23,12 +23,12 @@ typedef struct {
     uint32_t pc, lr, xpsr; ///< 0 where the stack was not in memory
     uint32_t cfsr, hfsr;   ///< configurable and hard fault status
     uint32_t check;        ///< complement of the sum of the words above
-} fault_record_t;
+} cpu_fault_t;
 
 #define FAULT_MAGIC 0x51464C54u
 
 /// Survives a reset, not a power-up; then fault_is_recorded is false.
-extern fault_record_t fault_record;
+extern cpu_fault_t cpu_fault;
 
 /// Whether a fault has ended the program's last run, and nobody has acknowledged it.
 bool fault_is_recorded(void);

@@ -6,7 +6,7 @@
 
 _Noreturn void fault_react(void) {
     __asm__ volatile("dsb" ::: "memory");
-    if (fault_record.count <= FAULT_MOST_RESTARTS) {
+    if (cpu_fault.count <= FAULT_MOST_RESTARTS) {
         SCB_AIRCR = AIRCR_RESET;
     }
     for (;;) {
