@@ -48,12 +48,12 @@ bool sweep_step(sweep_t *self, const uint32_t *own) {
     const uint32_t *words = part->words != NULL ? part->words : own;
     const uint32_t from = self->at_word < part->count ? self->at_word : part->count;
     const uint32_t left = part->count - from;
-    const uint32_t taken = left < self->words_a_tick ? left : self->words_a_tick;
-    self->sums = add(self->sums, words + from, taken);
-    self->at_word = from + taken;
-    if (taken < left) {
+    if (left > self->words_a_tick) {
+        self->sums = add(self->sums, words + from, self->words_a_tick);
+        self->at_word = from + self->words_a_tick;
         return true;
     }
+    self->sums = add(self->sums, words + from, left);
     const bool is_same = self->sums.sum == part->expected.sum &&
                          self->sums.sum_of_sums == part->expected.sum_of_sums;
     rewind_to(self, at + 1u);

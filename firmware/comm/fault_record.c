@@ -192,8 +192,9 @@ void fault_record_about(fault_record_t *self, const fault_record_about_t *about)
     head[3] = self->bin_ticks | about->tick_rate_Hz << 16;
     head[4] = about->param_hash;
     head[5] = about->table_hash;
-    head[6] = (uint32_t)QUIESCE_VERSION_MAJOR | (uint32_t)QUIESCE_VERSION_MINOR << 8 |
-              (uint32_t)QUIESCE_VERSION_PATCH << 16 | (uint32_t)QUIESCE_CAN_INTERFACE_VERSION << 24;
+    head[6] = QUIESCE_VERSION_MAJOR + ((uint32_t)QUIESCE_VERSION_MINOR << 8) +
+              ((uint32_t)QUIESCE_VERSION_PATCH << 16) +
+              ((uint32_t)QUIESCE_CAN_INTERFACE_VERSION << 24);
     head[11] |= (about->law & 255u) << 16; // damper 0
 }
 

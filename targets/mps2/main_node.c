@@ -152,7 +152,7 @@ int main(void) {
         say_farewell(&board);
     }
     quiesce_watch(&board.node.controller, NODE_WATCHES, program_begin,
-                  (uint32_t)(program_end - program_begin));
+                  ((uintptr_t)program_end - (uintptr_t)program_begin) / sizeof(uint32_t));
     use_rate(&board);
     for (;;) {
         const uint32_t ticks = hal_tick_elapsed(&board.tick);

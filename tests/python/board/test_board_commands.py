@@ -47,7 +47,8 @@ def test_show_tells_sensors_dampers_signals_and_laws(quiesce) -> None:
     ]  # fmt: skip
     assert shown["supply"][:3] == ["supply_voltage", "-", "12.5 mV"]
     assert shown["lower"] == [
-        "floor - ground", "2 A", "0.1 A", "1.5 A, 45 s", "measured", "2.5 A for 1 ms", "6 ms, 2.2 Ohm",
+        "floor - ground", "2 A", "0.1 A", "1.5 A, 45 s", "measured", "2.5 A for 1 ms",
+        "6 ms, 2.2 Ohm",
     ]  # fmt: skip
     assert shown["upper"][4:6] == ["modelled", "-"]
     assert shown["stroke velocity"] == ["lower, upper"]

@@ -134,7 +134,7 @@ static void try_one(const trials_t *trials, uint64_t number) {
         try_elsewhere(trials, number);
         return;
     }
-    const uint64_t bits = trials->record->bytes * 8u;
+    const uint64_t bits = (uint64_t)trials->record->bytes * 8u;
     if (number % bits >= number / bits) {
         try_in_record(trials, (uint32_t)(number / bits), (uint32_t)(number % bits));
     }
@@ -204,7 +204,7 @@ static void try_scene(scene_kind_t kind, uint64_t flips, uint64_t seed, dice_t *
     trials_t trials = {.scene = &scene, .records = records, .record_count = count, .seed = seed};
     try_all(&trials, flips);
     for (uint32_t i = 0; i < count; i++) {
-        const uint64_t bits = records[i].bytes * 8u;
+        const uint64_t bits = (uint64_t)records[i].bytes * 8u;
         trials.record = &records[i];
         try_all(&trials, bits * bits);
     }

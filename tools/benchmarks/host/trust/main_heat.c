@@ -82,7 +82,6 @@ static void step(rig_t *rig, bool enable) {
 
 static void run_board(rig_t *rig, kind_t kind) {
     uint64_t left = (uint64_t)BOARD_s * RATE_Hz;
-    bool is_on = false;
     draw(rig, kind);
     rig->in = (quiesce_in_t){0};
     rig->out = (quiesce_out_t){0};
@@ -94,10 +93,9 @@ static void run_board(rig_t *rig, kind_t kind) {
         exit(1);
     }
     step(rig, false);
-    while (left > 0) {
+    for (bool is_on = true; left > 0; is_on = !is_on) {
         const uint32_t burst_ms = 1u + dice_below(&rig->dice, LONGEST_BURST_s * 1000u);
         const uint64_t ticks = kind == BURSTS ? burst_ms * (uint64_t)RATE_Hz / 1000u + 1u : left;
-        is_on = !is_on;
         for (uint64_t i = 0; i < ticks && left > 0; i++, left--) {
             step(rig, is_on);
         }

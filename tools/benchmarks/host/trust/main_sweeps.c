@@ -36,7 +36,7 @@ typedef struct {
 } batch_t;
 
 static tally_t *tally;
-static uint32_t table[QUIESCE_TABLE_WORDS];
+static uint32_t copied[QUIESCE_TABLE_WORDS];
 static uint32_t program[PROGRAM_WORDS];
 
 static void step(rig_t *rig) {
@@ -57,8 +57,8 @@ static void run(rig_t *rig, uint32_t time_ms) {
 }
 
 static uint32_t use(rig_t *rig, const uint32_t *words, uint32_t count) {
-    memcpy(table, words, count * sizeof *words);
-    return quiesce_table_use(&rig->controller, table, count) == QUIESCE_TABLE_OK ? count : 0;
+    memcpy(copied, words, count * sizeof *words);
+    return quiesce_table_use(&rig->controller, copied, count) == QUIESCE_TABLE_OK ? count : 0;
 }
 
 // Starts it. Returns how many words there are to flip a bit of; *words: the first one.
@@ -75,7 +75,7 @@ static uint32_t start(rig_t *rig, kind_t kind, uint32_t **words) {
                      : dice_between(&rig->dice, QUIESCE_LAW_OFF, QUIESCE_LAW_PHASE);
     (void)quiesce_init(&rig->controller, &params);
     quiesce_watch(&rig->controller, QUIESCE_WATCHES - 1u, program, PROGRAM_WORDS);
-    *words = kind == PROGRAM ? program : table;
+    *words = kind == PROGRAM ? program : copied;
     if (kind == PARAMETERS) {
         controller_t *inside = (controller_t *)(void *)rig->controller.opaque;
         *words = (uint32_t *)(void *)&inside->control.setup.params;
