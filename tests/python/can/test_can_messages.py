@@ -10,7 +10,9 @@ from can_protection import crc8_j1850, frame_crc, is_protected, load_database
 from conftest import ROOT, require
 
 DATABASE = load_database()
-QUIESCE_H = (ROOT / "firmware/include/quiesce.h").read_text()
+QUIESCE_H = "".join(
+    (ROOT / f"firmware/include/{name}.h").read_text() for name in ("quiesce", "quiesce_faults")
+)
 WORD = re.compile(r"^\s+(u?int32_t|quiesce_peak_t) (\w+)(?:\[QUIESCE_PEAKS\])?;", re.MULTILINE)
 
 

@@ -197,7 +197,7 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
         and m.dbc.attributes["GenMsgSendType"].value == 0
         and m.cycle_time
     }
-    assert len(cyclic) == 10
+    assert len(cyclic) == 11
     rig.until("all cyclic messages", lambda _: cyclic <= rig.seen.keys())
     assert rig.seen["Identification"]["interface_version"] == 3
 

@@ -21,6 +21,8 @@ FUNCTION = re.compile(
     re.MULTILINE | re.DOTALL,
 )
 WORD = re.compile(r"\b[A-Za-z_]\w*\b")
+# Of GCC; it looks like a function.
+ATTRIBUTE = re.compile(r"__attribute__\s*\(\((?:[^()]|\([^()]*\))*\)\)")
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Source:
 def parsed(path: str, raw: str) -> Source:
     text = COMMENT.sub(lambda found: found[1] or " ", raw)
     found = INCLUDE.findall(text)
-    text = STRING.sub('""', text)
+    text = ATTRIBUTE.sub(" ", STRING.sub('""', text))
     functions = FUNCTION.findall(text)
     return Source(
         path=path,

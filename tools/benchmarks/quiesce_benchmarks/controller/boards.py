@@ -62,8 +62,8 @@ DAMAGES: list[tuple[str, Edit, str]] = [
     ("json", lambda good: b'{"schema": "quiesce-board"}', "Error while parsing"),
     ("no_sensors", without("sensor"), "sensor: this build serves 1 .. 8 sensors, found 0"),
     ("no_dampers", without("damper"), "damper: this build serves 1 .. 4 dampers, found 0"),
-    ("nine_sensors", with_more(SENSOR, 5), "sensor: this build serves 1 .. 8 sensors, found 9"),
-    ("many_sensors", with_more(SENSOR, 996), "this build serves 1 .. 8 sensors, found 1000"),
+    ("nine_sensors", with_more(SENSOR, 4), "sensor: this build serves 1 .. 8 sensors, found 9"),
+    ("many_sensors", with_more(SENSOR, 995), "this build serves 1 .. 8 sensors, found 1000"),
     ("five_dampers", with_more(DAMPER, 3), "damper: this build serves 1 .. 4 dampers, found 5"),
 ]
 
