@@ -242,6 +242,9 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     rig.enable = 1
     rig.until("1234 mA again", lambda _: rig.seen["CurrentDemand"]["current_cmd_mA"] == 1234)
     rig.until_state("RUN")
+    # The record of a second before the stop, its last two pages.
+    assert rig.ask("FAULT_RECORD", value=316)["result"] == "DONE"
+    rig.until("the record", lambda name: name == "FaultRecord")
     assert {DATABASE.get_message_by_frame_id(i).name for i in CONTROLLER} == rig.seen.keys()
 
 
