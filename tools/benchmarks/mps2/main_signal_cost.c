@@ -79,6 +79,14 @@ static void run(const order_t *order, signal_chain_t *chain, watch_t *watch) {
     }
 }
 
+// What the parameters say in ticks, as the controller takes it.
+static void make_board(quiesce_board_t *board, const quiesce_params_t *params) {
+    const int32_t tick_us = 1000000 / params->tick_rate_Hz;
+    quiesce_board_default(board);
+    board->sensor[0].max_age_us = params->sensor_max_age_ticks * tick_us;
+    board->sensor[0].stuck_us = params->sensor_stuck_ticks * tick_us;
+}
+
 int main(void) {
     static signal_chain_t chain;
     static watch_t watch;
@@ -93,7 +101,7 @@ int main(void) {
         return 1;
     }
     quiesce_board_t board;
-    quiesce_board_default(&board);
+    make_board(&board, &params);
     signal_chain_init(&chain, &board, &params, 0);
     counted_call_init();
     run(&order, &chain, order.watch != 0 ? &watch : NULL);
