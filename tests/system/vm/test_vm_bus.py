@@ -31,7 +31,7 @@ def test_no_frame_is_lost_either_way(bus: BusRun) -> None:
 def test_every_message_of_the_controller_is_decoded(bus: BusRun) -> None:
     sent = [message for message in load().messages if message.sender == "Controller"]
     names = {message.name for message in sent if message.number == 0}  # it has one damper
-    assert len(names) == 13
+    assert len(names) == 15
     assert bus.missing == []
     assert names == set(bus.counts)
     assert bus.refused == []

@@ -29,6 +29,8 @@ ECHOES = 10_000  # as in tests/system/vm/guest/bus.sh
 ENABLE_LINE, FAULT_LINE, ESTOP_LINE = 1, 2, 5
 LOCKSTEP_SEED = 1
 RAW_STREAM_S = 1
+RECORD_DEMANDS = 1000  # until a record of a fault is whole, with room to spare
+RECORD_FROM_PAGE = 316  # of 318
 FREEZE_PAGES = 6
 ACKNOWLEDGE_EVERY = 250  # demand frames, five commands
 
@@ -116,6 +118,7 @@ def _drive(machine: Machine, gpio: Qtest, peer: Peer, lockstep: dict[str, Any]) 
     peer.until(peer.is_running, "running")
     replies = _ask(peer)
     estop = _press(gpio, peer)
+    _fetch_record(peer)
     peer.until(lambda: not peer.missing(), "every message of the controller")
     peer.send(END_ID)
     peer.listen_to_the_end()
@@ -140,6 +143,13 @@ def _ask(peer: Peer) -> dict[str, dict[str, Any]]:
         "out_of_range": peer.request("STAGE", 0, 3),
         "raw_stream": peer.request("RAW_STREAM", 0, RAW_STREAM_S),
     }
+
+
+def _fetch_record(peer: Peer) -> None:
+    """Asks for the last pages of the fault's record, once it is whole."""
+    whole = peer.demands + RECORD_DEMANDS
+    peer.until(lambda: peer.demands >= whole, "a record that is whole")
+    peer.request("FAULT_RECORD", 0, RECORD_FROM_PAGE)
 
 
 def _press(gpio: Qtest, peer: Peer) -> Estop:
