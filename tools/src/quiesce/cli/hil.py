@@ -87,7 +87,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--scenario", metavar="NAME", help="name or .toml file, repeatable (all)", **repeatable
     )
-    parser.add_argument("--law", metavar="NAME", help="law, repeatable (all)", **repeatable)
+    parser.add_argument(
+        "--law", metavar="NAME", **repeatable,
+        help="law of the tables, or one of the firmware by its own name; repeatable (all of the "
+        "tables)",
+    )  # fmt: skip
     parser.add_argument(
         "--target", choices=["host", "mps2", "linux", "all"], default="all",
         help="this machine, the image in QEMU, the Linux controller over CAN, or all of the first "
