@@ -70,7 +70,7 @@ static void step(rig_t *rig, bool enable) {
     rig->in.sensor[0].counts = dice_between(&rig->dice, -40, 40); // its noise
     rig->in.sensor[0].is_fresh = true;
     rig->in.driver[0].is_measured = rig->board.damper[0].measures_current != 0;
-    rig->in.driver[0].current_mA = (int32_t)rig->current_mA;
+    rig->in.driver[0].current_mA = (int32_t)(rig->current_mA + 0.5);
     quiesce_step(&rig->controller, &rig->in, &rig->out);
     rig->ticks++;
     rig->running += rig->out.telemetry.state == QUIESCE_STATE_RUN ||
