@@ -7,7 +7,7 @@ CONTROLLER=quiesced-gpiod2
 
 gpio_sim ESTOP ENABLE FAULT
 vcan
-config /run/timing.toml 's/enable = "can"/enable = "board"/'
+config /run/timing.toml
 
 # The load: one process that never waits, one that calls the kernel all the time, and one that reads
 # every frame of the bus.
