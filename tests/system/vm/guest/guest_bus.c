@@ -111,14 +111,19 @@ bool guest_bus_send(int bus, const can_frame_t *frame) {
     return true;
 }
 
+// An enable that was held before these ended arms nothing.
+static bool wants_release(uint8_t state) {
+    return state == QUIESCE_CAN_CURRENT_DEMAND_STATE_INIT_CHOICE ||
+           state == QUIESCE_CAN_CURRENT_DEMAND_STATE_SELF_TEST_CHOICE ||
+           state == QUIESCE_CAN_CURRENT_DEMAND_STATE_FAULT_CHOICE;
+}
+
 guest_demand_t guest_demand(const can_frame_t *frame) {
     struct quiesce_can_current_demand_t demand;
     quiesce_can_current_demand_unpack(&demand, frame->data, frame->length);
     return (guest_demand_t){.current_mA = demand.current_cmd_mA,
                             .is_enabled = demand.driver_is_enabled != 0,
-                            .wants_release =
-                                demand.state == QUIESCE_CAN_CURRENT_DEMAND_STATE_INIT_CHOICE ||
-                                demand.state == QUIESCE_CAN_CURRENT_DEMAND_STATE_FAULT_CHOICE};
+                            .wants_release = wants_release(demand.state)};
 }
 
 enum { LET_GO_COMMANDS = 4 }; /* the third of a sender is the first that counts */

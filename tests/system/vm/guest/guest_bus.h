@@ -27,7 +27,7 @@ bool guest_bus_send(int bus, const can_frame_t *frame);
 typedef struct {
     int32_t current_mA;
     bool is_enabled;
-    bool wants_release; ///< INIT or FAULT: only an enable that rises after it arms
+    bool wants_release; ///< only an enable that rises after this state arms
 } guest_demand_t;
 
 guest_demand_t guest_demand(const can_frame_t *frame);

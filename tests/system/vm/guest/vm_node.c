@@ -1,20 +1,21 @@
 /* vm_node INTERFACE sensor|all: a sensor node and, with `all`, an operator, paced by the
  * controller: each demand frame is answered with a sample, every 100th with an operator's command.
  * No clock: a controller that is late gets its sample all the same. SIGUSR1: the next two
- * commands acknowledge a fault. Stays while the interface is down. */
+ * commands acknowledge a fault and two more do not, whatever comes meanwhile: a press is an edge.
+ * Stays while the interface is down. */
 #include "guest_bus.h"
 
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { COMMAND_EVERY = 100, SAMPLES = 100 };
+enum { COMMAND_EVERY = 100, SAMPLES = 100, PRESSED = 2, RELEASED = 2 };
 
-static volatile sig_atomic_t resets; /* commands that still acknowledge */
+static volatile sig_atomic_t press; /* commands left of a press and its release */
 
 static void on_signal(int number) {
     (void)number;
-    resets = 2;
+    press = press > 0 ? press : PRESSED + RELEASED;
 }
 
 /* A triangle of 10 Hz at 1000 samples a second with some noise, so that no sensor fault sees it. */
@@ -50,8 +51,8 @@ int main(int argc, char **argv) {
         guest_sample(&out, next_counts(tick, &noise), &sample_alive);
         guest_bus_send(bus, &out);
         if (has_operator && tick % COMMAND_EVERY == 0) {
-            guest_command(&out, guest_hand_enables(&hand), resets > 0, &command_alive);
-            resets -= resets > 0;
+            guest_command(&out, guest_hand_enables(&hand), press > RELEASED, &command_alive);
+            press -= press > 0;
             guest_bus_send(bus, &out);
         }
     }

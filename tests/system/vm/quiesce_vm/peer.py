@@ -154,7 +154,7 @@ class Peer:
     def _answer_demand(self) -> None:
         self.demands += 1
         self.send_message("AccelSample", accel_counts=_counts(self.demands))
-        if str(self.values("CurrentDemand").get("state")) in ("INIT", "FAULT"):
+        if str(self.values("CurrentDemand").get("state")) in ("INIT", "SELF_TEST", "FAULT"):
             self._let_go = LET_GO_COMMANDS
         if self.demands % COMMAND_EVERY == 0:
             is_pressed = self._fault_resets > 0
