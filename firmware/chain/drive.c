@@ -40,6 +40,23 @@ static void start_monitor(drive_t *self, const quiesce_board_damper_t *damper,
     current_monitor_init(&self->monitor, &monitor, 0);
 }
 
+// A lower command takes two ticks until it counts, then falls by slew, and the coil's lag behind
+// it.
+static void start_heat(drive_t *self, const quiesce_board_damper_t *damper,
+                       const quiesce_params_t *p, uint32_t rate_Hz) {
+    const int32_t highest_mA = self->limits.guard.max_mA;
+    const int32_t slew_mA_s = p->slew_mA_s > 1000 ? p->slew_mA_s : 1000; // as accepted ones are
+    const int64_t ramp_us = (int64_t)highest_mA * 1000000 / slew_mA_s;
+    heat_init(&self->heat, &(heat_cfg_t){
+                               .tick_rate_Hz = rate_Hz,
+                               .continuous_mA = damper->continuous_mA,
+                               .highest_mA = highest_mA,
+                               .time_s = damper->heat_s,
+                               .settle_us = (uint32_t)ramp_us + 2000000u / rate_Hz +
+                                            (uint32_t)damper->coil_lag_us,
+                           });
+}
+
 void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quiesce_params_t *p,
                 bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : RATE_IF_REFUSED_Hz;
@@ -49,11 +66,7 @@ void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quies
                   is_accepted ? (current_check_t)damper->measures_current : CURRENT_CHECK_NEVER);
     coil_init(&self->coil, damper->coil_mohm, self->monitor.error_mA, self->monitor.fault_ticks);
     energy_init(&self->energy, rate_Hz);
-    heat_init(&self->heat, &(heat_cfg_t){
-                               .tick_rate_Hz = rate_Hz,
-                               .continuous_mA = damper->continuous_mA,
-                               .time_s = damper->heat_s,
-                           });
+    start_heat(self, damper, p, rate_Hz);
     self->last_command_mA = 0; // the driver is off until the first tick
     twin_make(&self->limits, WORDS_OF(drive_limits_t), self->twin);
 }
@@ -100,7 +113,7 @@ static void take(drive_t *self, int32_t command_mA, bool driver_enable, quiesce_
 
 void drive_command(drive_t *self, int32_t request_mA, bool is_allowed, bool driver_enable,
                    quiesce_command_t *out) {
-    const int32_t cool_mA = heat_limit_mA(&self->heat, self->limits.ceiling_mA);
+    const int32_t cool_mA = heat_limit_mA(&self->heat);
     const int32_t wanted_mA = request_mA < cool_mA ? request_mA : cool_mA;
     const int32_t guarded_mA = guard_step(&self->limits.guard, wanted_mA, is_allowed);
     take(self, clamp_i32(guarded_mA, 0, self->limits.ceiling_mA), driver_enable, out);

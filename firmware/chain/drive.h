@@ -46,9 +46,9 @@ static inline bool drive_is_intact(const drive_t *self) {
     return twin_holds(&self->limits, WORDS_OF(drive_limits_t), self->twin);
 }
 
-/// Whether heat keeps its current below the ceiling.
+/// Whether heat keeps its current below the highest one.
 static inline bool drive_is_limited(const drive_t *self) {
-    return heat_is_limiting(&self->heat, self->limits.ceiling_mA);
+    return heat_is_limiting(&self->heat);
 }
 
 /// The command: what is requested, limited by guard and heat, where it is allowed, else the safe

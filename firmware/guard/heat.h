@@ -4,12 +4,13 @@
 /// Near that budget the current that may be commanded falls in a straight line, from the highest to
 /// a little below the continuous current (a 64th and 1 mA) at the whole budget, so that the coil
 /// stays within it. The line lies over the last tenth of the budget, or over more where the current
-/// follows slowly: over the heat that the highest current leaves behind while it falls.
+/// follows slowly: over four times the heat that the highest current leaves behind while it falls.
 /// Where the highest current is the continuous one nothing is ever derated. More than a sixteenth
 /// above the budget, which only a driver that gives more than its command can cause, is told as too
 /// hot.
 /// Formats: mA^2 / 16 in Q20, 50 bits; currents up by the half milliampere that a measurement is
-/// rounded by, their squares up, the budget down, the lag's step up. Bounded, about 40 instructions.
+/// rounded by, their squares up, the budget down, the lag's step up. Bounded, about 40
+/// instructions.
 #ifndef HEAT_H
 #define HEAT_H
 
@@ -26,12 +27,11 @@ typedef struct {
 typedef struct {
     int64_t heat_q20;
     int64_t budget_q20;
-    int64_t excess_q20; ///< above it the coil is too hot
     uint32_t gain_q32;  ///< share of the difference in a tick
-    uint32_t shift;     ///< of the line's heat into 15 bits
-    uint32_t line;      ///< heat below the budget that it lies over, shifted; >= 1
-    int32_t lowest_mA;  ///< at its end
-    int32_t extra_mA;   ///< at its start, above the lowest; 0: nothing is derated
+    uint16_t shift;     ///< of the line's heat into 15 bits
+    uint16_t line;      ///< heat below the budget that it lies over, shifted; >= 1
+    uint16_t lowest_mA; ///< at its end
+    uint16_t extra_mA;  ///< at its start, above the lowest; 0: nothing is derated
 } heat_t;
 
 /// Starts at half of the budget: what the coil has carried before is not known.
@@ -49,9 +49,10 @@ static inline bool heat_is_limiting(const heat_t *self) {
            self->heat_q20 > self->budget_q20 - ((int64_t)self->line << self->shift);
 }
 
-/// Whether the coil is beyond its budget by more than derating explains.
+/// Whether the coil is beyond its budget by more than derating and rounding explain: the squares of
+/// currents below 17 mA are rounded by more than a sixteenth.
 static inline bool heat_is_excessive(const heat_t *self) {
-    return self->heat_q20 > self->excess_q20;
+    return self->heat_q20 > self->budget_q20 + self->budget_q20 / 16 + (3 << 20);
 }
 
 #endif

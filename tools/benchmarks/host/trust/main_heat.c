@@ -33,7 +33,7 @@ static void draw_damper(quiesce_board_damper_t *damper, dice_t *dice) {
     damper->safe_mA = dice_one_in(dice, 2) ? 0 : dice_between(dice, 0, damper->continuous_mA);
     damper->heat_s = dice_between(dice, 5, dice_one_in(dice, 2) ? 30 : 600);
     damper->measures_current = dice_between(dice, 0, 1);
-    damper->coil_lag_us = dice_between(dice, 0, 50000);
+    damper->coil_lag_us = dice_between(dice, 0, dice_one_in(dice, 4) ? 1000000 : 50000);
 }
 
 static void draw(rig_t *rig, kind_t kind) {
@@ -46,6 +46,9 @@ static void draw(rig_t *rig, kind_t kind) {
     rig->params.max_current_mA = QUIESCE_HIGHEST_CURRENT_mA;
     rig->params.unlock_current_mA = QUIESCE_HIGHEST_CURRENT_mA;
     rig->params.constant_current_mA = QUIESCE_HIGHEST_CURRENT_mA;
+    if (dice_one_in(&rig->dice, 2)) {
+        rig->params.slew_mA_s = dice_between(&rig->dice, 1000, 100000);
+    }
     rig->params.law = kind == REST ? QUIESCE_LAW_PHASE : QUIESCE_LAW_CONSTANT;
 }
 
