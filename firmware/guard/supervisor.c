@@ -22,8 +22,7 @@ typedef enum {
 
 // next[state][event]. Every entry is written out: a new state or event shows its gaps here.
 static const uint8_t next[QUIESCE_STATE_COUNT][EVENTS] = {
-    // Columns: nothing, ready, armed, go, limited, clearing fault, latched fault. FAULT is left
-    // disarmed.
+    // Columns: nothing, ready, armed, go, limited, clearing fault, latched fault.
     [INIT] = {SELF_TEST, SELF_TEST, SELF_TEST, SELF_TEST, SELF_TEST, SAFE, FAULT},
     [SELF_TEST] = {SELF_TEST, IDLE, SELF_TEST, ARMED, ARMED, SAFE, FAULT},
     [IDLE] = {IDLE, IDLE, ARMED, ARMED, ARMED, SAFE, FAULT},
@@ -74,8 +73,7 @@ static void set(supervisor_t *self, uint32_t which, bool is_set) {
 
 static void arm(supervisor_t *self, bool enable, bool has_risen) {
     const bool may_arm = self->state == INIT || self->state == SELF_TEST || self->state == IDLE;
-    const bool is_armed = supervisor_is_armed(self) && self->state != FAULT;
-    set(self, SUPERVISOR_ARMED, enable && (is_armed || (has_risen && may_arm)));
+    set(self, SUPERVISOR_ARMED, enable && (supervisor_is_armed(self) || (has_risen && may_arm)));
 }
 
 // A clearing fault does not end the test, nor does it undo it.
@@ -125,6 +123,7 @@ bool supervisor_step(supervisor_t *self, const supervisor_in_t *in) {
     arm(self, in->enable, edges.has_risen);
     const event_t event = event_of(self, in, edges.is_acknowledged);
     self->state = before < QUIESCE_STATE_COUNT ? next[before][event] : (uint8_t)FAULT;
+    set(self, SUPERVISOR_ARMED, supervisor_is_armed(self) && self->state != FAULT);
     note_test(self);
     note_fault(self, in, event, before);
     return before == FAULT && self->state != FAULT;

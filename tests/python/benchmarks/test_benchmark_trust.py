@@ -94,9 +94,15 @@ def test_the_pool_has_every_entry_of_the_supervisors_table() -> None:
     events = len(set(re.findall(r"\bEVENT_\w+", table)))
     assert events >= 7 and len(entries) == count * events * (count - 1)
     assert len({one.key for one in pool}) == len(pool) >= 300
-    tried_first = mutants.drawn(pool, 1)
-    assert tried_first == mutants.drawn(pool, 1) != mutants.drawn(pool, 2)
-    assert tried_first[: len(entries)] == entries
+    assert set(entries) <= set(mutants.entries(pool))
+
+
+def test_a_seed_draws_from_all_that_are_not_of_the_table() -> None:
+    pool = mutants.pool(ROOT)
+    drawn = mutants.drawn(pool, 1)
+    assert drawn == mutants.drawn(pool, 1) != mutants.drawn(pool, 2)
+    assert Counter(drawn) == Counter(pool) - Counter(mutants.entries(pool))
+    assert len(drawn) >= mutants.COUNT
 
 
 def test_equivalents_are_of_code_that_is_there() -> None:

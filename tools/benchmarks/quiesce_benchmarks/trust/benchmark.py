@@ -41,6 +41,7 @@ FIGURES = (
     ("mutants", "1", 300, "higher"),
     ("mutants_killed_pct", "%", 97, "higher"),
     ("mutants_equivalent_pct", "%", 2, "lower"),
+    ("table_killed_pct", "%", 100, "higher"),
     ("abuse_ticks", "ticks", 10**8, "higher"),
     ("abuse_violations", "ticks", 0, "lower"),
     ("reaction_ticks_worst_estop", "ticks", 1, "lower"),
@@ -90,16 +91,18 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
             absent.append(f"{part}: {error}")
 
     def mistakes() -> dict[str, float]:
-        found = mutants.measure(
+        found, table = mutants.measure(
             root(), build_folder() / "host", count_of(args), args.seed, args.jobs
         )
-        survivors = [mutants.line_of(one) for one in found.survivors]
+        survivors = [mutants.line_of(one) for one in found.survivors + table.survivors]
         context["mutants_survived"] = survivors
         tables.append("\n".join(["mutants that survive:", *survivors]) if survivors else "")
         return {
             "mutants": found.tried,
             "mutants_killed_pct": found.killed_pct,
             "mutants_equivalent_pct": found.equivalent_pct,
+            "table_entries": table.tried,
+            "table_killed_pct": table.killed_pct,
         }
 
     def found() -> dict[str, float]:

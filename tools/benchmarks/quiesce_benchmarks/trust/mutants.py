@@ -58,11 +58,16 @@ def pool(root: Path) -> list[Mutant]:
     return found
 
 
+def entries(mutants: Sequence[Mutant]) -> list[Mutant]:
+    """Those of the supervisor's table: they are all tried, and counted for themselves."""
+    return [one for one in mutants if one.kind == "entry"]
+
+
 def drawn(mutants: Sequence[Mutant], seed: int) -> list[Mutant]:
-    """In the order in which they are tried: the tables whole, then the others at random."""
+    """All others, in the order in which they are tried."""
     others = [one for one in mutants if one.kind != "entry"]
     random.Random(seed).shuffle(others)
-    return [one for one in mutants if one.kind == "entry"] + others
+    return others
 
 
 def equivalents(mutants: Sequence[Mutant], file: Path = EQUIVALENTS) -> dict[str, str]:
@@ -123,10 +128,14 @@ def line_of(mutant: Mutant) -> str:
     return f"{mutant.path}:{mutant.line}: {mutant.key.split(': ', 1)[1]}"
 
 
-def measure(root: Path, build: Path, count: int | None, seed: int, jobs: int) -> Result:
-    """count None: all."""
+def measure(
+    root: Path, build: Path, count: int | None, seed: int, jobs: int
+) -> tuple[Result, Result]:
+    """Of the code, count of them (None: all), and of the supervisor's table, all."""
     mutants = pool(root)
     argued = equivalents(mutants)
     with tempfile.TemporaryDirectory(prefix="quiesce-mutants-") as folder:
         trial = Trial(Build(build), root, Path(folder), jobs)
-        return judged(tried(trial, drawn(mutants, seed), count or len(mutants)), argued)
+        code = tried(trial, drawn(mutants, seed), count or len(mutants))
+        table = entries(mutants)
+        return judged(code, argued), judged(tried(trial, table, len(table)), argued)
