@@ -1,13 +1,10 @@
 #include "freshness.h"
 
 #include "e2e.h"
+#include "fixq.h"
 
 static int32_t add_sat(int32_t a, int32_t b) {
-    return a > 0 && b > INT32_MAX - a ? INT32_MAX : a + b;
-}
-
-static int32_t limit(int32_t value, int32_t bound) {
-    return value < -bound ? -bound : value > bound ? bound : value;
+    return (int32_t)clamp_i64((int64_t)a + b, INT32_MIN, INT32_MAX);
 }
 
 void freshness_use(freshness_t *self, int32_t cycle_us, int32_t timeout_us) {
@@ -24,7 +21,7 @@ bool freshness_is_known(const freshness_t *self) {
 
 // A frame of the row: it is due when it comes, as far as clocks may differ.
 static void follow(freshness_t *self, uint8_t alive, uint32_t content, int32_t late_us) {
-    self->since_due_us = late_us - limit(late_us, self->drift_us);
+    self->since_due_us = late_us - clamp_i32(late_us, -self->drift_us, self->drift_us);
     self->alive = alive;
     self->content = content;
 }

@@ -20,8 +20,7 @@ inputs_of() {
     scripts) echo ".ci tools tests" ;;
     ruff) echo "ruff.toml tools tests examples" ;;
     bench-house) echo . ;;
-    bench-can) echo "$code tests/system/vm tools docs/results/bounds $(other_benchmarks "$1")" ;;
-    bench-*) echo "$code tools docs/results/bounds $(other_benchmarks "$1")" ;;
+    bench-*) echo "$code tests/system/vm tools docs/results/bounds $(other_benchmarks "$1")" ;;
     pytest-package) echo "$code tools tests/system docs README.md LICENSE pytest.ini" ;;
     pytest-vm) echo "$code pytest.ini tests tools" ;;
     proofs) echo "$code tests/proof tools" ;;

@@ -32,8 +32,10 @@ static void guard_case(uint32_t number) {
         cfg.slew_mA_s = part_edge(&part, 1000, part_one_in(&part, 2) ? 100000 : INT32_MAX);
         cfg.tick_rate_Hz = draw_rate(&part);
         guard_init(&guard, &cfg);
+        const int32_t a_tick_mA = cfg.slew_mA_s / (int32_t)cfg.tick_rate_Hz;
+        const int32_t slew_mA = a_tick_mA < 40000 ? a_tick_mA : 40000;
         for (uint32_t i = 0; i < STEPS / RESTARTS; i++) {
-            const int32_t step_mA = draw_sign(&part) * (guard.slew_uA / 1000);
+            const int32_t step_mA = draw_sign(&part) * slew_mA;
             const int32_t base_mA = guard.last_uA / 1000 + (part_one_in(&part, 2) ? step_mA : 0);
             const int32_t request_mA = part_one_in(&part, 3)
                                            ? part_edge(&part, INT32_MIN, INT32_MAX)
@@ -79,6 +81,7 @@ static void monitor_case(uint32_t number) {
         cfg.trip_ticks = (uint32_t)part_edge(&part, 1, 40);
         int32_t command_mA = part_edge(&part, 0, 5000);
         uint32_t wrong_in = 1;
+        uint32_t missing_in = 20;
         current_monitor_init(&monitor, &cfg, command_mA);
         for (uint32_t i = 0; i < STEPS / RESTARTS; i++) {
             const int32_t expected_mA = current_monitor_expected_mA(&monitor);
@@ -88,11 +91,12 @@ static void monitor_case(uint32_t number) {
                 part_one_in(&part, wrong_in)
                     ? draw_measured(&part, expected_mA, cfg.error_mA, cfg.trip_mA)
                     : expected_mA;
-            const bool is_measured = !part_one_in(&part, wrong_in + 2u);
+            missing_in = part_one_in(&part, 40) ? 1u + draw_below(&part.seed, 20) : missing_in;
+            const bool is_measured = !part_one_in(&part, missing_in);
             part_word(&part, current_monitor_step(&monitor, command_mA, measured_mA, is_measured));
             part_word(&part, current_monitor_expected_mA(&monitor));
             part_word(&part, current_monitor_is_quiet(&monitor));
-            if (part_one_in(&part, 300)) {
+            if (part_one_in(&part, 50)) {
                 current_monitor_reset(&monitor);
             }
         }
@@ -105,7 +109,7 @@ static void coil_case(uint32_t number) {
     coil_t coil;
     part_open(&part, "coil", number);
     for (uint32_t restart = 0; restart < RESTARTS; restart++) {
-        const int32_t resistance_mohm = part_edge(&part, 0, 100000);
+        const int32_t resistance_mohm = part_edge(&part, 0, part_one_in(&part, 2) ? 4 : 100000);
         const int32_t error_mA = part_edge(&part, 1, 400);
         uint32_t short_in = 1;
         const uint32_t fault_ticks = (uint32_t)part_edge(&part, 1, 60);
@@ -135,7 +139,7 @@ static void energy_case(uint32_t number) {
     part_t part;
     energy_t energy;
     part_open(&part, "energy", number);
-    energy_init(&energy, part_one_in(&part, 2) ? 500u : (uint32_t)part_edge(&part, 500, 600));
+    energy_init(&energy, (uint32_t)part_near(&part, part_one_in(&part, 2) ? 500 : 512));
     const int32_t most_bits = 1 + (int32_t)draw_below(&part.seed, 29);
     int32_t polarity = part_one_in(&part, 3) ? 1 : -1;
     for (uint32_t i = 0; i < 3u * RUN_TICKS; i++) {
@@ -193,7 +197,8 @@ static void draw_damper(part_t *part, quiesce_board_t *board) {
     do {
         quiesce_board_default(board);
         quiesce_board_damper_t *const damper = &board->damper[0];
-        damper->ceiling_mA = part_edge(part, 2, QUIESCE_HIGHEST_CURRENT_mA);
+        damper->ceiling_mA =
+            part_edge(part, 2, part_one_in(part, 3) ? 6 : QUIESCE_HIGHEST_CURRENT_mA);
         damper->continuous_mA =
             draw_between(&part->seed, (damper->ceiling_mA + 9) / 10, damper->ceiling_mA);
         damper->safe_mA = part_edge(part, 0, damper->continuous_mA);
@@ -242,6 +247,11 @@ static void drive_tick(part_t *part, drive_t *drive, int32_t resistance_mohm, ui
     part_word(part, drive_watch(drive, &driver, is_known ? &across_mV : NULL, &verdict));
     part_word(part, verdict);
     part_word(part, drive_is_intact(drive));
+    if (part_one_in(part, 300)) { // its guard is not what it was
+        drive->limits.guard.safe_mA = part_edge(part, -9, 2 * QUIESCE_HIGHEST_CURRENT_mA);
+        drive->limits.guard.max_mA = part_edge(part, -9, 2 * QUIESCE_HIGHEST_CURRENT_mA);
+        part_word(part, drive_is_intact(drive));
+    }
     if (part_one_in(part, 400)) {
         drive_shut(drive, &command);
     } else {
@@ -251,8 +261,12 @@ static void drive_tick(part_t *part, drive_t *drive, int32_t resistance_mohm, ui
     part_word(part, command.driver_enable);
     part_word(part, drive_current_cmd_mA(drive));
     part_word(part, drive_is_limited(drive));
+    part_word(part, energy_is_negative(&drive->energy, -request_mA, request_mA, true));
     if (part_one_in(part, 200)) {
         drive_forget(drive);
+    }
+    if (part_one_in(part, 100)) { // near its end, which would take long
+        drive->energy.ticks = (4u << drive->energy.shift) - 3u;
     }
     if (part_one_in(part, 200)) { // near its budget, which would take long
         drive->heat.heat_q20 = drive->heat.budget_q20 - drive->heat.budget_q20 / 20;
@@ -271,10 +285,13 @@ static void drive_case(uint32_t number) {
         draw_params(&part, &params);
         const bool is_accepted = !part_one_in(&part, 8);
         if (!is_accepted) {
+            params.current_error_mA = part_near(&part, 0);
             params.slew_mA_s = part_edge(&part, INT32_MIN, INT32_MAX);
             params.max_current_mA = part_edge(&part, INT32_MIN, INT32_MAX);
         }
         drive_init(&drive, &board.damper[0], &params, is_accepted);
+        part_word(&part, (int64_t)drive.heat.line << drive.heat.shift);
+        part_word(&part, drive.monitor.trip_ticks);
         for (uint32_t i = 0; i < STEPS / RESTARTS; i++) {
             wrong_in = part_one_in(&part, 80) ? 1u + draw_below(&part.seed, 100) : wrong_in;
             drive_tick(&part, &drive, board.damper[0].coil_mohm, wrong_in);

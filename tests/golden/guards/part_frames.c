@@ -91,6 +91,8 @@ static void use_times(part_t *part, freshness_t *row) {
     const int32_t timeout_us =
         part_edge(part, cycle_us, most_us > cycle_us + 1 ? most_us - 1 : cycle_us);
     freshness_use(row, cycle_us, timeout_us);
+    part_word(part, row->tolerance_us);
+    part_word(part, row->drift_us);
 }
 
 static void freshness_case(uint32_t number) {
@@ -155,6 +157,23 @@ static int32_t cycle_us_of(const can_receive_t *bus, uint32_t message) {
     return period_us > 0u ? (int32_t)period_us : cycle_ms > 0u ? (int32_t)cycle_ms * 1000 : 100000;
 }
 
+// The last frame again, with other bytes behind its end, at times with a bit of what it says
+// changed under the same counter.
+static void repeat(part_t *part, can_receive_t *bus, const sender_t *sender,
+                   const can_frame_t *last) {
+    can_frame_t frame = *last;
+    uint8_t alive = (sender->alive + 15u) % 16u;
+    for (uint32_t i = frame.length; i < sizeof frame.data; i++) {
+        frame.data[i] = (uint8_t)draw_below(&part->seed, 256);
+    }
+    if (part_one_in(part, 2)) {
+        const uint32_t bit = draw_below(&part->seed, 40);
+        frame.data[bit / 8u] ^= (uint8_t)(1u << bit % 8u);
+        e2e_protect(&quiesce_can_messages[sender->message].e2e, &alive, &frame);
+    }
+    part_word(part, can_receive_frame(bus, &frame));
+}
+
 // What is due in this tick: mostly as it should be, at times nothing, twice or spoilt.
 static void send(part_t *part, can_receive_t *bus, sender_t *sender) {
     can_frame_t frame;
@@ -175,7 +194,7 @@ static void send(part_t *part, can_receive_t *bus, sender_t *sender) {
         part_word(part, can_receive_frame(bus, &frame));
     }
     if (part_one_in(part, 40)) {
-        part_word(part, can_receive_frame(bus, &frame));
+        repeat(part, bus, sender, &frame);
     }
     if (part_one_in(part, 60)) {
         sender->alive = (uint8_t)draw_below(&part->seed, 16);
@@ -200,6 +219,9 @@ static void hold(part_t *part, can_receive_t *bus, sender_t *panel, uint8_t *hel
     e2e_protect(layout, &panel->alive, &frame);
     if (!part_one_in(part, 25)) {
         part_word(part, can_receive_frame(bus, &frame));
+    }
+    if (part_one_in(part, 40)) {
+        repeat(part, bus, panel, &frame);
     }
 }
 
