@@ -24,6 +24,14 @@ static inline void twin_make(const void *record, uint32_t words, uint32_t *twin)
     twin[words] = sum;
 }
 
+/// A word of the record has been replaced. The others stay as the twin has them: what has flipped
+/// in them meanwhile is still seen.
+static inline void twin_replace(uint32_t *twin, uint32_t words, uint32_t at, uint32_t before,
+                                uint32_t word) {
+    twin[at] = ~word;
+    twin[words] += word - before;
+}
+
 /// Whether the record still is what its twin was made of.
 static inline bool twin_holds(const void *record, uint32_t words, const uint32_t *twin) {
     const uint32_t *word = (const uint32_t *)record;

@@ -87,7 +87,7 @@ static void start_all(controller_t *self, const quiesce_board_t *board,
     control_init(&self->control, &self->signal.sensing.places, used);
     self->recover_ticks = (uint32_t)used->sensor_recover_ticks;
     for (uint32_t i = 0; i < dampers_of(self); i++) {
-        drive_init(&self->drive[i], &board->damper[i], params, is_accepted);
+        drive_init(&self->drive[i], i, &board->damper[i], params, is_accepted);
     }
     supervisor_init(&self->supervisor, is_accepted ? QUIESCE_FAULT_NONE : QUIESCE_FAULT_PARAMETER);
     twin_make(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
@@ -139,7 +139,7 @@ bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board,
     const bool is_accepted =
         board == NULL ? quiesce_init(self, params) : quiesce_init_board(self, board, params);
     for (uint32_t i = 0; i < dampers_of(c); i++) {
-        c->drive[i].heat.heat_q20 = heat_q20[i];
+        heat_resume(&c->drive[i].heat, heat_q20[i]);
     }
     for (uint32_t i = SWEPT_WATCHES; i < SWEEP_PARTS; i++) {
         sweep_go_on(&c->sweep, i, &sweep.part[i]);
@@ -160,11 +160,10 @@ static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
 }
 
 // Energy comes out of a damper, as it cannot: force or stroke has the wrong sense.
-static bool is_reversed(controller_t *self, uint32_t i) {
-    const uint64_t both = (VIEW_FORCE | VIEW_STROKE_VELOCITY) << i;
+static bool is_reversed(controller_t *self, uint32_t i, bool are_valid) {
     const view_damper_t *damper = &self->view.damper[i];
     return energy_is_negative(&self->drive[i].energy, damper->force_mN, damper->velocity_um_s,
-                              (self->view.valid & both) == both);
+                              are_valid);
 }
 
 // The first fault of any driver, or of the sensors of its damper.
@@ -178,15 +177,17 @@ static quiesce_fault_t watch_drives(controller_t *self, const quiesce_in_t *in) 
         [CURRENT_HOT] = QUIESCE_FAULT_COIL_HOT,
         [CURRENT_SHORT] = QUIESCE_FAULT_COIL_SHORT,
     };
+    const uint64_t motion = VIEW_FORCE | VIEW_STROKE_VELOCITY;
     quiesce_fault_t found = QUIESCE_FAULT_NONE;
-    for (uint32_t i = 0; i < dampers_of(self); i++) {
+    uint64_t valid = self->view.valid; // of damper i where the bits of the first one are
+    for (uint32_t i = 0; i < dampers_of(self); i++, valid >>= 1) {
         current_verdict_t verdict;
-        const bool has_voltage = (self->view.valid & VIEW_VOLTAGE << i) != 0;
+        const bool has_voltage = (valid & VIEW_VOLTAGE) != 0;
         const int32_t *voltage_mV = has_voltage ? &self->view.damper[i].voltage_mV : NULL;
         self->view.damper[i].current_mA =
             drive_watch(&self->drive[i], &in->driver[i], voltage_mV, &verdict);
         found = found == QUIESCE_FAULT_NONE ? (quiesce_fault_t)fault_of[verdict] : found;
-        if (is_reversed(self, i) && found == QUIESCE_FAULT_NONE) {
+        if (is_reversed(self, i, (valid & motion) == motion) && found == QUIESCE_FAULT_NONE) {
             found = QUIESCE_FAULT_SENSOR_POLARITY;
         }
     }

@@ -3,6 +3,8 @@
 #include <stddef.h>
 
 #define RATE_IF_REFUSED_Hz 1000u
+// What alone of the limits changes from tick to tick.
+#define LAST_WORD (offsetof(drive_limits_t, guard.last_uA) / sizeof(uint32_t))
 
 // Of a deviation; beyond half of what the damper may get nothing would be one.
 static int32_t error_mA(const guard_t *guard, const quiesce_params_t *p) {
@@ -40,9 +42,9 @@ static void start_monitor(drive_t *self, const quiesce_board_damper_t *damper,
     current_monitor_init(&self->monitor, &monitor, 0);
 }
 
-// A lower command takes two ticks until it counts, then falls by slew, and the coil's lag behind
-// it.
-static void start_heat(drive_t *self, const quiesce_board_damper_t *damper,
+// A lower limit takes a slice and two ticks until it counts; then the command falls by its slew,
+// and the current by the coil's lag behind it.
+static void start_heat(drive_t *self, uint32_t number, const quiesce_board_damper_t *damper,
                        const quiesce_params_t *p, uint32_t rate_Hz) {
     const int32_t highest_mA = self->limits.guard.max_mA;
     const int32_t slew_mA_s = p->slew_mA_s > 1000 ? p->slew_mA_s : 1000; // as accepted ones are
@@ -52,13 +54,14 @@ static void start_heat(drive_t *self, const quiesce_board_damper_t *damper,
                                .continuous_mA = damper->continuous_mA,
                                .highest_mA = highest_mA,
                                .time_s = damper->heat_s,
-                               .settle_us = (uint32_t)ramp_us + 2000000u / rate_Hz +
-                                            (uint32_t)damper->coil_lag_us,
+                               .settle_us = (uint32_t)ramp_us + (uint32_t)damper->coil_lag_us +
+                                            (HEAT_SLICE_TICKS + 2u) * 1000000u / rate_Hz,
+                               .first_ticks = 1u + number * HEAT_SLICE_TICKS / QUIESCE_DAMPERS,
                            });
 }
 
-void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quiesce_params_t *p,
-                bool is_accepted) {
+void drive_init(drive_t *self, uint32_t number, const quiesce_board_damper_t *damper,
+                const quiesce_params_t *p, bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : RATE_IF_REFUSED_Hz;
     self->limits.ceiling_mA = damper->ceiling_mA;
     start_guard(&self->limits.guard, damper, p, rate_Hz);
@@ -66,7 +69,7 @@ void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quies
                   is_accepted ? (current_check_t)damper->measures_current : CURRENT_CHECK_NEVER);
     coil_init(&self->coil, damper->coil_mohm, self->monitor.error_mA, self->monitor.fault_ticks);
     energy_init(&self->energy, rate_Hz);
-    start_heat(self, damper, p, rate_Hz);
+    start_heat(self, number, damper, p, rate_Hz);
     self->last_command_mA = 0; // the driver is off until the first tick
     twin_make(&self->limits, WORDS_OF(drive_limits_t), self->twin);
 }
@@ -115,9 +118,11 @@ void drive_command(drive_t *self, int32_t request_mA, bool is_allowed, bool driv
                    quiesce_command_t *out) {
     const int32_t cool_mA = heat_limit_mA(&self->heat);
     const int32_t wanted_mA = request_mA < cool_mA ? request_mA : cool_mA;
+    const uint32_t before_uA = (uint32_t)self->limits.guard.last_uA;
     const int32_t guarded_mA = guard_step(&self->limits.guard, wanted_mA, is_allowed);
     take(self, clamp_i32(guarded_mA, 0, self->limits.ceiling_mA), driver_enable, out);
-    twin_make(&self->limits, WORDS_OF(drive_limits_t), self->twin);
+    twin_replace(self->twin, WORDS_OF(drive_limits_t), LAST_WORD, before_uA,
+                 (uint32_t)self->limits.guard.last_uA);
 }
 
 void drive_shut(drive_t *self, quiesce_command_t *out) {

@@ -29,8 +29,9 @@ typedef struct {
 } drive_t;
 
 /// Starts at the safe current. Parameters that were refused leave its limits within their ranges.
-void drive_init(drive_t *self, const quiesce_board_damper_t *damper, const quiesce_params_t *params,
-                bool is_accepted);
+/// number: of the damper.
+void drive_init(drive_t *self, uint32_t number, const quiesce_board_damper_t *damper,
+                const quiesce_params_t *params, bool is_accepted);
 
 /// A tick's measurement against the command that was in force; voltage_mV: across the coil, NULL
 /// where it is not known. Returns the current in the coil, mA: measured, within VIEW_LIMIT, else as

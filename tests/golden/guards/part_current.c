@@ -173,14 +173,16 @@ static void heat_case(uint32_t number) {
         cfg.highest_mA = part_edge(&part, 0, most_of(cfg.continuous_mA));
         cfg.time_s = part_edge(&part, 5, part_one_in(&part, 2) ? 6 : 10000);
         cfg.settle_us = (uint32_t)part_edge(&part, 0, part_one_in(&part, 2) ? 5000 : 100000000);
+        cfg.first_ticks = 1u + draw_below(&part.seed, HEAT_SLICE_TICKS);
         heat_init(&heat, &cfg);
         for (uint32_t i = 0; i < STEPS / RESTARTS; i++) {
             if (part_one_in(&part, 50)) { // to an edge, which would take long
                 const int64_t line_q20 = (int64_t)heat.line << heat.shift;
-                const int64_t over_q20 = heat.budget_q20 / 16 + (3 << 20);
-                const int64_t left_q20[] = {line_q20, 0, -over_q20, line_q20 / 2, -heat.budget_q20};
-                heat.heat_q20 = heat.budget_q20 - left_q20[draw_below(&part.seed, 5)];
-                heat.heat_q20 += part_near(&part, 0);
+                const int64_t budget_q20 = heat_budget_q20(&heat);
+                const int64_t over_q20 = budget_q20 / 16 + (3 << 20);
+                const int64_t left_q20[] = {line_q20, 0, -over_q20, line_q20 / 2, -budget_q20};
+                const int64_t at_q20 = budget_q20 - left_q20[draw_below(&part.seed, 5)];
+                heat_resume(&heat, at_q20 + part_near(&part, 0));
             }
             part_word(&part, heat_limit_mA(&heat));
             part_word(&part, heat_is_limiting(&heat));
@@ -269,7 +271,8 @@ static void drive_tick(part_t *part, drive_t *drive, int32_t resistance_mohm, ui
         drive->energy.ticks = (4u << drive->energy.shift) - 3u;
     }
     if (part_one_in(part, 200)) { // near its budget, which would take long
-        drive->heat.heat_q20 = drive->heat.budget_q20 - drive->heat.budget_q20 / 20;
+        const int64_t budget_q20 = heat_budget_q20(&drive->heat);
+        heat_resume(&drive->heat, budget_q20 - budget_q20 / 20);
     }
 }
 
@@ -289,7 +292,7 @@ static void drive_case(uint32_t number) {
             params.slew_mA_s = part_edge(&part, INT32_MIN, INT32_MAX);
             params.max_current_mA = part_edge(&part, INT32_MIN, INT32_MAX);
         }
-        drive_init(&drive, &board.damper[0], &params, is_accepted);
+        drive_init(&drive, restart % QUIESCE_DAMPERS, &board.damper[0], &params, is_accepted);
         part_word(&part, (int64_t)drive.heat.line << drive.heat.shift);
         part_word(&part, drive.monitor.trip_ticks);
         for (uint32_t i = 0; i < STEPS / RESTARTS; i++) {

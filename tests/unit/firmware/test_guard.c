@@ -159,7 +159,7 @@ static void heat_for(int32_t current_mA, uint32_t ticks) {
 
 // Of the budget.
 static int32_t heat_permille(void) {
-    return (int32_t)(heat.heat_q20 * 1000 / heat.budget_q20);
+    return (int32_t)(heat.heat_q20 * 1000 / heat_budget_q20(&heat));
 }
 
 static void start_heat(int32_t continuous_mA, int32_t highest_mA) {
@@ -167,7 +167,8 @@ static void start_heat(int32_t continuous_mA, int32_t highest_mA) {
                                    .continuous_mA = continuous_mA,
                                    .highest_mA = highest_mA,
                                    .time_s = 10,
-                                   .settle_us = 4000});
+                                   .settle_us = 36000, // a slice and two ticks
+                                   .first_ticks = HEAT_SLICE_TICKS});
 }
 
 static void test_heat_of_the_continuous_current_ends_at_its_budget(void) {
@@ -191,7 +192,7 @@ static void test_heat_stays_within_its_budget(void) {
             const int32_t limit_mA = heat_limit_mA(&heat);
             TEST_ASSERT_TRUE(limit_mA >= lowest_mA && limit_mA <= rows[i][0]);
             TEST_ASSERT_TRUE(limit_mA == rows[i][0] || heat_is_limiting(&heat));
-            TEST_ASSERT_TRUE(heat.heat_q20 <= heat.budget_q20);
+            TEST_ASSERT_TRUE(heat.heat_q20 <= heat_budget_q20(&heat));
             heat_step(&heat, t & 1u ? limit_mA : -limit_mA);
             least_mA = limit_mA < least_mA ? limit_mA : least_mA;
         }
