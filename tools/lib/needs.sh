@@ -51,7 +51,7 @@ needs_build() {
         plant) host+=(quiesce_plant) ;;
         dampers) host+=(quiesce_dampers) ;;
         linux) host+=(quiesced) ;;
-        trust) host+=(trust_programs) ;;
+        trust) host+=(all trust_programs) mps2+=(all) ;;
         images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
         esac
     done

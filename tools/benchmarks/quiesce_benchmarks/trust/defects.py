@@ -60,10 +60,12 @@ class Runner:
 
     def _unity(self, file: str, name: str) -> bool:
         stem = Path(file).stem
-        program = self._program(file, (stem, f"{stem}.elf"))
+        # Of the image's blocks the program has the area in its name.
+        long = stem.replace("test_", f"test_{Path(file).parent.name}_", 1)
+        program = self._program(file, (stem, f"{stem}.elf", f"{long}.elf"))
         if program not in self._said:
             tree = self._build / program.relative_to(self._build).parts[0]
-            command = ["ctest", "--test-dir", str(tree), "-V", "-R", f"^{stem}$"]
+            command = ["ctest", "--test-dir", str(tree), "-V", "-R", f"^{program.stem}$"]
             self._said[program] = passes(command, self._root)[1]
         return f":{name}:PASS" in self._said[program]
 
