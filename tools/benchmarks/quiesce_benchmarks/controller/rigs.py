@@ -112,7 +112,7 @@ def random_sensor(rng: np.random.Generator, measures: str, of: int) -> Sensor:
     return Sensor(
         measures,
         of,
-        scale=float(rng.integers(1, 100)),
+        scale=float(rng.integers(1, 60)),  # full scale within 500 m/s2
         period_us=int(rng.choice([0, 0, 2000, 5000, 12345])),
         polarity=int(rng.choice([-1, 1])),
         max_lost_pct=int(rng.choice([50, 100])),
