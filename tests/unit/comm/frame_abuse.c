@@ -12,7 +12,6 @@
 #include "can_make.h"
 #include "can_receive.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -193,7 +192,8 @@ static bool is_held(const trial_t *trial, const stream_t *stream, uint32_t now_m
            !is_alive(&trial->truth, stream, now_ms, stream->timeout_ms);
 }
 
-// The frame's value goes before that of a live sender.
+// The frame's value goes before that of a live sender: the ticks of a cycle, that of his frame
+// counted.
 static bool is_used(const trial_t *trial, const stream_t *stream, const abuse_t *abuse,
                     uint32_t now_ms) {
     const uint32_t sender = stream->sender;
@@ -201,7 +201,7 @@ static bool is_used(const trial_t *trial, const stream_t *stream, const abuse_t 
            value(&trial->abused, sender) == abuse->says &&
            !is_said(&trial->lost, &trial->abused, sender) &&
            !is_said(&trial->in_time, &trial->abused, sender) &&
-           is_alive(&trial->truth, stream, now_ms, stream->cycle_ms * 9u / 8u) &&
+           is_alive(&trial->truth, stream, now_ms, stream->cycle_ms * 9u / 8u - 1u) &&
            value(&trial->in_time, sender) == stream->says[trial->truth.next - 1u];
 }
 
@@ -317,11 +317,9 @@ static uint32_t sum(const result_t *result) {
 
 static bool read_number(const char *text, uint32_t *number) {
     char *end = NULL;
-    errno = 0;
-    const unsigned long long parsed = strtoull(text, &end, 10);
+    const unsigned long long parsed = strtoull(text, &end, 10); // beyond its range: its largest
     *number = (uint32_t)parsed;
-    return errno == 0 && end != text && *end == '\0' && *text != '-' && parsed > 0 &&
-           parsed <= 1000000000u;
+    return end != text && *end == '\0' && *text != '-' && parsed > 0 && parsed <= 1000000000u;
 }
 
 int main(int argc, char **argv) {

@@ -20,7 +20,9 @@ from quiesce_benchmarks.trust import (
     congestion,
     defects,
     flips,
+    frames,
     heat,
+    latch,
     mutants,
     sweeps,
 )
@@ -31,9 +33,10 @@ HELP = "mistakes in the guarding code that tests notice, abuse, flipped bits, wh
 DESCRIPTION = """Makes small mistakes in the code that guards the output and counts how many of them
 the C tests and the golden streams notice; drives controllers with everything that can come in and
 counts ticks in which a rule is broken (range, slew, safe current, driver, stop, latch, arming);
-flips bits of its memory, and of the parameters, tables and program that it reads, and looks at
-what it then commands; counts the instructions that guarding
-costs."""
+sends it single frames that are repeated, delayed, inserted or reordered; kills the Linux
+controller at its system calls and takes its disk away; flips bits of its memory, and of the
+parameters, tables and program that it reads, and looks at what it then commands; heats coils for a
+day; halves the rate of its line; counts the instructions that guarding costs."""
 
 # Name, unit, goal, better.
 FIGURES = (
@@ -46,6 +49,11 @@ FIGURES = (
     ("abuse_violations", "ticks", 0, "lower"),
     ("reaction_ticks_worst_estop", "ticks", 1, "lower"),
     ("reaction_ticks_worst_record", "ticks", 2, "lower"),
+    ("frames_abused", "1", 10**6, "higher"),
+    ("frames_with_effect", "1", 0, "lower"),
+    ("latch_kills", "1", 100, "higher"),
+    ("latch_lost", "1", 0, "lower"),
+    ("latch_starts_not_refused", "1", 0, "lower"),
     ("flips_tried", "1", 10**6, "higher"),
     ("flips_unsafe", "1", 0, "lower"),
     ("flip_noticed_s", "s", 1, "lower"),
@@ -58,7 +66,18 @@ FIGURES = (
     ("instr_added", "instructions", 400, "lower"),
     ("damper_extra_instr", "instructions", 250, "lower"),
 )
-PARTS = ("defects", "mutants", "abuse", "flips", "sweeps", "heat", "congestion", "cost")
+PARTS = (
+    "defects",
+    "mutants",
+    "abuse",
+    "frames",
+    "latch",
+    "flips",
+    "sweeps",
+    "heat",
+    "congestion",
+    "cost",
+)
 QUICK_MUTANTS = 30
 # Worst ticks of the laws before there were guards for all of this.
 BASELINE = Path(__file__).with_name("baseline.json")
@@ -113,6 +132,8 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
     take("defects", found)
     take("mutants", mistakes)
     take("abuse", lambda: abuse.measure(ticks_of(args), args.seed, args.jobs))
+    take("frames", lambda: frames.measure(args.seed, args.quick, args.jobs))
+    take("latch", lambda: latch.measure(args.quick))
     take("flips", lambda: flips.measure(args.seed, args.quick, args.jobs))
     take("sweeps", lambda: sweeps.measure(args.seed, args.quick, args.jobs))
     take("heat", lambda: heat.measure(args.seed, args.quick, args.jobs))
