@@ -24,8 +24,4 @@ int32_t part_edge(part_t *self, int32_t low, int32_t high);
 int32_t part_near(part_t *self, int64_t value);
 bool part_one_in(part_t *self, uint32_t count);
 
-void part_current_cases(void); ///< guard, current monitor, coil, energy, heat, drive
-void part_stop_cases(void);    ///< supervisor, twin
-void part_frame_cases(void);   ///< e2e, freshness, what is received
-
 #endif

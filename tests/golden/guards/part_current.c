@@ -9,6 +9,7 @@
 #include "guard.h"
 #include "heat.h"
 #include "part.h"
+#include "part_cases.h"
 
 enum { CASES = 24, STEPS = 4000, RESTARTS = 8 };
 

@@ -3,6 +3,7 @@
 #include "e2e.h"
 #include "freshness.h"
 #include "part.h"
+#include "part_cases.h"
 
 enum { CASES = 24, FRAMES = 4000, TICKS = 6000 };
 

@@ -1,5 +1,6 @@
 // The supervisor on random walks, and what a twin sees.
 #include "part.h"
+#include "part_cases.h"
 #include "supervisor.h"
 #include "twin.h"
 
