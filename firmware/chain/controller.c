@@ -207,11 +207,12 @@ static quiesce_fault_t latched_fault(const controller_t *self, const quiesce_in_
     return current_fault;
 }
 
-static bool is_tick_lost(controller_t *self, uint32_t tick) {
-    const bool is_lost = self->has_ticked && tick != self->last_tick + 1u;
+// Very many where the tick did not go on, or went back.
+static uint32_t lost_ticks(controller_t *self, uint32_t tick) {
+    const uint32_t lost = self->has_ticked ? tick - self->last_tick - 1u : 0;
     self->has_ticked = true;
     self->last_tick = tick;
-    return is_lost;
+    return lost;
 }
 
 typedef struct {
@@ -346,7 +347,7 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
 
     const signal_chain_in_t signal_in = {
         .samples = in->sensor,
-        .has_gap = is_tick_lost(c, in->tick),
+        .lost_ticks = lost_ticks(c, in->tick),
         .wants_lock = c->control.law->wants_lock,
     };
     signal_chain_out_t signal;
@@ -355,7 +356,7 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
         c->bad_sample_count = increment_sat_u32(c->bad_sample_count);
     }
 
-    findings_t found = {.sample = signal.sample, .has_gap = signal_in.has_gap};
+    findings_t found = {.sample = signal.sample, .has_gap = signal_in.lost_ticks > 0};
     found.current_fault = watch_drives(c, in);
     c->view.is_output_on = supervisor_allows_output(&c->supervisor);
     c->view.is_at_rest = rest_step(&c->rest, &c->view, &c->control.setup.params);

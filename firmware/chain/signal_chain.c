@@ -66,11 +66,11 @@ static void load_displacement(signal_chain_t *self) {
                       third == 0 ? 0 : estimator->tone[third].displacement_nm, phase);
 }
 
-static int32_t follow(signal_chain_t *self, const condition_out_t *sample, bool has_gap) {
+static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint32_t lost_ticks) {
     estimator_step(&self->estimator, &(estimator_in_t){
                                          .accel_um_s2 = sample->raw,
                                          .is_good = sample->flag == CONDITION_GOOD,
-                                         .is_lost = sample->is_fault || has_gap,
+                                         .is_lost = sample->is_fault || lost_ticks > 0,
                                      });
     if (self->estimator.has_published) {
         load_displacement(self);
@@ -105,15 +105,24 @@ static bool has_left_band(const signal_chain_t *self) {
            step_turn > self->highest_step_turn + self->highest_step_turn / 16u;
 }
 
+// The lock turns on through a few lost ticks; what half cycles there were is not known any more.
+static void bridge(signal_chain_t *self, bool is_fault, uint32_t lost_ticks) {
+    if (is_fault) {
+        lock_in_release(&self->lock);
+    } else {
+        lock_in_skip(&self->lock, lost_ticks);
+    }
+    if (is_fault || lost_ticks > 0) {
+        half_cycles_reset(&self->half_cycles);
+    }
+}
+
 // Locks on to what the estimator trusts, or to what looks alike, and holds on to it by itself.
-static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, bool has_gap) {
+static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, uint32_t lost_ticks) {
     const condition_out_t *sample = out->sample;
     const estimator_t *estimator = &self->estimator;
     const predictor_tone_t *tone = &estimator->predictor.tone[0];
-    if (sample->is_fault || has_gap) {
-        lock_in_release(&self->lock);
-        half_cycles_reset(&self->half_cycles);
-    }
+    bridge(self, sample->is_fault, lost_ticks);
     lock_in_step(&self->lock, sample->raw, sample->flag == CONDITION_GOOD);
     if (self->lock.is_locked && has_left_band(self)) {
         lock_in_release(&self->lock);
@@ -157,9 +166,9 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t
         rms_reset(&self->rms);
     }
     out->rms_um_s2 = rms_step(&self->rms, out->sample->value);
-    out->displacement_nm = follow(self, out->sample, in->has_gap);
+    out->displacement_nm = follow(self, out->sample, in->lost_ticks);
     if (in->wants_lock) {
-        hold_on(self, out, in->has_gap);
+        hold_on(self, out, in->lost_ticks);
     }
     show_tone(self, out, view);
 }

@@ -29,7 +29,7 @@ typedef struct {
 
 typedef struct {
     const quiesce_sample_t *samples; ///< QUIESCE_SENSORS of them
-    bool has_gap;                    ///< ticks were lost before this one
+    uint32_t lost_ticks;             ///< just before this one
     bool wants_lock;                 ///< the dominant component is to be locked on to
 } signal_chain_in_t;
 

@@ -143,3 +143,13 @@ void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good) {
         work(self);
     }
 }
+
+void lock_in_skip(lock_in_t *self, uint32_t ticks) {
+    if (ticks > LOCK_IN_MOST_SKIPPED) {
+        lock_in_release(self);
+        return;
+    }
+    for (uint32_t i = 0; i < ticks; i++) {
+        lock_in_step(self, 0, false);
+    }
+}

@@ -20,6 +20,8 @@
 
 #include "harmonics.h"
 
+enum { LOCK_IN_MOST_SKIPPED = 8 }; ///< ticks
+
 typedef struct {
     uint32_t tick_rate_Hz;
     bool is_locked;
@@ -53,6 +55,11 @@ void lock_in_acquire(lock_in_t *self, uint32_t phase_turn, uint32_t step_turn, i
 
 /// Lets go.
 void lock_in_release(lock_in_t *self);
+
+/// Ticks that went by without a call; each counts as one with a held sample.
+/// Bounded: some 110 instructions for each of up to LOCK_IN_MOST_SKIPPED ticks; after more it lets
+/// go, since the component may have changed meanwhile.
+void lock_in_skip(lock_in_t *self, uint32_t ticks);
 
 /// One tick; a held sample (!is_good) counts as one that was expected. Does nothing while unlocked.
 void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good);

@@ -267,6 +267,30 @@ static void test_lost_tick_invalidates_the_frequency_until_a_window_is_new(void)
     TEST_ASSERT_EQUAL_UINT32(128, reply.telemetry.freq_window_ms);
 }
 
+// Ticks that the vibration goes on in and the controller is not called.
+static void lose(uint32_t ticks) {
+    server.in.tick += ticks;
+    time_ticks += ticks;
+}
+
+static void test_lost_ticks_do_not_cost_the_lock(void) {
+    static const uint32_t lost[] = {1, 2, 8};
+    params.law = QUIESCE_LAW_PHASE;
+    start();
+    vibrate(10000, 3000);
+    for (uint32_t i = 0; i < 30u; i++) {
+        lose(lost[i % 3u]);
+        for (uint32_t j = 0; j < 50u + i; j++) {
+            vibrate(10000, 1);
+            TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.lock_is_on);
+        }
+        assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+    }
+    lose(9);
+    vibrate(10000, 1);
+    TEST_ASSERT_EQUAL_UINT32(0, reply.telemetry.lock_is_on);
+}
+
 static void test_rms_is_right_soon_after_a_stuck_sensor(void) {
     params.law = QUIESCE_LAW_FUZZY;
     start();
@@ -444,6 +468,7 @@ int main(void) {
     RUN_TEST(test_current_check_tells_its_faults_apart);
     RUN_TEST(test_emergency_stop_can_be_acknowledged_with_the_current_check_on);
     RUN_TEST(test_lost_tick_invalidates_the_frequency_until_a_window_is_new);
+    RUN_TEST(test_lost_ticks_do_not_cost_the_lock);
     RUN_TEST(test_rms_is_right_soon_after_a_stuck_sensor);
     RUN_TEST(test_lost_tick_is_a_clearing_fault);
     RUN_TEST(test_two_controllers_do_not_share_state);

@@ -352,6 +352,33 @@ static void test_lock_in_keeps_on_through_held_samples(void) {
 }
 
 // Known: of any size. Known roughly: to 8 % of the amplitude; it is learnt.
+// At any point of the cycle, in a row or one now and then.
+static void test_lock_in_turns_on_through_lost_ticks(void) {
+    for (uint32_t part = 0; part < PARTS; part++) {
+        start(1000, 10000);
+        settle_to_part(part);
+        for (uint32_t i = 0; i < LOCK_IN_MOST_SKIPPED; i++) {
+            (void)sample();
+        }
+        lock_in_skip(&lock, LOCK_IN_MOST_SKIPPED);
+        TEST_ASSERT_LESS_THAN_UINT32(1500, worst_error_mdeg(1000));
+        for (uint32_t i = 0; i < 30u; i++) {
+            (void)sample();
+            lock_in_skip(&lock, 1);
+            TEST_ASSERT_LESS_THAN_UINT32(1500, worst_error_mdeg(37));
+        }
+    }
+}
+
+static void test_lock_in_lets_go_after_more_lost_ticks(void) {
+    settle();
+    lock_in_skip(&lock, LOCK_IN_MOST_SKIPPED + 1u);
+    TEST_ASSERT_FALSE(lock.is_locked);
+    settle();
+    lock_in_skip(&lock, UINT32_MAX);
+    TEST_ASSERT_FALSE(lock.is_locked);
+}
+
 static void test_lock_in_does_not_mind_a_constant(void) {
     for (int32_t sign = -1; sign <= 1; sign += 2) {
         setUp();
@@ -407,6 +434,8 @@ int main(void) {
     RUN_TEST(test_lock_in_keeps_on_through_changes_of_the_third_harmonic);
     RUN_TEST(test_lock_in_keeps_on_through_a_ring_of_96_Hz);
     RUN_TEST(test_lock_in_keeps_on_through_held_samples);
+    RUN_TEST(test_lock_in_turns_on_through_lost_ticks);
+    RUN_TEST(test_lock_in_lets_go_after_more_lost_ticks);
     RUN_TEST(test_lock_in_does_not_mind_a_constant);
     RUN_TEST(test_lock_in_survives_any_input);
     return UNITY_END();

@@ -68,7 +68,7 @@ static void run(const order_t *order, signal_chain_t *chain, watch_t *watch) {
         cost_stimulus_next(&stimulus, &in);
         const signal_chain_in_t chain_in = {
             .samples = in.sensor,
-            .has_gap = in.tick != last_tick + 1u,
+            .lost_ticks = in.tick - last_tick - 1u,
         };
         counted_call((counted_function_t)chain_step, (uintptr_t)chain, (uintptr_t)&chain_in,
                      (uintptr_t)&out);
