@@ -197,7 +197,8 @@ Congestion run(double share, std::uint32_t ticks) {
         line.taken.clear();
         (void)send(sender, line, frames, now_ns);
         for (const can_frame_t &frame : line.taken) {
-            const std::uint32_t number = frame.data[0] | static_cast<std::uint32_t>(frame.data[1]) << 8U;
+            const std::uint32_t number = frame.data[0] | static_cast<std::uint32_t>(frame.data[1])
+                                                             << 8U;
             if (frame.id == kReplyId) {
                 found.answered += tick - asked.at(number) <= 1000 ? 1U : 0U;
             } else if (frame.id == kDemandId) {
