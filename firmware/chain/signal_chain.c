@@ -112,9 +112,7 @@ static void bridge(signal_chain_t *self, bool is_fault, uint32_t lost_ticks) {
     } else {
         lock_in_skip(&self->lock, lost_ticks);
     }
-    if (is_fault || lost_ticks > 0) {
-        half_cycles_reset(&self->half_cycles);
-    }
+    half_cycles_reset(&self->half_cycles);
 }
 
 // Locks on to what the estimator trusts, or to what looks alike, and holds on to it by itself.
@@ -122,7 +120,9 @@ static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, uint32_
     const condition_out_t *sample = out->sample;
     const estimator_t *estimator = &self->estimator;
     const predictor_tone_t *tone = &estimator->predictor.tone[0];
-    bridge(self, sample->is_fault, lost_ticks);
+    if (sample->is_fault || lost_ticks > 0) {
+        bridge(self, sample->is_fault, lost_ticks);
+    }
     lock_in_step(&self->lock, sample->raw, sample->flag == CONDITION_GOOD);
     if (self->lock.is_locked && has_left_band(self)) {
         lock_in_release(&self->lock);
