@@ -70,12 +70,16 @@ static void sweep_params(controller_t *self) {
     sweep_watch(&self->sweep, SWEPT_PARAMS, own_words(self), QUIESCE_PARAM_COUNT, own_words(self));
 }
 
-// Their third word is the number of words in all; they have been checked.
-static void sweep_tables(controller_t *self) {
+// Their third word is the number of words in all. What was watched already is not read anew, as if
+// it were right: only one that has just been checked is.
+static void sweep_tables(controller_t *self, const uint32_t *checked) {
     const uint32_t *const table[] = {self->control.setup.table, self->control.forces.table};
     for (uint32_t i = 0; i < 2; i++) {
-        sweep_watch(&self->sweep, SWEPT_LAW_TABLE + i, table[i], table[i] != NULL ? table[i][2] : 0,
-                    own_words(self));
+        const uint32_t part = SWEPT_LAW_TABLE + i;
+        if (table[i] != self->sweep.part[part].words || table[i] == checked) {
+            sweep_watch(&self->sweep, part, table[i], table[i] != NULL ? table[i][2] : 0,
+                        own_words(self));
+        }
     }
 }
 
@@ -93,7 +97,7 @@ static void start_all(controller_t *self, const quiesce_board_t *board,
     twin_make(&self->supervisor, WORDS_OF(supervisor_t), self->supervisor_twin);
     sweep_init(&self->sweep, (uint32_t)used->tick_rate_Hz);
     sweep_params(self);
-    sweep_tables(self);
+    sweep_tables(self, NULL);
 }
 
 bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
@@ -391,14 +395,16 @@ static const control_t *known_of(const quiesce_t *self) {
 quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
     controller_t *c = (controller_t *)(void *)self->opaque;
     const quiesce_table_verdict_t verdict = control_use(&c->control, words, count);
-    sweep_tables(c);
+    if (verdict == QUIESCE_TABLE_OK) {
+        sweep_tables(c, words);
+    }
     return verdict;
 }
 
 quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic) {
     controller_t *c = (controller_t *)(void *)self->opaque;
     const quiesce_table_verdict_t verdict = control_drop(&c->control, magic);
-    sweep_tables(c);
+    sweep_tables(c, NULL);
     return verdict;
 }
 

@@ -138,6 +138,34 @@ static void test_memory_rules(void) {
     assert_runs_on(2000);
 }
 
+// What came to nothing does not make right what has flipped meanwhile.
+static void test_memory_rules_that_are_refused(void) {
+    static uint32_t rules[QUIESCE_TABLE_WORDS];
+    static const uint32_t nonsense[3] = {1, 2, 3};
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    params.law = QUIESCE_LAW_FUZZY;
+    TEST_ASSERT_TRUE(quiesce_init(&running, &params));
+    const uint32_t *shipped =
+        ((const controller_t *)(const void *)running.opaque)->control.setup.table;
+    const uint32_t count = shipped[2];
+    memcpy(rules, shipped, count * sizeof(uint32_t));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, quiesce_table_use(&running, rules, count));
+    assert_runs_on(1500);
+    const quiesce_in_t before = in;
+    damaged = running;
+    rules[count / 2] ^= 16u;
+    TEST_ASSERT_NOT_EQUAL(QUIESCE_TABLE_OK, quiesce_table_use(&damaged, nonsense, 3));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_CRC, quiesce_table_use(&damaged, rules, count));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_MAGIC, quiesce_table_drop(&damaged, 12345));
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(1000, ticks_until_shut());
+    // The same words, checked again, are what is to be watched.
+    in = before;
+    rules[count / 2] ^= 16u;
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, quiesce_table_use(&running, rules, count));
+    assert_runs_on(2000);
+}
+
 static void test_memory_words_of_the_caller(void) {
     static uint32_t program[20000];
     for (uint32_t i = 0; i < 20000; i++) {
@@ -163,6 +191,7 @@ int main(void) {
     RUN_TEST(test_memory_every_bit_of_guard_and_ceiling);
     RUN_TEST(test_memory_parameters);
     RUN_TEST(test_memory_rules);
+    RUN_TEST(test_memory_rules_that_are_refused);
     RUN_TEST(test_memory_words_of_the_caller);
     RUN_TEST(test_memory_that_has_changed_stays_a_fault);
     return UNITY_END();
