@@ -78,7 +78,7 @@ static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
             .scale = sensor->scale,
             .limit = is_accel ? CONDITION_ACCEL_LIMIT_um_s2 : VIEW_LIMIT,
             .period_ticks = period,
-            .max_lost_pct = (uint32_t)sensor->max_lost_pct,
+            .most_lost_q16 = sensor->max_lost_pct * 65536 / 100, // floor
             .offset_counts = sensor->offset_counts,
             .polarity = sensor->polarity,
             .full_scale_counts = sensor->full_scale_counts,

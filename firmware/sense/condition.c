@@ -116,12 +116,13 @@ static bool is_due(condition_t *self, bool is_fresh) {
 // An average over some 256 samples, floor.
 static void follow_losses(condition_t *self, bool is_lost) {
     self->lost_q16 += ((is_lost ? 65536 : 0) - self->lost_q16) >> 8;
-    self->is_sparse = self->lost_q16 * 100 > (int32_t)self->cfg.max_lost_pct * 65536;
+    self->is_sparse = self->lost_q16 > self->cfg.most_lost_q16;
 }
 
 static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
     if (flag == CONDITION_GOOD) {
         take_good_sample(self, counts);
+        follow_losses(self, false);
         return;
     }
     // A single missing sample now and then is how a sensor's clock meets ours, no illness.
@@ -132,6 +133,12 @@ static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
     }
     self->good_ticks =
         is_slip && self->good_ticks > SLIP_COSTS_TICKS ? self->good_ticks - SLIP_COSTS_TICKS : 0u;
+    // A slow sensor's sample is lost once, however long the wait for the next one is. A gap that is
+    // a fault by itself does not count: after it the sensor starts anew.
+    if (self->waited_ticks % self->cfg.period_ticks == 0u &&
+        self->bad_ticks <= self->cfg.max_age_ticks) {
+        follow_losses(self, flag == CONDITION_LOST);
+    }
 }
 
 void condition_step(condition_t *self, const condition_in_t *in, condition_out_t *out) {
@@ -140,12 +147,6 @@ void condition_step(condition_t *self, const condition_in_t *in, condition_out_t
         flag = classify(self, in);
         judge(self, in->counts, flag);
         self->flag = flag;
-        // A slow sensor's sample is lost once, however long the wait for the next one is. A gap
-        // that is a fault by itself does not count: after it the sensor starts anew.
-        if (self->waited_ticks % self->cfg.period_ticks == 0u &&
-            self->bad_ticks <= self->cfg.max_age_ticks) {
-            follow_losses(self, flag == CONDITION_LOST);
-        }
     }
     if (self->is_sparse && flag == CONDITION_GOOD) {
         flag = CONDITION_LOST;

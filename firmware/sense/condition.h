@@ -6,7 +6,7 @@
 /// learnt anew. (A stuck or quiet sensor is seen only in hindsight; its samples have been passed
 /// on.) A sensor that is slower than the tick is held between its samples.
 ///
-/// Lost: the share of lost samples is followed over some 256 of them; more than max_lost_pct is a
+/// Lost: the share of lost samples is followed over some 256 of them; more than most_lost_q16 is a
 /// fault until it is less again, however short each gap is.
 ///
 /// Quiet: a live sensor shows noise. The activity of a second of plausible samples is the mean of
@@ -38,7 +38,7 @@ typedef struct {
     int32_t scale;             ///< thousandths of the unit a count, 1 .. 10^9
     int32_t limit;             ///< values saturate here, > 0
     uint32_t period_ticks;     ///< from one sample to the next, >= 1
-    uint32_t max_lost_pct;     ///< share of samples that may be lost; 100: no check
+    int32_t most_lost_q16;     ///< share of samples that may be lost; 65536, all: no check
     int32_t offset_counts;     ///< at zero acceleration
     int32_t polarity;          ///< -1 or 1
     int32_t full_scale_counts; ///< > 0

@@ -159,6 +159,10 @@ static bool is_faulted(uint32_t state) {
     return state == QUIESCE_STATE_SAFE || state == QUIESCE_STATE_FAULT;
 }
 
+static bool is_driven(uint32_t state) {
+    return state == QUIESCE_STATE_RUN || state == QUIESCE_STATE_DEGRADED;
+}
+
 static void check_output(const fuzz_t *fuzz, const quiesce_out_t *out) {
     const quiesce_telemetry_t *t = &out->telemetry;
     const int32_t safe_mA = quiesce_params_safe_current_mA(&fuzz->params);
@@ -166,13 +170,16 @@ static void check_output(const fuzz_t *fuzz, const quiesce_out_t *out) {
     REQUIRE(t->state < QUIESCE_STATE_COUNT && t->fault < QUIESCE_FAULT_COUNT);
     REQUIRE(is_faulted(t->state) == (t->fault != QUIESCE_FAULT_NONE));
     REQUIRE(out->damper[0].current_cmd_mA == t->current_cmd_mA);
-    if (t->state == QUIESCE_STATE_RUN || t->state == QUIESCE_STATE_DEGRADED) {
+    if (is_driven(t->state)) {
         REQUIRE(out->damper[0].current_cmd_mA >= 0 &&
                 out->damper[0].current_cmd_mA <= fuzz->params.max_current_mA);
     } else {
         REQUIRE(out->damper[0].current_cmd_mA == safe_mA);
     }
-    REQUIRE(out->damper[0].driver_enable == (t->state != QUIESCE_STATE_FAULT));
+    // On wherever a law drives, off in a latched fault; before its test it stays off, too.
+    REQUIRE(!out->damper[0].driver_enable || t->state != QUIESCE_STATE_FAULT);
+    REQUIRE(out->damper[0].driver_enable || !is_driven(t->state));
+    REQUIRE(out->damper[0].driver_enable || out->damper[0].current_cmd_mA == safe_mA);
     if (!fuzz->is_accepted) {
         REQUIRE(t->state == QUIESCE_STATE_FAULT && t->fault == QUIESCE_FAULT_PARAMETER);
     }
