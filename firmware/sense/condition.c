@@ -135,8 +135,9 @@ static void judge(condition_t *self, int32_t counts, condition_flag_t flag) {
         is_slip && self->good_ticks > SLIP_COSTS_TICKS ? self->good_ticks - SLIP_COSTS_TICKS : 0u;
     // A slow sensor's sample is lost once, however long the wait for the next one is. A gap that is
     // a fault by itself does not count: after it the sensor starts anew.
-    if (self->waited_ticks % self->cfg.period_ticks == 0u &&
-        self->bad_ticks <= self->cfg.max_age_ticks) {
+    const uint32_t period_ticks = self->cfg.period_ticks;
+    const bool is_one_more = period_ticks <= 1u || self->waited_ticks % period_ticks == 0u;
+    if (is_one_more && self->bad_ticks <= self->cfg.max_age_ticks) {
         follow_losses(self, flag == CONDITION_LOST);
     }
 }
