@@ -1,0 +1,1 @@
+"""Published equations, tables and figures beside ours."""

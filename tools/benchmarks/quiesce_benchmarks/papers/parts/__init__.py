@@ -1,0 +1,1 @@
+"""Parts of the benchmark, a file each: FIGURES, TITLE and measure(effort) -> Measured."""
