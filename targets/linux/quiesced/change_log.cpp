@@ -22,10 +22,17 @@ bool ChangeLog::Counted::is_news(std::uint32_t count, std::int64_t now_ns) {
     return true;
 }
 
+/// One that heals and comes again has one place: it must not push the others out.
 void ChangeLog::keep_fault(const quiesce_telemetry_t &telemetry) {
-    std::move_backward(faults_.begin(), faults_.end() - 1, faults_.end());
-    faults_.front() = {telemetry.fault, telemetry.tick, realtime_ns()};
-    fault_events_ += fault_events_ < UINT32_MAX ? 1U : 0U;
+    auto *at = std::find_if(faults_.begin(), faults_.end(), [&](const FaultEvent &event) {
+        return event.fault == telemetry.fault;
+    });
+    const bool is_known = at != faults_.end();
+    at = is_known ? at : faults_.end() - 1;
+    const std::uint32_t times = is_known ? at->times : 0;
+    std::move_backward(faults_.begin(), at, at + 1);
+    faults_.front() = {telemetry.fault, telemetry.tick, realtime_ns(),
+                       times + (times < UINT32_MAX ? 1U : 0U)};
 }
 
 void ChangeLog::control(const quiesce_telemetry_t &telemetry) {

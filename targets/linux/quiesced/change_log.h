@@ -19,9 +19,8 @@ class ChangeLog {
     void failed_writes(std::size_t number, const char *title, std::uint32_t failures,
                        std::int64_t now_ns);
 
-    /// The last faults that were entered, the newest first, and their number since the start.
+    /// The last different faults that were entered, the newest first; then NONE.
     const std::array<FaultEvent, Snapshot::kFaults> &faults() const { return faults_; }
-    std::uint32_t fault_events() const { return fault_events_; }
 
   private:
     /// Something that is counted; told when it has grown and a second has passed.
@@ -40,7 +39,6 @@ class ChangeLog {
     Counted overruns_;
     std::array<Counted, QUIESCE_DAMPERS> failed_writes_;
     std::array<FaultEvent, Snapshot::kFaults> faults_{};
-    std::uint32_t fault_events_ = 0;
 };
 
 } // namespace quiesced

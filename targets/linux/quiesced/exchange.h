@@ -16,11 +16,12 @@
 
 namespace quiesced {
 
-/// A fault that was entered.
+/// A fault that was entered, once or more; when it was last.
 struct FaultEvent {
-    std::uint32_t fault;
+    std::uint32_t fault; ///< QUIESCE_FAULT_NONE: no such event
     std::uint32_t tick;
     std::int64_t time_ns; ///< CLOCK_REALTIME
+    std::uint32_t times;  ///< since the start, saturating
 };
 
 /// What the status file shows, taken at the end of a tick.
@@ -45,7 +46,6 @@ struct Snapshot {
     std::uint32_t tx_shed; ///< of bus.tx_dropped: telemetry, and what newer frames replaced
     can_node_counters_t node;
     std::array<FaultEvent, kFaults> faults; ///< the newest first
-    std::uint32_t fault_events;             ///< since the start
     std::uint32_t log_dropped;
 };
 

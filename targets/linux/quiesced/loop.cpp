@@ -253,7 +253,6 @@ Snapshot Loop::snapshot() const {
     }
     snapshot.node = *can_node_counters(&node_.can);
     snapshot.faults = changes_.faults();
-    snapshot.fault_events = changes_.fault_events();
     snapshot.log_dropped = log_.dropped();
     return snapshot;
 }

@@ -85,11 +85,15 @@ void put_dampers(std::ostream &out, const Config &config, const Snapshot &snapsh
 
 void put_faults(std::ostream &out, const Snapshot &snapshot) {
     out << "  \"last_faults\": [";
-    for (std::size_t i = 0; i < Snapshot::kFaults && i < snapshot.fault_events; ++i) {
-        const FaultEvent &event = snapshot.faults[i];
-        out << (i == 0 ? "" : ", ") << "{\"fault\": \"" << fault_name(event.fault)
+    const char *separator = "";
+    for (const FaultEvent &event : snapshot.faults) {
+        if (event.fault == QUIESCE_FAULT_NONE) {
+            break;
+        }
+        out << separator << "{\"fault\": \"" << fault_name(event.fault)
             << "\", \"tick\": " << event.tick << ", \"time\": \"" << iso_time(event.time_ns)
-            << "\"}";
+            << "\", \"times\": " << event.times << "}";
+        separator = ", ";
     }
     out << "],\n";
 }

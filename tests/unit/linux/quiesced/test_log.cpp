@@ -6,6 +6,7 @@
 
 #include <sys/resource.h>
 
+#include "change_log.h"
 #include "input_error.h"
 #include "log_ring.h"
 #include "log_sink.h"
@@ -158,6 +159,47 @@ TEST(LogSink, a_disk_that_takes_lines_again_is_told_once) {
     EXPECT_NE(log.find("before"), std::string::npos);
     EXPECT_EQ(log.find("lost"), std::string::npos);
     EXPECT_NE(log.find("later\n"), std::string::npos);
+}
+
+/// What a controller says of a fault in its first tick and of none in the next.
+void enter_and_heal(ChangeLog &changes, std::uint32_t fault, std::uint32_t tick) {
+    quiesce_telemetry_t telemetry{};
+    telemetry.tick = tick;
+    telemetry.state = QUIESCE_STATE_SAFE;
+    telemetry.fault = fault;
+    changes.control(telemetry);
+    telemetry.state = QUIESCE_STATE_IDLE;
+    telemetry.fault = QUIESCE_FAULT_NONE;
+    changes.control(telemetry);
+}
+
+TEST(ChangeLog, a_fault_that_comes_again_and_again_leaves_the_others) {
+    LogRing ring;
+    ChangeLog changes(ring);
+    enter_and_heal(changes, QUIESCE_FAULT_ESTOP, 1);
+    for (std::uint32_t i = 0; i < 2 * Snapshot::kFaults; ++i) {
+        enter_and_heal(changes, QUIESCE_FAULT_TICK_LOST, 10 + i);
+    }
+    EXPECT_EQ(changes.faults()[0].fault, static_cast<std::uint32_t>(QUIESCE_FAULT_TICK_LOST));
+    EXPECT_EQ(changes.faults()[0].tick, 9 + 2 * Snapshot::kFaults);
+    EXPECT_EQ(changes.faults()[0].times, 2 * Snapshot::kFaults);
+    EXPECT_EQ(changes.faults()[1].fault, static_cast<std::uint32_t>(QUIESCE_FAULT_ESTOP));
+    EXPECT_EQ(changes.faults()[1].tick, 1U);
+    EXPECT_EQ(changes.faults()[1].times, 1U);
+    EXPECT_EQ(changes.faults()[2].fault, static_cast<std::uint32_t>(QUIESCE_FAULT_NONE));
+}
+
+TEST(ChangeLog, the_newest_is_first_and_the_oldest_goes) {
+    LogRing ring;
+    ChangeLog changes(ring);
+    for (std::uint32_t fault = 1; fault <= Snapshot::kFaults + 1; ++fault) {
+        enter_and_heal(changes, fault, fault);
+    }
+    enter_and_heal(changes, 3, 100);
+    EXPECT_EQ(changes.faults()[0].fault, 3U);
+    EXPECT_EQ(changes.faults()[0].times, 2U);
+    EXPECT_EQ(changes.faults()[1].fault, Snapshot::kFaults + 1);
+    EXPECT_EQ(changes.faults()[Snapshot::kFaults - 1].fault, 2U);
 }
 
 } // namespace

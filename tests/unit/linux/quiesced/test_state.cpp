@@ -131,13 +131,13 @@ TEST(StatusFile, names_state_fault_and_counters) {
     Snapshot snapshot{};
     snapshot.telemetry.state = QUIESCE_STATE_FAULT;
     snapshot.telemetry.fault = QUIESCE_FAULT_ESTOP;
-    snapshot.faults[0] = {QUIESCE_FAULT_ESTOP, 17, 0};
-    snapshot.fault_events = 1;
+    snapshot.faults[0] = {QUIESCE_FAULT_ESTOP, 17, 0, 2};
     snapshot.bus.tx_dropped = 5;
     const std::string json = status_json(Config(), snapshot);
     for (const char *part : {"\"state\": \"FAULT\"", "\"fault\": \"ESTOP\"", "\"tx_dropped\": 5",
                              "\"last_faults\": [{\"fault\": \"ESTOP\", \"tick\": 17, \"time\": "
-                             "\"1970-01-01T00:00:00"}) {
+                             "\"1970-01-01T00:00:00",
+                             "\"times\": 2}],"}) {
         EXPECT_NE(json.find(part), std::string::npos) << part << " in\n" << json;
     }
 }
