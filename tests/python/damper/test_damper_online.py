@@ -58,7 +58,7 @@ def recording(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def found(build: None) -> Followed:
+def found(build: Path) -> Followed:
     """The same two tests."""
     stream = stream_of([sine_test(0.5), sine_test(1.5)], None, SETTLE_s)
     return follow(stream, Plan(["bingham"], quick=True, jobs=1), SETTLE_s)
