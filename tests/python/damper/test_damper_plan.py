@@ -11,7 +11,16 @@ from damper_actions import act, refused
 from damper_files import read
 from quiesce.base.errors import UsageError
 from quiesce.cli.identify import plan as cli_plan
-from quiesce.damper.excitation import envelope, ramps, random_motion, sine, sweep, times
+from quiesce.damper import sines_and_chirps
+from quiesce.damper.excitation import (
+    chirp,
+    envelope,
+    ramps,
+    random_motion,
+    sine,
+    sweep,
+    times,
+)
 from quiesce.damper.plan import (
     KINDS,
     SPEED_PARTS,
@@ -59,7 +68,8 @@ def test_every_test_begins_and_ends_at_rest_in_mid_stroke(plan: Plan) -> None:
 
 
 def test_every_kind_of_test_is_there_once_and_explained(plan: Plan) -> None:
-    assert {test.kind for test in plan.tests} == set(KINDS)
+    # Chirps belong to the published protocol.
+    assert {test.kind for test in plan.tests} == set(KINDS) - {"chirp"}
     assert len({cli_plan.file_name(plan, test) for test in plan.tests}) == len(plan.tests)
     assert all(test.duration_s > 0.0 and test.pause_s > 0.0 for test in plan.tests)
 
@@ -149,6 +159,31 @@ def test_random_motion_uses_one_of_its_limits() -> None:
         assert max(reached) == pytest.approx(0.97, rel=1e-6)
 
 
+def test_chirp_keeps_its_amplitude_while_its_frequency_rises_evenly() -> None:
+    time_s = times(10.0, 500.0)
+    disp = chirp(time_s, 5e-3, 1.0, 2.5)
+    assert np.abs(disp[1000:4000]).max() == pytest.approx(5e-3, rel=1e-3)
+    ups = np.flatnonzero((disp[:-1] < 0.0) & (disp[1:] >= 0.0)) / 500.0
+    ups = ups[(ups > 1.0) & (ups < 9.0)]
+    middles = 0.5 * (ups[1:] + ups[:-1])
+    assert 1.0 / np.diff(ups) == pytest.approx(1.0 + 0.15 * middles, rel=0.02)
+
+
+def test_published_protocol_is_that_of_the_source() -> None:
+    """Table 2: 5 mm, four frequencies, six currents, 5000 samples of 2 ms; chirps of Figs 19-22."""
+    plan = sines_and_chirps.make_plan(Damper(0.0125, 2000.0, 1.5, 0.1, 2.5, 0.9))
+    sines = {(test.freq_Hz, test.current_A) for test in plan.tests if test.kind == "sine"}
+    assert sines == {(f, i) for f in (1.0, 1.5, 2.0, 2.5) for i in (0.0, 0.5, 0.75, 1.0, 1.25, 1.5)}
+    chirps = [test for test in plan.tests if test.kind == "chirp"]
+    assert [test.current_A for test in chirps] == [0.0, 0.5, 1.0, 1.5]
+    assert len(plan.tests) == 28 and plan.rate_Hz == 500.0
+    for test in plan.tests:
+        found = excitation(plan, test)
+        assert len(found.time_s) >= 5000
+        assert np.abs(found.disp_m).max() == pytest.approx(5e-3, rel=2e-3)
+        assert np.all(found.current_A == test.current_A)
+
+
 # Command line
 
 
@@ -184,6 +219,13 @@ def test_command_tells_the_plan_as_json(capsys) -> None:
     found = json.loads(capsys.readouterr().out)
     assert found["damper"]["mass_kg"] == 2.0 and found["total_s"] > found["recording_s"]
     assert all(test["tells"] for test in found["tests"])
+
+
+def test_command_takes_the_published_protocol(capsys) -> None:
+    assert act(cli_plan, *OPTIONS, "--protocol", "sines-chirps", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [one["kind"] for one in found["tests"]].count("chirp") == 4
+    assert "--protocol" in refused(cli_plan, *OPTIONS, "--protocol", "some")
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ D use what it says with its constants; "one set" is a single model with current 
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -73,20 +74,32 @@ def error_pct(simulate: Simulate, record: Record) -> float:
     return 100.0 * score(simulate, [whole(record)]).error
 
 
+def scenario_errors(
+    records: Sequence[Record], learn: Callable[[Sequence[Segment]], Simulate], middle: int
+) -> dict[str, list[float]]:
+    """A to D: error in per cent by current."""
+    own = [learn([whole(record)]) for record in records]
+    return {
+        "A": [error_pct(one, record) for one, record in zip(own, records, strict=True)],
+        "B": [error_pct(one, records[middle]) for one in own],
+        "C": [error_pct(own[middle], record) for record in records],
+        "D": [error_pct(own[-1], record) for record in records],
+    }
+
+
+def learner_of(name: str, seed: int) -> Callable[[Sequence[Segment]], Simulate]:
+    """Of a model's name, or "anfis"."""
+    learn = learn_anfis if name == "anfis" else partial(fit_model, name)
+    return lambda segments: learn(segments, seed)
+
+
 def scenarios(records: Sequence[Record], seed: int, say: Callable[[str], None]) -> str:
     """Table of A to D for every model: error in per cent by current."""
     rows = []
     middle = index_of(records, HELD_OUT_A)
     for name in [*MODELS, "anfis"]:
-        learn = learn_anfis if name == "anfis" else lambda s, k, n=name: fit_model(n, s, k)
-        own = [learn([whole(record)], seed) for record in records]
+        errors = scenario_errors(records, learner_of(name, seed), middle)
         say(f"scenarios: {HEADINGS[name]}")
-        errors = {
-            "A": [error_pct(one, record) for one, record in zip(own, records, strict=True)],
-            "B": [error_pct(one, records[middle]) for one in own],
-            "C": [error_pct(own[middle], record) for record in records],
-            "D": [error_pct(own[-1], record) for record in records],
-        }
         for scenario, values in errors.items():
             cells = [f"{value:.2f}" for value in values]
             rows.append([HEADINGS[name], scenario, *cells, f"{np.mean(values):.2f}"])

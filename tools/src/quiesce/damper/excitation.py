@@ -59,6 +59,13 @@ def sweep(
     return size * envelope(time_s, 1.0 / low_Hz) * np.sin(phase)
 
 
+def chirp(time_s: np.ndarray, amplitude_m: float, low_Hz: float, high_Hz: float) -> np.ndarray:
+    """One amplitude, the frequency rising evenly."""
+    rise_Hz_s = (high_Hz - low_Hz) / time_s[-1]
+    phase = 2.0 * np.pi * (low_Hz + 0.5 * rise_Hz_s * time_s) * time_s
+    return amplitude_m * envelope(time_s, 1.0 / low_Hz) * np.sin(phase)
+
+
 def random_motion(
     time_s: np.ndarray, amplitude_m: float, speed_m_s: float, band_Hz: tuple[float, float],
     seed: int,

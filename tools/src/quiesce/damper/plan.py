@@ -8,6 +8,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.damper.excitation import (
     Excitation,
+    chirp,
     ramp_freq_Hz,
     ramps,
     random_motion,
@@ -56,7 +57,8 @@ class Damper:
 
 @dataclass(frozen=True)
 class Test:
-    """One recording. freq_Hz: of sines, else 0. current_A: None where it is switched."""
+    """One recording. freq_Hz: of sines, that with which a chirp begins, else 0. current_A: None
+    where it is switched."""
 
     __test__ = False  # no test of pytest
 
@@ -79,6 +81,7 @@ KINDS = {
     "steps": "lag of coil and driver, rising and falling; nothing else shows it",
     "random": "held out: whether the model predicts motion that it was not fitted to",
     "random_current": "held out: the same with a switched current",
+    "chirp": "held out: a sine of one amplitude whose frequency rises evenly",
     "repeat": "the first sine again: drift by temperature, and the floor of any error",
 }
 
@@ -242,6 +245,8 @@ def excitation(plan: Plan, test: Test) -> Excitation:
     amplitude, speed = test.amplitude_m, test.speed_m_s
     if test.kind in ("sine", "repeat"):
         disp = sine(time_s, amplitude, test.freq_Hz)
+    elif test.kind == "chirp":
+        disp = chirp(time_s, amplitude, test.freq_Hz, damper.rig_max_Hz)
     elif test.kind == "sweep":
         disp = sweep(time_s, amplitude, speed, sweep_low_Hz(damper), damper.rig_max_Hz)
     elif test.kind in ("random", "random_current"):

@@ -12,13 +12,13 @@ from typing import Any
 
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import build_folder, shown
-from quiesce.cli.identify import compare, example, export, inverse
+from quiesce.cli.identify import compare, example, export, inverse, online
 from quiesce.cli.identify import plan as cli_plan
 from quiesce.cli.identify.data_options import add_data_options
 
 NAME = "identify"
 # Each has NAME, HELP, add_options(parser) and run(args).
-ACTIONS: tuple[ModuleType, ...] = (cli_plan, example, compare, inverse, export)
+ACTIONS: tuple[ModuleType, ...] = (cli_plan, example, compare, online, inverse, export)
 
 EPILOG = """also:
 {actions}

@@ -11,6 +11,7 @@ from quiesce.base.command import real_number
 from quiesce.base.paths import shown
 from quiesce.base.table import format_table
 from quiesce.cli.identify.help import fill
+from quiesce.damper import sines_and_chirps
 from quiesce.damper.plain import plain
 from quiesce.damper.plan import KINDS, Damper, Plan, Test, excitation, make_plan, needs
 
@@ -26,6 +27,8 @@ force beside it as force_N and give the files to quiesce identify; hold the rand
 examples:
   quiesce identify plan --stroke-mm 50 --max-force-N 2000 --max-current-A 2
   quiesce identify plan --stroke-mm 50 --max-force-N 2000 --max-current-A 2 --out build/plan
+  quiesce identify plan --protocol sines-chirps --stroke-mm 12.5 --max-current-A 1.5 \\
+      --rig-max-Hz 2.5 --max-force-N 2000
 """
 
 
@@ -54,12 +57,18 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--mass-kg", type=real_number(1e-4, 1e5, "a mass in kg"), metavar="kg",
         help="mass of the damper, for its heating (guessed from force and stroke)",
     )  # fmt: skip
+    parser.add_argument(
+        "--protocol", choices=("full", "sines-chirps"), default="full",
+        help="full: all that tells dampers apart; sines-chirps: the 24 sines and 4 chirps that the "
+        "self-tuning fuzzy model was published with, up to the limits stated here (%(default)s)",
+    )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write plan and excitations")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def run(args: argparse.Namespace) -> int:
-    plan = make_plan(damper_of(args))
+    damper = damper_of(args)
+    plan = make_plan(damper) if args.protocol == "full" else sines_and_chirps.make_plan(damper)
     if args.out:
         write_plan(args.out, plan)
     print(json.dumps(numbers_of(plan), indent=1) if args.json else text_of(plan))

@@ -92,11 +92,16 @@ def error_of(premises: Premises, u: np.ndarray, force: np.ndarray, ridge: float)
 
 
 def hybrid(
-    u: np.ndarray, force: np.ndarray, settings: Settings, report: Report = silent
+    u: np.ndarray,
+    force: np.ndarray,
+    settings: Settings,
+    report: Report = silent,
+    start: Premises | None = None,
 ) -> tuple[Premises, np.ndarray, list[float]]:
     """Premises, consequents and the error after each accepted step, the start first. `force` of
-    about unit size."""
-    premises = Premises.grid(u.shape[1], settings.memberships)
+    about unit size. start: other than a grid over -1 .. 1; then u, and the steps, are in its
+    units."""
+    premises = start or Premises.grid(u.shape[1], settings.memberships)
     errors = [error_of(premises, u, force, settings.ridge)]
     step = settings.first_step
     for epoch in range(settings.epochs):

@@ -11,6 +11,7 @@ share a membership or an output.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ RULES = np.array(
         [NB, ZE, PS, PB, PB],
     ]
 )
+_FLAT_RULES = RULES.ravel()
 LEAST_WEIGHT = 1e-6
 
 # What updates may not do: memberships keep apart, overlap and stay near the inputs' range.
@@ -86,18 +88,23 @@ class Triangles:
     def guard(self) -> None:
         """Centres in order and apart, each base wide enough to reach its neighbours and the ends
         of -1 .. 1: some membership holds everywhere."""
-        low = -_MOST_CENTRE + _LEAST_GAP * np.arange(LABELS)
-        for k in range(LABELS):
-            least = low[k] if k == 0 else max(low[k], self.centres[k - 1] + _LEAST_GAP)
+        centres = self.centres.tolist()
+        least = -_MOST_CENTRE
+        for k, centre in enumerate(centres):
             most = _MOST_CENTRE - _LEAST_GAP * (LABELS - 1 - k)
-            self.centres[k] = min(max(self.centres[k], least), most)
-        gaps = np.diff(self.centres)
-        least = _OVERLAP * np.maximum(
-            np.append(gaps, 2.0 * (1.0 - self.centres[-1])),
-            np.append(2.0 * (self.centres[0] + 1.0), gaps),
-        )
-        least = np.maximum(least, _LEAST_GAP)
-        self.bases[:] = np.maximum(np.minimum(self.bases, _MOST_BASE), least)
+            centres[k] = min(max(centre, least), most)
+            least = centres[k] + _LEAST_GAP
+        # To the neighbours; the outermost as far again as to the ends.
+        gaps = [
+            2.0 * (centres[0] + 1.0),
+            *(after - before for before, after in pairwise(centres)),
+            2.0 * (1.0 - centres[-1]),
+        ]
+        bases = [
+            max(min(base, _MOST_BASE), _OVERLAP * max(gaps[k], gaps[k + 1]), _LEAST_GAP)
+            for k, base in enumerate(self.bases.tolist())
+        ]
+        self.centres[:], self.bases[:] = centres, bases
 
 
 @dataclass(frozen=True)
@@ -107,6 +114,20 @@ class Gradients:
     outputs: np.ndarray
     centres: tuple[np.ndarray, np.ndarray]  # displacement, velocity
     bases: tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class _Graded:
+    """A sample's way forward: inputs, their grades, the sum of the rules' heights, of that each
+    label's share, and u."""
+
+    x: float
+    v: float
+    by_x: np.ndarray
+    by_v: np.ndarray
+    total: float
+    shares: np.ndarray
+    u: float
 
 
 @dataclass
@@ -137,7 +158,7 @@ class SelfTuning:
         grades = self.current.grades(min(max(current_A / self.current_scale_A, 0.0), 1.0))
         return float(grades @ self.gains) / max(float(grades.sum()), LEAST_WEIGHT)
 
-    def _grades(self, disp_m: float, velocity_m_s: float) -> tuple[np.ndarray, ...]:
+    def _graded(self, disp_m: float, velocity_m_s: float) -> "_Graded":
         x = min(max(disp_m / self.disp_scale_m, -1.0), 1.0)
         v = min(max(velocity_m_s / self.velocity_scale_m_s, -1.0), 1.0)
         by_x, by_v = self.disp.grades(x), self.velocity.grades(v)
@@ -145,34 +166,32 @@ class SelfTuning:
             heights = np.minimum(by_x[:, None], by_v[None, :])
         else:
             heights = by_x[:, None] * by_v[None, :]
-        return np.array([x, v]), by_x, by_v, heights
+        total = float(heights.sum())
+        shares = np.bincount(_FLAT_RULES, heights.ravel(), LABELS) / max(total, LEAST_WEIGHT)
+        return _Graded(x, v, by_x, by_v, total, shares, float(shares @ self.outputs))
 
     def output(self, disp_m: float, velocity_m_s: float) -> float:
         """u."""
-        heights = self._grades(disp_m, velocity_m_s)[-1]
-        total = max(float(heights.sum()), LEAST_WEIGHT)
-        return float(np.sum(heights * self.outputs[RULES])) / total
+        return self._graded(disp_m, velocity_m_s).u
 
     def force_N(self, disp_m: float, velocity_m_s: float, current_A: float) -> float:
         return self.force_scale_N * self.gain(current_A) * self.output(disp_m, velocity_m_s)
 
     def gradients(self, disp_m: float, velocity_m_s: float) -> Gradients:
         """Of u. With the minimum only the smaller grade of a rule passes its gradient on."""
-        (x, v), by_x, by_v, heights = self._grades(disp_m, velocity_m_s)
-        total = float(heights.sum())
-        floored = max(total, LEAST_WEIGHT)
-        u = float(np.sum(heights * self.outputs[RULES])) / floored
-        by_height = (self.outputs[RULES] - (u if total >= LEAST_WEIGHT else 0.0)) / floored
+        return self._gradients(self._graded(disp_m, velocity_m_s))
+
+    def _gradients(self, at: "_Graded") -> Gradients:
+        base = at.u if at.total >= LEAST_WEIGHT else 0.0
+        by_height = (self.outputs - base)[RULES] / max(at.total, LEAST_WEIGHT)
         if self.uses_minimum:
-            to_x = (by_height * (by_x[:, None] <= by_v[None, :])).sum(axis=1)
-            to_v = (by_height * (by_v[None, :] < by_x[:, None])).sum(axis=0)
+            to_x = (by_height * (at.by_x[:, None] <= at.by_v[None, :])).sum(axis=1)
+            to_v = (by_height * (at.by_v[None, :] < at.by_x[:, None])).sum(axis=0)
         else:
-            to_x = (by_height * by_v[None, :]).sum(axis=1)
-            to_v = (by_height * by_x[:, None]).sum(axis=0)
-        x_slopes, v_slopes = self.disp.slopes(x), self.velocity.slopes(v)
-        outputs = np.bincount(RULES.ravel(), heights.ravel(), LABELS) / floored
+            to_x, to_v = by_height @ at.by_v, at.by_x @ by_height
+        x_slopes, v_slopes = self.disp.slopes(at.x), self.velocity.slopes(at.v)
         return Gradients(
-            outputs,
+            at.shares,
             (to_x * x_slopes[0], to_v * v_slopes[0]),
             (to_x * x_slopes[1], to_v * v_slopes[1]),
         )
@@ -181,12 +200,15 @@ class SelfTuning:
         self, disp_m: float, velocity_m_s: float, current_A: float, measured_N: float, rates: Rates
     ) -> float:
         """One sample on line: the force before the update, in N."""
+        at = self._graded(disp_m, velocity_m_s)
         k = self.gain(current_A)
-        force_N = self.force_scale_N * k * self.output(disp_m, velocity_m_s)
+        force_N = self.force_scale_N * k * at.u
         step = k * (force_N - measured_N) / self.force_scale_N
-        gradients = self.gradients(disp_m, velocity_m_s)
-        self.outputs -= rates.output * step * gradients.outputs
-        np.clip(self.outputs, -_MOST_OUTPUT, _MOST_OUTPUT, out=self.outputs)
+        gradients = self._gradients(at)
+        most = _MOST_OUTPUT
+        self.outputs[:] = np.minimum(
+            np.maximum(self.outputs - rates.output * step * gradients.outputs, -most), most
+        )
         for k_input, triangles in enumerate((self.disp, self.velocity)):
             triangles.centres -= rates.centre * step * gradients.centres[k_input]
             triangles.bases -= rates.base * step * gradients.bases[k_input]
