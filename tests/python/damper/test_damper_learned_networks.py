@@ -1,16 +1,14 @@
 """Networks: gradients, training, free running, and the same forces in numpy and in C++."""
 
-import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
-import tomli_w
-from learned_data import backlash_N, error_of, kwok_N, random_motion, segments_of, sine
+from learned_data import backlash_N, error_of, random_motion, segments_of, sine
 from quiesce.base.errors import UsageError
 from quiesce.damper import library
 from quiesce.damper.data.split import Segment, whole
-from quiesce.damper.learned import feed_forward, hysteresis_network, inverse, recurrent
+from quiesce.damper.learned import feed_forward, hysteresis_network, recurrent
 from quiesce.damper.learned.elements import Elements
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.network import Network, fit
@@ -145,85 +143,6 @@ def test_a_memory_needs_lags_and_feedback_helps_free_running():
 def test_default_lags_reach_thirty_milliseconds():
     assert default_lags(0.001) == (0, 1, 2, 4, 8, 16)
     assert default_lags(0.05) == (0, 1)
-
-
-# Inverse
-
-
-def test_inverse_network_gives_the_current_back(tmp_path):
-    segments, scales = segments_of(*(sine(2.5, 5e-3, at) for at in (0.0, 0.5, 1.0, 1.5)))
-    model = inverse.train(segments, scales, 1)
-    file = tmp_path / "inverse.toml"
-    model.write(file)
-    again = inverse.read_inverse(file)
-    for wanted_A in (0.25, 0.75, 1.25):
-        record = sine(2.5, 5e-3, wanted_A)
-        motion = (record.disp_m, record.velocity_m_s)
-        current_A = again.current_A(kwok_N(*motion, record.command), *motion)
-        np.testing.assert_array_equal(current_A, model.current_A(record.force_N, *motion))
-        fast = np.abs(record.velocity_m_s) > 0.3 * scales.speed_m_s
-        assert np.abs(current_A[fast] - wanted_A).mean() < 0.12
-
-
-def test_inverse_network_holds_at_low_speed_and_never_drives():
-    segments, scales = segments_of(*(sine(2.5, 5e-3, at) for at in (0.0, 1.0)))
-    model = inverse.train(segments, scales, 1, inverse.Settings(epochs=5))
-    slow = 0.5 * model.least_speed_m_s
-    force = np.array([500.0, 800.0, 800.0, -800.0])
-    speed = np.array([slow, 0.06, -slow, 0.06])
-    current_A = model.current_A(force, np.zeros(4), speed, held_A=0.3)
-    assert current_A[0] == 0.3
-    assert current_A[2] == current_A[1]
-    assert current_A[3] == 0.0
-
-
-def test_inverse_needs_two_currents():
-    segments, scales = segments_of(sine(2.5, 5e-3, 0.5))
-    with pytest.raises(UsageError, match="two currents"):
-        inverse.train(segments, scales)
-
-
-@pytest.mark.parametrize(
-    ("path", "value", "words"),
-    [
-        (("schema",), "quiesce-damper", "schema: expected"),
-        (("force_scale_N",), 0.0, "force_scale_N: expected a number > 0"),
-        (("max_current_A",), float("nan"), "max_current_A: expected a number > 0"),
-        (("layer",), [], "layer: expected tables"),
-        (("layer", 0, "weights"), [1.0], "layer\\[1\\].weights: expected 72 finite numbers"),
-        (("layer", 0, "units"), 0, "layer\\[1\\].units: expected an integer"),
-        (("layer", 1, "biases"), ["a"] * 12, "layer\\[2\\].biases: expected 12 finite numbers"),
-        (("layer", 2, "weights"), [float("nan")] * 12, "layer\\[3\\].weights"),
-    ],
-)
-def test_broken_inverse_files_are_named(tmp_path, path, value, words):
-    rng = np.random.default_rng(1)
-    model = inverse.InverseNetwork(1.0, 1.0, 1.0, 1.0, 0.1, Network.random((3, 24, 12, 1), rng))
-    table = tomllib.loads(tomli_w.dumps(model.to_toml()))
-    at = table
-    for key in path[:-1]:
-        at = at[key]
-    at[path[-1]] = value
-    file = tmp_path / "inverse.toml"
-    file.write_text(tomli_w.dumps(table), encoding="utf-8")
-    with pytest.raises(UsageError, match=words) as caught:
-        inverse.read_inverse(file)
-    assert "\n" not in str(caught.value)
-
-
-def test_stepped_current_raises_lowers_and_holds():
-    def step(wanted_N, force_N, current_A=0.5):
-        return inverse.stepped_current(
-            current_A, wanted_N, force_N, 100.0, 900.0, (0.0, 1.5), tolerance_N=10.0
-        )
-
-    assert step(505.0, 500.0) == 0.5
-    assert step(700.0, 500.0) == pytest.approx(0.5 + 0.5 * 1.0)
-    assert step(300.0, 500.0) == pytest.approx(0.5 - 0.5 * 0.5)
-    assert step(-700.0, -500.0) == pytest.approx(1.0)
-    assert step(-700.0, 500.0) == 0.0
-    assert step(2000.0, 900.0) == 1.5
-    assert step(50.0, 100.0) == 0.0
 
 
 # Networks over hysteresis elements

@@ -5,6 +5,8 @@ firmware/track/force_map.h describes the words; it checks them again.
 
 import struct
 import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +14,8 @@ from quiesce.damper.inverse import Monotone, SteadyForces
 
 MAGIC = 0x31464D51
 MAX_CURRENTS = 16
+MAX_VELOCITIES = 32
+MIN_POINTS = 2  # of either axis
 MAX_CURRENT_mA = 20000
 LIMIT = 2**30 - 1  # of a force in mN and of a velocity in um/s
 # Forces are whole mN: less than this between no current and the largest one is told too coarsely.
@@ -54,6 +58,43 @@ def map_words(found: Monotone) -> list[int]:
     after = [5 + len(values), len(velocities), len(currents)]
     after += [value & 0xFFFFFFFF for value in values]
     return [MAGIC, zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after]
+
+
+@dataclass(frozen=True)
+class Map:
+    """velocities and currents rising, forces_N [velocities, currents], > 0 resists a stroke that
+    grows."""
+
+    velocities_m_s: np.ndarray
+    currents_A: np.ndarray
+    forces_N: np.ndarray
+
+
+def map_of_words(words: Sequence[int]) -> Map:
+    """ValueError, in one line, for words that the firmware refuses (quiesce_force_map_check)."""
+    if len(words) < 5 or not all(0 <= word <= 0xFFFFFFFF for word in words):
+        raise ValueError("expected 5 words of 32 bits or more")
+    if words[0] != MAGIC:
+        raise ValueError(f"it begins with 0x{words[0]:08x}, a map with 0x{MAGIC:08x}")
+    n, m = words[3], words[4]
+    if words[2] != len(words):
+        raise ValueError(f"{len(words)} words where its header says {words[2]}")
+    if words[1] != zlib.crc32(struct.pack(f"<{len(words) - 2}I", *words[2:])):
+        raise ValueError("its CRC-32 is not that of its words")
+    is_shape = MIN_POINTS <= n <= MAX_VELOCITIES and MIN_POINTS <= m <= MAX_CURRENTS
+    if not is_shape or len(words) != 5 + n + m + n * m:
+        raise ValueError(f"{n} velocities and {m} currents are not the shape of a map")
+    values = np.array(words[5:], dtype=np.uint32).view(np.int32).astype(int)
+    velocities, currents, forces = values[:n], values[n : n + m], values[n + m :].reshape(n, m)
+    along = np.sign(velocities)[:, None] * forces
+    is_current = (np.diff(currents) > 0).all() and currents[0] == 0
+    if not (_is_axis(velocities) and is_current and currents[-1] <= MAX_CURRENT_mA):
+        raise ValueError("its velocities or currents do not rise within their limits")
+    if np.abs(forces).max() > LIMIT or not (np.diff(along, axis=1) >= 0).all():
+        raise ValueError("a force goes the wrong way with the current, or is too large")
+    if np.diff(forces[velocities == 0], axis=1).any():
+        raise ValueError("a force follows the current at rest")
+    return Map(1e-6 * velocities, 1e-3 * currents, 1e-3 * forces)
 
 
 def top_mA(found: Monotone) -> int:

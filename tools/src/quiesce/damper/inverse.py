@@ -43,8 +43,10 @@ def forces_at(damper: DamperModel, record: Record, currents_A: Sequence[float]) 
     for name in library.RIG[:6]:
         bare[first + library.RIG.index(name)] = 0.0
     currents = np.atleast_1d(np.asarray(currents_A, dtype=float))
-    rates = [library.fastest_rates(one, orders, bare, at(record, i))[0] for i in currents]
-    steps = library.substeps_for(max(rates), record.rate_Hz) if one.states else 1
+    steps = 1
+    if one.states:
+        rates = [library.fastest_rates(one, orders, bare, at(record, i))[0] for i in currents]
+        steps = library.substeps_for(max(rates), record.rate_Hz)
     if not damper.rig.get("field_exponent"):
         # At a constant current every parameter is a constant: all currents run side by side.
         rig = bare[first:]

@@ -31,7 +31,7 @@ class DamperModel:
     speed_m_s: float
     parameters: Mapping[str, Any]
     rig: Mapping[str, float] = field(default_factory=dict)  # values of RIG that are not 0
-    source: Mapping[str, Any] = field(default_factory=dict)
+    source: Mapping[str, Any] | str = field(default_factory=dict)
     valid: Mapping[str, Any] = field(default_factory=dict)
     fit: Mapping[str, Any] = field(default_factory=dict)
 
@@ -61,7 +61,7 @@ class DamperModel:
             "model": self.model,
             "stroke_m": self.stroke_m,
             "speed_m_s": self.speed_m_s,
-            "source": dict(self.source),
+            "source": self.source if isinstance(self.source, str) else dict(self.source),
             "valid": dict(self.valid),
             "parameters": dict(self.parameters),
         }
@@ -75,7 +75,7 @@ class DamperModel:
         for key, value in (("rig", others), ("fit", dict(self.fit))):
             if value:
                 table[key] = value
-        return tomli_w.dumps({key: value for key, value in table.items() if value != {}})
+        return tomli_w.dumps({key: value for key, value in table.items() if value not in ({}, "")})
 
 
 def from_row(
@@ -109,6 +109,17 @@ def opened(damper: DamperModel) -> DamperFile:
         file = Path(folder) / "damper.toml"
         file.write_text(damper.to_toml(), encoding="utf-8")
         return DamperFile(file)
+
+
+def model_of_text(text: str, where: str) -> DamperModel:
+    """A damper file's text that stands elsewhere. UsageError with `where` and key."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "damper.toml"
+        file.write_text(text, encoding="utf-8")
+        try:
+            return read_model(file)
+        except UsageError as error:
+            raise UsageError(str(error).replace(str(file), where)) from None
 
 
 def read_model(file: Path) -> DamperModel:

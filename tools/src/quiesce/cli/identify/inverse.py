@@ -1,4 +1,4 @@
-"""`quiesce identify inverse MODEL.toml`: can the current be found from the force, and the map."""
+"""`quiesce identify inverse FILE`: can the current be found from the force, map and inverses."""
 
 import argparse
 import json
@@ -11,25 +11,42 @@ import numpy as np
 from quiesce.base.command import real_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.cli.identify import inverse_methods
 from quiesce.cli.identify.help import fill
 
 NAME = "inverse"
-HELP = "the current for a wanted force: check, plot and map"
-EPILOG = """A control law wants a force; the inverse gives the current. That needs a force that
-rises with the current: the check says up to which current it does, at several velocities in
-mid-stroke of a sine that has settled. --out writes inverse.csv (velocity, force, current,
-feasible), forces.csv, inverse.svg and, unless the last line of the check says why not, map.words:
-the map that tracker inverse of a controller takes (quiesce_bench run --force-map). Currents
-saturate where the force is not feasible.
+HELP = "the current for a wanted force: check and map, or inverses by several methods"
+EPILOG = """Without --method, the check of a damper file. A control law wants a force; the inverse
+gives the current. That needs a force that rises with the current: the check says up to which
+current it does, at several velocities in mid-stroke of a sine that has settled. --out writes
+inverse.csv (velocity, force, current, feasible), forces.csv, inverse.svg and, unless the last line
+of the check says why not, map.words: the map that tracker inverse of a controller takes
+(quiesce_bench run --force-map). Currents saturate where the force is not feasible.
+
+With --method, inverses are made and follow wanted forces (sines, a sweep, band noise) on the
+damper, beside the best constant current and the ideal inverse. map and steps stand on a damper
+file; ffn, rnn and anfis learn from recordings, or from tests made with the damper file. --out
+writes a file for each (map.words, inverse_NAME.toml; --read reads them back), map_NAME.words for
+those that the tracker can have as a map (ffn, anfis), and inverse.html.
+  map    the controller's table of forces
+  steps  moves the current by the part of the force that is missing (a model in the loop)
+  ffn    feed-forward network over force, displacement and velocity, now and before
+  rnn    the same with its own earlier currents
+  anfis  Gaussians on a grid
 
 examples:
   quiesce identify inverse damper.toml --max-current-A 2 --out build/inverse
+  quiesce identify inverse damper.toml --method all --out build/inverse
+  quiesce identify inverse rig.csv --method ffn,rnn --on damper.toml --out build/inverse
+  quiesce identify inverse damper.toml --read build/inverse/inverse_rnn.toml
 """
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     fill(parser, EPILOG)
-    parser.add_argument("model", type=Path, metavar="MODEL.toml", help="damper file")
+    parser.add_argument(
+        "files", type=Path, nargs="+", metavar="FILE", help="damper file, or recordings (CSV)"
+    )
     parser.add_argument(
         "--max-current-A", type=real_number(1e-6, 1e3, "a current in A"), metavar="A",
         help="largest current (max_current_A of the file's [valid])",
@@ -44,21 +61,35 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write map and plot there")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
+    inverse_methods.add_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    from quiesce.damper.inverse import default_velocities, monotone_range
-    from quiesce.damper.report.inverse_text import numbers_of, text_of, write_map
     from quiesce.damper.simulate import simulator_of_file
 
-    if not args.model.is_file():
-        raise UsageError(f"{shown(args.model)}: no such file; name a damper file (TOML)")
-    damper, simulate = simulator_of_file(args.model)
+    has_methods = bool(args.method or args.read)
+    if inverse_methods.is_recording(args.files):
+        if not args.method:
+            raise UsageError(
+                f"{shown(args.files[0])}: name a damper file (TOML); with --method ffn, rnn or "
+                "anfis an inverse is made from a recording"
+            )
+        return inverse_methods.run(args, None, None, 0.0)
+    damper, simulate = simulator_of_file(args.files[0])
     if args.max_speed_m_s:
         damper = replace(damper, speed_m_s=args.max_speed_m_s)
     if args.amplitude_mm:
         damper = replace(damper, stroke_m=2e-3 * args.amplitude_mm)
     most_A = args.max_current_A or stated_current(damper)
+    if has_methods:
+        return inverse_methods.run(args, damper, simulate, most_A)
+    return check(args, damper, simulate, most_A)
+
+
+def check(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -> int:
+    from quiesce.damper.inverse import default_velocities, monotone_range
+    from quiesce.damper.report.inverse_text import numbers_of, text_of, write_map
+
     velocities = default_velocities(damper)
     found = monotone_range(damper, most_A, velocities, None if damper.is_kernel else simulate)
     check_finite(damper, found)
@@ -72,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def stated_current(damper: Any) -> float:
-    limits = [damper.valid.get(key) for key in ("max_current_A", "current_A")]
+    limits = [damper.valid.get(key) for key in ("max_current_A", "current_A", "command_V")]
     for limit in limits:
         values = limit if isinstance(limit, list) else [limit]
         if all(isinstance(value, int | float) for value in values) and values and max(values) > 0.0:

@@ -26,6 +26,7 @@ def column(record: Record, key: str) -> np.ndarray:
         "current_A": record.command,
         "displacement_m": record.disp_m,
         "velocity_m_s": record.velocity_m_s,
+        "force_N": record.force_N,  # of inverses
     }
     return values[key]
 

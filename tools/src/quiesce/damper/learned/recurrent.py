@@ -38,8 +38,13 @@ def earlier(force: np.ndarray, feedback: Sequence[int]) -> np.ndarray:
     return np.stack([padded[first - lag : first - lag + len(force)] for lag in feedback], axis=1)
 
 
-def free_run(network: Network, inputs: np.ndarray, feedback: Sequence[int]) -> np.ndarray:
-    """Forces [samples] from rest, only the network's own fed back."""
+def free_run(
+    network: Network,
+    inputs: np.ndarray,
+    feedback: Sequence[int],
+    limits: tuple[float, float] = (-np.inf, np.inf),
+) -> np.ndarray:
+    """Forces [samples] from rest, only the network's own fed back; within the limits."""
     depth = max(feedback)
     out = np.zeros(len(inputs) + depth)
     back = np.array(feedback)
@@ -47,7 +52,8 @@ def free_run(network: Network, inputs: np.ndarray, feedback: Sequence[int]) -> n
         seen = np.concatenate([row, out[k + depth - back]])
         for weights, biases in zip(network.weights[:-1], network.biases[:-1], strict=True):
             seen = np.tanh(weights @ seen + biases)
-        out[k + depth] = network.weights[-1][0] @ seen + network.biases[-1][0]
+        force = network.weights[-1][0] @ seen + network.biases[-1][0]
+        out[k + depth] = min(max(force, limits[0]), limits[1])
     return out[depth:]
 
 
@@ -128,6 +134,33 @@ def tune_free(
     return best, best_error
 
 
+@dataclass(frozen=True)
+class Learned:
+    """Free-running errors, of the largest force: with measured forces fed back in training, then at
+    the end."""
+
+    network: Network
+    start: float
+    error: float
+
+
+def learned(
+    series: Sequence[Series], settings: Settings, rng: np.random.Generator, progress: Report
+) -> Learned:
+    """Both trainings."""
+    fed_back = [earlier(one.force, settings.feedback)[one.first :] for one in series]
+    inputs = np.concatenate([one.inputs[one.first :] for one in series])
+    force = np.concatenate([one.force[one.first :] for one in series])
+    noisy = np.concatenate(fed_back)
+    noisy = noisy + settings.noise * rng.normal(size=noisy.shape)
+    seen = np.concatenate([inputs, noisy], axis=1)
+    network = Network.random((seen.shape[1], *settings.hidden, 1), rng)
+    fit(network, seen, force[:, None], rng, settings.epochs, decay=settings.decay)
+    start = free_error(network, series, settings.feedback)
+    network, error = tune_free(network, series, settings, rng, progress)
+    return Learned(network, start, error)
+
+
 def train(
     segments: Sequence[Segment],
     scales: Scales,
@@ -141,31 +174,22 @@ def train(
     lags = settings.lags or default_lags(time_s)
     box = Box.of(segments)
     series = series_of(segments, box, lags, time_s, scales.force_N)
-    fed_back = [earlier(one.force, settings.feedback)[one.first :] for one in series]
-    inputs = np.concatenate([one.inputs[one.first :] for one in series])
-    force = np.concatenate([one.force[one.first :] for one in series])
-    noisy = np.concatenate(fed_back)
-    noisy = noisy + settings.noise * rng.normal(size=noisy.shape)
-    seen = np.concatenate([inputs, noisy], axis=1)
-    network = Network.random((seen.shape[1], *settings.hidden, 1), rng)
-    fit(network, seen, force[:, None], rng, settings.epochs, decay=settings.decay)
-    start = free_error(network, series, settings.feedback)
-    network, error = tune_free(network, series, settings, rng, progress)
+    found = learned(series, settings, rng, progress)
     parameters = {
         "force_scale_N": float(scales.force_N),
         "sample_time_s": float(time_s),
         "lags": list(lags),
         "feedback": list(settings.feedback),
         **box.tables(),
-        "layer": network.tables(),
+        "layer": found.network.tables(),
     }
     return LearnedDamper(
         "recurrent_network",
         **limits_of(scales),
         parameters=parameters,
-        parameter_count=network.parameter_count,
+        parameter_count=found.network.parameter_count,
         notes=(
-            f"free-running error {start:.4g} of the largest force after training with measured "
-            f"forces, {error:.4g} after training free-running",
+            f"free-running error {found.start:.4g} of the largest force after training with "
+            f"measured forces, {found.error:.4g} after training free-running",
         ),
     )

@@ -1,0 +1,119 @@
+"""`quiesce identify inverse FILE --method NAMES`: inverses made, written, compared."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from quiesce.base.atomic import output_files
+from quiesce.base.command import whole_number
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.base.progress import say
+from quiesce.cli.identify.data_options import add_data_options
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("methods")
+    group.add_argument(
+        "--method", metavar="NAMES",
+        help="make inverses and compare them: map, steps, ffn, rnn, anfis, with commas, or all",
+    )  # fmt: skip
+    group.add_argument(
+        "--read", type=Path, action="append", default=[], metavar="FILE",
+        help="an inverse made before, compared as well; repeatable",
+    )  # fmt: skip
+    group.add_argument(
+        "--on", type=Path, metavar="MODEL.toml",
+        help="damper that they are compared on (the damper file; none for a recording)",
+    )  # fmt: skip
+    group.add_argument(
+        "--seed", type=whole_number(0, (1 << 31) - 1), default=1, help="(%(default)s)"
+    )
+    add_data_options(parser.add_argument_group("data, of a recording"))
+
+
+def is_recording(files: list[Path]) -> bool:
+    """UsageError where recordings and a damper file are mixed, or one is not there."""
+    kinds = {file.suffix.lower() != ".toml" for file in files}
+    if len(kinds) > 1 or (not any(kinds) and len(files) > 1):
+        raise UsageError("name one damper file (.toml), or one or more recordings")
+    for file in files:
+        if not file.is_file():
+            raise UsageError(f"{shown(file)}: no such file; name a damper file or a recording")
+    return kinds == {True}
+
+
+def source_of_damper(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -> Any:
+    from quiesce.damper.inverses.demand import Source
+    from quiesce.damper.inverses.excited import excited
+
+    return Source(excited(damper, simulate, most_A, args.seed), most_A, damper)
+
+
+def source_of_recording(args: argparse.Namespace) -> Any:
+    from quiesce.cli.identify.data_options import records_of
+    from quiesce.damper.data.split import split_records
+    from quiesce.damper.inverses.demand import Source
+
+    data = records_of(args, args.files)
+    train, _ = split_records(data.records, data.split)
+    most_A = args.max_current_A or max(float(one.record.command[one.rows].max()) for one in train)
+    if not most_A > 0.0:
+        raise UsageError("the recording has no current above 0: there is no inverse")
+    return Source(train, most_A)
+
+
+def run(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -> int:
+    """damper, simulate and most_A: of the damper file; None and 0 for a recording."""
+    from quiesce.damper.inverses.made import from_file, made, to_compare
+    from quiesce.damper.inverses.methods import methods_of, read_inverse
+    from quiesce.damper.inverses.tracking import compare
+    from quiesce.damper.report.tracking import numbers_of, text_of
+    from quiesce.damper.simulate import simulator_of_file
+
+    methods = methods_of(args.method) if args.method else []
+    read = [from_file(*named(file, read_inverse(file))) for file in args.read]
+    judge = (damper, simulate) if args.on is None else simulator_of_file(args.on)
+    source = source_of_recording(args) if damper is None else None
+    if source is None and methods:
+        source = source_of_damper(args, damper, simulate, most_A)
+    inverses = made(source, methods, args.seed, say) + read if methods else read
+    found = None
+    if judge[0] is not None:
+        limit_A = source.max_current_A if source is not None else most_A
+        found = compare(*judge, to_compare(inverses), limit_A, args.seed)
+    written = write_all(args, inverses, found) if args.out else []
+    if args.json:
+        print(json.dumps(numbers_of(inverses, found), indent=1))
+        return 0
+    print(text_of(inverses, found))
+    if found is None:
+        print("\nnot compared: a recording is no damper; --on MODEL.toml names one")
+    if written:
+        print(f"\nwritten: {', '.join(shown(args.out / name) for name in written)}")
+    return 0
+
+
+def named(file: Path, found: tuple[str, Any]) -> tuple[str, str, Any]:
+    return found[0], file.name, found[1]
+
+
+def write_all(args: argparse.Namespace, inverses: list[Any], found: Any) -> list[str]:
+    """Names of the files in args.out."""
+    from quiesce.damper.inverses.methods import file_name, text_of
+    from quiesce.damper.report.tracking import PAGE, page_of
+
+    texts: dict[str, str] = {}
+    for one in inverses:
+        if one.seconds:  # made here
+            texts[file_name(one.method)] = text_of(one.method, one.inverse)
+            if one.own_map is not None:
+                texts[f"map_{one.method}.words"] = one.own_map.to_text()
+    command = "quiesce " + " ".join(sys.argv[1:])
+    texts[PAGE] = page_of(args.files[0].stem, inverses, found, list(texts), command)
+    with output_files(args.out) as staging:
+        for name, text in texts.items():
+            (staging / name).write_text(text, encoding="utf-8")
+    return list(texts)

@@ -1,0 +1,92 @@
+"""The methods by name, and their files (schema quiesce-inverse-damper).
+
+A method is a module with NAME, TITLE and make(source, seed, progress), and a line here; one whose
+file is TOML has read(keys, max_current_A, where), too. A map's file is the words that the
+controller loads.
+"""
+
+import json
+import tomllib
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import tomli_w
+
+from quiesce.base.atomic import output_files
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
+from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, steps
+from quiesce.damper.inverses.demand import Inverse
+from quiesce.damper.inverses.keys import number
+from quiesce.damper.inverses.mapped import MapInverse, read_words
+
+SCHEMA = "quiesce-inverse-damper"
+VERSION = 2
+METHODS: dict[str, ModuleType] = {
+    one.NAME: one for one in (mapped, steps, feed_forward, recurrent, fuzzy)
+}
+
+
+def methods_of(text: str) -> list[str]:
+    """Names with commas, or all. UsageError for one that there is not."""
+    names = list(METHODS) if text == "all" else list(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in METHODS:
+            raise UsageError(f"--method '{name}': there are {', '.join(METHODS)} and all")
+    return names
+
+
+def file_name(method: str) -> str:
+    return f"{method}{mapped.SUFFIX}" if method == mapped.NAME else f"inverse_{method}.toml"
+
+
+def check_word(table: Mapping[str, Any]) -> int:
+    """CRC-32 of everything in the file but this."""
+    rest = {key: value for key, value in table.items() if key != "check"}
+    return zlib.crc32(json.dumps(rest, sort_keys=True).encode())
+
+
+def text_of(method: str, inverse: Inverse) -> str:
+    if isinstance(inverse, MapInverse):
+        return inverse.to_text()
+    table: dict[str, Any] = {
+        "schema": SCHEMA,
+        "version": VERSION,
+        "method": method,
+        "max_current_A": float(inverse.max_current_A),
+        "parameters": inverse.parameters(),
+    }
+    # As TOML gives it back: the word is of what is read.
+    table = tomllib.loads(tomli_w.dumps(table))
+    return tomli_w.dumps({"check": check_word(table), **table})
+
+
+def write_inverse(file: Path, method: str, inverse: Inverse) -> None:
+    with output_files(file.parent) as staging:
+        (staging / file.name).write_text(text_of(method, inverse), encoding="utf-8")
+
+
+def read_inverse(file: Path) -> tuple[str, Inverse]:
+    """Method and inverse. UsageError with file and key where it is wrong."""
+    if file.suffix == mapped.SUFFIX:
+        return mapped.NAME, read_words(file)
+    where = shown(file)
+    try:
+        table = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise UsageError(f"{where}: {one_line(error)}") from None
+    if table.get("schema") != SCHEMA or table.get("version") != VERSION:
+        raise UsageError(f"{where}: schema: expected {SCHEMA}, version {VERSION}")
+    method, keys = table.get("method"), table.get("parameters")
+    known = [name for name, one in METHODS.items() if hasattr(one, "read")]
+    if method not in known:
+        raise UsageError(f"{where}: method: expected one of {', '.join(known)}, found {method!r}")
+    if not isinstance(keys, dict):
+        raise UsageError(f"{where}: parameters: expected a table [parameters]")
+    inverse = METHODS[method].read(keys, number(table, "max_current_A", where), where)
+    if table.get("check") != check_word(table):
+        raise UsageError(f"{where}: check: the file was changed after it was written")
+    return method, inverse
