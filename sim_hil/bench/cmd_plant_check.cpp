@@ -45,6 +45,17 @@ void print_damper(const PlantDamper &one, double full_A) {
     }
 }
 
+void print_mounts(const PlantModel &model) {
+    for (const PlantMount &one : model.mounts) {
+        std::printf("  mount: at most %.4g N/m and %.4g N s/m; shape", one.mount->stiffest_N_m(),
+                    one.mount->stiffest_N_s_m());
+        for (Eigen::Index i = 0; i < one.stroke.size(); ++i) {
+            std::printf(" %.4g", one.stroke[i]);
+        }
+        std::printf(" kg^-1/2\n");
+    }
+}
+
 void print_places(const PlantModel &model) {
     for (const Place &place : model.places) {
         std::printf("  place %s: moves with %g of the base\n", place.name.c_str(), place.base);
@@ -65,6 +76,7 @@ int cmd_plant_check(const std::vector<std::string> &words) {
     for (const PlantDamper &one : model.dampers) {
         print_damper(one, model.driver.max_current_A);
     }
+    print_mounts(model);
     print_places(model);
     std::printf("  sensor: +-%g g, %d bits, %g mg noise; drive %g V; integration step %g us "
                 "(at most %.0f us)\n",

@@ -63,23 +63,6 @@ Eigen::VectorXd shape_of(const PlantModel &model, const std::string &name) {
     return Eigen::VectorXd::Zero(model.structure.mode_count());
 }
 
-Eigen::VectorXd read_stroke(TomlTable &section, const PlantModel &model) {
-    std::vector<std::string> names = {kGround};
-    for (const Place &place : model.places) {
-        names.push_back(place.name);
-    }
-    const std::string a = section.choice("a", names);
-    const std::string b = section.choice("b", names);
-    if (a == b) {
-        section.fail("b", "expected another end than a, found '" + b + "'");
-    }
-    Eigen::VectorXd stroke = shape_of(model, a) - shape_of(model, b);
-    if (stroke.isZero(0.0)) {
-        section.fail("b", a + " and " + b + " move alike, so there is no stroke between them");
-    }
-    return stroke;
-}
-
 PlantDamper read_joined(Shared &shared, TomlTable &section, const std::vector<std::string> &taken) {
     PlantDamper damper{};
     damper.name = read_name(section, taken);
@@ -108,6 +91,23 @@ std::vector<PlantDamper> read_several(Shared &shared) {
 
 bool has_damper_ends(const TomlTable &root) {
     return root.is_array("damper");
+}
+
+Eigen::VectorXd read_stroke(TomlTable &section, const PlantModel &model) {
+    std::vector<std::string> names = {kGround};
+    for (const Place &place : model.places) {
+        names.push_back(place.name);
+    }
+    const std::string a = section.choice("a", names);
+    const std::string b = section.choice("b", names);
+    if (a == b) {
+        section.fail("b", "expected another end than a, found '" + b + "'");
+    }
+    Eigen::VectorXd stroke = shape_of(model, a) - shape_of(model, b);
+    if (stroke.isZero(0.0)) {
+        section.fail("b", a + " and " + b + " move alike, so there is no stroke between them");
+    }
+    return stroke;
 }
 
 void read_dampers(TomlTable &root, const std::string &plant_file, const Eigen::VectorXd &at_damper,

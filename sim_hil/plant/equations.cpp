@@ -29,10 +29,18 @@ void couple(const Structure &structure, const double *eta_rate, double *accel) {
     }
 }
 
+/// What a mount does to each mode.
+void resist(const PlantMount &one, const double *eta, const double *eta_rate, double *accel) {
+    const double force_N = one.mount->force_N(dot(one.stroke, eta), dot(one.stroke, eta_rate));
+    for (Eigen::Index i = 0; i < one.stroke.size(); ++i) {
+        accel[i] -= one.stroke[i] * force_N;
+    }
+}
+
 } // namespace
 
 Equations::Equations(const PlantModel &model)
-    : structure_(model.structure),
+    : structure_(model.structure), mounts_(model.mounts),
       state_count_(2 * static_cast<std::size_t>(structure_.mode_count())) {
     for (const PlantDamper &one : model.dampers) {
         dampers_.push_back({one.damper, one.stroke, state_count_});
@@ -70,6 +78,9 @@ DamperValues Equations::rates(double force_N, const DamperValues &current_A,
         for (std::size_t i = 0; i < count; ++i) {
             accel[i] -= dampers_[k].stroke[static_cast<Eigen::Index>(i)] * damper_force_N[k];
         }
+    }
+    for (const PlantMount &one : mounts_) {
+        resist(one, eta, eta_rate, accel);
     }
     return damper_force_N;
 }

@@ -1,6 +1,7 @@
 /// The plant's equations of motion, without coils, excitation or clock.
 ///
 ///   eta'' + damping eta' + omega2 eta = at_force F_e - sum_k stroke_k F_k(v_k, x_k, I_k)
+///                                       - sum_j stroke_j F_j(x_j, v_j)     of mounts
 ///                                       - base_participation a_g
 ///
 /// State: eta, eta', the dampers' own states, one damper after the other.
@@ -62,6 +63,7 @@ class Equations {
 
     Structure structure_;
     std::vector<Joined> dampers_;
+    std::vector<PlantMount> mounts_;
     std::size_t state_count_;
 };
 

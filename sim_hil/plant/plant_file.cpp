@@ -4,6 +4,7 @@
 
 #include "dampers_section.h"
 #include "identifier.h"
+#include "mounts_section.h"
 #include "place_section.h"
 #include "structure_section.h"
 #include "toml_table.h"
@@ -85,6 +86,7 @@ PlantModel load_plant(const std::string &file) {
     model.places = read_places(root, model.structure);
     model.driver = read_driver(root.table("driver"));
     read_dampers(root, file, section.at_damper, model);
+    read_mounts(root, model);
     model.shaker = read_shaker(root.table("shaker"));
     model.sensor = read_sensor(root.table("sensor"));
     if (std::optional<TomlTable> noise = root.optional_table("noise")) {

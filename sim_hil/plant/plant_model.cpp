@@ -9,7 +9,7 @@ namespace quiesce {
 
 namespace {
 
-/// What the dampers add to the fastest rates, at no or all current: whichever is more.
+/// What dampers and mounts add to the fastest rates, at no or all current: whichever is more.
 struct Stiffest {
     double slope_1_s = 0.0;
     double omega2_rad2_s2 = 0.0;
@@ -29,6 +29,11 @@ Stiffest stiffest(const PlantModel &model) {
         out.state_rate_1_s = std::max(
             {out.state_rate_1_s, damper.fastest_rate_1_s(0.0), damper.fastest_rate_1_s(full_A)});
     }
+    for (const PlantMount &one : model.mounts) {
+        const double shape2 = one.stroke.squaredNorm();
+        out.slope_1_s += one.mount->stiffest_N_s_m() * shape2;
+        out.omega2_rad2_s2 += one.mount->stiffest_N_m() * shape2;
+    }
     return out;
 }
 
@@ -47,10 +52,10 @@ void require_one_damper(const PlantModel &model) {
 
 double longest_safe_step_s(const PlantModel &model) {
     const Structure &structure = model.structure;
-    const Stiffest dampers = stiffest(model);
-    const double omega = std::sqrt(structure.omega2_rad2_s2.maxCoeff() + dampers.omega2_rad2_s2);
-    const double rate_1_s = omega + structure.damping_1_s.norm() + dampers.slope_1_s;
-    return std::min(0.9 / rate_1_s, 2.0 / std::max(dampers.state_rate_1_s, 1e-9));
+    const Stiffest added = stiffest(model);
+    const double omega = std::sqrt(structure.omega2_rad2_s2.maxCoeff() + added.omega2_rad2_s2);
+    const double rate_1_s = omega + structure.damping_1_s.norm() + added.slope_1_s;
+    return std::min(0.9 / rate_1_s, 2.0 / std::max(added.state_rate_1_s, 1e-9));
 }
 
 std::int64_t steps_per_tick(const PlantModel &model, double tick_s) {

@@ -13,6 +13,7 @@
 #include "coil.h"
 #include "current_driver.h"
 #include "damper.h"
+#include "mount.h"
 #include "place.h"
 #include "shaker.h"
 #include "structure.h"
@@ -21,6 +22,7 @@ namespace quiesce {
 
 constexpr std::size_t kMaxDampers = 4;
 constexpr std::size_t kMaxPlaces = 4;
+constexpr std::size_t kMaxMounts = 4;
 
 /// A value of each damper, in the order of the plant's; beyond the last one 0.
 using DamperValues = std::array<double, kMaxDampers>;
@@ -40,6 +42,7 @@ struct PlantModel {
     Structure structure;
     std::vector<Place> places;        ///< 0 .. kMaxPlaces
     std::vector<PlantDamper> dampers; ///< 1 .. kMaxDampers
+    std::vector<PlantMount> mounts;   ///< 0 .. kMaxMounts
     CurrentDriverParams driver;       ///< of each of them
     ShakerParams shaker;
     AccelerometerParams sensor;
@@ -55,7 +58,7 @@ std::string label(const PlantDamper &damper);
 void require_one_damper(const PlantModel &model);
 
 /// Longest integration step that follows the model's fastest rate (undamped modes, damping, the
-/// dampers' steepest slopes): a third of what keeps the method stable.
+/// steepest slopes of dampers and mounts): a third of what keeps the method stable.
 double longest_safe_step_s(const PlantModel &model);
 
 /// Integration steps in one tick of tick_s: the fewest that are no longer than max_step_s.

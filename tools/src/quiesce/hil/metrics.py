@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from quiesce.engine.laws import OPEN_LOOP
+from quiesce.engine.laws import OPEN_LOOP, published_law
 from quiesce.hil.published import Published, Reference
 from quiesce.hil.rig import RigRow
 from quiesce.hil.runs import Run, displacement_um, reduction_pct
@@ -150,11 +150,9 @@ def find_beside(row: Row, open_loop: Run, reference: Reference | None, window: i
     )
     if reference is None:
         return Beside(None, {}, base)
-    # What was published for self-tuning stands beside both signs: the paper's figures and its
-    # printed table do not agree on the sign.
-    published_law = row.law.replace("_reversed", "_printed")
+    # What was published for self-tuning stands beside every reading of it.
     return Beside(
-        reference.published_for(row.scenario, published_law, row.freq_hz),
+        reference.published_for(row.scenario, published_law(row.law), row.freq_hz),
         reference.simulated_for(row.scenario, row.law, row.freq_hz),
         base,
     )

@@ -18,8 +18,10 @@ SPECTRUM_TOP_Hz = 60.0
 # Drawn in this order, ever thinner, so that of equal curves all stay visible.
 LINE_WIDTHS = {
     "constant_best": 3.2,
+    "fuzzy_selftune_printed_gated": 2.6,
     "fuzzy_selftune_reversed": 2.2,
     "open_loop": 1.6,
+    "fuzzy_selftune_reversed_ungated": 1.3,
     "fuzzy_selftune_printed": 1.2,
     "fuzzy": 1.1,
     "phase": 1.1,

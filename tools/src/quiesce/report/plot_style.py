@@ -16,7 +16,9 @@ COLORS = {
     "phase": "#e69f00",
     "phase_displacement": "#56b4e9",
     "fuzzy_selftune_printed": "#cc79a7",
+    "fuzzy_selftune_printed_gated": "#882255",
     "fuzzy_selftune_reversed": "#d55e00",
+    "fuzzy_selftune_reversed_ungated": "#a6761d",
     "bound": "#222222",
 }
 
