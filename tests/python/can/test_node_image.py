@@ -114,6 +114,19 @@ class Rig:
     def until_state(self, state: str) -> None:
         self.until(state, lambda name: name == "Status" and self.seen[name]["state"] == state)
 
+    def run(self) -> None:
+        """Lets go, and enables where that counts. An enable that a late frame has undone is let go
+        and given again: what is held arms nothing."""
+        self.enable = 0
+
+        def runs(name: str) -> bool:
+            status = self.seen.get("Status", {})
+            if name == "Status" and status["state"] == "IDLE":
+                self.enable = int(status["is_enabled"] == 0)
+            return name == "Status" and status["state"] == "RUN" and self.enable == 1
+
+        self.until("RUN", runs)
+
     def ask(self, operation: str, index: int = 0, value: int = 0) -> dict:
         """The reply; asked again until there is one. Each operation may be done twice."""
         request = {"operation": operation, "param_index": index, "param_value": value}
@@ -211,7 +224,7 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     assert rig.ask("SAVE")["result"] == "STORE_FAILED"  # the image has nowhere to
 
     # The operator lets it run.
-    rig.enable = 1
+    rig.run()
     rig.until("1234 mA", lambda _: rig.seen["CurrentDemand"]["current_cmd_mA"] == 1234)
     assert rig.seen["CurrentDemand"]["state"] == "RUN"
 
@@ -237,11 +250,8 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     rig.is_acknowledging = True
     rig.until("acknowledged", lambda _: rig.seen["Status"]["state"] == "IDLE")
     assert rig.seen["Status"]["is_enabled"] == 1  # held: that restarts nothing
-    rig.enable = 0
-    rig.until("let go", lambda _: rig.seen["Status"]["is_enabled"] == 0)
-    rig.enable = 1
+    rig.run()
     rig.until("1234 mA again", lambda _: rig.seen["CurrentDemand"]["current_cmd_mA"] == 1234)
-    rig.until_state("RUN")
     # The record of a second before the stop, its last two pages.
     assert rig.ask("FAULT_RECORD", value=316)["result"] == "DONE"
     rig.until("the record", lambda name: name == "FaultRecord")
@@ -290,10 +300,7 @@ def arm(rig: Rig) -> None:
     for name, value in PARAMETERS.items():
         assert rig.ask("STAGE", param_index(name), value)["result"] == "DONE", name
     assert rig.ask("APPLY")["result"] == "DONE"
-    rig.enable = 0
-    rig.until("let go", lambda _: rig.seen.get("Status", {}).get("is_enabled") == 0)
-    rig.enable = 1
-    rig.until_state("RUN")
+    rig.run()
 
 
 def is_first(name: str, demand: dict) -> bool:

@@ -118,6 +118,10 @@ static bool wants_release(uint8_t state) {
            state == QUIESCE_CAN_CURRENT_DEMAND_STATE_FAULT_CHOICE;
 }
 
+bool guest_is_demand(const can_frame_t *frame) {
+    return e2e_check(&quiesce_can_messages[QUIESCE_CAN_AT_CURRENT_DEMAND].e2e, frame) == E2E_OK;
+}
+
 guest_demand_t guest_demand(const can_frame_t *frame) {
     struct quiesce_can_current_demand_t demand;
     quiesce_can_current_demand_unpack(&demand, frame->data, frame->length);

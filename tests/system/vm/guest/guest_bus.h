@@ -30,6 +30,9 @@ typedef struct {
     bool wants_release; ///< only an enable that rises after this state arms
 } guest_demand_t;
 
+/// Whether the controller may have sent it: shape and CRC are right. Others use the id, too.
+bool guest_is_demand(const can_frame_t *frame);
+
 guest_demand_t guest_demand(const can_frame_t *frame);
 
 /// A sensor node's next sample, and an operator's command. *alive is the sender's counter.

@@ -42,9 +42,10 @@ int main(int argc, char **argv) {
     const bool has_operator = strcmp(argv[2], "all") == 0;
     const int bus = guest_bus_open(argv[1], ids, 1);
     guest_real_time(60);
-    for (uint32_t tick = 0;; tick++) {
-        if (!guest_bus_receive(bus, &in)) {
-            continue; /* the next read waits until the interface is up again */
+    for (uint32_t tick = 0;;) {
+        /* While the interface is down the next read waits. */
+        if (!guest_bus_receive(bus, &in) || !guest_is_demand(&in.frame)) {
+            continue;
         }
         const guest_demand_t demand = guest_demand(&in.frame);
         guest_hand_see(&hand, &demand);
@@ -55,5 +56,6 @@ int main(int argc, char **argv) {
             press -= press > 0;
             guest_bus_send(bus, &out);
         }
+        tick++;
     }
 }
