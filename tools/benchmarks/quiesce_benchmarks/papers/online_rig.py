@@ -79,7 +79,8 @@ def test_of(kind: str, current_A: float, freq_Hz: float | None = None) -> Test:
 
 
 def recorded(rig: Rig, test: Test, seed: int, duration_s: float | None = None) -> Record:
-    """As `quiesce identify` reads a recording of it. duration_s: of a shorter test."""
+    """As `quiesce identify --keep-offset` reads a recording of it: the rig knows its mid-stroke.
+    duration_s: of a shorter test."""
     plan = protocol()
     plan = replace(plan, rate_Hz=_FINE * plan.rate_Hz)
     played = excitation(plan, test if duration_s is None else replace(test, duration_s=duration_s))
@@ -100,4 +101,4 @@ def recorded(rig: Rig, test: Test, seed: int, duration_s: float | None = None) -
     }
     period_s = _FINE / plan.rate_Hz
     raw = RawTest(test.name, test.name, period_s, 0.0, played.time_s[::_FINE], measured, 0.0)
-    return condition_all([raw], Settings())[0][0]
+    return condition_all([raw], Settings(keep_offset=True))[0][0]
