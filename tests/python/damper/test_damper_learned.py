@@ -261,6 +261,25 @@ def stf(**more) -> SelfTuning:
     return SelfTuning(2000.0, 5e-3, 0.1, 1.5, np.array([0.1, 0.3, 0.5, 0.7, 0.9]), **more)
 
 
+def test_stf_even_steps_learn_a_small_force_as_fast_as_a_large_one():
+    moved = []
+    for current_A in (0.0, 1.5):
+        model = stf()
+        wanted_N = 1.3 * model.force_N(2e-3, 0.03, current_A)
+        model.update(2e-3, 0.03, current_A, wanted_N, Rates(0.5, 0.1, 0.1, is_even=True))
+        moved.append(model.outputs - stf().outputs)
+    assert np.abs(moved[0]).max() > 0.01
+    np.testing.assert_allclose(moved[0], moved[1], rtol=1e-9)
+
+
+def test_stf_moves_no_membership_farther_than_it_may():
+    model, least = stf(), 0.02
+    model.update(2e-3, 0.03, 1.5, 1e5, Rates(0.5, 0.1, 0.1, most_move=least))
+    for after, before in ((model.disp, stf().disp), (model.velocity, stf().velocity)):
+        moved = np.abs(after.centres - before.centres)
+        assert moved.max() == pytest.approx(least)
+
+
 @pytest.mark.parametrize("uses_minimum", [False, True])
 def test_stf_gradients_are_those_of_differences(uses_minimum):
     rng = np.random.default_rng(11)

@@ -9,12 +9,16 @@ from quiesce.damper.online import ADAPTIVE, FROZEN, LAST_FORCE, STOPPED, Followe
 from quiesce.damper.simulate import simulator
 from quiesce.damper.task import Plan
 
+from quiesce_benchmarks.damper.one_set import records_of_test
+from quiesce_benchmarks.damper.real import data_folder
 from quiesce_benchmarks.papers.online_rig import Rig, recorded, test_of
 from quiesce_benchmarks.papers.part import Effort
 
 TANH, BOUC_WEN = "rd1005_kwok_tanh_smooth", "rd1005_kwok_bouc_wen_soft"
 SETTLE_s = 2.0
 QUICK_s = 6.0
+# On the measured damper.
+MEASURED_A = ((0.5, 1.0), (1.0, 0.5))
 # The model file of the damper that is there after the change: no fit to data before it.
 PUBLISHED = "published file of what is there after"
 
@@ -51,6 +55,21 @@ def followed(change: Change, effort: Effort) -> Followed:
     return follow(stream_of(records, None, SETTLE_s), plan, SETTLE_s, beside=beside)
 
 
+def on_measured_damper(effort: Effort) -> dict[str, dict[str, Any]]:
+    """A change of current of a damper that was measured, 10 mm at 1 Hz; nothing where the
+    measurements are not on this machine."""
+    folder = data_folder()
+    if folder is None:
+        return {}
+    by_level = {round(one.level or 0.0, 2): one for one in records_of_test(folder)}
+    out = {}
+    for before_A, after_A in MEASURED_A:
+        stream = stream_of([by_level[before_A], by_level[after_A]], None, SETTLE_s)
+        plan = Plan(FROZEN, seed=effort.seed, quick=True, jobs=2)
+        out[f"measured, {before_A:g} to {after_A:g} A"] = numbers_of(follow(stream, plan, SETTLE_s))
+    return out
+
+
 def numbers_of(found: Followed) -> dict[str, Any]:
     errors = found.errors_pct()
     return {
@@ -67,7 +86,8 @@ def table_of(changes: dict[str, dict[str, Any]]) -> str:
     rows = []
     for kind, found in changes.items():
         for part in ("before", "during", "after"):
-            cells = [f"{found['models'][name][part]:.2f}" for name in models]
+            errors = [found["models"].get(name) for name in models]
+            cells = [f"{one[part]:.2f}" if one else "-" for one in errors]
             ratio = f"{found['over_best_frozen']:.2f}" if part == "after" else ""
             rows.append([kind if part == "before" else "", part, *cells, ratio])
     head = ["change", "", *models, "ratio"]

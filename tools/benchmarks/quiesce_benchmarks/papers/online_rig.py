@@ -28,6 +28,9 @@ DAMPER = Damper(
 FORCE_NOISE_N = 5.0
 DISP_NOISE_m = 2e-6
 DISP_STEP_m = 1e-6
+# Run-in and run-out, before and after what is recorded: at rest the sign of the displacement, of
+# which one of the models is made, is that of the noise.
+RUN_s = 1.0
 # Steps of the simulated damper in a row of the recording.
 _FINE = 4
 
@@ -79,10 +82,12 @@ def test_of(kind: str, current_A: float, freq_Hz: float | None = None) -> Test:
 
 
 def recorded(rig: Rig, test: Test, seed: int, duration_s: float | None = None) -> Record:
-    """As `quiesce identify` reads a recording of it. duration_s: of a shorter test."""
+    """As `quiesce identify --keep-offset` reads a recording of it: the rig knows its mid-stroke.
+    At full amplitude throughout. duration_s: of a shorter test."""
     plan = protocol()
     plan = replace(plan, rate_Hz=_FINE * plan.rate_Hz)
-    played = excitation(plan, test if duration_s is None else replace(test, duration_s=duration_s))
+    moving_s = test.duration_s if duration_s is None else duration_s
+    played = excitation(plan, replace(test, duration_s=moving_s + 2.0 * RUN_s))
     velocity = np.gradient(played.disp_m, played.time_s)
     accel = np.gradient(velocity, played.time_s)
     zero = np.zeros(len(velocity))
@@ -100,4 +105,6 @@ def recorded(rig: Rig, test: Test, seed: int, duration_s: float | None = None) -
     }
     period_s = _FINE / plan.rate_Hz
     raw = RawTest(test.name, test.name, period_s, 0.0, played.time_s[::_FINE], measured, 0.0)
-    return condition_all([raw], Settings())[0][0]
+    record = condition_all([raw], Settings(keep_offset=True))[0][0]
+    run = round(RUN_s * record.rate_Hz)
+    return record.rows(run, len(record) - run)

@@ -59,5 +59,5 @@ def text_of(found: dict[str, Any]) -> str:
             f"{name.replace('_', ' ')} {min(each):.3g} .. {max(each):.3g}"
             for name, each in values.items()
         ]
-        lines.append(f"  {start:13s} {', '.join(parts)}")
+        lines.append(f"  {start:15s} {', '.join(parts)}")
     return "\n".join(lines)

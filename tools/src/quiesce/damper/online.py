@@ -33,9 +33,9 @@ FROZEN = ("bingham", "kwok_bouc_wen", "kwok_tanh")
 ADAPTIVE = "adaptive"
 STOPPED = "adaptive, stopped"
 LAST_FORCE = "the last force"
-# Higher than in training, where the data come again and again. Found on recordings of the
-# RD-1005-3's published models in steps of two; the source states none.
-RATES = Rates(0.5, 0.1, 0.1)
+# Higher than in training, where the data come again and again. Found in coarse steps on chirps of
+# the RD-1005-3's published models; the source states none.
+RATES = Rates(0.5, 0.1, 0.1, is_even=True, most_move=0.02)
 LEAST_BEFORE_s = 1.0
 _SAY_EVERY_s = 5.0
 

@@ -9,6 +9,7 @@ from quiesce_benchmarks.papers.online_changes import (
     SETTLE_s,
     followed,
     numbers_of,
+    on_measured_damper,
     table_of,
     worst,
 )
@@ -27,6 +28,7 @@ def measure(effort: Effort) -> Measured:
     for kind, change in CHANGES.items():
         print(f"papers: online, {kind}", file=sys.stderr, flush=True)
         changes[kind] = numbers_of(followed(change, effort))
+    measured = on_measured_damper(effort)
     print("papers: online, sines and chirps", file=sys.stderr, flush=True)
     protocol, protocol_table = online_protocol.measured(effort)
     return Measured(
@@ -34,6 +36,11 @@ def measure(effort: Effort) -> Measured:
             "online_error_after_change_pct": worst(changes, "after_pct"),
             "online_over_best_frozen": worst(changes, "over_best_frozen"),
         },
-        {"settle_s": SETTLE_s, "changes": changes, "protocol": protocol},
-        (table_of(changes), protocol_table),
+        {
+            "settle_s": SETTLE_s,
+            "changes": changes,
+            "measured_damper": measured,
+            "protocol": protocol,
+        },
+        (table_of({**changes, **measured}), protocol_table),
     )

@@ -4,6 +4,7 @@ import argparse
 import json
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -104,7 +105,7 @@ def simulator_of(file: Path) -> Any:
 
 
 def rates_of(text: str) -> Any:
-    from quiesce.damper.learned.self_tuning import Rates
+    from quiesce.damper.online import RATES
 
     try:
         values = [float(word) for word in text.split(",")]
@@ -112,4 +113,5 @@ def rates_of(text: str) -> Any:
         values = []
     if len(values) != 3 or not all(0.0 <= value <= 2.0 for value in values):
         raise UsageError(f"--rates '{text}': three numbers in 0 .. 2, such as 0.5,0.1,0.1")
-    return Rates(*values)
+    output, centre, base = values
+    return replace(RATES, output=output, centre=centre, base=base)

@@ -41,15 +41,22 @@ _OVERLAP = 1.1
 _MOST_BASE = 3.0
 _MOST_CENTRE = 1.2
 _MOST_OUTPUT = 3.0
+# Below it even steps are no larger.
+_LEAST_GAIN = 0.02
 
 
 @dataclass
 class Rates:
-    """Of outputs, centres and bases, for errors in parts of force_scale."""
+    """Of outputs, centres and bases, for errors in parts of force_scale. is_even: steps are divided
+    by the square of the current's gain, so that small forces are learned as fast as large ones.
+    most_move: of a centre or a base in one sample; a large error otherwise throws the memberships
+    into a heap, from which they take seconds to part."""
 
     output: float = 0.1
     centre: float = 0.01
     base: float = 0.01
+    is_even: bool = False
+    most_move: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -204,14 +211,20 @@ class SelfTuning:
         k = self.gain(current_A)
         force_N = self.force_scale_N * k * at.u
         step = k * (force_N - measured_N) / self.force_scale_N
+        if rates.is_even:
+            step /= max(k, _LEAST_GAIN) ** 2
         gradients = self._gradients(at)
         most = _MOST_OUTPUT
         self.outputs[:] = np.minimum(
             np.maximum(self.outputs - rates.output * step * gradients.outputs, -most), most
         )
         for k_input, triangles in enumerate((self.disp, self.velocity)):
-            triangles.centres -= rates.centre * step * gradients.centres[k_input]
-            triangles.bases -= rates.base * step * gradients.bases[k_input]
+            for values, rate, gradient in (
+                (triangles.centres, rates.centre, gradients.centres[k_input]),
+                (triangles.bases, rates.base, gradients.bases[k_input]),
+            ):
+                move = rate * step * gradient
+                values -= np.minimum(np.maximum(move, -rates.most_move), rates.most_move)
             triangles.guard()
         return force_N
 
