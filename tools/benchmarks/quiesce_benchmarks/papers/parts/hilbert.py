@@ -121,7 +121,7 @@ def errors_of(truth: Truth, seed: int, is_quick: bool) -> dict[str, dict[str, fl
     train = excited(truth.damper, simulate, truth.most_A, seed, 2) + sines(truth, seed)
     test = held_out(truth, seed)
     scales = Scales.of(train)
-    settings = Settings(lags=LAGS, epochs=15 if is_quick else 60)
+    settings = Settings(lags=LAGS, epochs=30 if is_quick else 60)
     quadrature = Quadrature.of(train, scales, 1.0 / RATE_Hz, settings.periods)
     features = {
         "plain": None, "published": quadrature.published, "causal": quadrature.features
