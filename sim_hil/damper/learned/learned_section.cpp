@@ -73,19 +73,38 @@ void refuse_temperature(TomlTable &keys) {
     }
 }
 
+QuadratureParams read_quadrature(TomlTable keys) {
+    QuadratureParams params{};
+    params.window_s = keys.number("window_s", {1e-6, 1e6, "s"});
+    params.envelope_m = keys.number("envelope_m", {1e-9, 100.0, "m"});
+    params.lowest_rad_s = keys.number("lowest_rad_s", {1e-9, 1e6, "rad/s"});
+    params.highest_rad_s = keys.number("highest_rad_s", {1e-9, 1e6, "rad/s"});
+    if (!(params.highest_rad_s > params.lowest_rad_s)) {
+        keys.fail("highest_rad_s", "expected more than lowest_rad_s");
+    }
+    keys.reject_unknown_keys();
+    return params;
+}
+
+enum class Memory { lags, feedback, quadrature };
+
 std::shared_ptr<const Damper> read_sampled(TomlTable &keys, const LearnedContext &context,
-                                           bool is_recurrent) {
+                                           Memory memory) {
     SampledNetworkParams params{};
     refuse_temperature(keys);
     params.stroke_m = context.limits.stroke_m;
     params.sample_time_s = keys.number("sample_time_s", {1e-6, 10.0, "s"});
     params.force_scale_N = read_force_scale_N(keys);
     params.lags = rising_integers(keys, "lags", 0, kMostLag);
-    if (is_recurrent) {
+    if (memory == Memory::quadrature) {
+        params.quadrature = read_quadrature(keys.table("quadrature"));
+    }
+    if (memory == Memory::feedback) {
         params.feedback = rising_integers(keys, "feedback", 1, kMostLag);
     }
     InputBox box = read_inputs(keys);
-    const std::size_t inputs = params.lags.size() * box.count() + params.feedback.size();
+    const std::size_t width = box.count() + (params.quadrature ? kQuadratureFeatures : 0);
+    const std::size_t inputs = params.lags.size() * width + params.feedback.size();
     Network network = read_network(keys, inputs, 1);
     return std::make_shared<SampledNetwork>(std::move(box), std::move(params), std::move(network));
 }
@@ -139,7 +158,7 @@ std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys, const Learne
 std::shared_ptr<const Damper> read_feed_forward_network(TomlTable &keys,
                                                         const LearnedContext &context) {
     if (keys.has("lags")) {
-        return read_sampled(keys, context, false);
+        return read_sampled(keys, context, Memory::lags);
     }
     const double force_scale_N = read_force_scale_N(keys);
     InputBox box = read_inputs(keys);
@@ -150,7 +169,11 @@ std::shared_ptr<const Damper> read_feed_forward_network(TomlTable &keys,
 
 std::shared_ptr<const Damper> read_recurrent_network(TomlTable &keys,
                                                      const LearnedContext &context) {
-    return read_sampled(keys, context, true);
+    return read_sampled(keys, context, Memory::feedback);
+}
+
+std::shared_ptr<const Damper> read_hilbert_network(TomlTable &keys, const LearnedContext &context) {
+    return read_sampled(keys, context, Memory::quadrature);
 }
 
 std::shared_ptr<const Damper> read_support_vector(TomlTable &keys, const LearnedContext &context) {
@@ -222,6 +245,7 @@ const std::vector<LearnedModel> &learned_models() {
     static const std::vector<LearnedModel> models = {
         {"anfis", read_anfis},
         {"feed_forward_network", read_feed_forward_network},
+        {"hilbert_network", read_hilbert_network},
         {"hysteresis_network", read_hysteresis_network},
         {"neuro_fuzzy_stf", read_neuro_fuzzy_stf},
         {"recurrent_network", read_recurrent_network},

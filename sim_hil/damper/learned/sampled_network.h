@@ -3,15 +3,19 @@
 ///
 ///   F[k] = force_scale N(inputs[k - lag] for each lag; F[k - lag] / force_scale for each feedback)
 ///
+/// Where there is a quadrature, its features stand behind the inputs of every lag.
+///
 /// The state is the time since the last sample, whether there was one, the force held, and the
 /// delayed values; it changes in after_step, not by integration.
 #ifndef QUIESCE_SAMPLED_NETWORK_H
 #define QUIESCE_SAMPLED_NETWORK_H
 
+#include <optional>
 #include <vector>
 
 #include "input_box.h"
 #include "network.h"
+#include "quadrature.h"
 
 namespace quiesce {
 
@@ -21,11 +25,12 @@ struct SampledNetworkParams {
     double force_scale_N;          ///< > 0
     std::vector<std::size_t> lags; ///< of the inputs, in samples, at least one, rising from >= 0
     std::vector<std::size_t> feedback; ///< of the force, rising from >= 1; may be empty
+    std::optional<QuadratureParams> quadrature = std::nullopt;
 };
 
 class SampledNetwork final : public Damper {
   public:
-    /// network: lags x inputs + feedback inputs, one output.
+    /// network: lags x (inputs + features) + feedback inputs, one output.
     SampledNetwork(InputBox box, SampledNetworkParams params, Network network);
 
     std::size_t state_count() const override { return first_force_ + force_count_; }
@@ -42,6 +47,8 @@ class SampledNetwork final : public Damper {
     InputBox box_;
     SampledNetworkParams params_;
     Network network_;
+    std::size_t width_;        ///< of a moment: inputs and features
+    std::size_t first_moment_; ///< index of the latest moment in the state
     std::size_t moment_count_; ///< delayed inputs: the latest sample and those before it
     std::size_t force_count_;
     std::size_t first_force_; ///< index of the first delayed force in the state

@@ -16,6 +16,7 @@
 #include "periodic_orbit.h"
 #include "plant.h"
 #include "plant_file.h"
+#include "quadrature.h"
 #include "sampled_network.h"
 #include "sine_segment.h"
 #include "static_network.h"
@@ -284,6 +285,38 @@ TEST(SampledNetwork, its_force_is_fed_back_and_held_between_samples) {
         EXPECT_NEAR(force_N[k], expected_N, 1e-9) << k;
         EXPECT_DOUBLE_EQ(force_N[k - 1], force_N[k - 2]) << k;
     }
+}
+
+TEST(Quadrature, tells_envelope_frequency_and_phase_of_a_sine) {
+    const quiesce::QuadratureParams params{0.2, 0.004, 20.0, 500.0};
+    const SampledMotion motion;
+    const double omega = kTwoPi * 20.0;
+    double means[quiesce::kQuadratureStates] = {};
+    for (std::size_t k = 0; k < motion.disp_m.size(); ++k) {
+        quiesce::update_quadrature(params, motion.disp_m[k], motion.velocity_m_s[k], 0.001, means);
+        if (k % 50 == 0 && k > 0) { // whole cycles: the means' ratio is that of a sine
+            const quiesce::QuadratureFeatures found = quiesce::quadrature_features(
+                params, motion.disp_m[k], motion.velocity_m_s[k], means);
+            EXPECT_NEAR(found[0], 2.0 * 0.003 / 0.004 - 1.0, 0.1);
+            EXPECT_NEAR(found[1], 2.0 * (omega - 20.0) / 480.0 - 1.0, 0.1);
+            EXPECT_NEAR(found[2] * found[2] + found[3] * found[3], 1.0, 1e-12);
+            EXPECT_NEAR(found[3], -1.0, 0.01); // v > 0 in mid-stroke
+        }
+    }
+}
+
+TEST(Quadrature, rest_has_no_phase_and_extremes_are_cut_off) {
+    const quiesce::QuadratureParams params{0.2, 0.004, 20.0, 500.0};
+    double means[quiesce::kQuadratureStates] = {};
+    for (const double feature : quiesce::quadrature_features(params, 0.0, 0.0, means)) {
+        EXPECT_EQ(feature, 0.0);
+    }
+    quiesce::update_quadrature(params, 0.0, 1e6, 0.001, means);
+    const quiesce::QuadratureFeatures fast = quiesce::quadrature_features(params, 0.0, 1e6, means);
+    EXPECT_DOUBLE_EQ(fast[0], 1.0);
+    EXPECT_DOUBLE_EQ(fast[1], 1.0);
+    means[1] = 0.0;
+    EXPECT_DOUBLE_EQ(quiesce::quadrature_features(params, 0.1, 0.0, means)[1], -1.0);
 }
 
 quiesce::PlantModel plant_with(std::shared_ptr<const Damper> damper) {

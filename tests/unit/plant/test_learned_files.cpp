@@ -110,9 +110,28 @@ units = 2
 weights = [1, 2, 3, 4, 5, 6]
 biases = [0, 0]
 )",
+    R"(model = "hilbert_network"
+stroke_m = 0.01
+speed_m_s = 0.2
+[parameters]
+force_scale_N = 100.0
+sample_time_s = 0.001
+lags = [0, 2]
+[parameters.quadrature]
+window_s = 0.5
+envelope_m = 0.01
+lowest_rad_s = 3.0
+highest_rad_s = 60.0
+[parameters.velocity_m_s]
+range = [-0.2, 0.2]
+[[parameters.layer]]
+units = 1
+weights = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
+biases = [0]
+)",
 };
 
-enum File { anfis, ts_fuzzy, recurrent, support_vector, stf_file, hysteresis };
+enum File { anfis, ts_fuzzy, recurrent, support_vector, stf_file, hysteresis, hilbert };
 
 std::string damper_file(const std::string &body) {
     return "schema = \"quiesce-damper\"\nversion = 1\nname = \"test\"\n" + body;
@@ -227,6 +246,21 @@ const FileMistake kFileMistakes[] = {
      {"unknown_base", "[[parameters.member]]",
       "[parameters.base]\nmodel = \"none\"\n[[parameters.member]]",
       "parameters.base.model: expected one of"}},
+    {hilbert,
+     {"no_quadrature", "[parameters.quadrature]", "[parameters.other]",
+      "parameters.quadrature: missing"}},
+    {hilbert,
+     {"no_window", "window_s = 0.5", "window_s = 0.0",
+      "parameters.quadrature.window_s: expected a number in"}},
+    {hilbert,
+     {"falling_band", "highest_rad_s = 60.0", "highest_rad_s = 3.0",
+      "parameters.quadrature.highest_rad_s: expected more than lowest_rad_s"}},
+    {hilbert,
+     {"unknown_key", "window_s = 0.5", "window_s = 0.5\nphase = 1",
+      "parameters.quadrature.phase: unknown key"}},
+    {hilbert,
+     {"weights_without_features", "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]", "[1, 2]",
+      "parameters.layer[1].weights: expected an array of 10 numbers, found 2"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Learned, LearnedFileMistakes, testing::ValuesIn(kFileMistakes),

@@ -10,6 +10,7 @@ from quiesce.base.errors import UsageError
 MODELS = {
     "anfis": "quiesce.damper.learned.anfis",
     "feed_forward_network": "quiesce.damper.learned.feed_forward",
+    "hilbert_network": "quiesce.damper.learned.hilbert",
     "hysteresis_network": "quiesce.damper.learned.hysteresis_network",
     "neuro_fuzzy_stf": "quiesce.damper.learned.self_tuning",
     "recurrent_network": "quiesce.damper.learned.recurrent",
