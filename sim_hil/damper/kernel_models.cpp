@@ -1,10 +1,17 @@
 #include "kernel_models.h"
 
+#include <type_traits>
+
 #include "kernels.h"
 
 namespace quiesce {
 
 namespace {
+
+template <class Kernel, class = void>
+constexpr std::size_t kToldOf = 0;
+template <class Kernel>
+constexpr std::size_t kToldOf<Kernel, std::void_t<decltype(Kernel::kTold)>> = Kernel::kTold;
 
 template <class Kernel>
 KernelModel describe() {
@@ -13,6 +20,7 @@ KernelModel describe() {
             Kernel::kSource,
             Kernel::kParameters.data(),
             Kernel::kParameters.size(),
+            kToldOf<Kernel>,
             Kernel::kStates,
             Kernel::kUsesAccel,
             Kernel::fastest_rate_1_s,

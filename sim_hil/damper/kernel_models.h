@@ -15,6 +15,9 @@ struct KernelModel {
     const char *source;
     const ParameterInfo *parameters;
     std::size_t parameter_count;
+    /// The first so many are known of a damper (its geometry) and not found by a fit:
+    /// Kernel::kTold, in kernels that have such parameters.
+    std::size_t told_count;
     int state_count;
     bool uses_accel;
     double (*fastest_rate_1_s)(const double *p, double speed_m_s);

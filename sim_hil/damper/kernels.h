@@ -19,6 +19,7 @@
 #include "kernels/nonlinear_biviscous.h"
 #include "kernels/normalised_bouc_wen.h"
 #include "kernels/second_order_polynomial.h"
+#include "kernels/squeeze_film.h"
 #include "kernels/viscoplastic_network.h"
 #include "kernels/viscous_dahl.h"
 #include "kernels/zhang_tanh.h"
@@ -41,6 +42,7 @@
     MODEL(NonlinearBiviscous)                                                                      \
     MODEL(NormalisedBoucWen)                                                                       \
     MODEL(SecondOrderPolynomial)                                                                   \
+    MODEL(SqueezeFilm)                                                                             \
     MODEL(ViscoplasticNetwork1)                                                                    \
     MODEL(ViscoplasticNetwork2)                                                                    \
     MODEL(ViscoplasticNetwork3)                                                                    \

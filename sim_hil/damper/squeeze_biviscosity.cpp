@@ -9,18 +9,15 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Below this yield stress the film is Newtonian.
-constexpr double kNoYield_Pa = 1e-3;
-
 } // namespace
 
 SqueezeBiviscosity::SqueezeBiviscosity(const SqueezeBiviscosityParams &params)
     : params_(params), psi_(params.viscosity_ratio),
       field_per_A_(params.coil_turns / (2.0 * kPi * params.coil_radius_m)),
-      wall_shear_(params.viscosity_Pa_s * params.plate_radius_m),
-      yield_force_(params.force_scale * 2.0 * kPi * std::pow(params.plate_radius_m, 3.0)),
-      stefan_(params.force_scale * 1.5 * kPi * params.viscosity_Pa_s *
-              std::pow(params.plate_radius_m, 4.0)) {}
+      law_{params.viscosity_Pa_s * params.plate_radius_m,
+           params.force_scale * 2.0 * kPi * std::pow(params.plate_radius_m, 3.0),
+           params.force_scale * 1.5 * kPi * params.viscosity_Pa_s *
+               std::pow(params.plate_radius_m, 4.0)} {}
 
 double SqueezeBiviscosity::yield_stress_Pa(double current_A) const {
     const double field_A_m = field_per_A_ * current_A;
@@ -33,20 +30,20 @@ double SqueezeBiviscosity::force_N(const DamperInput &input, const double * /*st
                                    double * /*rates*/) const {
     const double gap_m = std::max(params_.gap_m + input.position_m, params_.min_gap_m);
     const double yield_Pa = yield_stress_Pa(input.current_A);
-    if (yield_Pa < kNoYield_Pa) {
-        return stefan_ * input.velocity_m_s / (gap_m * gap_m * gap_m);
+    if (yield_Pa < kFilmNoYield_Pa) {
+        return law_.newtonian_N(input.velocity_m_s, gap_m);
     }
     const double per_film = 1.0 / (gap_m * gap_m * yield_Pa);
-    const double chi = wall_shear_ * std::abs(input.velocity_m_s) * per_film;
-    const double force = yield_force_ * yield_Pa * yield_Pa * gap_m * per_film * psi_(chi);
+    const double chi = law_.chi(std::abs(input.velocity_m_s), per_film);
+    const double force = law_.yielded_N(yield_Pa, gap_m, per_film, psi_(chi));
     return std::copysign(force, input.velocity_m_s);
 }
 
 double SqueezeBiviscosity::stiffest_N_s_m(double current_A) const {
-    const double newtonian = stefan_ / std::pow(params_.gap_m, 3.0);
+    const double newtonian = law_.stefan / std::pow(params_.gap_m, 3.0);
     // The unyielded film is stiffest, and its viscosity does not depend on the current.
-    return yield_stress_Pa(current_A) < kNoYield_Pa ? newtonian
-                                                    : newtonian / params_.viscosity_ratio;
+    return yield_stress_Pa(current_A) < kFilmNoYield_Pa ? newtonian
+                                                        : newtonian / params_.viscosity_ratio;
 }
 
 } // namespace quiesce

@@ -11,6 +11,7 @@
 #define QUIESCE_SQUEEZE_BIVISCOSITY_H
 
 #include "damper.h"
+#include "squeeze_film_law.h"
 #include "squeeze_psi.h"
 
 namespace quiesce {
@@ -43,9 +44,7 @@ class SqueezeBiviscosity final : public Damper {
     SqueezeBiviscosityParams params_;
     SqueezePsi psi_;
     double field_per_A_; ///< H / I
-    double wall_shear_;  ///< eta a: chi = wall_shear |v| / (h^2 tau1)
-    double yield_force_; ///< force_scale 2 pi a^3
-    double stefan_;      ///< force_scale 3 pi eta a^4 / 2
+    SqueezeFilmLaw<double> law_;
 };
 
 } // namespace quiesce

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "squeeze_psi_terms.h"
+
 namespace quiesce {
 
 namespace {
@@ -17,27 +19,6 @@ constexpr double kWeight[kHalfNodes] = {
     0.189450610455068496, 0.182603415044923589,  0.169156519395002538,  0.149595988816576732,
     0.124628971255533872, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
 
-double cube(double x) {
-    return x * x * x;
-}
-
-/// S - gamma/3 at G = 1 + x.
-double excess_at(double x, double gamma) {
-    const double g = 1.0 + x;
-    return x * (x * (2.0 * x + 3.0) + gamma * (2.0 + x)) / (6.0 * g * g);
-}
-
-/// dS/dG at G = 1 + x.
-double shear_slope(double x, double gamma) {
-    return (x * (3.0 + x * (3.0 + x)) + gamma) / (3.0 * cube(1.0 + x));
-}
-
-/// S^2 G dS/dG at G = 1 + x.
-double integrand(double x, double gamma) {
-    const double shear = gamma / 3.0 + excess_at(x, gamma);
-    return shear * shear * (1.0 + x) * shear_slope(x, gamma);
-}
-
 /// Integral of the integrand over [from, to] in x = G - 1.
 double panel(double from, double to, double gamma) {
     const double half = 0.5 * (to - from);
@@ -45,24 +26,10 @@ double panel(double from, double to, double gamma) {
     double sum = 0.0;
     for (int i = 0; i < kHalfNodes; ++i) {
         const double offset = half * kNode[i];
-        sum += kWeight[i] * (integrand(middle - offset, gamma) + integrand(middle + offset, gamma));
+        sum += kWeight[i] * (squeeze_integrand(middle - offset, gamma) +
+                             squeeze_integrand(middle + offset, gamma));
     }
     return half * sum;
-}
-
-/// chi^3 Psi of the film that is just about to yield.
-double unyielded_part(double gamma) {
-    return cube(gamma) / 108.0;
-}
-
-/// Antiderivative of S^2 G dS/dG, k = 1 - gamma.
-double antiderivative(double g, double k) {
-    const double g2 = g * g;
-    const double g3 = g2 * g;
-    return (g2 * g2 / 36.0 - k * g3 / 9.0 + k * k * g2 / 8.0 + k * k / 6.0 * std::log(g) +
-            cube(k) / (4.0 * g) + k * k / (24.0 * g2) - cube(k) / (18.0 * g3) +
-            cube(k) / (180.0 * g2 * g3)) /
-           3.0;
 }
 
 /// Psi and its first two derivatives by chi.
@@ -77,7 +44,7 @@ Jet psi_jet(double excess, double gamma) {
     const double x = squeeze_wall_excess(excess, gamma);
     const double psi = squeeze_psi_quadrature(chi, gamma);
     const double slope = (1.0 + x - 3.0 * psi) / chi;
-    return {psi, slope, (1.0 / shear_slope(x, gamma) - 4.0 * slope) / chi};
+    return {psi, slope, (1.0 / squeeze_shear_slope(x, gamma) - 4.0 * slope) / chi};
 }
 
 } // namespace
@@ -91,7 +58,7 @@ double squeeze_wall_excess(double excess, double gamma) {
         x = std::min(x, 1.2 * std::sqrt(2.0 * excess));
     }
     for (int i = 0; i < 60; ++i) {
-        const double step = (excess_at(x, gamma) - excess) / shear_slope(x, gamma);
+        const double step = (squeeze_excess_at(x, gamma) - excess) / squeeze_shear_slope(x, gamma);
         x = std::max(x - step, 0.0);
         if (std::abs(step) <= 1e-16 * x) {
             break;
@@ -105,7 +72,7 @@ double squeeze_psi_quadrature(double chi, double gamma) {
         return 0.75 * chi / gamma;
     }
     const double end = squeeze_wall_excess(chi - gamma / 3.0, gamma);
-    double sum = unyielded_part(gamma);
+    double sum = squeeze_unyielded_part(gamma);
     double from = 0.0;
     while (from < end) {
         // Panels of ratio 2 in G keep the pole at G = 0 away from each.
@@ -122,7 +89,9 @@ double squeeze_psi_closed_form(double chi, double gamma) {
     }
     const double k = 1.0 - gamma;
     const double g = 1.0 + squeeze_wall_excess(chi - gamma / 3.0, gamma);
-    return (unyielded_part(gamma) + antiderivative(g, k) - antiderivative(1.0, k)) / cube(chi);
+    return (squeeze_unyielded_part(gamma) + squeeze_antiderivative(g, std::log(g), k) -
+            squeeze_antiderivative(1.0, 0.0, k)) /
+           cube(chi);
 }
 
 double SqueezePsi::octave_start(std::uint64_t index) {

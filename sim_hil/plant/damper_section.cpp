@@ -19,7 +19,7 @@ std::shared_ptr<const Damper> read_squeeze_biviscosity(TomlTable &section) {
     SqueezeBiviscosityParams params{};
     params.plate_radius_m = section.number("plate_radius_m", {1e-4, 1.0, "m"});
     params.gap_m = section.number("gap_m", {1e-6, 0.1, "m"});
-    params.min_gap_m = section.number("min_gap_m", {1e-9, 0.1, "m"}, 0.01 * params.gap_m);
+    params.min_gap_m = section.number("min_gap_m", {1e-9, 0.1, "m"}, kFilmLeastGap * params.gap_m);
     params.viscosity_Pa_s = section.number("viscosity_Pa_s", {1e-6, 1e4, "Pa s"});
     params.viscosity_ratio = section.number("viscosity_ratio", {1e-12, 1.0, "post- / pre-yield"});
     params.yield_coefficient =
@@ -52,7 +52,8 @@ std::shared_ptr<const Damper> read_switched_stiffness(TomlTable &section) {
     return std::make_shared<SwitchedStiffness>(params);
 }
 
-/// A model that is not a kernel.
+/// A model with a class of its own; where there is a kernel of the same name, a plant takes the
+/// class.
 struct Model {
     const char *name;
     std::shared_ptr<const Damper> (*read)(TomlTable &keys);
@@ -76,6 +77,7 @@ std::vector<std::string> model_names() {
         names.emplace_back(model.name);
     }
     std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }
 
@@ -90,6 +92,20 @@ CurrentLaw read_law(TomlTable &keys, const ParameterInfo &info) {
 MotionLimits read_limits(TomlTable &section) {
     return {section.number("stroke_m", {1e-9, 100.0, "m"}),
             section.number("speed_m_s", {1e-9, 1000.0, "m/s"})};
+}
+
+/// Keys in [parameters], as in damper files, or beside "model".
+std::shared_ptr<const Damper> read_own(const Model &model, TomlTable &section) {
+    if (!section.has("parameters")) {
+        return model.read(section);
+    }
+    for (const char *key : {"stroke_m", "speed_m_s"}) {
+        section.accept(key); // of the recording that it was identified from
+    }
+    TomlTable keys = section.table("parameters");
+    std::shared_ptr<const Damper> damper = model.read(keys);
+    keys.reject_unknown_keys();
+    return damper;
 }
 
 std::shared_ptr<const Damper> read_learned(const LearnedModel &model, TomlTable &section) {
@@ -163,25 +179,20 @@ DamperChoice with_accel_estimate(DamperChoice choice) {
 
 std::shared_ptr<const Damper> read_damper_model(TomlTable &section) {
     const std::string chosen = section.choice("model", model_names());
+    for (const Model &model : kModels) {
+        if (chosen == model.name) {
+            return read_own(model, section);
+        }
+    }
     for (const KernelModel &model : kernel_models()) {
         if (chosen == model.name) {
             return read_kernel(model, section);
         }
     }
-    for (const LearnedModel &model : learned_models()) {
-        if (chosen == model.name) {
-            return read_learned(model, section);
-        }
-    }
-    const Model *model = std::find_if(std::begin(kModels), std::end(kModels),
-                                      [&](const Model &one) { return chosen == one.name; });
-    if (!section.has("parameters")) {
-        return model->read(section);
-    }
-    TomlTable keys = section.table("parameters");
-    std::shared_ptr<const Damper> damper = model->read(keys);
-    keys.reject_unknown_keys();
-    return damper;
+    const std::vector<LearnedModel> &learned = learned_models();
+    return read_learned(*std::find_if(learned.begin(), learned.end(),
+                                      [&](const auto &one) { return chosen == one.name; }),
+                        section);
 }
 
 CoilParams read_coil(TomlTable section) {

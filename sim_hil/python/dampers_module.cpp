@@ -156,7 +156,7 @@ Out1 error_of_rows(const std::string &model, const std::vector<int> &orders, con
     return owned<Out1>(std::move(out), {candidates.count});
 }
 
-nb::dict describe(const ParameterInfo &info) {
+nb::dict describe(const ParameterInfo &info, bool is_told) {
     nb::dict out;
     out["name"] = info.name;
     out["unit"] = info.unit;
@@ -168,6 +168,7 @@ nb::dict describe(const ParameterInfo &info) {
     out["is_linear"] = info.is_linear;
     out["follows_current"] = info.follows_current;
     out["text"] = info.text;
+    out["is_told"] = is_told;
     return out;
 }
 
@@ -182,7 +183,7 @@ nb::list describe_models() {
         one["uses_accel"] = model.uses_accel;
         nb::list parameters;
         for (std::size_t k = 0; k < model.parameter_count; ++k) {
-            parameters.append(describe(model.parameters[k]));
+            parameters.append(describe(model.parameters[k], k < model.told_count));
         }
         one["parameters"] = parameters;
         out.append(one);

@@ -146,6 +146,7 @@ TEST(Kernels, have_names_of_their_own) {
 TEST_P(EveryKernel, describes_itself) {
     EXPECT_STRNE(model().title, "");
     EXPECT_STRNE(model().source, "");
+    EXPECT_LT(model().told_count, model().parameter_count);
     std::set<std::string> names;
     for (std::size_t k = 0; k < model().parameter_count; ++k) {
         const ParameterInfo &one = info(k);
@@ -332,7 +333,7 @@ double bend(std::size_t model, std::vector<double> p, const std::vector<double> 
 
 TEST_P(EveryKernel, is_linear_in_the_parameters_it_says) {
     const std::vector<bool> linear = linear_ones();
-    const Samples samples = motion(3, 300);
+    const Samples samples = motion(3, 300, 1.5);
     const double speed_m_s = samples.fastest_m_s();
     Dice dice(17);
     for (int draws = 0; draws < 10; ++draws) {
@@ -345,7 +346,7 @@ TEST_P(EveryKernel, is_linear_in_the_parameters_it_says) {
 
 TEST_P(EveryKernel, says_all_parameters_that_it_is_linear_in) {
     const std::vector<bool> linear = linear_ones();
-    const Samples samples = motion(3, 300);
+    const Samples samples = motion(3, 300, 1.5);
     const double speed_m_s = samples.fastest_m_s();
     for (std::size_t k = 0; k < model().parameter_count; ++k) {
         if (linear[k] || info(k).search_low == info(k).search_high) {

@@ -145,6 +145,15 @@ TEST(PublishedFilm, is_the_squeeze_damper_over_a_motion) {
     EXPECT_EQ(choice.damper->lowest_position_m(), 2e-5 - 0.002);
 }
 
+TEST(PublishedFilm, may_say_what_it_was_identified_from) {
+    const std::string text = read(file("squeeze_2012_film"));
+    const std::string limits = "stroke_m = 1e-4\nspeed_m_s = 0.01\n";
+    const auto at = text.find("[parameters]");
+    const quiesce::TemporaryFile fitted(text.substr(0, at) + limits + text.substr(at));
+    const auto choice = load_damper(fitted.path());
+    EXPECT_EQ(choice.damper->lowest_position_m(), 2e-5 - 0.002);
+}
+
 class SetMistakes : public testing::TestWithParam<Mistake> {};
 
 TEST_P(SetMistakes, are_named) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "squeeze_psi_lanes.h"
+
 namespace {
 
 using quiesce::squeeze_psi_closed_form;
@@ -47,6 +49,18 @@ TEST(SqueezePsi, quadrature_matches_the_definition) {
         for (const double chi : {0.02, 0.3, 4.0, 60.0}) {
             EXPECT_LT(relative(squeeze_psi_quadrature(chi, gamma), psi_by_definition(chi, gamma)),
                       2e-7)
+                << "chi " << chi << " gamma " << gamma;
+        }
+    }
+}
+
+TEST(SqueezePsi, without_a_table_it_is_the_quadrature) {
+    for (double gamma = 1e-12; gamma <= 1.0; gamma *= 10.0) {
+        EXPECT_EQ(quiesce::squeeze_psi_of(0.0, gamma), 0.0);
+        for (double chi = 0.1 * gamma; chi < 1e6; chi *= 1.07) {
+            ASSERT_LT(
+                relative(quiesce::squeeze_psi_of(chi, gamma), squeeze_psi_quadrature(chi, gamma)),
+                1e-9)
                 << "chi " << chi << " gamma " << gamma;
         }
     }

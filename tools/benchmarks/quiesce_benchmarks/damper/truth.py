@@ -186,11 +186,16 @@ def measure(
     size: Size, progress: Progress | None = None, say: Say | None = None
 ) -> list[ModelResult]:
     results = []
-    for name in size.models or tuple(library.models()):
+    for name in size.models or measured_models():
         results.append(measure_model(name, size, say or (lambda _text: None)))
         if progress is not None:
             progress.done(f"{name}: truth, fits and intervals")
     return results
+
+
+def measured_models() -> tuple[str, ...]:
+    """Every kernel, but for those that have to be told a geometry: papers' parts have those."""
+    return tuple(name for name, one in library.models().items() if not one.told)
 
 
 def percentage(flags: Sequence[bool]) -> float | None:
@@ -266,6 +271,6 @@ def figures(quick: bool, folder: Path) -> tuple[list[Figure], list[str]]:
     """Figures and tables. Nothing is written into the folder."""
     del folder
     size = QUICK if quick else FULL
-    results = measure(size, Progress(len(size.models) or len(library.models())), tell)
+    results = measure(size, Progress(len(size.models or measured_models())), tell)
     c3_text, c3_pct = truth_c3.table(3 if quick else 9)
     return figures_of(results, c3_pct), [*map(table, results), summary(results), c3_text]

@@ -32,7 +32,7 @@ class Choice:
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     rig: tuple[str, ...] | None = None  # None: chosen by the data
     most_coefficients: int = 3  # against the current
-    method: str = "default"  # or the papers' own: "ga", "de"
+    method: str = "default"  # or of papers: "ga", "ga-plain", "de"
 
 
 @dataclass(frozen=True)
@@ -66,13 +66,17 @@ def all_names() -> list[str]:
     return [*parametric_candidates(), *MODELS, GREY_BOX]
 
 
+def is_told(name: str) -> bool:
+    return name in models() and bool(models()[name].told)
+
+
 def names_of(text: str) -> list[str]:
-    """Of names and groups with commas. UsageError, with the names that there are, for one that is
-    not."""
+    """Of names and groups with commas; groups have no model that has to be told a geometry.
+    UsageError, with the names that there are, for one that is not."""
     groups = {
         "quick": list(QUICK),
-        "parametric": list(parametric_candidates()),
-        "all": all_names(),
+        "parametric": [name for name in parametric_candidates() if not is_told(name)],
+        "all": [name for name in all_names() if not is_told(name)],
     }
     names: list[str] = []
     for word in text.split(","):

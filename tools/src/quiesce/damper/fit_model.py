@@ -91,10 +91,10 @@ def saying(name: str, say: Say) -> Progress:
 
 def paper_method(name: str) -> Callable[[Problem, int, Effort, Progress], Fit]:
     """The searches that the papers used, over all variables."""
-    from quiesce.damper.fit.binary_ga import fit_binary_ga
+    from quiesce.damper.fit.binary_ga import fit_binary_ga, fit_plain_ga
     from quiesce.damper.fit.thesis_de import fit_thesis_de
 
-    return {"ga": fit_binary_ga, "de": fit_thesis_de}[name]
+    return {"ga": fit_binary_ga, "ga-plain": fit_plain_ga, "de": fit_thesis_de}[name]
 
 
 def simulate_values(problem: Problem, values: np.ndarray) -> Simulate:

@@ -170,6 +170,8 @@ def why_no_closed_form(damper: DamperModel) -> str:
         return "the model remembers"
     if damper.rig.get("field_exponent"):
         return "the field saturates"
+    if not any(parameter.follows_current for parameter in one.parameters):
+        return "its equations have the current in them"
     following = [
         parameter.name
         for parameter, order in zip(one.parameters, orders, strict=True)

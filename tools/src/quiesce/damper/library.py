@@ -74,6 +74,7 @@ class Parameter:
     is_linear: bool
     follows_current: bool
     text: str
+    is_told: bool  # known of a damper, not found by a fit
 
     def natural(self, scales: Scales) -> float:
         """The size that one has in this parameter's unit."""
@@ -96,6 +97,11 @@ class Model:
     states: int
     uses_accel: bool
     parameters: tuple[Parameter, ...]
+
+    @property
+    def told(self) -> tuple[Parameter, ...]:
+        """What has to be known of a damper before it can be fitted: geometry."""
+        return tuple(one for one in self.parameters if one.is_told)
 
     def index(self, name: str) -> int:
         return [one.name for one in self.parameters].index(name)

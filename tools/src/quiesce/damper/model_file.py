@@ -42,7 +42,9 @@ class DamperModel:
     def kernel_row(self) -> tuple[Model, list[int], np.ndarray]:
         """Model, orders and the library's row, rig included."""
         one = models()[self.model]
-        laws = [np.atleast_1d(np.asarray(self.parameters[p.name], float)) for p in one.parameters]
+        # What a file may leave out is a factor or an exponent of 1.
+        values = [self.parameters.get(p.name, 1.0) for p in one.parameters]
+        laws = [np.atleast_1d(np.asarray(value, float)) for value in values]
         rig = [float(self.rig.get(name, 0.0)) for name in RIG]
         return one, [len(law) for law in laws], np.concatenate([*laws, rig])
 

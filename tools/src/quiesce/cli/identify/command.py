@@ -92,10 +92,11 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         help="highest power of the current in a parameter (%(default)s)",
     )  # fmt: skip
     group.add_argument(
-        "--method", choices=("default", "ga", "de", "ls"), default="default",
+        "--method", choices=("default", "ga", "ga-plain", "de", "ls"), default="default",
         help="default: variable projection, differential evolution, least squares; ga: the binary "
-        "genetic algorithm of the squeeze-mode paper; de: the thesis' differential evolution; ls: "
-        "Bouc-Wen by least squares from three sines a current",
+        "genetic algorithm of the squeeze-mode paper, in ranges that narrow; ga-plain: in ranges "
+        "that do not; de: the thesis' differential evolution; ls: Bouc-Wen by least squares from "
+        "three sines a current",
     )  # fmt: skip
     group.add_argument(
         "--time-limit", type=float, default=300.0, metavar="s", help="for each model (%(default)g)"

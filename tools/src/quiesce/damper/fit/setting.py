@@ -40,6 +40,13 @@ class Setting:
                     f"{one.name} = {value:g}: model {self.model.name} allows "
                     f"{one.min:g} .. {one.max:g} {one.unit}"
                 )
+        untold = [one for one in self.model.told if one.name not in {*self.fixed, *self.bounds}]
+        if untold:
+            raise UsageError(
+                f"model {self.model.name} does not find its geometry; state "
+                + ", ".join(f"{one.name} ({one.text})" for one in untold)
+                + f", such as --fix {untold[0].name}=VALUE"
+            )
         for name, (low, high) in self.bounds.items():
             if not low < high:
                 raise UsageError(f"bounds of {name}: the first has to be below the second")
