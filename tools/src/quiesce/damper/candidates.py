@@ -32,7 +32,7 @@ class Choice:
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     rig: tuple[str, ...] | None = None  # None: chosen by the data
     most_coefficients: int = 3  # against the current
-    method: str = "default"  # or the papers' own: "ga", "de"
+    method: str = "default"  # or the papers' own: "ga", "de", and those of base.searches
 
 
 @dataclass(frozen=True)
