@@ -11,12 +11,15 @@ from quiesce.base.paths import root
 from quiesce.plant.library import Plant
 from quiesce.plant.stepping import Run
 from quiesce.plant.variant import read_plant_data
-from scipy.linalg import expm, solve_continuous_are
+from scipy.linalg import expm, solve_continuous_are, solve_discrete_are
 
 PLANT = "sim_hil/data/plants/frame_3dof.toml"
 MAX_A = 2.0
 TICK_RATE_HZ = 250
 SECONDS = 8.0
+# Of the observer's sensors, RMS in a sample.
+ACCEL_NOISE_M_S2, STROKE_NOISE_M, FORCE_NOISE_N = 0.02, 2e-5, 0.02
+GROUND_M_S2 = 0.8  # RMS of the ground's acceleration, as the observer takes it
 # In place of the shipped linear damper: 0.3 N of friction without current, 9 N at 2 A.
 DAMPER = {
     "model": "bingham",
@@ -74,30 +77,29 @@ def earthquake(rng: np.random.Generator) -> np.ndarray:
 
 
 class Observer:
-    """Kalman filter: from the roof's measured absolute acceleration, the damper's stroke and its
-    force to the state, without the ground's acceleration."""
+    """Kalman filter of sampled signals: from the roof's absolute acceleration, the damper's stroke
+    and its force to the state; the ground's acceleration is noise to it."""
 
     def __init__(self, of: Frame) -> None:
-        self.b = of.b
         self.c = np.stack([of.a[5], np.eye(6)[0]])
         self.d = np.array([of.b[5], 0.0])
-        noise = np.diag([4e-3, 1e-9])  # of the measurements, (m/s2)^2 and m^2 times s
-        base = np.concatenate([np.zeros(3), np.ones(3)])
-        process = 0.3 * np.outer(base, base) + 1e-8 * np.eye(6)
-        p = solve_continuous_are(of.a.T, self.c.T, process, noise)
-        self.gain = p @ self.c.T @ np.linalg.inv(noise)
-        step_s = 1.0 / TICK_RATE_HZ
-        both = np.zeros((9, 9))
-        both[:6, :6] = of.a - self.gain @ self.c
-        both[:6, 6] = self.b - self.gain @ self.d
-        both[:6, 7:] = self.gain
-        whole = expm(both * step_s)
-        self.step, self.enter = whole[:6, :6], whole[:6, 6:]
-        self.state = np.zeros(6)
+        ground = np.concatenate([np.zeros(3), np.ones(3)])
+        both = np.zeros((8, 8))
+        both[:6] = np.column_stack([of.a, of.b, ground])
+        whole = expm(both / TICK_RATE_HZ)
+        self.step, self.by_force, by_ground = whole[:6, :6], whole[:6, 6], whole[:6, 7]
+        noise = np.diag([ACCEL_NOISE_M_S2**2, STROKE_NOISE_M**2])
+        process = GROUND_M_S2**2 * np.outer(by_ground, by_ground) + 1e-14 * np.eye(6)
+        p = solve_discrete_are(self.step.T, self.c.T, process, noise)
+        self.gain = p @ self.c.T @ np.linalg.inv(self.c @ p @ self.c.T + noise)
+        self.ahead = np.zeros(6)
 
     def update(self, accel_m_s2: float, stroke_m: float, force_N: float) -> np.ndarray:
-        self.state = self.step @ self.state + self.enter @ (force_N, accel_m_s2, stroke_m)
-        return self.state
+        """The state at these samples."""
+        surprise = (accel_m_s2, stroke_m) - self.c @ self.ahead - self.d * force_N
+        state = self.ahead + self.gain @ surprise
+        self.ahead = self.step @ state + self.by_force * force_N
+        return state
 
 
 def clipped_optimal(of: Frame, drift: float, accel: float, effort: float) -> Law:
@@ -146,7 +148,9 @@ class Response:
 
 def shaken(of: Frame, law: Law, base_m_s2: np.ndarray, rng: np.random.Generator) -> Response:
     """The observer sees roof acceleration, stroke and force with noise."""
-    noise = rng.standard_normal((len(base_m_s2), 3)) * (0.02, 2e-5, 0.02)
+    noise = rng.standard_normal((len(base_m_s2), 3)) * (
+        ACCEL_NOISE_M_S2, STROKE_NOISE_M, FORCE_NOISE_N,
+    )  # fmt: skip
     motion, observer = Run(of.plant, TICK_RATE_HZ), Observer(of)
     peak_m = peak_m_s2 = sum_A = 0.0
     for k, base in enumerate(base_m_s2):
