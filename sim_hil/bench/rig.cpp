@@ -34,11 +34,30 @@ std::size_t index_in(const Items &items, const std::string &name, const std::str
 void require_simulated(const BoardFile &file) {
     for (std::size_t i = 0; i < file.sensors.size(); ++i) {
         const std::int32_t sense = file.board.sensor[i].sense;
-        if (sense == QUIESCE_SENSE_VOLTAGE || sense == QUIESCE_SENSE_TEMPERATURE ||
-            sense == QUIESCE_SENSE_SUPPLY) {
+        if (sense == QUIESCE_SENSE_VOLTAGE || sense == QUIESCE_SENSE_SUPPLY) {
             throw InputError("sensor '" + file.sensors[i] +
-                             "' of the board: the simulated plant has no voltages and no "
-                             "temperatures; leave it out of the board for the bench");
+                             "' of the board: the simulated plant has no voltages; leave it out "
+                             "of the board for the bench");
+        }
+    }
+}
+
+bool keeps_temperature(const Damper &damper) {
+    const std::vector<double> start(damper.state_count(), 0.0);
+    return damper.fluid_C(start.data()).has_value();
+}
+
+void require_temperatures(const Rig &rig, const PlantModel &plant) {
+    for (std::size_t i = 0; i < rig.file.sensors.size(); ++i) {
+        const quiesce_board_sensor_t &sensor = rig.board().sensor[i];
+        if (sensor.sense != QUIESCE_SENSE_TEMPERATURE) {
+            continue;
+        }
+        const std::size_t of = rig.damper_of[static_cast<std::size_t>(sensor.at)];
+        if (!keeps_temperature(*plant.dampers[of].damper)) {
+            throw InputError("sensor '" + rig.file.sensors[i] + "' of the board: the " +
+                             label(plant.dampers[of]) +
+                             " of the plant has no temperature; give it a table [thermal]");
         }
     }
 }
@@ -126,6 +145,7 @@ Rig make_rig(BoardFile board, const PlantModel &plant) {
         rig.damper_of.push_back(index_in(plant.dampers, name, "damper"));
     }
     require_all_dampers(rig, plant);
+    require_temperatures(rig, plant);
     require_same_ends(rig, plant);
     rig.noise = noise_of(rig.file, plant);
     return rig;

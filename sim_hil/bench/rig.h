@@ -21,8 +21,7 @@ struct Rig {
     const quiesce_board_t &board() const { return file.board; }
 };
 
-/// Throws InputError naming what the plant lacks, or what of it no simulation makes (temperature,
-/// voltages).
+/// Throws InputError naming what the plant lacks, or what of it no simulation makes (voltages).
 Rig make_rig(BoardFile board, const PlantModel &plant);
 
 /// A fault with what it befalls.

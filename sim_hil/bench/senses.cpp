@@ -36,7 +36,7 @@ BoardSensor::BoardSensor(const Rig &rig, std::size_t index, std::int32_t tick_ra
       tick_rate_Hz_(tick_rate_Hz), on_the_way_(ticks_in(spec_.latency_us, tick_rate_Hz), 0.0),
       noise_(seed) {}
 
-/// In the unit of the board: um/s2, um/s, nm, mN.
+/// In the unit of the board: um/s2, um/s, nm, mN, mdegC.
 double BoardSensor::measure(const Plant &plant) const {
     switch (spec_.sense) {
     case QUIESCE_SENSE_ACCEL:
@@ -51,7 +51,9 @@ double BoardSensor::measure(const Plant &plant) const {
         return 1e6 * plant.damper(source_).velocity_m_s;
     case QUIESCE_SENSE_FORCE:
         return 1e3 * plant.damper(source_).force_N;
-    default: // make_rig lets no other through
+    case QUIESCE_SENSE_TEMPERATURE:
+        return 1e3 * plant.damper(source_).fluid_C.value(); // make_rig has seen that it has one
+    default:                                                // make_rig lets no other through
         throw InputError("a sensor measures what the plant does not have");
     }
 }

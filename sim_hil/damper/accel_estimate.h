@@ -38,6 +38,9 @@ class AccelEstimate final : public Damper {
         model_->after_step(with_accel, state, dt_s);
     }
     bool is_sampled() const override { return model_->is_sampled(); }
+    std::optional<double> fluid_C(const double *state) const override {
+        return model_->fluid_C(state);
+    }
     double lowest_position_m() const override { return model_->lowest_position_m(); }
 
   private:

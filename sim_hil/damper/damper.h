@@ -3,6 +3,7 @@
 #define QUIESCE_DAMPER_H
 
 #include <cstddef>
+#include <optional>
 
 namespace quiesce {
 
@@ -50,6 +51,10 @@ class Damper {
 
     /// The model runs at a sample time of its own (after_step).
     virtual bool is_sampled() const { return false; }
+
+    /// Temperature of its fluid, of models that keep one (warm_damper.h); others are at what
+    /// DamperInput says by default.
+    virtual std::optional<double> fluid_C(const double * /*state*/) const { return {}; }
 
     /// Positions at or below this are outside the model (plates that touch).
     virtual double lowest_position_m() const = 0;

@@ -15,20 +15,21 @@ constexpr std::size_t kToldOf<Kernel, std::void_t<decltype(Kernel::kTold)>> = Ke
 
 template <class Kernel>
 KernelModel describe() {
-    return {Kernel::kName,
-            Kernel::kTitle,
-            Kernel::kSource,
-            Kernel::kParameters.data(),
-            Kernel::kParameters.size(),
-            kToldOf<Kernel>,
-            Kernel::kStates,
-            Kernel::kUsesAccel,
-            Kernel::fastest_rate_1_s,
-            Kernel::is_passive,
-            [](const CurrentLaw *laws, double stroke_m, double speed_m_s,
-               const FieldLaw<double> &field) -> std::shared_ptr<const Damper> {
-                return std::make_shared<KernelDamper<Kernel>>(laws, stroke_m, speed_m_s, field);
-            }};
+    return {
+        Kernel::kName,
+        Kernel::kTitle,
+        Kernel::kSource,
+        Kernel::kParameters.data(),
+        Kernel::kParameters.size(),
+        kToldOf<Kernel>,
+        Kernel::kStates,
+        Kernel::kUsesAccel,
+        Kernel::fastest_rate_1_s,
+        Kernel::is_passive,
+        [](const CurrentLaw *laws, double stroke_m, double speed_m_s, const FieldLaw<double> &field,
+           const FluidLaw &fluid) -> std::shared_ptr<const Damper> {
+            return std::make_shared<KernelDamper<Kernel>>(laws, stroke_m, speed_m_s, field, fluid);
+        }};
 }
 
 } // namespace

@@ -23,7 +23,7 @@ struct KernelModel {
     double (*fastest_rate_1_s)(const double *p, double speed_m_s);
     bool (*is_passive)(const double *p);
     std::shared_ptr<const Damper> (*make)(const CurrentLaw *laws, double stroke_m, double speed_m_s,
-                                          const FieldLaw<double> &field);
+                                          const FieldLaw<double> &field, const FluidLaw &fluid);
 };
 
 /// In the order of kernels.h.

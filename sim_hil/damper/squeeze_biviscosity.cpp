@@ -29,18 +29,20 @@ double SqueezeBiviscosity::yield_stress_Pa(double current_A) const {
 double SqueezeBiviscosity::force_N(const DamperInput &input, const double * /*state*/,
                                    double * /*rates*/) const {
     const double gap_m = std::max(params_.gap_m + input.position_m, params_.min_gap_m);
-    const double yield_Pa = yield_stress_Pa(input.current_A);
+    const FluidFactors warm = params_.fluid.at(input.temperature_C);
+    const double yield_Pa = warm.yielding * yield_stress_Pa(input.current_A);
     if (yield_Pa < kFilmNoYield_Pa) {
-        return law_.newtonian_N(input.velocity_m_s, gap_m);
+        return warm.viscous * law_.newtonian_N(input.velocity_m_s, gap_m);
     }
     const double per_film = 1.0 / (gap_m * gap_m * yield_Pa);
-    const double chi = law_.chi(std::abs(input.velocity_m_s), per_film);
+    const double chi = warm.viscous * law_.chi(std::abs(input.velocity_m_s), per_film);
     const double force = law_.yielded_N(yield_Pa, gap_m, per_film, psi_(chi));
     return std::copysign(force, input.velocity_m_s);
 }
 
 double SqueezeBiviscosity::stiffest_N_s_m(double current_A) const {
-    const double newtonian = law_.stefan / std::pow(params_.gap_m, 3.0);
+    const double viscous = params_.fluid.at(params_.fluid.coldest_C).viscous;
+    const double newtonian = viscous * law_.stefan / std::pow(params_.gap_m, 3.0);
     // The unyielded film is stiffest, and its viscosity does not depend on the current.
     return yield_stress_Pa(current_A) < kFilmNoYield_Pa ? newtonian
                                                         : newtonian / params_.viscosity_ratio;

@@ -6,11 +6,13 @@
 ///   force      F    = force_scale (2 pi tau1 a^3 / h) Psi(eta a |v| / (h^2 tau1)) sgn(v)
 ///   no field   F    = force_scale 3 pi eta a^4 v / (2 h^3)        (Stefan, for tau1 < 1e-3 Pa)
 ///
-/// Quasi-static: no state. No remanence, cavitation or magnetic saturation. Psi: squeeze_psi.h.
+/// A warm fluid (fluid_law.h) lowers eta and tau1. Quasi-static: no state. No remanence, cavitation
+/// or magnetic saturation. Psi: squeeze_psi.h.
 #ifndef QUIESCE_SQUEEZE_BIVISCOSITY_H
 #define QUIESCE_SQUEEZE_BIVISCOSITY_H
 
 #include "damper.h"
+#include "fluid_law.h"
 #include "squeeze_film_law.h"
 #include "squeeze_psi.h"
 
@@ -27,6 +29,7 @@ struct SqueezeBiviscosityParams {
     double coil_turns;        ///< > 0
     double coil_radius_m;     ///< mean radius of the flux path, > 0
     double force_scale;       ///< part of the film force that reaches the structure, >= 0
+    FluidLaw fluid = {};
 };
 
 class SqueezeBiviscosity final : public Damper {
@@ -37,7 +40,7 @@ class SqueezeBiviscosity final : public Damper {
     double stiffest_N_s_m(double current_A) const override;
     double lowest_position_m() const override { return params_.min_gap_m - params_.gap_m; }
 
-    /// tau1 at this current.
+    /// tau1 at this current and reference temperature.
     double yield_stress_Pa(double current_A) const;
 
   private:

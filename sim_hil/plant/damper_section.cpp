@@ -9,13 +9,14 @@
 #include "learned_section.h"
 #include "squeeze_biviscosity.h"
 #include "switched_stiffness.h"
+#include "thermal_section.h"
 #include "viscous.h"
 
 namespace quiesce {
 
 namespace {
 
-std::shared_ptr<const Damper> read_squeeze_biviscosity(TomlTable &section) {
+std::shared_ptr<const Damper> read_squeeze_biviscosity(TomlTable &section, const FluidLaw &fluid) {
     SqueezeBiviscosityParams params{};
     params.plate_radius_m = section.number("plate_radius_m", {1e-4, 1.0, "m"});
     params.gap_m = section.number("gap_m", {1e-6, 0.1, "m"});
@@ -28,13 +29,14 @@ std::shared_ptr<const Damper> read_squeeze_biviscosity(TomlTable &section) {
     params.coil_turns = section.number("coil_turns", {1.0, 1e6, "turns"});
     params.coil_radius_m = section.number("coil_radius_m", {1e-4, 10.0, "m"});
     params.force_scale = section.number("force_scale", {0.0, 1e6, "-"}, 1.0);
+    params.fluid = fluid;
     if (params.min_gap_m >= params.gap_m) {
         section.fail("min_gap_m", "expected less than gap_m");
     }
     return std::make_shared<SqueezeBiviscosity>(params);
 }
 
-std::shared_ptr<const Damper> read_viscous(TomlTable &section) {
+std::shared_ptr<const Damper> read_viscous(TomlTable &section, const FluidLaw & /*fluid*/) {
     ViscousParams params{};
     params.base_N_s_m = section.number("base_N_s_m", {0.0, 1e9, "N s/m"});
     params.per_A_N_s_m = section.number("per_A_N_s_m", {0.0, 1e9, "N s/m per A"});
@@ -42,7 +44,8 @@ std::shared_ptr<const Damper> read_viscous(TomlTable &section) {
     return std::make_shared<Viscous>(params);
 }
 
-std::shared_ptr<const Damper> read_switched_stiffness(TomlTable &section) {
+std::shared_ptr<const Damper> read_switched_stiffness(TomlTable &section,
+                                                      const FluidLaw & /*fluid*/) {
     SwitchedStiffnessParams params{};
     params.base_N_s_m = section.number("base_N_s_m", {0.0, 1e9, "N s/m"});
     params.per_A_N_s_m = section.number("per_A_N_s_m", {0.0, 1e9, "N s/m per A"});
@@ -56,13 +59,14 @@ std::shared_ptr<const Damper> read_switched_stiffness(TomlTable &section) {
 /// class.
 struct Model {
     const char *name;
-    std::shared_ptr<const Damper> (*read)(TomlTable &keys);
+    std::shared_ptr<const Damper> (*read)(TomlTable &keys, const FluidLaw &fluid);
+    bool has_film; ///< whose force falls as it warms up
 };
 
 const Model kModels[] = {
-    {"squeeze_biviscosity", read_squeeze_biviscosity},
-    {"switched_stiffness", read_switched_stiffness},
-    {"viscous", read_viscous},
+    {"squeeze_biviscosity", read_squeeze_biviscosity, true},
+    {"switched_stiffness", read_switched_stiffness, false},
+    {"viscous", read_viscous, false},
 };
 
 std::vector<std::string> model_names() {
@@ -95,15 +99,17 @@ MotionLimits read_limits(TomlTable &section) {
 }
 
 /// Keys in [parameters], as in damper files, or beside "model".
-std::shared_ptr<const Damper> read_own(const Model &model, TomlTable &section) {
+std::shared_ptr<const Damper> read_class(const Model &model, TomlTable &section,
+                                         const FluidLaw &fluid) {
+    require_followed(section, fluid, model.has_film, model.has_film);
     if (!section.has("parameters")) {
-        return model.read(section);
+        return model.read(section, fluid);
     }
     for (const char *key : {"stroke_m", "speed_m_s"}) {
         section.accept(key); // of the recording that it was identified from
     }
     TomlTable keys = section.table("parameters");
-    std::shared_ptr<const Damper> damper = model.read(keys);
+    std::shared_ptr<const Damper> damper = model.read(keys, fluid);
     keys.reject_unknown_keys();
     return damper;
 }
@@ -129,7 +135,11 @@ FieldLaw<double> read_field(TomlTable &section) {
     return field;
 }
 
-std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &section) {
+std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &section,
+                                          const FluidLaw &fluid) {
+    const ParameterInfo *end = model.parameters + model.parameter_count;
+    require_followed(section, fluid, std::any_of(model.parameters, end, is_viscous),
+                     std::any_of(model.parameters, end, is_yielding));
     const MotionLimits limits = read_limits(section);
     TomlTable keys = section.table("parameters");
     std::vector<CurrentLaw> laws;
@@ -137,7 +147,7 @@ std::shared_ptr<const Damper> read_kernel(const KernelModel &model, TomlTable &s
         laws.push_back(read_law(keys, model.parameters[k]));
     }
     keys.reject_unknown_keys();
-    return model.make(laws.data(), limits.stroke_m, limits.speed_m_s, read_field(section));
+    return model.make(laws.data(), limits.stroke_m, limits.speed_m_s, read_field(section), fluid);
 }
 
 /// Where a damper file says that it holds: [valid].
@@ -175,24 +185,40 @@ DamperChoice with_accel_estimate(DamperChoice choice) {
     return choice;
 }
 
-} // namespace
-
-std::shared_ptr<const Damper> read_damper_model(TomlTable &section) {
+std::shared_ptr<const Damper> read_any(TomlTable &section, const FluidLaw &fluid) {
     const std::string chosen = section.choice("model", model_names());
     for (const Model &model : kModels) {
         if (chosen == model.name) {
-            return read_own(model, section);
+            return read_class(model, section, fluid);
         }
     }
     for (const KernelModel &model : kernel_models()) {
         if (chosen == model.name) {
-            return read_kernel(model, section);
+            return read_kernel(model, section, fluid);
         }
     }
     const std::vector<LearnedModel> &learned = learned_models();
+    // What the temperature does to its force it has learned.
+    require_followed(section, fluid, false, false);
     return read_learned(*std::find_if(learned.begin(), learned.end(),
                                       [&](const auto &one) { return chosen == one.name; }),
                         section);
+}
+
+/// The model and, where there is one, its [thermal].
+void read_own(TomlTable &section, DamperChoice &choice) {
+    const std::optional<Thermal> thermal = read_thermal(section);
+    choice.damper = read_any(section, thermal ? thermal->law : FluidLaw{});
+    if (thermal) {
+        choice.damper = std::make_shared<WarmDamper>(choice.damper, thermal->heat);
+        choice.is_warmed_by_coil = thermal->heat.coil_ohm > 0.0;
+    }
+}
+
+} // namespace
+
+std::shared_ptr<const Damper> read_damper_model(TomlTable &section) {
+    return read_any(section, {});
 }
 
 CoilParams read_coil(TomlTable section) {
@@ -211,7 +237,7 @@ DamperChoice read_damper(TomlTable section, const std::string &plant_file) {
         choice = load_damper((std::filesystem::path(plant_file).parent_path() / file).string());
         check_for_plant(section, choice);
     } else {
-        choice.damper = read_damper_model(section);
+        read_own(section, choice);
     }
     section.reject_unknown_keys();
     return with_accel_estimate(choice);
@@ -224,7 +250,7 @@ DamperChoice load_damper(const std::string &file) {
     root.integer("version", 1, 1);
     root.text("name");
     DamperChoice choice;
-    choice.damper = read_damper_model(root);
+    read_own(root, choice);
     if (std::optional<TomlTable> coil = root.optional_table("coil")) {
         choice.coil = read_coil(*coil);
     }

@@ -21,7 +21,8 @@ struct DamperChoice {
     /// Up to which its file says that it holds: A, or V where the command is a voltage.
     std::optional<double> max_current_A;
     bool is_in_volts = false;
-    bool is_usable = true; ///< false: published, but of no use (its file says why)
+    bool is_warmed_by_coil = false; ///< [thermal] has a coil_ohm
+    bool is_usable = true;          ///< false: published, but of no use (its file says why)
 };
 
 /// The damper that a table of a plant describes, either by `model` and its keys or by `file`, a

@@ -50,6 +50,10 @@ PlantDamper read_one(Shared &shared, const TomlTable &section, std::optional<Tom
     damper.damper = choice.damper;
     check_current(shared, choice, damper);
     damper.coil = coil_of(shared, std::move(own_coil), choice);
+    if (choice.is_warmed_by_coil && damper.coil.remanence > 0.0) {
+        section.fail("thermal", "coil_ohm needs the coil's current, and with coil.remanence the "
+                                "damper sees another one; leave one of the two out");
+    }
     return damper;
 }
 

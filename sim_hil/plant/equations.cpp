@@ -123,6 +123,11 @@ double Equations::stroke_velocity_m_s(std::size_t damper, const std::vector<doub
     return dot(dampers_[damper].stroke, y.data() + structure_.mode_count());
 }
 
+std::optional<double> Equations::fluid_C(std::size_t damper, const std::vector<double> &y) const {
+    const Joined &one = dampers_[damper];
+    return one.damper->fluid_C(y.data() + one.first_state);
+}
+
 std::size_t Equations::closed_damper(const std::vector<double> &y) const {
     for (std::size_t k = 0; k < dampers_.size(); ++k) {
         if (stroke_m(k, y) <= dampers_[k].damper->lowest_position_m()) {

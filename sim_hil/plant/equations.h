@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "plant_model.h"
@@ -48,6 +49,8 @@ class Equations {
                   const std::vector<double> &rates, double base_accel_m_s2) const;
 
     double stroke_m(std::size_t damper, const std::vector<double> &y) const;
+    /// Temperature of a damper's fluid, of those that keep one.
+    std::optional<double> fluid_C(std::size_t damper, const std::vector<double> &y) const;
     double stroke_velocity_m_s(std::size_t damper, const std::vector<double> &y) const;
 
     /// The first damper whose ends have come to the end of its range; damper_count() where none

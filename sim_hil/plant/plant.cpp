@@ -49,7 +49,7 @@ PlaceTruth Plant::place(std::size_t index) const {
 
 DamperTruth Plant::damper(std::size_t index) const {
     return {equations_.stroke_m(index, y_), equations_.stroke_velocity_m_s(index, y_),
-            damper_force_N_[index], coil_A_[index]};
+            damper_force_N_[index], coil_A_[index], equations_.fluid_C(index, y_)};
 }
 
 void Plant::observe() {

@@ -11,6 +11,7 @@
 #define QUIESCE_PLANT_H
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "coil.h"
@@ -35,10 +36,11 @@ struct PlantTruth {
 
 /// True values of a damper at one instant.
 struct DamperTruth {
-    double stroke_m;     ///< its end a less its end b, from rest; > 0: it is longer
-    double velocity_m_s; ///< of the stroke
-    double force_N;      ///< resisting: > 0 resists a growing stroke
-    double coil_A;       ///< what a current sensor reads
+    double stroke_m;               ///< its end a less its end b, from rest; > 0: it is longer
+    double velocity_m_s;           ///< of the stroke
+    double force_N;                ///< resisting: > 0 resists a growing stroke
+    double coil_A;                 ///< what a current sensor reads
+    std::optional<double> fluid_C; ///< of a damper that keeps its temperature
 };
 
 /// What can be wrong between command and coil.

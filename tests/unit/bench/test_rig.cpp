@@ -13,6 +13,7 @@
 #include "rig_metrics.h"
 #include "run.h"
 #include "scripted_link.h"
+#include "warm_damper.h"
 
 namespace {
 
@@ -141,6 +142,29 @@ TEST(Rig, sensors_show_their_places_in_counts) {
                     seen.roof[i].displacement_m - seen.floor[i].displacement_m, 1e-12);
     }
     EXPECT_GT(std::abs(seen.stimuli.back().counts[2]), 100);
+}
+
+TEST(Rig, a_warm_fluid_reaches_the_controllers_picture) {
+    RunSetup setup = setup_with(
+        [](BoardFile &file) {
+            file.board.sensor[2].sense = QUIESCE_SENSE_TEMPERATURE;
+            file.board.sensor[2].scale = 1000; // a count is 1 mdegC
+            file.board.sensor[2].stuck_us = 0;
+        },
+        [](PlantModel &model) {
+            quiesce::PlantDamper &upper = model.dampers[1];
+            const quiesce::HeatParams heat{0.5, 0.1, 20.0, 20.0, 0.0};
+            upper.damper = std::make_shared<quiesce::WarmDamper>(upper.damper, heat);
+        });
+    setup.wants_picture = true;
+    quiesce::InProcessLink link;
+    const Seen seen = run(setup, link);
+    for (std::size_t i = 0; i < seen.stimuli.size(); i += 37) {
+        EXPECT_FALSE(seen.lower[i].fluid_C.has_value());
+        EXPECT_NEAR(seen.stimuli[i].counts[2], 1e3 * *seen.upper[i].fluid_C, 0.51);
+        EXPECT_EQ(seen.replies[i].picture.damper[1].temperature_mdegC, seen.stimuli[i].counts[2]);
+    }
+    EXPECT_GT(*seen.upper.back().fluid_C, 20.01);
 }
 
 TEST(Rig, full_scale_limits_and_noise_is_the_plants) {

@@ -302,7 +302,7 @@ TEST_P(EveryKernel, is_no_faster_than_it_says) {
         for (const double value : p) {
             laws.push_back({value, 0.0, 0.0});
         }
-        const Stopwatch watched(model().make(laws.data(), 1.0, speed_m_s, {}));
+        const Stopwatch watched(model().make(laws.data(), 1.0, speed_m_s, {}, {}));
         run(watched, samples, substeps(p, samples, speed_m_s));
         EXPECT_GT(watched.fastest_1_s(), 0.0);
         EXPECT_LE(watched.fastest_1_s(), 1.05 * model().fastest_rate_1_s(p.data(), speed_m_s))

@@ -32,7 +32,7 @@ class Choice:
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     rig: tuple[str, ...] | None = None  # None: chosen by the data
     most_coefficients: int = 3  # against the current
-    method: str = "default"  # or of papers: "ga", "ga-plain", "de"
+    method: str = "default"  # or of papers: "ga", "ga-plain", "de", and those of base.searches
 
 
 @dataclass(frozen=True)

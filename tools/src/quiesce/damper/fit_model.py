@@ -1,6 +1,7 @@
 """One model fitted: to every fold of the inner validation, then to the whole training part."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from time import monotonic
 
 import numpy as np
@@ -92,9 +93,11 @@ def saying(name: str, say: Say) -> Progress:
 def paper_method(name: str) -> Callable[[Problem, int, Effort, Progress], Fit]:
     """The searches that the papers used, over all variables."""
     from quiesce.damper.fit.binary_ga import fit_binary_ga, fit_plain_ga
+    from quiesce.damper.fit.named import fit_named
     from quiesce.damper.fit.thesis_de import fit_thesis_de
 
-    return {"ga": fit_binary_ga, "ga-plain": fit_plain_ga, "de": fit_thesis_de}[name]
+    own = {"ga": fit_binary_ga, "ga-plain": fit_plain_ga, "de": fit_thesis_de}
+    return own[name] if name in own else partial(fit_named, name)
 
 
 def simulate_values(problem: Problem, values: np.ndarray) -> Simulate:

@@ -34,10 +34,12 @@ class DamperModel:
     source: Mapping[str, Any] | str = field(default_factory=dict)
     valid: Mapping[str, Any] = field(default_factory=dict)
     fit: Mapping[str, Any] = field(default_factory=dict)
+    thermal: Mapping[str, float] = field(default_factory=dict)  # [thermal], checked by the library
 
     @property
     def is_kernel(self) -> bool:
-        return self.model in models()
+        """Runs by the library's rows, which know no temperature."""
+        return self.model in models() and not self.thermal
 
     def kernel_row(self) -> tuple[Model, list[int], np.ndarray]:
         """Model, orders and the library's row, rig included."""
@@ -72,6 +74,7 @@ class DamperModel:
             table["coil"] = {"rise_s": 0.0, "fall_s": 0.0} | lags
         if self.field_table:
             table["field"] = self.field_table
+        table["thermal"] = dict(self.thermal)
         others = {key: self.rig[key] for key in RIG if self.rig.get(key)}
         others = {key: value for key, value in others.items() if key not in (*lags, *FIELD)}
         for key, value in (("rig", others), ("fit", dict(self.fit))):
@@ -147,4 +150,5 @@ def read_model(file: Path) -> DamperModel:
         table.get("source", {}),
         table.get("valid", {}),
         table.get("fit", {}),
+        table.get("thermal", {}),
     )

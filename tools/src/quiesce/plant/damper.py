@@ -10,7 +10,7 @@ from quiesce.base.paths import shown
 # Keys of models that are not kernels, which the force is proportional to.
 FORCE_KEYS = ("force_scale", "base_N_s_m", "per_A_N_s_m", "base_N_m", "per_A_N_m")
 LEARNED_FORCE_KEYS = ("force_scale_N", "consequents_N")
-DAMPER_KEYS = ("model", "stroke_m", "speed_m_s", "field", "parameters")
+DAMPER_KEYS = ("model", "stroke_m", "speed_m_s", "field", "parameters", "thermal")
 
 
 def require_one_damper(data: dict[str, Any], file: Path) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import build_folder, shown
+from quiesce.base.searches.names import NAMES as SEARCHES
 from quiesce.cli.identify import compare, example, export, inverse, online
 from quiesce.cli.identify import plan as cli_plan
 from quiesce.cli.identify.data_options import add_data_options
@@ -92,11 +93,12 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         help="highest power of the current in a parameter (%(default)s)",
     )  # fmt: skip
     group.add_argument(
-        "--method", choices=("default", "ga", "ga-plain", "de", "ls"), default="default",
+        "--method", choices=("default", "ga", "ga-plain", "de", *SEARCHES, "ls"), default="default",
         help="default: variable projection, differential evolution, least squares; ga: the binary "
         "genetic algorithm of the squeeze-mode paper, in ranges that narrow; ga-plain: in ranges "
-        "that do not; de: the thesis' differential evolution; ls: Bouc-Wen by least squares from "
-        "three sines a current",
+        "that do not; de: the thesis' differential evolution; pso, cmaes, es, cuckoo, bees: "
+        "searches that a review names, the first three by pymoo; ls: Bouc-Wen by least squares "
+        "from three sines a current",
     )  # fmt: skip
     group.add_argument(
         "--time-limit", type=float, default=300.0, metavar="s", help="for each model (%(default)g)"

@@ -57,6 +57,10 @@ def files_of(damper: DamperModel, to: str, out: Path, with_rig: bool) -> dict[st
     """Names and contents. UsageError where model or name do not allow it."""
     if out.suffix and out.suffix.lower() not in ENDINGS[to]:
         raise UsageError(f"--out {out}: --to {to} writes {' or '.join(ENDINGS[to])}; name it so")
+    if damper.thermal:
+        raise UsageError(
+            f"{damper.name} warms up ([thermal]), which no export does; take the table out"
+        )
     stem = out.stem if out.suffix else out.name
     if to == "mat":
         return {f"{stem}.mat": mat_bytes(damper)}

@@ -61,7 +61,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "optimize",
         help="search rule tables and set positions on the plant, in closed loop",
         description="Search rule tables and set positions on the plant, in closed loop with the\n"
-        "controller: genetic algorithm, differential evolution, or several objectives at once.",
+        "controller: genetic algorithm, differential evolution, several objectives at once,\n"
+        "or a search that papers name (pso, cmaes and es by pymoo, an extra; cuckoo, bees).",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -104,7 +105,7 @@ def add_how(parser: argparse.ArgumentParser) -> None:
         "--selection", choices=SELECTIONS, default=SELECTIONS[0], help="of the GA (%(default)s)"
     )
     parser.add_argument(
-        "--population", type=whole_number(4, 1000), metavar="N", help="(ga, de: 24; nsga2: 40)"
+        "--population", type=whole_number(4, 1000), metavar="N", help="(24; nsga2: 40)"
     )
     parser.add_argument(
         "--generations", type=whole_number(1, 100000), default=30, metavar="N", help="(%(default)s)"

@@ -1,0 +1,93 @@
+"""Searches by name: on functions whose least value is known, in identification, in rule search."""
+
+import importlib.util
+
+import numpy as np
+import pytest
+from quiesce.base.errors import UsageError
+from quiesce.base.searches import by_pymoo
+from quiesce.base.searches.methods import METHODS
+from quiesce.damper.fit.named import fit_named
+from quiesce.rules.optimize.methods import make_search, method_settings
+from test_damper_published_fits import small_problem
+
+TRIALS = 4000
+HAS_PYMOO = importlib.util.find_spec("pymoo") is not None
+OURS = ("cuckoo", "bees")
+BY_PYMOO = pytest.mark.skipif(not HAS_PYMOO, reason="needs tools/requirements-search.txt")
+ALL = [name if name in OURS else pytest.param(name, marks=BY_PYMOO) for name in METHODS]
+
+
+def sphere(points: np.ndarray) -> np.ndarray:
+    return np.sum((points - 0.37) ** 2, axis=1)
+
+
+def rastrigin(points: np.ndarray) -> np.ndarray:
+    """0 at 0.37; a local minimum every 0.1."""
+    x = 10.24 * (points - 0.37)
+    return np.sum(x**2 - 10.0 * np.cos(2.0 * np.pi * x) + 10.0, axis=1)
+
+
+def best_of(name: str, function, seed: int, dimensions: int = 4) -> float:
+    rng = np.random.default_rng(seed)
+    search = METHODS[name](rng.random((30, dimensions)), rng)
+    points, count, best = next(search), 0, np.inf
+    while count < TRIALS:
+        assert points.shape[1] == dimensions
+        assert np.all((points >= 0.0) & (points <= 1.0))
+        costs = function(points)
+        count, best = count + len(costs), min(best, float(costs.min()))
+        points = search.send(costs)
+    return best
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_least_values_are_found(name: str):
+    drawn = np.random.default_rng(1).random((TRIALS, 4))
+    assert best_of(name, sphere, 1) < 1e-3 < sphere(drawn).min()
+    assert best_of(name, rastrigin, 1) < 0.5 * rastrigin(drawn).min()
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_same_seed_is_the_same_search(name: str):
+    assert best_of(name, rastrigin, 5) == best_of(name, rastrigin, 5)
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_what_diverges_is_survived(name: str):
+    def broken(points: np.ndarray) -> np.ndarray:
+        return np.where(points[:, 0] > 0.6, np.inf, sphere(points))
+
+    assert best_of(name, broken, 2) < 1e-2
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_rules_are_searched_by_name(name: str):
+    levels, target = (5, 5, 5, 64), np.array([4, 0, 2, 40])
+    search = make_search(levels, (0,) * 4, method_settings(name, 12, ""), np.random.default_rng(1))
+    genomes, best = next(search), np.inf
+    assert (0,) * 4 in genomes or name == "cmaes"
+    for _ in range(60):
+        costs = np.array([np.sum(np.abs(target - g) / levels) for g in map(np.array, genomes)])
+        best = min(best, float(costs.min()))
+        genomes = search.send(np.stack([costs], axis=1))
+        assert all(
+            0 <= code < n for genome in genomes for code, n in zip(genome, levels, strict=True)
+        )
+    assert best < 0.25
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_a_damper_is_identified_by_name(name: str):
+    problem = small_problem()
+    found = fit_named(name, problem, 1, trials=3000)
+    assert found.evaluations >= 3000
+    assert found.error < 0.2
+    assert found.is_complete
+
+
+def test_without_the_extra_there_is_one_line():
+    with pytest.raises(UsageError, match=r"needs pymoo.*requirements-search\.txt") as caught:
+        with by_pymoo.extra():
+            raise ModuleNotFoundError("none", name="pymoo")
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,1 @@
+"""Searches over the unit cube by the names that papers give them."""

@@ -1,0 +1,40 @@
+"""Searches that papers name (quiesce.base.searches.methods) over all variables of a problem, none
+projected out, no polish: as many trials as the squeeze-mode paper's genetic algorithm gets."""
+
+import numpy as np
+
+from quiesce.base.searches.methods import METHODS
+from quiesce.damper.fit.population import errors_of, ranges_of
+from quiesce.damper.fit.problem import Problem
+from quiesce.damper.fit.search import EFFORT, Clock, Effort, Fit, Progress, sobol
+
+POPULATION = 60
+TRIALS = 12_000
+
+
+def fit_named(
+    name: str,
+    problem: Problem,
+    seed: int,
+    effort: Effort = EFFORT,
+    progress: Progress | None = None,
+    trials: int = TRIALS,
+) -> Fit:
+    """Of `effort` counts only when to stop (seconds, stop). Ctrl-C ends it with the best so far.
+    UsageError where the method needs an extra that is not installed."""
+    clock = Clock(problem, effort, progress)
+    rng = np.random.default_rng(seed)
+    low, high = ranges_of(problem)
+    search = METHODS[name](sobol(len(low), POPULATION, rng), rng)
+    count = 0
+    try:
+        points = next(search)
+        while count < trials and not clock.is_over():
+            values = low + (high - low) * points
+            errors = errors_of(problem, values)
+            count += len(values)
+            clock.offer(values, errors, f"{name}, trial {count}")
+            points = search.send(np.where(np.isfinite(errors), errors, 1e3))
+    except KeyboardInterrupt:
+        clock.was_stopped = True
+    return clock.result([])
