@@ -19,13 +19,13 @@ std::string names_of(const Items &items) {
 }
 
 template <typename Items>
-std::size_t index_in(const Items &items, const std::string &name, const std::string &what) {
+std::size_t index_in(const Items &items, const std::string &name, const std::string &who) {
     const auto found = std::find_if(items.begin(), items.end(),
                                     [&](const auto &item) { return item.name == name; });
     if (found == items.end()) {
-        throw InputError(what + " '" + name +
-                         "': the plant has no such one ([[place]] and [[damper]] of its "
-                         "file have names); it has: " +
+        throw InputError(who +
+                         ": the plant has no such one ([[place]] and [[damper]] of its file "
+                         "have names); it has: " +
                          names_of(items));
     }
     return static_cast<std::size_t>(found - items.begin());
@@ -110,7 +110,8 @@ RigSensor wired(const std::string &name, const WiredSensor &sensor, std::int32_t
     if (sensor.cross_talk_from.empty()) {
         out.params->cross_talk = 0.0;
     } else {
-        const std::string what = "sensors." + name + ".cross_talk_from of the plant";
+        const std::string what =
+            "sensors." + name + ".cross_talk_from '" + sensor.cross_talk_from + "' of the plant";
         out.other = kind.owner == Owner::Body
                         ? index_in(plant.places, sensor.cross_talk_from, what)
                         : index_in(plant.dampers, sensor.cross_talk_from, what);
@@ -160,10 +161,11 @@ Rig make_rig(BoardFile board, const PlantModel &plant) {
     require_simulated(board);
     Rig rig{std::move(board), {}, {}, {}, {}};
     for (const std::string &name : rig.file.bodies) {
-        rig.place_of.push_back(index_in(plant.places, name, "body of the board"));
+        rig.place_of.push_back(index_in(plant.places, name, "body '" + name + "' of the board"));
     }
     for (const std::string &name : rig.file.dampers) {
-        rig.damper_of.push_back(index_in(plant.dampers, name, "damper of the board"));
+        rig.damper_of.push_back(
+            index_in(plant.dampers, name, "damper '" + name + "' of the board"));
     }
     require_all_dampers(rig, plant);
     require_same_ends(rig, plant);

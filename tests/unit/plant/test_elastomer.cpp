@@ -63,7 +63,7 @@ TEST(ElastomerFile, a_plant_may_have_it) {
 TEST(ElastomerFile, every_mistake_is_named_in_one_line) {
     const Mistake mistakes[] = {
         {"area", "area_m2 = 9.36e-4", "area_m2 = 0", "area_m2: expected"},
-        {"thickness", "thickness_m = 0.003", "", "thickness_m: expected"},
+        {"thickness", "thickness_m = 0.003", "", "thickness_m: missing"},
         {"two_numbers", "[1.080, 0.7649, -0.1391]", "[1.080, 0.7649]", "storage_MPa: expected"},
         {"no_modulus", "[1.080, 0.7649, -0.1391]", "[0.0, 0.7649, -0.1391]",
          "storage_MPa: expected a modulus above 0"},

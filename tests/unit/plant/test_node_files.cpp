@@ -76,7 +76,8 @@ TEST(NodeFile, dampers_and_places_between_nodes) {
     text = spoilt(text,
                   {"", "[damper]", "[[damper]]\nname = \"d\"\na = \"node5\"\nb = \"node3\"", ""});
     const PlantModel model =
-        loaded(text + "[[place]]\nname = \"middle\"\nat = [0, 0, 0, 0.5, 0.5]\n");
+        loaded(text + "[[place]]\nname = \"middle\"\nat = [0, 0, 0, 0.5, 0.5]\n"
+                      "[integration]\nmax_step_us = 250\n");
     EXPECT_EQ(model.dampers[0].stroke, model.places[4].shape - model.places[2].shape);
     ASSERT_EQ(model.places.size(), 6u);
     EXPECT_EQ(model.places[5].shape, 0.5 * (model.places[3].shape + model.places[4].shape));
@@ -88,7 +89,7 @@ TEST(NodeFile, every_mistake_is_named_in_one_line) {
         {"too_few", "shape = [0.1727, ", "shape = [", "structure.mode[1].shape: expected"},
         {"too_many", "shape = [0.1727, ", "shape = [0, 0.1727, ", "mode[1].shape: expected"},
         {"no_shape", "shape = [0.1727, 0.7728, 1.7753, 3.2263, 4.4086]", "",
-         "mode[1].shape: expected"},
+         "mode[1].shape: missing"},
         {"text", "shape = [0.1727", "shape = [\"a\"", "mode[1].shape: expected"},
         {"still", "shape = [0.1727, 0.7728, 1.7753, 3.2263, 4.4086]", "shape = [0, 0, 0, 0, 0]",
          "mode[1].shape: expected one that moves some node"},
@@ -99,12 +100,12 @@ TEST(NodeFile, every_mistake_is_named_in_one_line) {
          "structure.sensor: expected one of: node1, node2, node3, node4, node5; found 'tip'"},
         {"unknown_damper", "damper = \"node5\"", "damper = \"ground\"",
          "structure.damper: expected"},
-        {"no_force", "force = \"node1\"\n", "", "structure.force: expected"},
+        {"no_force", "force = \"node1\"\n", "", "structure.force: missing"},
         {"twice", "\"node2\"", "\"node1\"", "structure.nodes: expected names that differ"},
         {"ground", "\"node2\"", "\"ground\"", "structure.nodes: expected names that differ"},
         {"bad_name", "\"node2\"", "\"node 2\"", "structure.nodes: expected"},
         {"no_nodes", "nodes = [\"node1\", \"node2\", \"node3\", \"node4\", \"node5\"]\n", "",
-         "structure.nodes: expected"},
+         "structure.nodes: missing"},
         {"a_place_of_that_name", "[driver]",
          "[[place]]\nname = \"node3\"\nat = [0, 0, 0, 0, 1]\n[driver]", "place[1].name: expected"},
         {"base_of_a_place", "[driver]",

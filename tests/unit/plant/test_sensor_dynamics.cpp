@@ -140,7 +140,7 @@ TEST(SensorFile, a_plant_takes_its_noise_from_it_and_may_say_another) {
 TEST(SensorFile, every_mistake_is_named_in_one_line) {
     const Mistake mistakes[] = {
         {"unit", "\"um/s2\"", "\"g\"", "unit: expected one of: um/s2, um/s, nm, mN"},
-        {"no_unit", "unit = \"um/s2\"", "", "unit: expected"},
+        {"no_unit", "unit = \"um/s2\"", "", "unit: missing"},
         {"negative_corner", "corner_Hz = 0.5", "corner_Hz = -0.5", "corner_Hz: expected"},
         {"corner_text", "corner_Hz = 0.5", "corner_Hz = \"low\"", "corner_Hz: expected"},
         {"crossed", "band_Hz = 3000.0", "band_Hz = 0.4", "band_Hz: expected more than corner_Hz"},
@@ -167,7 +167,7 @@ TEST(SensorFile, every_mistake_of_the_plant_is_named_in_one_line) {
         {"none_of_it", "[sensors.gap]", "[sensors.gap]\ncross_talk_from = \"node4\"",
          "sensors.gap.cross_talk_from: its file has no cross_talk_pct"},
         {"unknown", "[sensors.gap]", "[sensors.gap]\nnoise = 1", "sensors.gap.noise: unknown key"},
-        {"no_file", "[sensors.gap]\nfile", "[sensors.gap]\nfiles", "sensors.gap.file: expected"},
+        {"no_file", "[sensors.gap]\nfile", "[sensors.gap]\nfiles", "sensors.gap.file: missing"},
         {"name", "[sensors.gap]", "[sensors.\"a b\"]", "expected a letter"},
     };
     for (const Mistake &mistake : mistakes) {
