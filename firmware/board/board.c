@@ -70,6 +70,7 @@ static const range_t sensor_ranges[] = {
     SENSOR(min_noise_counts, 0, 65535),
     SENSOR(max_lost_pct, 0, 100),
     SENSOR(latency_us, 0, 1000000),
+    SENSOR(corner_mHz, 0, 20000),
 };
 
 static const range_t damper_ranges[] = {
@@ -145,6 +146,9 @@ static bool check_sensor(place_t at, const quiesce_board_t *board,
                       sensor->sense == QUIESCE_SENSE_ACCEL
                           ? "full scale is beyond 500 m/s2, where accelerations saturate"
                           : "full scale is beyond 2^30 units");
+    }
+    if (sensor->corner_mHz != 0 && sensor->sense != QUIESCE_SENSE_ACCEL) {
+        return refuse(at, "corner_mHz", "is made up for where accelerations are measured only");
     }
     if (sensor->min_noise_counts != 0 && sensor->period_us > SLOWEST_NOISE_us) {
         return refuse(at, "min_noise_counts", "needs ten samples a second, or 0");

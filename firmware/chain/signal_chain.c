@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "trig.h"
+
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
     ELSEWHERE_DIVISOR = 32,    // a lock 3 % off the dominant component is on something else
@@ -43,6 +45,8 @@ void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
     self->min_accel_um_s2 = p->track_min_accel_um_s2;
     self->hold_ticks = ticks_in_ms(p->track_hold_ms, p->tick_rate_Hz);
     self->latency_q8 = latency_q8(board, rate_Hz);
+    self->corner_step_turn = step_turn_of(board->sensor[board->tracked].corner_mHz, rate_Hz);
+    self->turns_phase = self->latency_q8 != 0 || self->corner_step_turn != 0;
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
@@ -138,6 +142,16 @@ static uint32_t tracked_of(const signal_chain_t *self) {
     return QUIESCE_SENSORS == 1 ? 0 : self->tracked;
 }
 
+// From the phase that the sensor shows to that of the structure when this tick's command reaches
+// its driver: on by the latencies, back by what a first-order high-pass leads, atan(corner / f).
+static void turn_phase(const signal_chain_t *self, view_tone_t *tone) {
+    const int32_t corner_step_turn = (int32_t)self->corner_step_turn;
+    tone->phase_turn += (uint32_t)((uint64_t)tone->step_turn * self->latency_q8 >> 8);
+    if (corner_step_turn != 0) {
+        tone->phase_turn -= atan2_turn(corner_step_turn, (int32_t)tone->step_turn);
+    }
+}
+
 static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
     const lock_in_t *lock = &self->lock;
     // A short doubt must not make the command jump: that would itself change the vibration.
@@ -148,11 +162,13 @@ static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out,
         .body = QUIESCE_BODIES == 1 ? 0 : self->sensing.places.sensor[tracked_of(self)].at,
         .rms_um_s2 = out->rms_um_s2,
         .freq_uHz = self->estimator.tone[0].freq_uHz,
-        .phase_turn =
-            lock->phase_turn + (uint32_t)((uint64_t)lock->step_turn * self->latency_q8 >> 8),
+        .phase_turn = lock->phase_turn,
         .step_turn = lock->step_turn,
         .half = lock->has_half ? &lock->last : NULL,
     };
+    if (self->turns_phase) {
+        turn_phase(self, &view->tone);
+    }
 }
 
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t *view,

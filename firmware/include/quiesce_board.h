@@ -54,6 +54,8 @@ typedef struct {
     int32_t min_noise_counts; ///< less (RMS, over a second) is a fault; 0: no check
     int32_t max_lost_pct; ///< of the last 256 samples; more lost ones are a fault; 100: no check
     int32_t latency_us;   ///< from the motion to the sample
+    int32_t corner_mHz;   ///< of an accelerometer: first-order high-pass, -3 dB, its phases lead by
+                          ///< atan(corner / f); 0: none
 } quiesce_board_sensor_t;
 
 typedef struct {

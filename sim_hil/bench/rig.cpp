@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "board_keys.h"
 #include "input_error.h"
 
 namespace quiesce {
@@ -18,15 +19,14 @@ std::string names_of(const Items &items) {
 }
 
 template <typename Items>
-std::size_t index_in(const Items &items, const std::string &name, const std::string &what) {
+std::size_t index_in(const Items &items, const std::string &name, const std::string &who) {
     const auto found = std::find_if(items.begin(), items.end(),
                                     [&](const auto &item) { return item.name == name; });
     if (found == items.end()) {
-        throw InputError(
-            what + " '" + name +
-            "' of the board: the plant has no such one ([[place]] and [[damper]] of its "
-            "file have names); it has: " +
-            names_of(items));
+        throw InputError(who +
+                         ": the plant has no such one ([[place]] and [[damper]] of its file "
+                         "have names); it has: " +
+                         names_of(items));
     }
     return static_cast<std::size_t>(found - items.begin());
 }
@@ -95,16 +95,57 @@ void require_same_ends(const Rig &rig, const PlantModel &plant) {
     }
 }
 
-std::vector<double> noise_of(const BoardFile &file, const PlantModel &plant) {
-    for (const auto &[name, rms] : plant.noise) {
+/// values: by the names of sensors.
+template <typename Values>
+void require_sensors(const BoardFile &file, const Values &values, const std::string &section) {
+    for (const auto &[name, value] : values) {
         if (std::find(file.sensors.begin(), file.sensors.end(), name) == file.sensors.end()) {
-            throw InputError("noise." + name + " of the plant: the board has no such sensor");
+            throw InputError(section + "." + name + " of the plant: the board has no such sensor");
         }
     }
+}
+
+std::vector<double> noise_of(const BoardFile &file, const PlantModel &plant) {
+    require_sensors(file, plant.noise, "noise");
     std::vector<double> out;
     for (const std::string &name : file.sensors) {
+        const auto own = plant.sensors.find(name);
         const auto found = plant.noise.find(name);
-        out.push_back(found == plant.noise.end() ? 0.0 : found->second);
+        out.push_back(found != plant.noise.end()   ? found->second
+                      : own != plant.sensors.end() ? own->second.params.noise
+                                                   : 0.0);
+    }
+    return out;
+}
+
+RigSensor wired(const std::string &name, const WiredSensor &sensor, std::int32_t sense,
+                const PlantModel &plant) {
+    const Sense &kind = senses()[static_cast<std::size_t>(sense)];
+    if (sensor.params.unit != kind.unit) {
+        throw InputError("sensors." + name + " of the plant: its file is in " + sensor.params.unit +
+                         ", but " + kind.name + " of the board is in " + kind.unit);
+    }
+    RigSensor out{sensor.params, 0};
+    if (sensor.cross_talk_from.empty()) {
+        out.params->cross_talk = 0.0;
+    } else {
+        const std::string what =
+            "sensors." + name + ".cross_talk_from '" + sensor.cross_talk_from + "' of the plant";
+        out.other = kind.owner == Owner::Body
+                        ? index_in(plant.places, sensor.cross_talk_from, what)
+                        : index_in(plant.dampers, sensor.cross_talk_from, what);
+    }
+    return out;
+}
+
+std::vector<RigSensor> sensors_of(const BoardFile &file, const PlantModel &plant) {
+    require_sensors(file, plant.sensors, "sensors");
+    std::vector<RigSensor> out;
+    for (std::size_t i = 0; i < file.sensors.size(); ++i) {
+        const auto found = plant.sensors.find(file.sensors[i]);
+        out.push_back(found == plant.sensors.end()
+                          ? RigSensor{std::nullopt, 0}
+                          : wired(found->first, found->second, file.board.sensor[i].sense, plant));
     }
     return out;
 }
@@ -137,17 +178,19 @@ void require_known(const InjectedFault &fault, const Rig *rig) {
 
 Rig make_rig(BoardFile board, const PlantModel &plant) {
     require_simulated(board);
-    Rig rig{std::move(board), {}, {}, {}};
+    Rig rig{std::move(board), {}, {}, {}, {}};
     for (const std::string &name : rig.file.bodies) {
-        rig.place_of.push_back(index_in(plant.places, name, "body"));
+        rig.place_of.push_back(index_in(plant.places, name, "body '" + name + "' of the board"));
     }
     for (const std::string &name : rig.file.dampers) {
-        rig.damper_of.push_back(index_in(plant.dampers, name, "damper"));
+        rig.damper_of.push_back(
+            index_in(plant.dampers, name, "damper '" + name + "' of the board"));
     }
     require_all_dampers(rig, plant);
     require_temperatures(rig, plant);
     require_same_ends(rig, plant);
     rig.noise = noise_of(rig.file, plant);
+    rig.sensors = sensors_of(rig.file, plant);
     return rig;
 }
 

@@ -3,6 +3,7 @@
 #ifndef QUIESCE_RIG_H
 #define QUIESCE_RIG_H
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,11 +13,18 @@
 
 namespace quiesce {
 
+/// What a sensor of a board is in the plant; without a file it is ideal.
+struct RigSensor {
+    std::optional<SensorParams> params;
+    std::size_t other; ///< place or damper that it sees, too, where params->cross_talk is not 0
+};
+
 struct Rig {
     BoardFile file;
     std::vector<std::size_t> place_of;  ///< of the plant, for each body of the board
     std::vector<std::size_t> damper_of; ///< likewise, for each damper
     std::vector<double> noise;          ///< RMS in a sample, for each sensor, in its unit
+    std::vector<RigSensor> sensors;     ///< likewise: what comes before its samples
 
     const quiesce_board_t &board() const { return file.board; }
 };

@@ -40,7 +40,7 @@ class Loop {
         : setup_(setup), link_(link),
           excitation_(make_excitation(setup.scenario, setup.plant.shaker)),
           plant_(setup.plant, excitation_, setup.params.tick_rate_Hz),
-          senses_(setup.plant.sensor, setup.rig_or_null(), setup.params.tick_rate_Hz, setup.seed),
+          senses_(setup.plant, setup.rig_or_null(), setup.params.tick_rate_Hz, setup.seed),
           injector_(place_faults(setup.scenario, setup.rig_or_null()), senses_.full_scales()),
           bus_(bus_ticks(setup)) {
         for (std::size_t i = 0; i < setup.plant.dampers.size(); ++i) {

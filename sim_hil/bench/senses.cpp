@@ -33,29 +33,43 @@ BoardSensor::BoardSensor(const Rig &rig, std::size_t index, std::int32_t tick_ra
                    ? rig.place_of
                    : rig.damper_of)[static_cast<std::size_t>(spec_.at)]),
       noise_counts_(rig.noise[index] / std::abs(unit_per_count(spec_))),
-      tick_rate_Hz_(tick_rate_Hz), on_the_way_(ticks_in(spec_.latency_us, tick_rate_Hz), 0.0),
-      noise_(seed) {}
+      tick_rate_Hz_(tick_rate_Hz), other_(rig.sensors[index].other),
+      on_the_way_(ticks_in(spec_.latency_us, tick_rate_Hz), 0.0), noise_(seed) {
+    if (rig.sensors[index].params) {
+        dynamics_.emplace(*rig.sensors[index].params, tick_rate_Hz, seed);
+    }
+}
 
 /// In the unit of the board: um/s2, um/s, nm, mN, mdegC.
-double BoardSensor::measure(const Plant &plant) const {
+double BoardSensor::measure(const Plant &plant, std::size_t source) const {
     switch (spec_.sense) {
     case QUIESCE_SENSE_ACCEL:
-        return 1e6 * plant.place(source_).accel_m_s2;
+        return 1e6 * plant.place(source).accel_m_s2;
     case QUIESCE_SENSE_VELOCITY:
-        return 1e6 * plant.place(source_).velocity_m_s;
+        return 1e6 * plant.place(source).velocity_m_s;
     case QUIESCE_SENSE_DISPLACEMENT:
-        return 1e9 * plant.place(source_).displacement_m;
+        return 1e9 * plant.place(source).displacement_m;
     case QUIESCE_SENSE_STROKE:
-        return 1e9 * plant.damper(source_).stroke_m;
+        return 1e9 * plant.damper(source).stroke_m;
     case QUIESCE_SENSE_STROKE_VELOCITY:
-        return 1e6 * plant.damper(source_).velocity_m_s;
+        return 1e6 * plant.damper(source).velocity_m_s;
     case QUIESCE_SENSE_FORCE:
-        return 1e3 * plant.damper(source_).force_N;
+        return 1e3 * plant.damper(source).force_N;
     case QUIESCE_SENSE_TEMPERATURE:
-        return 1e3 * plant.damper(source_).fluid_C.value(); // make_rig has seen that it has one
-    default:                                                // make_rig lets no other through
+        return 1e3 * plant.damper(source).fluid_C.value(); // make_rig has seen that it has one
+    default:                                               // make_rig lets no other through
         throw InputError("a sensor measures what the plant does not have");
     }
+}
+
+/// After what the sensor does to it.
+double BoardSensor::shown(const Plant &plant) {
+    const double value = measure(plant, source_);
+    if (!dynamics_) {
+        return value;
+    }
+    const std::size_t coil = quiesce_sense_is_of_body(spec_.sense) ? 0 : source_;
+    return dynamics_->step(value, measure(plant, other_), plant.damper(coil).coil_A);
 }
 
 /// In the first tick that begins in each of its periods.
@@ -70,7 +84,7 @@ bool BoardSensor::is_due(std::int64_t tick) const {
 }
 
 bool BoardSensor::sample(const Plant &plant, std::int64_t tick, std::int32_t &counts) {
-    on_the_way_.push_back(measure(plant));
+    on_the_way_.push_back(shown(plant));
     const double value = on_the_way_.front();
     on_the_way_.pop_front();
     if (!is_due(tick)) {
@@ -83,17 +97,34 @@ bool BoardSensor::sample(const Plant &plant, std::int64_t tick, std::int32_t &co
     return true;
 }
 
-Senses::Senses(const AccelerometerParams &own, const Rig *rig, std::int32_t tick_rate_Hz,
+Senses::Senses(const PlantModel &plant, const Rig *rig, std::int32_t tick_rate_Hz,
                std::uint64_t seed)
-    : own_(own, seed) {
+    : own_(plant.sensor, seed) {
+    if (plant.transducer) {
+        transducer_.emplace(plant.transducer->params, tick_rate_Hz, seed);
+    }
+    for (std::size_t i = 0; plant.transducer && i < plant.places.size(); ++i) {
+        if (plant.places[i].name == plant.transducer->cross_talk_from) {
+            other_ = i;
+        }
+    }
     for (std::size_t i = 0; rig != nullptr && i < rig->file.sensors.size(); ++i) {
         sensors_.emplace_back(*rig, i, tick_rate_Hz, seed ^ i * kNextNoise);
     }
 }
 
+double Senses::own_accel_m_s2(const Plant &plant) {
+    const double accel_m_s2 = plant.truth().accel_m_s2;
+    if (!transducer_) {
+        return accel_m_s2;
+    }
+    const double other_um_s2 = other_ ? 1e6 * plant.place(*other_).accel_m_s2 : 0.0;
+    return 1e-6 * transducer_->step(1e6 * accel_m_s2, other_um_s2, plant.damper(0).coil_A);
+}
+
 void Senses::read(const Plant &plant, std::int64_t tick, lockstep_stimulus_t &out) {
     if (sensors_.empty()) {
-        out.counts[0] = own_.sample_counts(plant.truth().accel_m_s2);
+        out.counts[0] = own_.sample_counts(own_accel_m_s2(plant));
         out.flags |= LOCKSTEP_FRESH;
         return;
     }

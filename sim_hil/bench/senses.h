@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "accelerometer.h"
@@ -26,13 +27,16 @@ class BoardSensor {
     std::int32_t full_scale_counts() const { return spec_.full_scale_counts; }
 
   private:
-    double measure(const Plant &plant) const;
+    double measure(const Plant &plant, std::size_t source) const;
+    double shown(const Plant &plant);
     bool is_due(std::int64_t tick) const;
 
     quiesce_board_sensor_t spec_;
     std::size_t source_; ///< place or damper of the plant
     double noise_counts_;
     std::int64_t tick_rate_Hz_;
+    std::optional<SensorDynamics> dynamics_; ///< none: it is ideal
+    std::size_t other_;                      ///< place or damper that it sees, too
     std::deque<double> on_the_way_; ///< as many values as its latency is ticks, the oldest first
     Noise noise_;
 };
@@ -40,8 +44,7 @@ class BoardSensor {
 /// All of them; without a rig the plant's own accelerometer.
 class Senses {
   public:
-    Senses(const AccelerometerParams &own, const Rig *rig, std::int32_t tick_rate_Hz,
-           std::uint64_t seed);
+    Senses(const PlantModel &plant, const Rig *rig, std::int32_t tick_rate_Hz, std::uint64_t seed);
 
     /// Writes counts and flags of fresh samples.
     void read(const Plant &plant, std::int64_t tick, lockstep_stimulus_t &out);
@@ -50,8 +53,12 @@ class Senses {
     std::vector<std::int32_t> full_scales() const;
 
   private:
+    double own_accel_m_s2(const Plant &plant);
+
     Accelerometer own_;
-    std::vector<BoardSensor> sensors_; ///< none without a rig
+    std::optional<SensorDynamics> transducer_; ///< of the plant's own; none: it is ideal
+    std::optional<std::size_t> other_;         ///< place that it sees, too
+    std::vector<BoardSensor> sensors_;         ///< none without a rig
 };
 
 } // namespace quiesce

@@ -62,6 +62,7 @@ const std::vector<SensorKey> &sensor_keys() {
         {"min_noise_counts", "count", &Sensor::min_noise_counts, false},
         {"max_lost_pct", "%", &Sensor::max_lost_pct, false},
         {"latency_us", "us", &Sensor::latency_us, false},
+        {"corner_mHz", "mHz", &Sensor::corner_mHz, false},
     };
     return keys;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "accel_estimate.h"
+#include "elastomer.h"
 #include "kernel_models.h"
 #include "learned_section.h"
 #include "squeeze_biviscosity.h"
@@ -55,6 +56,22 @@ std::shared_ptr<const Damper> read_switched_stiffness(TomlTable &section,
     return std::make_shared<SwitchedStiffness>(params);
 }
 
+std::shared_ptr<const Damper> read_elastomer(TomlTable &section, const FluidLaw & /*fluid*/) {
+    ElastomerParams params{};
+    params.area_m2 = section.number("area_m2", {1e-9, 1e3, "m2"});
+    params.thickness_m = section.number("thickness_m", {1e-6, 10.0, "m"});
+    const std::vector<double> storage_MPa = section.numbers("storage_MPa", 3);
+    std::copy(storage_MPa.begin(), storage_MPa.end(), params.storage_MPa.begin());
+    if (storage_MPa[0] <= 0.0 || storage_MPa[1] < 0.0) {
+        section.fail("storage_MPa", "expected a modulus above 0 that does not fall with the first "
+                                    "ampere: [MPa, MPa/A, MPa/A^2]");
+    }
+    params.loss_factor = section.number("loss_factor", {0.0, 10.0, "-"});
+    params.loss_freq_Hz = section.number("loss_freq_Hz", {1e-3, 1e5, "Hz"});
+    params.stroke_m = section.number("stroke_m", {1e-9, 100.0, "m"});
+    return std::make_shared<Elastomer>(params);
+}
+
 /// A model with a class of its own; where there is a kernel of the same name, a plant takes the
 /// class.
 struct Model {
@@ -64,6 +81,7 @@ struct Model {
 };
 
 const Model kModels[] = {
+    {"elastomer", read_elastomer, false},
     {"squeeze_biviscosity", read_squeeze_biviscosity, true},
     {"switched_stiffness", read_switched_stiffness, false},
     {"viscous", read_viscous, false},

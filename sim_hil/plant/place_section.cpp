@@ -37,16 +37,21 @@ std::string read_name(TomlTable &section, const std::vector<std::string> &taken)
     return name;
 }
 
-std::vector<Place> read_places(TomlTable &root, const Structure &structure) {
-    std::vector<Place> places;
+std::vector<Place> read_places(TomlTable &root, const Structure &structure,
+                               std::vector<Place> nodes) {
+    std::vector<Place> places = std::move(nodes);
     std::vector<std::string> taken = {kGround};
-    for (TomlTable &table : root.tables("place")) {
+    for (const Place &node : places) {
+        taken.push_back(node.name);
+    }
+    std::vector<TomlTable> tables = root.tables("place");
+    for (TomlTable &table : tables) {
         places.push_back(read_place(table, structure, taken));
         taken.push_back(places.back().name);
     }
-    if (places.size() > kMaxPlaces) {
+    if (tables.size() > kMaxPlaces) {
         root.fail("place", "expected at most " + std::to_string(kMaxPlaces) +
-                               " tables [[place]], found " + std::to_string(places.size()));
+                               " tables [[place]], found " + std::to_string(tables.size()));
     }
     return places;
 }

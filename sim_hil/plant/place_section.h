@@ -11,8 +11,10 @@
 
 namespace quiesce {
 
-/// 0 .. kMaxPlaces places. Throws InputError naming the key that is wrong.
-std::vector<Place> read_places(TomlTable &root, const Structure &structure);
+/// The structure's nodes, then 0 .. kMaxPlaces places. Throws InputError naming the key that is
+/// wrong.
+std::vector<Place> read_places(TomlTable &root, const Structure &structure,
+                               std::vector<Place> nodes);
 
 /// The name of a place or damper, which is not yet taken.
 std::string read_name(TomlTable &section, const std::vector<std::string> &taken);

@@ -6,6 +6,7 @@
 #include "identifier.h"
 #include "mounts_section.h"
 #include "place_section.h"
+#include "sensor_section.h"
 #include "structure_section.h"
 #include "toml_table.h"
 
@@ -29,28 +30,6 @@ ShakerParams read_shaker(TomlTable section) {
     params.corner_Hz = section.number("corner_Hz", {0.0, 1e5, "Hz, 0: flat"}, 0.0);
     section.reject_unknown_keys();
     return params;
-}
-
-AccelerometerParams read_sensor(TomlTable section) {
-    AccelerometerParams params{};
-    params.full_scale_g = section.number("full_scale_g", {1e-3, 1e4, "g"});
-    params.bits = static_cast<int>(section.integer("bits", 8, 24));
-    params.noise_mg = section.number("noise_mg", {0.0, 1e4, "mg RMS per sample"}, 0.0);
-    const std::int64_t half = std::int64_t{1} << (params.bits - 1);
-    params.offset_counts =
-        static_cast<std::int32_t>(section.integer("offset_counts", 1 - half, half - 1, 0));
-    section.reject_unknown_keys();
-    return params;
-}
-
-/// The bench knows which sensors there are.
-std::map<std::string, double> read_noise(TomlTable section) {
-    std::map<std::string, double> noise;
-    for (const std::string &name : section.keys()) {
-        require_identifier(section, name, name);
-        noise[name] = section.number(name, {0.0, 1e9, "RMS per sample"});
-    }
-    return noise;
 }
 
 double read_max_step_s(TomlTable &root, const PlantModel &model) {
@@ -83,15 +62,12 @@ PlantModel load_plant(const std::string &file) {
     model.name = root.text("name");
     StructureSection section = read_structure(root.table("structure"), has_damper_ends(root));
     model.structure = std::move(section.structure);
-    model.places = read_places(root, model.structure);
+    model.places = read_places(root, model.structure, std::move(section.nodes));
     model.driver = read_driver(root.table("driver"));
     read_dampers(root, file, section.at_damper, model);
     read_mounts(root, model);
     model.shaker = read_shaker(root.table("shaker"));
-    model.sensor = read_sensor(root.table("sensor"));
-    if (std::optional<TomlTable> noise = root.optional_table("noise")) {
-        model.noise = read_noise(*noise);
-    }
+    read_sensors(root, file, model);
     model.max_step_s = read_max_step_s(root, model);
     root.reject_unknown_keys();
     return model;

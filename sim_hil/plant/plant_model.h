@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "damper.h"
 #include "mount.h"
 #include "place.h"
+#include "sensor_dynamics.h"
 #include "shaker.h"
 #include "structure.h"
 
@@ -46,7 +48,10 @@ struct PlantModel {
     CurrentDriverParams driver;       ///< of each of them
     ShakerParams shaker;
     AccelerometerParams sensor;
-    /// RMS of white noise in a sample of a board's sensor, by its name, in the unit of its samples.
+    std::optional<WiredSensor> transducer;      ///< before that; none: it is ideal
+    std::map<std::string, WiredSensor> sensors; ///< of a board, by their names; others are ideal
+    /// RMS of white noise in a sample of a board's sensor, by its name, in the unit of its samples;
+    /// before what its file says.
     std::map<std::string, double> noise;
     double max_step_s; ///< longest integration step
 };

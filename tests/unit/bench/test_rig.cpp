@@ -214,6 +214,72 @@ TEST(Rig, latencies_are_ticks_of_the_past) {
     EXPECT_EQ(late.stimuli[6].counts[1], 0);
 }
 
+/// A sensor file's contents, in this unit.
+quiesce::SensorParams sensor_in(const std::string &unit) {
+    return {"one", unit, 0.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0};
+}
+
+TEST(Rig, a_sensors_file_is_before_its_samples) {
+    const Seen ideal = run_idle(setup_with());
+    const Seen led = run_idle(setup_with({}, [](PlantModel &model) {
+        quiesce::SensorParams params = sensor_in("um/s2");
+        params.corner_Hz = 1.0;
+        model.sensors["roof_accel"] = {params, ""};
+    }));
+    quiesce::SensorParams same = sensor_in("um/s2");
+    same.corner_Hz = 1.0;
+    quiesce::SensorDynamics expected(same, 1000, 0);
+    const double scale = 1e-3 * board().board.sensor[1].scale;
+    for (std::size_t i = 0; i < led.stimuli.size(); ++i) {
+        const double shown = expected.step(1e6 * led.roof[i].accel_m_s2, 0.0, 0.0);
+        ASSERT_NEAR(led.stimuli[i].counts[1] * scale, shown, 0.51 * scale) << i;
+        ASSERT_EQ(led.stimuli[i].counts[0], ideal.stimuli[i].counts[0]) << i;
+    }
+}
+
+TEST(Rig, cross_talk_is_of_the_place_or_damper_that_is_named) {
+    const Seen seen = run_idle(setup_with({}, [](PlantModel &model) {
+        quiesce::SensorParams accel = sensor_in("um/s2");
+        accel.cross_talk = 0.5;
+        model.sensors["roof_accel"] = {accel, "floor"};
+        quiesce::SensorParams stroke = sensor_in("nm");
+        stroke.cross_talk = 0.25;
+        model.sensors["upper_stroke"] = {stroke, "lower"};
+    }));
+    const std::size_t last = seen.stimuli.size() - 1;
+    const double scale = 1e-3 * board().board.sensor[1].scale;
+    EXPECT_NEAR(seen.stimuli[last].counts[1] * scale,
+                1e6 * (seen.roof[last].accel_m_s2 + 0.5 * seen.floor[last].accel_m_s2),
+                0.51 * scale);
+    EXPECT_NEAR(1e3 * seen.stimuli[last].counts[2],
+                1e9 * (seen.upper[last].stroke_m + 0.25 * seen.lower[last].stroke_m), 0.51e3);
+}
+
+TEST(Rig, a_sensors_file_must_fit_the_board) {
+    expect_in("sensors.cellar", refusal({}, [](PlantModel &model) {
+                  model.sensors["cellar"] = {sensor_in("um/s2"), ""};
+              }));
+    expect_in("its file is in nm, but acceleration of the board is in um/s2",
+              refusal({}, [](PlantModel &model) {
+                  model.sensors["roof_accel"] = {sensor_in("nm"), ""};
+              }));
+    expect_in("sensors.roof_accel.cross_talk_from 'lower' of the plant: the plant has no such one",
+              refusal({}, [](PlantModel &model) {
+                  model.sensors["roof_accel"] = {sensor_in("um/s2"), "lower"};
+              }));
+}
+
+TEST(Rig, noise_of_the_plant_is_before_that_of_the_sensors_file) {
+    const auto noisy = [](PlantModel &model) {
+        quiesce::SensorParams params = sensor_in("um/s2");
+        params.noise = 500.0;
+        model.sensors["floor_accel"] = model.sensors["roof_accel"] = {params, ""};
+        model.noise["roof_accel"] = 20.0;
+    };
+    const RunSetup setup = setup_with({}, noisy);
+    EXPECT_EQ(setup.rig->noise, (std::vector<double>{500.0, 20.0, 0.0}));
+}
+
 /// 1 A for the lower damper, 0.5 A for the upper one.
 class TwoCurrents final : public quiesce::ControllerLink {
   public:

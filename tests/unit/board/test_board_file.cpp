@@ -122,15 +122,15 @@ TEST(BoardFile, every_key_reaches_its_field) {
     expected.tracked = 1;
     expected.bus_latency_us = 500;
     expected.sensor[0] = {
-        QUIESCE_SENSE_ACCEL, 0, 0, -1, 57751, 12, 8388607, 4000, 20000, 300000, 3, 40, 1500};
+        QUIESCE_SENSE_ACCEL, 0, 0, -1, 57751, 12, 8388607, 4000, 20000, 300000, 3, 40, 1500, 250};
     expected.sensor[1] = {
-        QUIESCE_SENSE_ACCEL, 1, 2, 1, 60000, 0, 524287, 0, 10000, 250000, 0, 50, 0};
+        QUIESCE_SENSE_ACCEL, 1, 2, 1, 60000, 0, 524287, 0, 10000, 250000, 0, 50, 0, 0};
     expected.sensor[2] = {
-        QUIESCE_SENSE_STROKE, 1, 2, 1, 1000000, 0, 32767, 0, 10000, 250000, 0, 50, 0};
+        QUIESCE_SENSE_STROKE, 1, 2, 1, 1000000, 0, 32767, 0, 10000, 250000, 0, 50, 0, 0};
     expected.sensor[3] = {
-        QUIESCE_SENSE_SUPPLY, 0, 2, 1, 12500, 0, 4095, 0, 10000, 250000, 0, 50, 0};
+        QUIESCE_SENSE_SUPPLY, 0, 2, 1, 12500, 0, 4095, 0, 10000, 250000, 0, 50, 0, 0};
     expected.sensor[4] = {
-        QUIESCE_SENSE_VOLTAGE, 0, 2, 1, 10000, 0, 4095, 0, 10000, 250000, 0, 50, 0};
+        QUIESCE_SENSE_VOLTAGE, 0, 2, 1, 10000, 0, 4095, 0, 10000, 250000, 0, 50, 0, 0};
     expected.damper[0] = {0, QUIESCE_GROUND, 2000, 100, 1500, 45, 2500, 1000, 1, 6000, 2200};
     expected.damper[1] = {1, 0, 1800, 0, 1800, 60, 0, 0, 0, 5000, 0};
     const BoardFile file = load_board(kEveryKey);

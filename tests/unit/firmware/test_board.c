@@ -90,6 +90,7 @@ static void test_board_every_field_has_its_range(void) {
         FIELD(quiesce_board_sensor_t, min_noise_counts, -1, 65536),
         FIELD(quiesce_board_sensor_t, max_lost_pct, -1, 101),
         FIELD(quiesce_board_sensor_t, latency_us, -1, 1000001),
+        FIELD(quiesce_board_sensor_t, corner_mHz, -1, 20001),
     };
     for (int32_t i = 0; i < 3; i++) {
         try_fields("sensor", i,
@@ -116,6 +117,8 @@ static void test_board_every_field_has_its_range(void) {
 }
 
 static void test_board_sensors_contradict(void) {
+    board.sensor[2].corner_mHz = 500;
+    assert_refused("sensor", 2, "corner_mHz", "accelerations");
     board.sensor[0].polarity = 0;
     assert_refused("sensor", 0, "polarity", "-1 or 1");
     board.sensor[1].at = 2;

@@ -406,15 +406,11 @@ static void test_all_parameters_at_their_ends_together_run(void) {
 
 // Commands of law phase at 8 Hz from 4 s to 6 s, where samples come late_ticks after the motion and
 // the board says so or not, into out.
-static void run_late(uint32_t late_ticks, int32_t sensor_us, int32_t bus_us, int32_t out[2000]) {
+static void run_late_on(quiesce_board_t board, uint32_t late_ticks, int32_t out[2000]) {
     static quiesce_t controller;
-    quiesce_board_t board;
     quiesce_in_t in = {0};
     quiesce_out_t result;
     uint32_t seed = 3;
-    quiesce_board_default(&board);
-    board.sensor[0].latency_us = sensor_us;
-    board.bus_latency_us = bus_us;
     params.law = QUIESCE_LAW_PHASE;
     params.slew_mA_s = 10000000;
     TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
@@ -429,6 +425,14 @@ static void run_late(uint32_t late_ticks, int32_t sensor_us, int32_t bus_us, int
             out[i - 4000] = result.damper[0].current_cmd_mA;
         }
     }
+}
+
+static void run_late(uint32_t late_ticks, int32_t sensor_us, int32_t bus_us, int32_t out[2000]) {
+    quiesce_board_t board;
+    quiesce_board_default(&board);
+    board.sensor[0].latency_us = sensor_us;
+    board.bus_latency_us = bus_us;
+    run_late_on(board, late_ticks, out);
 }
 
 static int32_t mean_difference_mA(const int32_t a[2000], const int32_t b[2000], uint32_t shift) {
@@ -451,6 +455,25 @@ static void test_latencies_of_sensor_and_bus_are_made_up_for(void) {
     run_late(0, 0, 7000, late);
     TEST_ASSERT_LESS_THAN_INT32(60, mean_difference_mA(punctual, late, 7));
     TEST_ASSERT_GREATER_THAN_INT32(600, mean_difference_mA(punctual, late, 0));
+}
+
+// A high-pass of 2.937 Hz leads at 8 Hz by atan(2.937 / 8) = 20.16 degrees: 7 ticks.
+static void test_the_lead_of_a_sensors_corner_is_taken_back(void) {
+    static int32_t punctual[2000];
+    static int32_t led[2000];
+    const uint32_t early_ticks = 7;
+    quiesce_board_t board;
+    quiesce_board_default(&board);
+    run_late_on(board, 0, punctual);
+    run_late_on(board, 0u - early_ticks, led); // and nobody has said so
+    TEST_ASSERT_GREATER_THAN_INT32(600, mean_difference_mA(punctual, led, 0));
+    board.sensor[0].corner_mHz = 2937;
+    run_late_on(board, 0u - early_ticks, led);
+    TEST_ASSERT_LESS_THAN_INT32(60, mean_difference_mA(punctual, led, 0));
+    // With a latency beside it: both.
+    board.sensor[0].latency_us = 9000;
+    run_late_on(board, 9u - early_ticks, led);
+    TEST_ASSERT_LESS_THAN_INT32(60, mean_difference_mA(punctual, led, 0));
 }
 
 int main(void) {
@@ -476,5 +499,6 @@ int main(void) {
     RUN_TEST(test_every_accepted_extreme_runs);
     RUN_TEST(test_all_parameters_at_their_ends_together_run);
     RUN_TEST(test_latencies_of_sensor_and_bus_are_made_up_for);
+    RUN_TEST(test_the_lead_of_a_sensors_corner_is_taken_back);
     return UNITY_END();
 }

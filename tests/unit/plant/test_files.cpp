@@ -47,7 +47,7 @@ const Mistake kModesPlantMistakes[] = {
     {"empty_name", "\"squeeze_2012\"", "\"\"", "name: expected a text"},
     {"unknown_root_key", "name =", "colour = 1\nname =", "colour: unknown key; expected one of:"},
     {"unknown_kind", "kind = \"modes\"", "kind = \"fem\"",
-     "structure.kind: expected one of: modes, matrices; found 'fem'"},
+     "structure.kind: expected one of: modes, nodes, matrices; found 'fem'"},
     {"no_frequency", "freq_Hz = 11.5", "", "structure.mode[1].freq_Hz: missing"},
     {"zero_frequency", "freq_Hz = 96.0", "freq_Hz = 0",
      "structure.mode[2].freq_Hz: expected a number in 0.001 .. 10000 (Hz), found 0"},

@@ -8,7 +8,7 @@ from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
 
 # Keys of models that are not kernels, which the force is proportional to.
-FORCE_KEYS = ("force_scale", "base_N_s_m", "per_A_N_s_m", "base_N_m", "per_A_N_m")
+FORCE_KEYS = ("force_scale", "base_N_s_m", "per_A_N_s_m", "base_N_m", "per_A_N_m", "area_m2")
 LEARNED_FORCE_KEYS = ("force_scale_N", "consequents_N")
 DAMPER_KEYS = ("model", "stroke_m", "speed_m_s", "field", "parameters", "thermal")
 
@@ -60,7 +60,7 @@ def scale_force(damper: dict[str, Any], factor: float) -> None:
 def force_names(model: str) -> tuple[str, ...]:
     """Parameters that the force is proportional to, all taken together: of a kernel those with a
     force in their natural size."""
-    if model in ("squeeze_biviscosity", "viscous", "switched_stiffness"):
+    if model in ("squeeze_biviscosity", "viscous", "switched_stiffness", "elastomer"):
         return FORCE_KEYS
     from quiesce.damper.library import models
 

@@ -50,7 +50,18 @@ def read_plant_data(file: Path) -> dict[str, Any]:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UsageError(f"{shown(file)}: not a TOML file: {one_line(error)}")
     require_one_damper(data, file)
-    return with_own_damper(data, file.parent)
+    return with_own_damper(_with_whole_paths(data, file.parent), file.parent)
+
+
+def _with_whole_paths(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Sensor files by their whole paths, so that the plant may be written elsewhere."""
+    out = copy.deepcopy(data)
+    sensors = out.get("sensors")
+    wired = list(sensors.values()) if isinstance(sensors, dict) else []
+    for one in [out.get("sensor"), *wired]:
+        if isinstance(one, dict) and isinstance(one.get("file"), str):
+            one["file"] = str((folder / one["file"]).resolve())
+    return out
 
 
 def changed(data: dict[str, Any], variant: Variant) -> dict[str, Any]:

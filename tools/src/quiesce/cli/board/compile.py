@@ -24,7 +24,7 @@ GROUND = "ground"
 # Of a part: fields in the order of quiesce_board.h.
 SENSOR_FIELDS = (
     "sense at axis polarity scale offset_counts full_scale_counts period_us max_age_us stuck_us "
-    "min_noise_counts max_lost_pct latency_us"
+    "min_noise_counts max_lost_pct latency_us corner_mHz"
 ).split()
 DAMPER_FIELDS = (
     "end_a end_b ceiling_mA safe_mA continuous_mA heat_s trip_mA trip_us measures_current "

@@ -78,6 +78,13 @@ def checks_text(sensor: Board) -> str:
     return ", ".join(checks) or "-"
 
 
+def delay_text(sensor: Board) -> str:
+    """What its phase is off by: how late it is, and below which frequency it leads."""
+    corner_mHz = sensor["corner_mHz"]
+    late = time_text(sensor["latency_us"])
+    return f"{late}, corner {corner_mHz / 1000:g} Hz" if corner_mHz else late
+
+
 def sensor_row(sensor: Board) -> list[str]:
     return [
         sensor["name"],
@@ -88,7 +95,7 @@ def sensor_row(sensor: Board) -> list[str]:
         time_text(sensor["period_us"]) if sensor["period_us"] else "each tick",
         time_text(sensor["max_age_us"]),
         checks_text(sensor),
-        time_text(sensor["latency_us"]),
+        delay_text(sensor),
     ]
 
 
