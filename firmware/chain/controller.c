@@ -316,22 +316,21 @@ static int32_t phase_mdeg(uint32_t turn) {
 }
 
 static void report_components(const signal_chain_t *signal, quiesce_telemetry_t *t) {
-    const estimator_t *estimator = &signal->estimator;
-    const bool is_valid = estimator_is_valid(estimator);
-    t->freq_is_valid = is_valid ? 1u : 0u;
-    t->freq_age_ticks = estimator->age_ticks;
-    t->freq_uHz = estimator->tone[0].freq_uHz;
-    t->freq_amp_um_s2 = estimator->tone[0].amp_um_s2;
-    t->freq_phase_mdeg = phase_mdeg(estimator_phase_turn(estimator, 0));
-    t->freq_sigma_uHz = estimator->sigma_uHz;
-    t->freq_window_ms = estimator->window_ms;
+    const estimate_t *estimate = &signal->estimator.known;
+    t->freq_is_valid = estimate->is_valid ? 1u : 0u;
+    t->freq_age_ticks = estimate->age_ticks;
+    t->freq_uHz = estimate->tone[0].freq_uHz;
+    t->freq_amp_um_s2 = estimate->tone[0].amp_um_s2;
+    t->freq_phase_mdeg = phase_mdeg(estimate_phase_turn(estimate, 0));
+    t->freq_sigma_uHz = estimate->sigma_uHz;
+    t->freq_window_ms = estimate->window_ms;
     t->displacement_amp_nm = signal->displacement.half_peak_to_peak_nm;
-    t->velocity_rms_um_s = estimator->velocity.rms_um_s;
+    t->velocity_rms_um_s = estimate->velocity.rms_um_s;
     for (uint32_t i = 0; i < QUIESCE_PEAKS; i++) {
-        const estimator_tone_t *tone = &estimator->tone[i];
-        t->peaks[i] = estimator->predictor.is_armed && tone->freq_uHz != 0
+        const estimator_tone_t *tone = &estimate->tone[i];
+        t->peaks[i] = estimate->predictor.is_armed && tone->freq_uHz != 0
                           ? (quiesce_peak_t){tone->freq_uHz, tone->amp_um_s2,
-                                             phase_mdeg(estimator_phase_turn(estimator, i))}
+                                             phase_mdeg(estimate_phase_turn(estimate, i))}
                           : (quiesce_peak_t){0};
     }
 }

@@ -26,6 +26,7 @@ void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
     self->tracked = (uint8_t)board->tracked;
     rms_init(&self->rms, rate_Hz, (uint32_t)p->rms_window_ms);
     estimator_init(&self->estimator, &(estimator_cfg_t){
+                                         .method = p->estimator,
                                          .tick_rate_Hz = rate_Hz,
                                          .longest_ms = (uint32_t)p->track_window_ms,
                                          .hop_ms = (uint32_t)p->track_hop_ms,
@@ -50,10 +51,10 @@ void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
-static uint32_t third_harmonic(const estimator_t *estimator) {
-    const int32_t third_uHz = 3 * estimator->tone[0].freq_uHz;
+static uint32_t third_harmonic(const estimate_t *estimate) {
+    const int32_t third_uHz = 3 * estimate->tone[0].freq_uHz;
     for (uint32_t i = 1; i < ESTIMATOR_TONES; i++) {
-        const int32_t freq_uHz = estimator->tone[i].freq_uHz;
+        const int32_t freq_uHz = estimate->tone[i].freq_uHz;
         if (freq_uHz != 0 && abs_i32(freq_uHz - third_uHz) <= HARMONIC_GAP_uHz) {
             return i;
         }
@@ -62,12 +63,12 @@ static uint32_t third_harmonic(const estimator_t *estimator) {
 }
 
 static void load_displacement(signal_chain_t *self) {
-    const estimator_t *estimator = &self->estimator;
-    const uint32_t third = third_harmonic(estimator);
+    const estimate_t *estimate = &self->estimator.known;
+    const uint32_t third = third_harmonic(estimate);
     const uint32_t phase =
-        estimator_phase_turn(estimator, third) - 3u * estimator_phase_turn(estimator, 0);
-    displacement_load(&self->displacement, estimator->tone[0].displacement_nm,
-                      third == 0 ? 0 : estimator->tone[third].displacement_nm, phase);
+        estimate_phase_turn(estimate, third) - 3u * estimate_phase_turn(estimate, 0);
+    displacement_load(&self->displacement, estimate->tone[0].displacement_nm,
+                      third == 0 ? 0 : estimate->tone[third].displacement_nm, phase);
 }
 
 static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint32_t lost_ticks) {
@@ -76,10 +77,10 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint3
                                          .is_good = sample->flag == CONDITION_GOOD,
                                          .is_lost = sample->is_fault || lost_ticks > 0,
                                      });
-    if (self->estimator.has_published) {
+    if (self->estimator.known.has_published) {
         load_displacement(self);
     }
-    return displacement_step(&self->displacement, estimator_phase_turn(&self->estimator, 0));
+    return displacement_step(&self->displacement, estimate_phase_turn(&self->estimator.known, 0));
 }
 
 static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {
@@ -122,8 +123,8 @@ static void bridge(signal_chain_t *self, bool is_fault, uint32_t lost_ticks) {
 // Locks on to what the estimator trusts, or to what looks alike, and holds on to it by itself.
 static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, uint32_t lost_ticks) {
     const condition_out_t *sample = out->sample;
-    const estimator_t *estimator = &self->estimator;
-    const predictor_tone_t *tone = &estimator->predictor.tone[0];
+    const estimate_t *estimate = &self->estimator.known;
+    const predictor_tone_t *tone = &estimate->predictor.tone[0];
     if (sample->is_fault || lost_ticks > 0) {
         bridge(self, sample->is_fault, lost_ticks);
     }
@@ -132,7 +133,7 @@ static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, uint32_
         lock_in_release(&self->lock);
     }
     look_for_lock(self, out);
-    if (estimator->has_published && estimator_is_valid(estimator) &&
+    if (estimate->has_published && estimate->is_valid &&
         is_elsewhere(&self->lock, tone->step_turn)) {
         lock_on(self, sample, tone->phase_turn, tone->step_turn);
     }
@@ -155,13 +156,13 @@ static void turn_phase(const signal_chain_t *self, view_tone_t *tone) {
 static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
     const lock_in_t *lock = &self->lock;
     // A short doubt must not make the command jump: that would itself change the vibration.
-    const bool is_known = self->estimator.age_ticks <= self->hold_ticks;
+    const bool is_known = self->estimator.known.age_ticks <= self->hold_ticks;
     view->valid |= (is_known ? VIEW_TONE : 0) | (lock->is_locked ? VIEW_LOCK : 0);
     view->valid |= self->sensing.channel[tracked_of(self)].condition.has_value ? VIEW_RMS : 0;
     view->tone = (view_tone_t){
         .body = QUIESCE_BODIES == 1 ? 0 : self->sensing.places.sensor[tracked_of(self)].at,
         .rms_um_s2 = out->rms_um_s2,
-        .freq_uHz = self->estimator.tone[0].freq_uHz,
+        .freq_uHz = self->estimator.known.tone[0].freq_uHz,
         .phase_turn = lock->phase_turn,
         .step_turn = lock->step_turn,
         .half = lock->has_half ? &lock->last : NULL,

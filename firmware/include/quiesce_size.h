@@ -1,5 +1,6 @@
-/// Sizes of the build: how many sensors, bodies and dampers it can serve; a board may have fewer.
-/// They are the same for everything that is linked together. With one of each the loops vanish.
+/// Sizes of the build, and what it holds: how many sensors, bodies and dampers it can serve; a
+/// board may have fewer. They are the same for everything that is linked together. With one of each
+/// the loops vanish.
 #ifndef QUIESCE_SIZE_H
 #define QUIESCE_SIZE_H
 
@@ -11,6 +12,14 @@
 #endif
 #ifndef QUIESCE_DAMPERS
 #define QUIESCE_DAMPERS 1 ///< 1 .. 4
+#endif
+
+// The estimators that it holds, values of parameter estimator; one at least.
+#ifndef QUIESCE_WITH_FIT
+#define QUIESCE_WITH_FIT 1
+#endif
+#ifndef QUIESCE_WITH_FFT
+#define QUIESCE_WITH_FFT 1
 #endif
 
 #define QUIESCE_MAX_SENSORS 8
@@ -25,6 +34,10 @@
 #endif
 #if QUIESCE_DAMPERS < 1 || QUIESCE_DAMPERS > QUIESCE_MAX_DAMPERS
 #error "QUIESCE_DAMPERS is 1 .. 4"
+#endif
+
+#if !QUIESCE_WITH_FIT && !QUIESCE_WITH_FFT
+#error "the build holds no estimator"
 #endif
 
 #endif

@@ -21,6 +21,7 @@ void quiesce_params_default(quiesce_params_t *params) {
     for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
         *slot(params, i) = param_table[i].default_value;
     }
+    params->estimator = QUIESCE_WITH_FIT ? params->estimator : QUIESCE_ESTIMATOR_FFT;
 }
 
 const quiesce_param_info_t *quiesce_param_info(uint32_t index) {
@@ -103,10 +104,17 @@ static bool check_sensor(const quiesce_params_t *params, quiesce_param_error_t *
     return true;
 }
 
+static bool has_estimator(int32_t estimator) {
+    return estimator == QUIESCE_ESTIMATOR_FFT ? QUIESCE_WITH_FFT : QUIESCE_WITH_FIT;
+}
+
 static bool check_together(const quiesce_params_t *params, quiesce_param_error_t *error) {
     if (params->band_low_mHz >= params->band_high_mHz) {
         return refuse(error, offsetof(quiesce_params_t, band_high_mHz),
                       "must be above band_low_mHz");
+    }
+    if (!has_estimator(params->estimator)) {
+        return refuse(error, offsetof(quiesce_params_t, estimator), "not in this build");
     }
     if (params->constant_current_mA > params->max_current_mA) {
         return refuse(error, offsetof(quiesce_params_t, constant_current_mA),

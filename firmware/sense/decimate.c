@@ -1,8 +1,8 @@
 #include "decimate.h"
 
-void decimate_init(decimate_t *self, uint32_t tick_rate_Hz) {
+void decimate_init(decimate_t *self, uint32_t tick_rate_Hz, uint32_t sample_rate_Hz) {
     *self = (decimate_t){0};
-    for (uint32_t rate = tick_rate_Hz; rate > DECIMATE_RATE_Hz; rate /= 2u) {
+    for (uint32_t rate = tick_rate_Hz; rate > sample_rate_Hz; rate /= 2u) {
         self->stages++;
     }
 }

@@ -1,4 +1,4 @@
-/// Anti-alias decimation to 250 Hz by a chain of half-band filters.
+/// Anti-alias decimation, to 250 Hz or some other rate, by a chain of half-band filters.
 ///
 /// Every stage: 11 taps Q16, symmetric; 0 .. 50 Hz flat to
 /// 0.0063 dB a stage, stop band -62 dB (nothing
@@ -30,10 +30,11 @@ typedef struct {
     uint32_t stages; ///< a sample every 2^stages ticks
 } decimate_t;
 
-/// tick_rate_Hz: 500, 1000, 2000 or 4000.
-void decimate_init(decimate_t *self, uint32_t tick_rate_Hz);
+/// tick_rate_Hz: 500, 1000, 2000 or 4000. sample_rate_Hz: that divided by 1, 2, 4, .. 16; a tick
+/// rate below it stays as it is.
+void decimate_init(decimate_t *self, uint32_t tick_rate_Hz, uint32_t sample_rate_Hz);
 
-/// One tick's sample in *value. Returns true iff *value has become a sample at 250 Hz.
+/// One tick's sample in *value. Returns true iff *value has become a sample at the lower rate.
 bool decimate_step(decimate_t *self, int32_t *value);
 
 #endif

@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include "dampers_section.h"
-#include "identifier.h"
 #include "mounts_section.h"
 #include "place_section.h"
 #include "sensor_section.h"

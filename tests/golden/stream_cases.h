@@ -10,4 +10,9 @@ void stream_rules_cases(stream_t *self);  ///< rule tables are swapped
 void stream_phase_cases(stream_t *self);  ///< law phase learns; pulse tables are swapped
 void stream_storm_cases(stream_t *self);  ///< faults and an operator
 
+/// Parameters of such a case, the first 20 with the defaults, and one after it was opened and they
+/// were drawn.
+void stream_random_draw(stream_t *self, uint32_t number);
+void stream_random_run(stream_t *self);
+
 #endif

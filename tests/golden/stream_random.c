@@ -3,7 +3,7 @@
 
 enum { LAWS = 5, RATES = 4, CASES = 3 * LAWS * RATES, TICKS = 8000, SETTINGS = 6 };
 
-static void draw_case(stream_t *self, uint32_t number) {
+void stream_random_draw(stream_t *self, uint32_t number) {
     static const int32_t rates_Hz[RATES] = {500, 1000, 2000, 4000};
     do {
         quiesce_params_default(&self->params);
@@ -31,15 +31,19 @@ static void draw_input(stream_t *self) {
     in->fault_reset = draw_one_in(seed, 100);
 }
 
+void stream_random_run(stream_t *self) {
+    stream_start(self);
+    while (self->tick < TICKS) {
+        draw_input(self);
+        stream_step(self);
+    }
+    stream_close(self);
+}
+
 void stream_random_cases(stream_t *self) {
     for (uint32_t number = 0; number < CASES; number++) {
         stream_open(self, "random", number);
-        draw_case(self, number);
-        stream_start(self);
-        while (self->tick < TICKS) {
-            draw_input(self);
-            stream_step(self);
-        }
-        stream_close(self);
+        stream_random_draw(self, number);
+        stream_random_run(self);
     }
 }

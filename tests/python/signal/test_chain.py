@@ -62,7 +62,7 @@ def decimator(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
 def decimated(decimator: ctypes.CDLL, samples: np.ndarray, rate_Hz: int) -> tuple:
     """Ticks at which an output came, and the outputs."""
     state = (ctypes.c_uint64 * 128)()  # larger than decimate_t
-    decimator.decimate_init(state, ctypes.c_uint32(rate_Hz))
+    decimator.decimate_init(state, ctypes.c_uint32(rate_Hz), ctypes.c_uint32(250))
     ticks, outputs = [], []
     value = ctypes.c_int32()
     for tick, sample in enumerate(samples):

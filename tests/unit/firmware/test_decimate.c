@@ -12,7 +12,7 @@ void setUp(void) {}
 void tearDown(void) {}
 
 static uint32_t start(uint32_t rate) {
-    decimate_init(&decimate, rates_Hz[rate]);
+    decimate_init(&decimate, rates_Hz[rate], DECIMATE_RATE_Hz);
     return rates_Hz[rate] / DECIMATE_RATE_Hz;
 }
 

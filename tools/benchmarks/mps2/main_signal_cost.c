@@ -14,7 +14,8 @@ typedef struct {
     uint32_t ticks;
     uint32_t tick_rate_Hz;
     uint32_t rms_window_ms;
-    uint32_t watch; ///< 0: the chain only
+    uint32_t watch;     ///< 0: the chain only
+    uint32_t estimator; ///< value of the parameter
 } order_t;
 
 typedef struct {
@@ -96,6 +97,7 @@ int main(void) {
     quiesce_params_default(&params);
     params.tick_rate_Hz = (int32_t)order.tick_rate_Hz;
     params.rms_window_ms = (int32_t)order.rms_window_ms;
+    params.estimator = (int32_t)order.estimator;
     if (order.ticks == 0 || !quiesce_init(&watch.controller, &params)) {
         print("refused", 1);
         return 1;

@@ -12,7 +12,7 @@ from quiesce.base.paths import shown
 
 from quiesce_benchmarks.report import Figure, Report
 from quiesce_benchmarks.seeds import seed_number
-from quiesce_benchmarks.signal import accuracy, response
+from quiesce_benchmarks.signal import accuracy, estimators, response
 from quiesce_benchmarks.signal import cost as signal_cost
 from quiesce_benchmarks.signal.accuracy import phase_excess_deg, worst_ratio
 from quiesce_benchmarks.signal.cost import SignalCost, cost_tables, measure_cost
@@ -28,6 +28,8 @@ DESCRIPTION = """Measure the sensing chain as shipped: accuracy against the Cram
 response to steps, validity, the rule of the dominant frequency, stick-slip, recordings, and
 the instructions of a tick beside a batch pipeline on CMSIS-DSP."""
 
+# Trials a group, and a step, of the estimators side by side.
+COMPARED_TRIALS, QUICK_COMPARED_TRIALS = 100, 20
 # Ticks whose instructions are counted: at each rate, and for the share of each source file.
 QUICK_COST_TICKS = {"ticks": 20_000, "profile_ticks": 10_000}
 
@@ -152,6 +154,13 @@ def context_of(
     }
 
 
+def compare_estimators(args: argparse.Namespace) -> dict[str, list[dict[str, Any]]]:
+    trials = QUICK_COMPARED_TRIALS if args.quick else COMPARED_TRIALS
+    groups = estimators.compare_accuracy(args.set, args.seed, trials, accuracy.GATED_SNRS_dB)
+    steps = estimators.compare_steps(args.set, args.seed, trials)
+    return {"accuracy": estimators.accuracy_rows(groups), "steps": estimators.step_rows(steps)}
+
+
 def absent_recordings(folder: Path, results: Results) -> list[str]:
     return [
         f"{shown(folder / source.file)}: not on this machine"
@@ -169,13 +178,18 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
     plot_accuracy(folder, results.accuracy)
     plot_steps(folder, results.steps)
     plot_truth(folder, results.truth)
-    context = context_of(rig, args, results, cost)
+    compared = compare_estimators(args)
+    context = {**context_of(rig, args, results, cost), "estimators": compared}
     figures = [
         *accuracy_figures(results),
         *response_figures(results),
         *trust_figures(rig, results),
         *cost_figures(cost),
     ]
-    shown_tables = [*tables(context), *(cost_tables(cost) if cost is not None else [])]
+    shown_tables = [
+        *tables(context),
+        *estimators.tables(compared),
+        *(cost_tables(cost) if cost is not None else []),
+    ]
     absent = [*absent_recordings(data, results), *absent_cost]
     return Report(NAME, figures, context, shown_tables, absent)

@@ -185,8 +185,11 @@ def measure_cost(
     return SignalCost(tuple(costs), peers, modules, worst_modules, absent)
 
 
-def measure_ticks(bench: Bench, image: Path, tick_rate_Hz: int, ticks: int) -> TickCost:
-    found = count(bench, image, ticks, tick_rate_Hz, RMS_WINDOW_MS, 1)
+def measure_ticks(
+    bench: Bench, image: Path, tick_rate_Hz: int, ticks: int, estimator: int = 0
+) -> TickCost:
+    """estimator: value of the parameter."""
+    found = count(bench, image, ticks, tick_rate_Hz, RMS_WINDOW_MS, 1, estimator)
     printed = found["printed"]
     return TickCost(
         tick_rate_Hz=tick_rate_Hz,

@@ -1,62 +1,50 @@
-#include "estimator.h"
+#include "estimator_fit.h"
 
 #include <stddef.h>
 
 enum {
-    PAIRS_A_SAMPLE = 92,     // work of a job between two samples, in pairs of samples
-    POWERS_A_SAMPLE = 34,    // and powers to read
-    JOB_SAMPLES = 12,        // that come in while a job runs
-    LOST_FITS = 3,           // in a row that do not hold: a longer window is tried
-    MOST_FITS = 5,           // to one window
-    SUSPEND_ms = 96,         // longest wait for the end of a burst
-    STEADY_FRACTION = 12,    // of the frequency: what moves no further is steady ..
-    STEADY_AMP_FRACTION = 3, // .. and of the amplitude
-    CALM_s = 2,              // without a contradiction, before a longer window is tried again
-    PURE_Q16 = 52429,        // 80 %: share of the energy that one component must explain
-    THIRD_FRACTION = 100,    // a third harmonic is within 1 % of three times the fundamental
+    PAIRS_A_SAMPLE = 92,  // work of a job between two samples, in pairs of samples
+    POWERS_A_SAMPLE = 34, // and powers to read
+    JOB_SAMPLES = 12,     // that come in while a job runs
+    LOST_FITS = 3,        // in a row that do not hold: a longer window is tried
+    MOST_FITS = 5,        // to one window
+    SUSPEND_ms = 96,      // longest wait for the end of a burst
+    CALM_s = 2,           // without a contradiction, before a longer window is tried again
+    PURE_Q16 = 52429,     // 80 %: share of the energy that one component must explain
+    THIRD_FRACTION = 100, // a third harmonic is within 1 % of three times the fundamental
 };
 
-// Samples whose filters still remember what was before.
-static int32_t filter_memory(const estimator_t *self) {
-    const uint32_t ratio = 1u << self->stages;
-    return (int32_t)((2u * DECIMATE_DELAY(ratio) + ratio - 1u) >> self->stages);
-}
-
-void estimator_init(estimator_t *self, const estimator_cfg_t *cfg) {
-    *self = (estimator_t){.age_ticks = UINT32_MAX, .job_ticks = UINT32_MAX};
-    decimate_init(&self->decimate, cfg->tick_rate_Hz);
-    self->stages = self->decimate.stages;
-    spectrum_init(&self->spectrum, self->stages);
-    tone_fit_init(&self->fit);
-    tracker_init(&self->tracker, &cfg->tracker);
-    velocity_init(&self->velocity, cfg->tracker.band_low_mHz, cfg->tracker.band_high_mHz);
-    predictor_init(&self->predictor, self->stages);
-    self->slice_pairs = PAIRS_A_SAMPLE >> self->stages;
-    self->slice_powers = POWERS_A_SAMPLE >> self->stages;
-    self->hop_ticks = cfg->hop_ms * cfg->tick_rate_Hz / 1000u;
-    self->clean_samples = -filter_memory(self);
+void estimator_fit_init(estimator_fit_t *self, const estimator_cfg_t *cfg) {
+    *self = (estimator_fit_t){.job_ticks = UINT32_MAX};
     while (self->longest_level < SPECTRUM_LONGEST &&
            SPECTRUM_POINTS(self->longest_level) * 1000u < cfg->longest_ms * SPECTRUM_RATE_Hz) {
         self->longest_level++;
     }
+    estimate_init(&self->known, cfg, SPECTRUM_RATE_Hz,
+                  SPECTRUM_POINTS(self->longest_level) * (cfg->tick_rate_Hz / SPECTRUM_RATE_Hz));
+    const uint32_t stages = self->known.stages;
+    spectrum_init(&self->spectrum, stages);
+    tone_fit_init(&self->fit);
+    self->slice_pairs = PAIRS_A_SAMPLE >> stages;
+    self->slice_powers = POWERS_A_SAMPLE >> stages;
+    self->hop_ticks = cfg->hop_ms * cfg->tick_rate_Hz / 1000u;
+    self->clean_samples = -estimate_filter_memory(&self->known);
     self->most_level = self->longest_level;
     self->suspend_most_ticks = SUSPEND_ms * cfg->tick_rate_Hz / 1000u;
     self->calm_enough_ticks = CALM_s * cfg->tick_rate_Hz;
-    self->trust_ticks = 3u * (SPECTRUM_POINTS(self->longest_level) << self->stages) / 2u;
 }
 
-static void forget(estimator_t *self) {
+static void forget(estimator_fit_t *self) {
     self->is_suspended = false;
-    self->stage = ESTIMATOR_WAIT;
-    predictor_disarm(&self->predictor);
-    tracker_reset(&self->tracker);
+    self->stage = ESTIMATOR_FIT_WAIT;
+    estimate_forget(&self->known);
 }
 
 // The windows start anew; the last `ticks` ticks already belong to the new vibration.
-static void restart(estimator_t *self, uint32_t ticks) {
-    const uint32_t longest = (uint32_t)SPECTRUM_RING << self->stages;
-    const int32_t known = (int32_t)((ticks < longest ? ticks : longest) >> self->stages);
-    const int32_t clean = known - filter_memory(self);
+static void restart(estimator_fit_t *self, uint32_t ticks) {
+    const uint32_t longest = (uint32_t)SPECTRUM_RING << self->known.stages;
+    const int32_t known = (int32_t)((ticks < longest ? ticks : longest) >> self->known.stages);
+    const int32_t clean = known - estimate_filter_memory(&self->known);
     self->clean_samples = clean < self->clean_samples ? clean : self->clean_samples;
     self->most_level = self->longest_level;
     forget(self);
@@ -65,7 +53,7 @@ static void restart(estimator_t *self, uint32_t ticks) {
 // The samples contradict what was published. After a window shorter than the longest, which is
 // younger than the change before: the vibration wanders, and a still shorter one must do for a
 // while; where none is left, it never was of one component.
-static void contradict_short(estimator_t *self) {
+static void contradict_short(estimator_fit_t *self) {
     if (self->published_level > 0) {
         self->most_level = self->published_level - 1u;
     } else {
@@ -77,13 +65,13 @@ static void contradict_short(estimator_t *self) {
 
 // After the longest one: the vibration has changed, or there was a burst. The estimate is not valid
 // and no job runs until that is known; the new windows' samples are counted meanwhile.
-static void suspend(estimator_t *self) {
+static void suspend(estimator_fit_t *self) {
     self->is_suspended = true;
     self->suspended_ticks = 0;
-    self->stage = ESTIMATOR_WAIT;
+    self->stage = ESTIMATOR_FIT_WAIT;
 }
 
-static void judge_sample(estimator_t *self, predictor_verdict_t verdict) {
+static void judge_sample(estimator_fit_t *self, predictor_verdict_t verdict) {
     if (verdict == PREDICTOR_BACK) {
         self->is_suspended = false;
     } else if (verdict == PREDICTOR_CHANGED) {
@@ -96,13 +84,13 @@ static void judge_sample(estimator_t *self, predictor_verdict_t verdict) {
     if (self->is_suspended) {
         self->suspended_ticks++;
         if (self->suspended_ticks == self->suspend_most_ticks) {
-            restart(self, self->predictor.suspect_ticks + self->suspended_ticks);
+            restart(self, self->known.predictor.suspect_ticks + self->suspended_ticks);
         }
     }
 }
 
 // A vibration that has stopped wandering gets longer windows again, step by step.
-static void calm_down(estimator_t *self) {
+static void calm_down(estimator_fit_t *self) {
     self->calm_ticks++;
     if (self->most_level < self->longest_level && self->calm_ticks >= self->calm_enough_ticks) {
         self->most_level++;
@@ -110,7 +98,7 @@ static void calm_down(estimator_t *self) {
     }
 }
 
-static bool choose_level(estimator_t *self) {
+static bool choose_level(estimator_fit_t *self) {
     const uint32_t shortest = self->is_pure ? 0 : self->longest_level;
     const uint32_t longest = self->is_pure ? self->most_level : self->longest_level;
     for (uint32_t level = longest + 1u; level-- > shortest;) {
@@ -123,26 +111,26 @@ static bool choose_level(estimator_t *self) {
 }
 
 // Whether a job on a window that has just failed would only keep the next longer one waiting.
-static bool is_worth_waiting(const estimator_t *self) {
-    return self->tracker.misses > 0 && self->level < self->most_level &&
+static bool is_worth_waiting(const estimator_fit_t *self) {
+    return self->known.tracker.misses > 0 && self->level < self->most_level &&
            self->clean_samples + JOB_SAMPLES >= (int32_t)SPECTRUM_POINTS(self->level + 1u);
 }
 
-static void start_job(estimator_t *self) {
+static void start_job(estimator_fit_t *self) {
     if (self->is_suspended || self->job_ticks < self->hop_ticks || !choose_level(self) ||
         is_worth_waiting(self)) {
         return;
     }
     // The window's own mean holds some of the vibration; the last fit knows better.
-    const int32_t constant_um_s2 = self->predictor.is_armed && !self->has_drift
+    const int32_t constant_um_s2 = self->known.predictor.is_armed && !self->has_drift
                                        ? self->fit.constant_um_s2
                                        : spectrum_mean_um_s2(&self->spectrum, self->level);
     spectrum_want_powers(&self->spectrum, self->level, constant_um_s2);
     self->job_ticks = 0;
-    self->stage = ESTIMATOR_SEARCH;
+    self->stage = ESTIMATOR_FIT_SEARCH;
 }
 
-static void search(estimator_t *self) {
+static void search(estimator_fit_t *self) {
     if (!self->spectrum.has_powers) {
         return;
     }
@@ -151,42 +139,42 @@ static void search(estimator_t *self) {
         .last_power = spectrum_last_power(self->level),
         .is_longest = self->level == self->longest_level,
     };
-    tracker_start_search(&self->tracker, &window);
-    velocity_start(&self->velocity, SPECTRUM_POINTS_LOG2(self->level));
+    tracker_start_search(&self->known.tracker, &window);
+    velocity_start(&self->known.velocity, SPECTRUM_POINTS_LOG2(self->level));
     self->next_power = 1;
-    self->stage = ESTIMATOR_READ;
+    self->stage = ESTIMATOR_FIT_READ;
 }
 
-static void read(estimator_t *self) {
+static void read(estimator_fit_t *self) {
     const uint32_t last = spectrum_last_power(self->level);
     uint32_t end = self->next_power + self->slice_powers;
     end = end < last + 1u ? end : last + 1u;
-    tracker_read(&self->tracker, self->spectrum.power, self->next_power, end);
-    velocity_read(&self->velocity, self->spectrum.power, self->next_power, end);
+    tracker_read(&self->known.tracker, self->spectrum.power, self->next_power, end);
+    velocity_read(&self->known.velocity, self->spectrum.power, self->next_power, end);
     self->next_power = end;
     if (end > last) {
-        velocity_end(&self->velocity);
-        self->stage = ESTIMATOR_CHOOSE;
+        velocity_end(&self->known.velocity);
+        self->stage = ESTIMATOR_FIT_CHOOSE;
     }
 }
 
 // Candidates found: takes the window's samples in.
-static void start_gathering(estimator_t *self) {
+static void start_gathering(estimator_fit_t *self) {
     const tone_fit_window_t window = {
         .ring = self->spectrum.sample,
         .ring_mask = SPECTRUM_RING - 1u,
         .newest = self->spectrum.newest,
         .points_log2 = SPECTRUM_POINTS_LOG2(self->level),
         .mean_um_s2 = spectrum_mean_um_s2(&self->spectrum, self->level),
-        .size_um_s2 = 3u * self->tracker.strongest_um_s2,
+        .size_um_s2 = 3u * self->known.tracker.strongest_um_s2,
     };
     tone_fit_start(&self->fit, &window);
     self->job_age_ticks = self->sample_age_ticks;
-    self->stage = ESTIMATOR_GATHER;
+    self->stage = ESTIMATOR_FIT_GATHER;
 }
 
-static void choose(estimator_t *self) {
-    tracker_t *tracker = &self->tracker;
+static void choose(estimator_fit_t *self) {
+    tracker_t *tracker = &self->known.tracker;
     if (!tracker_choose(tracker, self->spectrum.power)) {
         return;
     }
@@ -195,34 +183,34 @@ static void choose(estimator_t *self) {
         tracker->has_drift || (self->is_drifting && self->level == self->longest_level);
     if (tracker->starts == 0) {
         (void)tracker_decide(tracker, NULL, 0, 0, 0);
-        self->stage = ESTIMATOR_WAIT;
+        self->stage = ESTIMATOR_FIT_WAIT;
         return;
     }
     start_gathering(self);
 }
 
-static void gather(estimator_t *self) {
+static void gather(estimator_fit_t *self) {
     self->fit.window.ring = self->spectrum.sample; // the state may have been copied since
     if (!tone_fit_step(&self->fit, self->slice_pairs)) {
         return;
     }
     uint32_t turns[TRACKER_TONES];
-    for (uint32_t i = 0; i < self->tracker.starts; i++) {
-        turns[i] = self->tracker.start[i].turn;
+    for (uint32_t i = 0; i < self->known.tracker.starts; i++) {
+        turns[i] = self->known.tracker.start[i].turn;
     }
-    tone_fit_set(&self->fit, turns, self->tracker.starts, self->has_drift);
+    tone_fit_set(&self->fit, turns, self->known.tracker.starts, self->has_drift);
     self->fits = 1;
     self->residual_without_um_s2 = 0;
-    self->stage = ESTIMATOR_FIT;
+    self->stage = ESTIMATOR_FIT_FIT;
 }
 
 // Starts of one more fit to the same window: the last fit's frequencies without those that turned
 // out to be too slow for the window, which count as drift. Returns their number.
-static uint32_t next_starts(estimator_t *self, uint32_t *turns) {
+static uint32_t next_starts(estimator_fit_t *self, uint32_t *turns) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < self->fit.tones; i++) {
         const uint32_t turn = self->fit.tone[i].turn;
-        if (tracker_is_drift(&self->tracker, turn)) {
+        if (tracker_is_drift(&self->known.tracker, turn)) {
             self->has_drift = true;
         } else {
             turns[count] = turn;
@@ -233,7 +221,7 @@ static uint32_t next_starts(estimator_t *self, uint32_t *turns) {
 }
 
 // Whether the fit has moved a frequency so far that its linear model no longer holds there.
-static bool has_moved(const estimator_t *self) {
+static bool has_moved(const estimator_fit_t *self) {
     for (uint32_t i = 0; i < self->fit.tones; i++) {
         if (abs_i32(self->fit.tone[i].shift_q29) > TRACKER_CONVERGED_Q29) {
             return true;
@@ -244,7 +232,7 @@ static bool has_moved(const estimator_t *self) {
 
 // Decides about a drift for the next fit to the same window: tries one where something is missing,
 // takes it back where it explains next to nothing of that. Returns true iff that changes the fit.
-static bool reconsider_drift(estimator_t *self, bool had_drift) {
+static bool reconsider_drift(estimator_fit_t *self, bool had_drift) {
     const int32_t residual_um_s2 = self->fit.residual_um_s2;
     if (self->residual_without_um_s2 != 0) {
         const bool is_real = residual_um_s2 < self->residual_without_um_s2 / 8 * 7;
@@ -254,14 +242,14 @@ static bool reconsider_drift(estimator_t *self, bool had_drift) {
         return !is_real;
     }
     if (!self->has_drift && !self->is_drift_futile &&
-        tracker_is_missing_something(&self->tracker, residual_um_s2)) {
+        tracker_is_missing_something(&self->known.tracker, residual_um_s2)) {
         self->has_drift = true;
         self->residual_without_um_s2 = residual_um_s2;
     }
     return self->has_drift != had_drift;
 }
 
-static void fit_on(estimator_t *self) {
+static void fit_on(estimator_fit_t *self) {
     if (!tone_fit_step(&self->fit, self->slice_pairs)) {
         return;
     }
@@ -270,34 +258,25 @@ static void fit_on(estimator_t *self) {
     const uint32_t count = next_starts(self, turns);
     const bool is_to_refine = has_moved(self) || reconsider_drift(self, had_drift);
     if (count == 0 || !is_to_refine || self->fits == MOST_FITS) {
-        self->stage = ESTIMATOR_DECIDE;
+        self->stage = ESTIMATOR_FIT_DECIDE;
         return;
     }
     tone_fit_set(&self->fit, turns, count, self->has_drift);
     self->fits++;
 }
 
-// What a component's phase gains from the middle of the window to this tick.
-static uint32_t turned(const estimator_t *self, uint32_t turn) {
-    const uint32_t ratio = 1u << self->stages;
-    const uint32_t half_ticks = 2u * (self->job_age_ticks + DECIMATE_DELAY(ratio)) +
-                                (SPECTRUM_POINTS(self->level) - 1u) * ratio;
-    return (uint32_t)(((uint64_t)turn * half_ticks) >> (self->stages + 1u));
-}
-
-// amplitude / (2 pi f)^2 in nm.
-static int32_t displacement_nm(int32_t amp_um_s2, int32_t freq_uHz) {
-    // 1000 / (4 pi^2) x 10^6 = 25330296 with the frequency in mHz.
-    const uint64_t freq_mHz = ((uint32_t)freq_uHz + 500u) / 1000u;
-    const uint64_t nm = (uint64_t)(uint32_t)amp_um_s2 * 25330296u / (freq_mHz * freq_mHz);
-    return (int32_t)(nm > INT32_MAX ? INT32_MAX : nm);
+// Twice the ticks from the middle of the window to this one.
+static uint32_t half_ticks_since_middle(const estimator_fit_t *self) {
+    const uint32_t ratio = 1u << self->known.stages;
+    return 2u * (self->job_age_ticks + DECIMATE_DELAY(ratio)) +
+           (SPECTRUM_POINTS(self->level) - 1u) * ratio;
 }
 
 // The constant part, run on from the window's end to this tick.
-static predictor_rest_t rest_of(const estimator_t *self) {
-    const uint32_t half_ticks = SPECTRUM_POINTS(self->level) << self->stages >> 1u;
+static predictor_rest_t rest_of(const estimator_fit_t *self) {
+    const uint32_t half_ticks = SPECTRUM_POINTS(self->level) << self->known.stages >> 1u;
     const int64_t drift_q8 = ((int64_t)self->fit.slope_um_s2 * 256) / half_ticks;
-    const int64_t ticks = self->job_age_ticks + DECIMATE_DELAY(1u << self->stages);
+    const int64_t ticks = self->job_age_ticks + DECIMATE_DELAY(1u << self->known.stages);
     const int64_t mean = self->fit.end_um_s2 + ((drift_q8 * ticks) >> 8);
     // A short window knows its noise to some 8 / N only.
     const int32_t residual = clamp_i32(self->fit.residual_um_s2, 0, INT32_MAX / 2);
@@ -305,76 +284,42 @@ static predictor_rest_t rest_of(const estimator_t *self) {
         .mean_um_s2 = (int32_t)clamp_i64(mean, -INT32_MAX, INT32_MAX),
         .drift_um_s2_q8 = (int32_t)clamp_i64(drift_q8, -INT32_MAX, INT32_MAX),
         .bend_um_s2 = self->fit.bend_um_s2,
-        .is_clear = self->tracker.is_clear,
+        .is_clear = self->known.tracker.is_clear,
         .noise_um_s2 = residual + (residual >> (SPECTRUM_POINTS_LOG2(self->level) - 3u)),
     };
-}
-
-// Whether a and b are more than a / fraction apart.
-static bool differs(uint32_t a, uint32_t b, uint32_t fraction) {
-    return gap_u32(a, b) > a / fraction;
 }
 
 // One component, alone or with the third harmonic that a sticking damper adds to it.
 static bool is_one_motion(const tracker_t *tracker) {
     const uint32_t third = 3u * tracker->tone[0].turn;
-    return tracker->tones == 1u ||
-           (tracker->tones == 2u && !differs(third, tracker->tone[1].turn, THIRD_FRACTION));
+    return tracker->tones == 1u || (tracker->tones == 2u && gap_u32(third, tracker->tone[1].turn) <=
+                                                                third / THIRD_FRACTION);
 }
 
 // What the longest window tells about the shorter ones and the next. One component, and what it
 // leaves unexplained is not a drift either: then it may only wander.
-static void judge_window(estimator_t *self) {
+static void judge_window(estimator_fit_t *self) {
     const tone_fit_t *fit = &self->fit;
-    const bool is_missing = tracker_is_missing_something(&self->tracker, fit->residual_um_s2);
+    const bool is_missing = tracker_is_missing_something(&self->known.tracker, fit->residual_um_s2);
     self->is_drifting = self->has_drift && !is_missing && fit->bend_um_s2 > fit->residual_um_s2 / 2;
     // Where a drift does not explain what is missing, none needs to be tried the next time.
     self->is_drift_futile &= is_missing;
-    self->is_pure = is_one_motion(&self->tracker) && fit->explained_q16 >= PURE_Q16 &&
+    self->is_pure = is_one_motion(&self->known.tracker) && fit->explained_q16 >= PURE_Q16 &&
                     !self->has_drift && (!is_missing || self->is_drift_futile);
 }
 
-static void publish(estimator_t *self) {
-    const tracker_t *tracker = &self->tracker;
-    predictor_tone_t tones[ESTIMATOR_TONES] = {0};
-    for (uint32_t i = 0; i < ESTIMATOR_TONES; i++) {
-        self->tone[i] = (estimator_tone_t){0};
-    }
-    for (uint32_t i = 0; i < tracker->tones; i++) {
-        const tracker_tone_t *tone = &tracker->tone[i];
-        tones[i] = (predictor_tone_t){
-            .phase_turn = tone->phase_turn + turned(self, tone->turn),
-            .step_turn = tone->turn >> self->stages,
-            .amp_um_s2 = tone->amp_um_s2,
-        };
-        if (i < tracker->in_band) {
-            self->tone[i] = (estimator_tone_t){
-                .freq_uHz = tone->freq_uHz,
-                .amp_um_s2 = tone->amp_um_s2,
-                .displacement_nm = displacement_nm(tone->amp_um_s2, tone->freq_uHz),
-            };
-        }
-    }
+static void publish(estimator_fit_t *self) {
     const predictor_rest_t rest = rest_of(self);
-    predictor_load(&self->predictor, tones, tracker->tones, &rest);
-    const tracker_tone_t *dominant = &tracker->tone[0];
-    if (differs(dominant->turn, self->steady_turn, STEADY_FRACTION) ||
-        differs((uint32_t)dominant->amp_um_s2, self->steady_amp_um_s2, STEADY_AMP_FRACTION)) {
-        self->steady_turn = dominant->turn;
-        self->steady_amp_um_s2 = (uint32_t)dominant->amp_um_s2;
-        self->steady_ticks = 0;
-    }
+    estimate_publish(&self->known, half_ticks_since_middle(self), &rest);
+    self->known.window_ms = SPECTRUM_POINTS(self->level) * 1000u / SPECTRUM_RATE_Hz;
     self->published_level = self->level;
     if (self->level == self->longest_level) {
         judge_window(self);
     }
-    self->sigma_uHz = tracker_freq_uHz(tracker->tone[0].sigma_turn);
-    self->window_ms = SPECTRUM_POINTS(self->level) * 1000u / SPECTRUM_RATE_Hz;
-    self->has_published = true;
-    self->stage = ESTIMATOR_WAIT;
+    self->stage = ESTIMATOR_FIT_WAIT;
 }
 
-static void decide(estimator_t *self) {
+static void decide(estimator_fit_t *self) {
     tracker_tone_t tones[TRACKER_TONES];
     for (uint32_t i = 0; i < self->fit.tones; i++) {
         const tone_t *tone = &self->fit.tone[i];
@@ -386,53 +331,50 @@ static void decide(estimator_t *self) {
             .amp_um_s2 = tone->amp_um_s2,
         };
     }
-    const bool is_good = tracker_decide(&self->tracker, tones, self->fit.tones,
+    const bool is_good = tracker_decide(&self->known.tracker, tones, self->fit.tones,
                                         self->fit.residual_um_s2, self->fit.explained_q16);
-    self->stage = is_good ? ESTIMATOR_PUBLISH : ESTIMATOR_WAIT;
-    if (self->tracker.misses >= LOST_FITS && self->level == self->most_level &&
+    self->stage = is_good ? ESTIMATOR_FIT_PUBLISH : ESTIMATOR_FIT_WAIT;
+    if (self->known.tracker.misses >= LOST_FITS && self->level == self->most_level &&
         self->most_level < self->longest_level) {
         self->most_level++; // so short a window does not help either
     }
 }
 
-static void work(estimator_t *self) {
-    static void (*const step[])(estimator_t *) = {
-        [ESTIMATOR_WAIT] = start_job, [ESTIMATOR_SEARCH] = search,   [ESTIMATOR_READ] = read,
-        [ESTIMATOR_CHOOSE] = choose,  [ESTIMATOR_GATHER] = gather,   [ESTIMATOR_FIT] = fit_on,
-        [ESTIMATOR_DECIDE] = decide,  [ESTIMATOR_PUBLISH] = publish,
+static void work(estimator_fit_t *self) {
+    static void (*const step[])(estimator_fit_t *) = {
+        [ESTIMATOR_FIT_WAIT] = start_job, [ESTIMATOR_FIT_SEARCH] = search,
+        [ESTIMATOR_FIT_READ] = read,      [ESTIMATOR_FIT_CHOOSE] = choose,
+        [ESTIMATOR_FIT_GATHER] = gather,  [ESTIMATOR_FIT_FIT] = fit_on,
+        [ESTIMATOR_FIT_DECIDE] = decide,  [ESTIMATOR_FIT_PUBLISH] = publish,
     };
     step[self->stage](self);
 }
 
-static void take_sample(estimator_t *self, int32_t sample_um_s2) {
+static void take_sample(estimator_fit_t *self, int32_t sample_um_s2) {
     spectrum_start_round(&self->spectrum, sample_um_s2);
     self->clean_samples += self->clean_samples < INT32_MAX ? 1 : 0;
     self->sample_age_ticks = 0;
 }
 
-static void age(estimator_t *self) {
+static void age(estimator_fit_t *self) {
     self->sample_age_ticks++;
     self->job_age_ticks++;
     self->job_ticks = increment_sat_u32(self->job_ticks);
-    self->steady_ticks = self->predictor.is_armed ? increment_sat_u32(self->steady_ticks) : 0;
-    self->has_published = false;
+    estimate_age(&self->known);
 }
 
-void estimator_step(estimator_t *self, const estimator_in_t *in) {
+void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
     age(self);
-    judge_sample(self, predictor_step(&self->predictor, in->accel_um_s2, in->is_good));
+    judge_sample(self, predictor_step(&self->known.predictor, in->accel_um_s2, in->is_good));
     calm_down(self);
     if (in->is_lost) {
         restart(self, 0);
     }
-    // A missing sample is best replaced by what was expected of it.
-    int32_t sample = in->is_good || !self->predictor.is_armed ? in->accel_um_s2
-                                                              : self->predictor.prediction_um_s2;
-    sample = clamp_i32(sample, -DECIMATE_LIMIT, DECIMATE_LIMIT);
-    if (decimate_step(&self->decimate, &sample)) {
-        take_sample(self, sample);
+    int32_t sample_um_s2;
+    if (estimate_sample(&self->known, in, &sample_um_s2)) {
+        take_sample(self, sample_um_s2);
     }
     work(self);
     spectrum_slice(&self->spectrum);
-    self->age_ticks = estimator_is_valid(self) ? 0 : increment_sat_u32(self->age_ticks);
+    estimate_judge(&self->known, self->is_suspended);
 }
