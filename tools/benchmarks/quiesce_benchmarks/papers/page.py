@@ -17,7 +17,7 @@ SUMMARY_HEAD = ("paper", *KINDS.values(), "rows", "without place or reason")
 
 
 def paper_table(name: str, committed: Committed) -> str:
-    """A paper's rows; of the name `summary` a row a paper. KeyError where there is no such paper."""
+    """A paper's rows; of the name `summary` a row a paper. KeyError where there is no such one."""
     if name == "summary":
         return markdown(SUMMARY_HEAD, [summary(paper) for paper in papers().values()])
     return markdown(HEAD, [cells(row, committed) for row in papers()[name].rows])
@@ -66,7 +66,7 @@ def ours_text(row: Row, committed: Committed) -> str:
     numbers are published."""
     keys = list(KEY.finditer(row.ours))
     if not keys:
-        return row.ours or (UNKNOWN if row.part else "")
+        return row.ours or ("" if not row.part or is_recorded(row.part, committed) else UNKNOWN)
     try:
         found = [as_list(looked_up(key["key"], committed)) for key in keys]
     except KeyError:
@@ -75,9 +75,17 @@ def ours_text(row: Row, committed: Committed) -> str:
     is_compared = len(published) == sum(map(len, found))
     against = iter(published) if is_compared else None
     filled = iter(
-        [joined(values, key["spec"] or "", against) for key, values in zip(keys, found, strict=True)]
+        [
+            joined(values, key["spec"] or "", against)
+            for key, values in zip(keys, found, strict=True)
+        ]
     )
     return KEY.sub(lambda _: next(filled), row.ours)
+
+
+def is_recorded(part: str, committed: Committed) -> bool:
+    context = committed.files.get("papers", {}).get("context", {})
+    return bool(context.get("reported", {}).get(part))
 
 
 def joined(values: Iterable[Any], spec: str, against: Iterator[float] | None) -> str:

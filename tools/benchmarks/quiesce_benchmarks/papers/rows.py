@@ -159,13 +159,16 @@ def check_numbers(paper: Paper, kind: str, where: str) -> None:
     declared = {one for text in paper.ranges[kind] for one in positions(text, f"{where}: {kind}s")}
     rows = [row for row in paper.rows if row.kind == kind]
     held = {one for row in rows for one in positions(row.number, where)}
-    for words, numbers in (("has no row", declared - held), ("is not in the head", held - declared)):
+    for words, numbers in (
+        ("has no row", declared - held),
+        ("is not in the head", held - declared),
+    ):
         if numbers:
             chapter, index = min(numbers)
             shown_number = f"{chapter}.{index}" if chapter else f"{index}"
             raise UsageError(f"{where}: {kind} {shown_number} {words}")
-    (most, times), *_ = Counter((row.number, row.what) for row in rows).most_common(1) or [("", 0)]
-    expect(times <= 1, where, f"{kind} {most[0]} is there {times} times with the same words")
+    for (number, _), times in Counter((row.number, row.what) for row in rows).items():
+        expect(times == 1, where, f"{kind} {number} is there {times} times with the same words")
 
 
 def missing(place: str, root: Path) -> str:

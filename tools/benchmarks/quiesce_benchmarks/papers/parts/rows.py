@@ -28,10 +28,16 @@ def measure(effort: Effort) -> Measured:
         "commands_refused": float(sum(map(len, wrong.values()))),
     }
     lines = [
-        [name, label(row), why] for name in found for row, why in [*reasons(bare[name], tree), *wrong[name]]
+        [name, label(row), why]
+        for name in found
+        for row, why in [*reasons(bare[name], tree), *wrong[name]]
     ]
-    reported = {"without_place": {name: [label(row) for row in rows] for name, rows in bare.items()}}
-    tables = (format_table(["paper", "row", "what is wrong"], lines, left=(0, 1, 2)),) if lines else ()
+    reported = {
+        "without_place": {name: [label(row) for row in rows] for name, rows in bare.items()}
+    }
+    tables = (
+        (format_table(["paper", "row", "what is wrong"], lines, left=(0, 1, 2)),) if lines else ()
+    )
     return Measured(values, reported, tables)
 
 
