@@ -27,6 +27,7 @@ KEPT = {
     "control": ("seed", "quick", "settings", "cost"),
     "controller": ("golden_words", "compared_words", "off_worst_instr"),
     "fuzzy": ("seed", "quick", "engines", "peers", "host_instr", "ratios"),
+    "papers": ("seed", "quick", "reported"),
     "signal": ("seed", "quick", "settings", "accuracy", "plant_steps", "cost"),
 }
 # What the image counts for a first word of 0, 1, 2.

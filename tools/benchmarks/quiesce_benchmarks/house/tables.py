@@ -15,6 +15,7 @@ from quiesce_benchmarks.house.signal_tables import (
     peer_table,
     step_table,
 )
+from quiesce_benchmarks.papers.page import paper_table
 
 # What a page's table shows of ./tools/hil, in this order.
 SHOWN_LAWS = {
@@ -140,4 +141,6 @@ TABLES: dict[str, Callable[[dict[str, Any]], str]] = {
 def table(name: str, committed: Committed) -> str:
     """Lines of a page, of a table's name and a file's; KeyError where there is no such table."""
     kind, _, file = name.partition(" ")
+    if kind == "paper":
+        return paper_table(file, committed)
     return TABLES[kind](committed.files[file])
