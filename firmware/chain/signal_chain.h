@@ -14,8 +14,9 @@
 
 typedef struct {
     sensing_t sensing;
-    uint8_t tracked;  ///< sensor
-    bool turns_phase; ///< latency or corner are to be made up for
+    uint8_t tracked;           ///< sensor
+    bool turns_phase;          ///< latency or corner are to be made up for
+    uint32_t corner_step_turn; ///< of the tracked sensor, a tick; 0: none
     rms_t rms;
     estimator_t estimator;
     displacement_t displacement;
@@ -23,10 +24,9 @@ typedef struct {
     half_cycles_t half_cycles;
     uint32_t lowest_step_turn; ///< of the band, a tick
     uint32_t highest_step_turn;
-    int32_t min_accel_um_s2;   ///< RMS
-    uint32_t hold_ticks;       ///< that laws go on with a frequency that is no longer valid
-    uint32_t latency_q8;       ///< ticks, from a motion to the current that answers it
-    uint32_t corner_step_turn; ///< of the tracked sensor, a tick; 0: none
+    int32_t min_accel_um_s2; ///< RMS
+    uint32_t hold_ticks;     ///< that laws go on with a frequency that is no longer valid
+    uint32_t latency_q8;     ///< ticks, from a motion to the current that answers it
 } signal_chain_t;
 
 typedef struct {
