@@ -34,7 +34,7 @@ def test_a_run_goes_on_from_rest_and_warms_up(tmp_path: Path):
             motion.now.coil_A,
             motion.now.fluid_C,
         )
-        now = motion.advance(0.5, base_accel_m_s2=2.0 * math.sin(0.012 * (tick + 1)))
+        now = motion.advance(0.5, base_accel_m_s2=1.4 * math.sin(0.012 * (tick + 1)))
         work_J += 0.5e-3 * (before[0] + now.damper_force_N * now.stroke_velocity_m_s)
         coil_J = 0.5e-3 * thermal_loop.COIL_OHM * (before[1] ** 2 + now.coil_A**2)
         loss_J = 1e-3 * thermal_loop.CONDUCTANCE_W_K * (0.5 * (before[2] + now.fluid_C) - 20.0)
