@@ -105,7 +105,8 @@ static bool check_sensor(const quiesce_params_t *params, quiesce_param_error_t *
 }
 
 static bool has_estimator(int32_t estimator) {
-    return estimator == QUIESCE_ESTIMATOR_FFT ? QUIESCE_WITH_FFT : QUIESCE_WITH_FIT;
+    return (estimator == QUIESCE_ESTIMATOR_FFT && QUIESCE_WITH_FFT) ||
+           (estimator == QUIESCE_ESTIMATOR_FIT && QUIESCE_WITH_FIT);
 }
 
 static bool check_together(const quiesce_params_t *params, quiesce_param_error_t *error) {

@@ -100,7 +100,9 @@ template <typename Values>
 void require_sensors(const BoardFile &file, const Values &values, const std::string &section) {
     for (const auto &[name, value] : values) {
         if (std::find(file.sensors.begin(), file.sensors.end(), name) == file.sensors.end()) {
-            throw InputError(section + "." + name + " of the plant: the board has no such sensor");
+            std::string message = section;
+            message.append(".").append(name).append(" of the plant: the board has no such sensor");
+            throw InputError(message);
         }
     }
 }

@@ -110,11 +110,11 @@ void quiesce_run_free(quiesce_run *run) {
     delete run;
 }
 
-int quiesce_run_advance(quiesce_run *run, double force_N, double base_accel_m_s2, double command_A,
-                        quiesce_now *now, char *error, std::size_t error_size) {
+int quiesce_run_advance(quiesce_run *run, const quiesce_acting *acting, quiesce_now *now,
+                        char *error, std::size_t error_size) {
     return quiesce::guarded(
         [&] {
-            run->advance({force_N, base_accel_m_s2}, command_A);
+            run->advance({acting->force_N, acting->base_accel_m_s2}, acting->command_A);
             *now = run->now();
         },
         error, error_size);

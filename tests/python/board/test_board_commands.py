@@ -43,7 +43,7 @@ def test_show_tells_sensors_dampers_signals_and_laws(quiesce) -> None:
     assert text.startswith("every_key: bodies floor, roof; tracked roof_accel; bus 0.5 ms\n")
     assert shown["floor_accel"] == [
         "acceleration", "floor, x", "-57.751 um/s2", "-484.4 .. 484.5 m/s2", "4 ms", "20 ms",
-        "stuck 300 ms, noise < 3, lost > 40 %", "1.5 ms",
+        "stuck 300 ms, noise < 3, lost > 40 %", "1.5 ms, corner 0.25 Hz",
     ]  # fmt: skip
     assert shown["supply"][:3] == ["supply_voltage", "-", "12.5 mV"]
     assert shown["lower"] == [

@@ -130,7 +130,7 @@ def test_broken_state_is_done_again(example: Path, tmp_path: Path) -> None:
         (["--time-limit", "0"], "--time-limit"),
         (["--jobs", "0"], "--jobs"),
         (["--current-order", "5"], "--current-order"),
-        (["--method", "pso"], "--method"),
+        (["--method", "simplex"], "--method"),
     ],
 )
 def test_bad_options_end_in_one_line(

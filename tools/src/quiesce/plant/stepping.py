@@ -28,6 +28,10 @@ class Now(ctypes.Structure):
     ]  # fmt: skip
 
 
+class _Acting(ctypes.Structure):
+    _fields_ = [(name, c_double) for name in ("force_N", "base_accel_m_s2", "command_A")]
+
+
 @cache
 def _stepping_library() -> Any:
     lib = library()
@@ -36,7 +40,7 @@ def _stepping_library() -> Any:
     lib.quiesce_run_free.argtypes = [c_void_p]
     lib.quiesce_run_free.restype = None
     lib.quiesce_run_advance.argtypes = [
-        c_void_p, c_double, c_double, c_double, POINTER(Now), c_char_p, c_size_t,
+        c_void_p, POINTER(_Acting), POINTER(Now), c_char_p, c_size_t,
     ]  # fmt: skip
     lib.quiesce_run_advance.restype = c_int
     return lib
@@ -63,10 +67,8 @@ class Run:
         """One tick on. The command holds for the tick; the shaker's force and the acceleration of
         the base go in straight lines to these values at its end. UsageError where the damper closes
         or the integration diverges. The result is written over by the next call."""
-        call(
-            self._lib.quiesce_run_advance,
-            self._run, force_N, base_accel_m_s2, command_A, byref(self.now),
-        )  # fmt: skip
+        acting = _Acting(force_N, base_accel_m_s2, command_A)
+        call(self._lib.quiesce_run_advance, self._run, byref(acting), byref(self.now))
         return self.now
 
     def __del__(self) -> None:

@@ -52,8 +52,8 @@ def extra() -> Iterator[None]:
         yield
     except ModuleNotFoundError as error:
         raise UsageError(
-            f"this method needs pymoo, which lacks {error.name}; install it: .venv/bin/python -m "
-            "pip install --require-hashes -r tools/requirements-search.txt"
+            f"--method needs pymoo for pso, cmaes and es ({error.name} is missing); install it: "
+            ".venv/bin/python -m pip install --require-hashes -r tools/requirements-search.txt"
         ) from None
 
 
