@@ -302,10 +302,11 @@ static void command(controller_t *self, quiesce_out_t *out) {
     const bool is_allowed = supervisor_allows_output(&self->supervisor);
     const bool driver_enable = supervisor_allows_driver(&self->supervisor);
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        out->damper[i] = (quiesce_command_t){0};
         if (i < dampers_of(self)) {
             drive_command(&self->drive[i], self->request.value[i], is_allowed, driver_enable,
                           &out->damper[i]);
+        } else {
+            out->damper[i] = (quiesce_command_t){0};
         }
     }
 }

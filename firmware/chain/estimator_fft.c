@@ -110,8 +110,8 @@ static uint64_t power_of(fft_bin_t bin) {
 
 static void read(estimator_fft_t *self) {
     const uint32_t first = self->next_power;
-    const uint32_t limit = first + POWERS_A_STEP;
-    const uint32_t end = limit < FFT_LAST_BIN + 1u ? limit : FFT_LAST_BIN + 1u;
+    const uint32_t left = FFT_LAST_BIN + 1u - first;
+    const uint32_t end = first + (left < POWERS_A_STEP ? left : POWERS_A_STEP);
     for (uint32_t k = first; k < end; k++) {
         self->power[k] = power_of(self->fft.bin[k]);
         self->energy += self->power[k] >> ENERGY_SHIFT;

@@ -47,7 +47,6 @@ void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
     self->hold_ticks = ticks_in_ms(p->track_hold_ms, p->tick_rate_Hz);
     self->latency_q8 = latency_q8(board, rate_Hz);
     self->corner_step_turn = step_turn_of(board->sensor[board->tracked].corner_mHz, rate_Hz);
-    self->turns_phase = self->latency_q8 != 0 || self->corner_step_turn != 0;
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
@@ -167,9 +166,7 @@ static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out,
         .step_turn = lock->step_turn,
         .half = lock->has_half ? &lock->last : NULL,
     };
-    if (self->turns_phase) {
-        turn_phase(self, &view->tone);
-    }
+    turn_phase(self, &view->tone);
 }
 
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t *view,

@@ -15,7 +15,6 @@
 typedef struct {
     sensing_t sensing;
     uint8_t tracked;           ///< sensor
-    bool turns_phase;          ///< latency or corner are to be made up for
     uint32_t corner_step_turn; ///< of the tracked sensor, a tick; 0: none
     rms_t rms;
     estimator_t estimator;

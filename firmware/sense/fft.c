@@ -48,7 +48,7 @@ static void scale(fft_t *self, uint32_t first, uint32_t end) {
     uint32_t bits = self->bits;
     for (uint32_t n = first; n < end; n++) {
         const int32_t value = sample_of(self, n);
-        bits |= (uint32_t)(value ^ (value >> 31)); // the bits of its magnitude, or of one less
+        bits |= (uint32_t)(value < 0 ? ~value : value); // the bits of its magnitude, or of one less
     }
     const uint32_t up = (uint32_t)__builtin_clz(bits) - LEAST_ZEROS;
     self->bits = bits;

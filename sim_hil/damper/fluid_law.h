@@ -30,6 +30,9 @@ struct FluidLaw {
     bool is_constant() const { return activation_K == 0.0 && yield_1_K == 0.0; }
 
     FluidFactors at(double temperature_C) const {
+        if (is_constant()) {
+            return {};
+        }
         constexpr double kZero_K = 273.15;
         const double reference_1_K = 1.0 / (reference_C + kZero_K);
         const double rise_K = temperature_C - reference_C;

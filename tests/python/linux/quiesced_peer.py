@@ -2,6 +2,7 @@
 end of it a sensor node, an operator and a listener that decodes with the shipped messages."""
 
 import contextlib
+import fcntl
 import json
 import math
 import os
@@ -15,7 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import cantools
 from conftest import require
@@ -328,9 +329,26 @@ class Quiesced:
         return json.loads((self.state / "state.json").read_text())
 
     def end(self) -> None:
+        """Ends with its caretaker, which may still make its outputs safe: on a line whose name the
+        next test's line may get."""
         if self.process is not None:
             self.process.kill()
             self.process.wait()
+        lock = self.state / "lock"
+        if lock.exists():
+            with lock.open("rb") as held:
+                until_s = time.monotonic() + PATIENCE_S
+                while not takes(held):
+                    assert time.monotonic() < until_s, "the caretaker does not end"
+                    time.sleep(0.01)
+
+
+def takes(lock: BinaryIO) -> bool:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
 
 
 def open_pty() -> tuple[int, int, str]:
