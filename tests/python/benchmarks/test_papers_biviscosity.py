@@ -89,7 +89,7 @@ def test_worst_error_is_of_what_the_recordings_determine() -> None:
     trials = [trial(one, 0.01, 2.0), trial(one, -0.03, 4.0), trial(two, 0.5, 6.0)]
     determined = determined_by(trials)
     assert determined == {one.name: ["viscosity_Pa_s"], two.name: []}
-    assert worst_error_pct(trials, determined) == pytest.approx(3.0)
+    assert worst_error_pct(trials, determined, "search") == pytest.approx(3.0)
 
 
 def test_cells_count_up_to_the_published_error_and_without_the_fitted_one() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from conftest import require
 from quiesce.engine.bench import Bench
+from quiesce_benchmarks.papers.part import Effort
 from quiesce_benchmarks.papers.parts import fft
 from quiesce_benchmarks.signal import accuracy, estimators
 from quiesce_benchmarks.signal.cost import measure_ticks
@@ -42,11 +43,12 @@ def test_fft_has_no_tick_spike(build: Path, rate_Hz: int) -> None:
     cost = measure_ticks(Bench(), image, rate_Hz, TICKS * rate_Hz // 1000, 1)
     # A spike is what a whole transform in one tick would be: more than 100,000 instructions.
     assert cost.worst_instr < 6000
-    if rate_Hz == 500:
-        assert cost.worst_instr <= 2 * cost.median_instr
+    assert cost.worst_instr <= 2 * cost.median_instr
 
 
-def test_figures_are_the_ones_that_it_measures() -> None:
-    names = [name for name, *_ in fft.FIGURES]
-    assert names[0] == "fft_freq_rmse_over_crlb"
-    assert dict((name, goal) for name, _, goal, _ in fft.FIGURES)["fft_worst_tick_over_median"] == 2
+@pytest.mark.slow
+def test_the_part_measures_its_figures(tmp_path: Path) -> None:
+    found = fft.measure(Effort(1, True, tmp_path)).values
+    assert set(found) == {name for name, *_ in fft.FIGURES}
+    assert 1.0 < found["fft_freq_rmse_over_crlb"] < 10.0
+    assert 1.0 < found["fft_worst_tick_over_median"] <= 2.0

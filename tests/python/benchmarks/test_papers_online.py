@@ -65,6 +65,7 @@ def test_every_kind_of_change_is_there() -> None:
     warm = [one for one in CHANGES.values() if one.before.temperature_C]
     swapped = [one for one in CHANGES.values() if one.before.name != one.after.name]
     assert current and warm and swapped
+    assert {one.sine_Hz for one in CHANGES.values()} == {None, 2.0}
 
 
 def test_worst_change_is_the_figure() -> None:

@@ -14,6 +14,7 @@ from quiesce_benchmarks.papers.part import Effort, all_parts
 from quiesce_benchmarks.papers.parts import rows as rows_part
 from quiesce_benchmarks.papers.rows import (
     KINDS,
+    Paper,
     Row,
     missing,
     papers,
@@ -207,6 +208,7 @@ def test_what_is_not_recorded_is_told() -> None:
 def test_where_is_a_link_a_reason_or_nothing_yet() -> None:
     assert where(row(places=("a/b.h:c", "d"))) == "[b.h](../../a/b.h) `c`, [d](../../d)"
     assert where(row(reason="a photograph")) == "a photograph"
+    assert where(row(pending="a law")) == "**not yet**: a law"
     assert where(row()) == "**no place yet**"
 
 
@@ -218,10 +220,27 @@ def test_an_unknown_paper_is_a_mark_without_a_result() -> None:
 def test_the_part_counts_rows_places_and_commands(tmp_path: Path) -> None:
     found = rows_part.measure(Effort(1, True, tmp_path))
     all_rows = [(paper, one) for paper in papers().values() for one in paper.rows]
+    waiting = [one for _, one in all_rows if one.pending]
     bare = [one for paper in papers().values() for one in without_place(paper, ROOT)]
     assert set(found.values) == {name for name, *_ in rows_part.FIGURES}
     assert found.values["rows"] == len(all_rows)
+    assert found.values["rows_pending"] == len(waiting)
     assert found.values["rows_without_place"] == len(bare)
+    assert found.values["commands_refused"] == 0
     listed = [label for labels in found.reported["without_place"].values() for label in labels]
     assert len(listed) == len(bare)
     assert all(re.fullmatch(r"(equation|table|figure) \S+", label) for label in listed)
+
+
+def test_the_part_finds_what_is_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = (
+        row(places=("none.h",)),
+        row(places=("README.md",), command="./tools/quiesce dance"),
+        row(pending="a law"),
+        row(reason="a photograph"),
+    )
+    monkeypatch.setattr(rows_part, "papers", lambda: {"one": Paper("one", "One", {}, rows)})
+    found = rows_part.measure(Effort(1, True, tmp_path))
+    names = ("rows", "rows_without_place", "rows_pending", "commands_refused")
+    assert [found.values[name] for name in names] == [4, 1, 1, 1]
+    assert "no such file" in found.tables[0] and "no such command" in found.tables[0]

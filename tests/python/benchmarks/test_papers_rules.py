@@ -83,6 +83,15 @@ def test_the_third_rig_needs_its_rms_input(measured) -> None:
     assert values["rms_matters_gain_pct"] >= 5.0
 
 
+def test_no_constant_current_of_the_third_rig_is_right_at_every_level(measured) -> None:
+    found = measured["context"]["reported"]["rules"]["by_constant"]
+    best = set()
+    for place in ("12 Hz 0.2 V", "12 Hz 0.9 V", "12 Hz 1.5 V"):
+        gains = {one: at[place]["displacement"] for one, at in found.items()} | {"0 A": 0.0}
+        best.add(max(gains, key=lambda one: gains[one]))
+    assert "0 A" in best and len(best) > 1
+
+
 def test_published_rules_give_the_published_figures(measured) -> None:
     found = measured["context"]["reported"]["rules"]
     published, best = found["cantilever"]["as_published"], found["cantilever"]["best"]

@@ -2,13 +2,15 @@
 benchmark's part."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import root
-from quiesce.damper.learned.inverse_support_vector import Settings, train
+from quiesce.damper.data.split import Segment
+from quiesce.damper.inverses.support_vector import Settings, train
 from quiesce.damper.library import Scales
 from quiesce.plant.library import Plant
 from quiesce.plant.stepping import Run
@@ -77,9 +79,17 @@ def test_the_inverse_holds_releases_and_refuses(segments):
     assert model.knows_temperature
     assert model.current_A(100.0, 0.0, 0.0, 20.0, held_A=0.7) == 0.7
     assert model.current_A(-300.0, 0.0, 0.1, 20.0) == 0.0
+    warm_A = [model.current_A(0.0, disp_m, 0.1, 80.0) for disp_m in (-0.02, 0.0, 0.02)]
+    assert warm_A == [0.0, 0.0, 0.0]  # no force resists nothing
     assert 0.0 <= model.current_A(1e6, 0.0, 0.1, 20.0) <= model.max_current_A
     with pytest.raises(UsageError, match="two currents"):
         train([one for one in segments if one.record.level == 0.0], scales)
+    cold = [
+        Segment(replace(one.record, temperature_C=None), one.first, one.end) for one in segments
+    ]
+    with pytest.raises(UsageError, match="needs one in every test"):
+        train([*segments, cold[0]], scales)
+    assert not train(cold, scales, 1, Settings(rows=300), False).knows_temperature
 
 
 @pytest.mark.slow  # a closed loop of half a minute, twice

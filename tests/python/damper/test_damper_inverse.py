@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -256,6 +257,11 @@ def test_bad_model_files_are_refused(tmp_path: Path) -> None:
     file.write_text("schema = 3\n", encoding="utf-8")
     assert "bad.toml" in refused(cli_inverse, file, "--max-current-A", "1")
     assert "no such file" in refused(cli_inverse, tmp_path / "no.toml", "--max-current-A", "1")
+
+
+def test_a_force_that_is_not_finite_is_refused() -> None:
+    with pytest.raises(UsageError, match="its force is not finite; a lower --max-speed-m-s"):
+        monotone_range(replace(EXAMPLE, speed_m_s=1e3, stroke_m=1e3), 1.0)
 
 
 def test_model_without_a_speed_says_which_options_state_it() -> None:

@@ -83,7 +83,13 @@ def test_what_precedes_the_change_holds_no_row_after_it() -> None:
 
 @pytest.mark.parametrize(
     ("change_s", "settle_s", "what"),
-    [(0.2, 0.5, "at least 1 s"), (4.7, 0.5, "nothing is left"), (9.0, 0.0, "nothing is left")],
+    [
+        (0.2, 0.5, "at least 1 s"),
+        (4.7, 0.5, "nothing is left"),
+        (9.0, 0.5, "nothing is left"),
+        (2.0, 0.0, "--settle-s 0: less than a row, 0.005 s"),
+        (2.0, 0.002, "--settle-s 0.002: less than a row"),
+    ],
 )
 def test_change_without_room_is_refused(change_s: float, settle_s: float, what: str) -> None:
     with pytest.raises(UsageError, match=what):
@@ -161,8 +167,8 @@ def test_command_writes_page_and_model_and_tells_numbers(
     assert act(cli_online, recording, *options, "--json") == 0
     found = json.loads(capsys.readouterr().out)
     assert found["change_s"] == pytest.approx(2.405) and found["rows"] == 962
-    assert found["models"]["rd1005_kwok_tanh"]["kind"] == "only looked at"
-    assert found["models"]["rd1005_kwok_tanh"]["error_pct"]["after"] < 10.0
+    assert found["models"]["rd1005_kwok_tanh.toml"]["kind"] == "only looked at"
+    assert found["models"]["rd1005_kwok_tanh.toml"]["error_pct"]["after"] < 10.0
     assert found["online_over_best_frozen"] < 0.6
     assert len(found["error_over_time"]["time_s"]) == len(found["error_over_time"][ADAPTIVE])
     page = (out / "online.html").read_text(encoding="utf-8")
@@ -177,9 +183,31 @@ def test_command_tells_errors_as_a_table(recording: Path, capsys) -> None:
     assert "from 0.5 s on %" in said and "of that of the best frozen one" in said
 
 
+def test_a_file_beside_may_have_a_fitted_models_name(recording: Path, capsys) -> None:
+    dampers = Path(__file__).resolve().parents[3] / "sim_hil/data/dampers"
+    text = (dampers / "rd1005_bingham.toml").read_text()
+    (recording.parent / "bingham.toml").write_text(text)
+    (recording.parent / "b").mkdir()
+    (recording.parent / "b/bingham.toml").write_text(text)
+    files = [recording.parent / "bingham.toml", recording.parent / "b/bingham.toml"]
+    options = ["--settle-s", "0.5", "--model", "bingham", "--json"]
+    assert act(cli_online, recording, *options, "--beside", files[0]) == 0
+    models = json.loads(capsys.readouterr().out)["models"]
+    assert models["bingham"]["kind"] == "frozen at the change"
+    assert models["bingham.toml"]["kind"] == "only looked at"
+    assert models["bingham"]["error_pct"] != models["bingham.toml"]["error_pct"]
+    beside = [word for one in files for word in ("--beside", one)]
+    assert act(cli_online, recording, *options, *beside) == 0
+    names = list(json.loads(capsys.readouterr().out)["models"])
+    assert sum(name.endswith("bingham.toml") for name in names) == 2
+    twice = ("--beside", files[0], "--beside", files[0])
+    assert "named twice" in refused(cli_online, recording, *options, *twice)
+
+
 @pytest.mark.parametrize(
     ("options", "what"),
     [
+        (("--settle-s", "0"), "--settle-s 0: less than a row"),
         (("--change-s", "99"), "nothing is left"),
         (("--change-s", "-1"), "--change-s"),
         (("--settle-s", "nan"), "--settle-s"),

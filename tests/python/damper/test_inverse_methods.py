@@ -2,6 +2,7 @@
 the firmware reads it, and the command."""
 
 import ctypes
+import datetime
 import json
 import subprocess
 import tomllib
@@ -17,19 +18,26 @@ from damper_actions import act, dissipative_tanh, refused, two_tones, write
 from learned_data import random_motion, sine
 from quiesce.base.errors import UsageError
 from quiesce.cli.identify import inverse as cli_inverse
+from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import whole
+from quiesce.damper.example import EXAMPLE
 from quiesce.damper.force_map import map_of_words
 from quiesce.damper.inverse import InverseByInterpolation, forces_at
-from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, steps
-from quiesce.damper.inverses.compiled import beginnings, compiled, tracker_text
+from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, steps, tracking
+from quiesce.damper.inverses.compiled import COMPILED, Steady, beginnings, compiled, steady_map
 from quiesce.damper.inverses.demand import Source, commanded, judged
 from quiesce.damper.inverses.excited import excited
+from quiesce.damper.inverses.keys import is_number
+from quiesce.damper.inverses.made import check_names, from_file, to_compare
 from quiesce.damper.inverses.methods import METHODS, check_word, read_inverse, write_inverse
-from quiesce.damper.inverses.steps import stepped_current
+from quiesce.damper.inverses.steps import SteppedInverse, stepped_current
 from quiesce.damper.inverses.taps import held, spread
-from quiesce.damper.inverses.tracking import compare, nearest
+from quiesce.damper.inverses.tracking import compare, nearest, tasks_for
 from quiesce.damper.learned import anfis as learned_anfis
+from quiesce.damper.learned import recurrent as learned_recurrent
+from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.recurrent import Settings as RecurrentSettings
+from quiesce.damper.learned.sampled import sampled_rows, series_of
 from quiesce.damper.simulate import simulator
 
 pytestmark = pytest.mark.usefixtures("build")
@@ -87,6 +95,17 @@ def test_stepped_current_raises_lowers_and_holds() -> None:
     assert step(300.0, 500.0) == pytest.approx(0.5 - 0.5 * 0.5)
     assert step(2000.0, 900.0) == 1.5
     assert step(50.0, 100.0) == 0.0
+
+
+def test_steps_look_at_the_side_of_the_force() -> None:
+    """A spring that pushes along the motion harder than the least current resists."""
+    damper = dissipative_tanh(k_N_m=100_000.0)
+    demand = replace(two_tones(), force_N=500.0 * np.sign(two_tones().velocity_m_s))
+    low, high = np.sign(demand.velocity_m_s) * forces_at(damper, demand, [0.0, MOST_A])
+    wrong_way = (low < -490.0) & (low > -510.0) & (high < 0.0)
+    assert wrong_way.any()
+    current_A = SteppedInverse(damper, 10.0, MOST_A).currents(demand)
+    assert current_A[wrong_way] == pytest.approx(MOST_A)
 
 
 def test_an_answer_is_held_where_the_motion_is_slow_and_between_samples() -> None:
@@ -147,6 +166,50 @@ def test_an_inverse_needs_two_currents_and_some_a_damper_file() -> None:
             module.make(still)
 
 
+def test_a_force_without_end_is_refused(monkeypatch) -> None:
+    damper = dissipative_tanh()
+
+    def lost(record: Record) -> np.ndarray:
+        return np.full(len(record), np.nan)
+
+    with pytest.raises(UsageError, match="its force is not finite"):
+        excited(damper, lost, MOST_A, 1, 1)
+    with pytest.raises(UsageError, match="its force is not finite"):
+        mapped.make(Source([], 1.0, replace(EXAMPLE, speed_m_s=1e3, stroke_m=1e3)))
+    monkeypatch.setattr(tracking, "forces_by", lambda *_: lambda record, _: lost(record))
+    with pytest.raises(UsageError, match="its force is not finite"):
+        tasks_for(damper, lost, MOST_A, 1, 1.0)
+
+
+def test_the_recurrent_inverse_states_the_error_of_what_runs() -> None:
+    settings = replace(SMALL["rnn"], free_steps=100, noise=1.0)
+    lines: list[str] = []
+    inverse = recurrent.make(source(), 4, lines.append, settings)
+    errors = []
+    for one in source().segments:
+        rows = sampled_rows(one.record, inverse.sample_time_s)
+        part = inverse.currents(one.record)[rows] / MOST_A - one.record.command[rows] / MOST_A
+        errors.append(part[rows >= one.first])
+    error = float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
+    assert all(line.startswith("rnn: ") for line in lines)
+    assert lines[-1] == f"rnn: {error * MOST_A:.3g} A root mean square, running free"
+
+
+def test_a_free_runs_error_is_within_its_limits() -> None:
+    network = learned_recurrent.Network([np.array([[5.0, 0.0]])], [np.array([0.0])])
+    box = Box(("velocity_m_s",), np.array([-1.0]), np.array([1.0]))
+    record = replace(two_tones(), velocity_m_s=np.ones(1000), command=np.full(1000, 2.0))
+    series = series_of([whole(record)], box, (0,), 0.01, lambda one: one.command / 2.0)
+    assert learned_recurrent.free_error(network, series, (1,), (0.0, 1.0)) == 0.0
+    assert learned_recurrent.free_error(network, series, (1,)) == pytest.approx(4.0)
+    settings, limits = replace(SMALL["rnn"], free_steps=0, feedback=(1,)), (0.0, 0.1)
+    rng = np.random.default_rng(1)
+    found = learned_recurrent.learned(series, settings, rng, lambda _: None, limits)
+    assert found.start == found.error
+    assert found.error == learned_recurrent.free_error(found.network, series, (1,), limits)
+    assert found.error > 1.1 * learned_recurrent.free_error(found.network, series, (1,))
+
+
 # Maps
 
 
@@ -201,10 +264,26 @@ def test_a_compiled_map_begins_where_the_inverse_asks_for_current() -> None:
 
 def test_the_controller_is_told_what_it_can_have() -> None:
     assert compiled(made("rnn")) is None and compiled(made("steps")) is None
-    assert "no table holds it" in tracker_text(made("rnn"))
-    assert "no tracker" in tracker_text(made("steps"))
-    assert "compiled map" in tracker_text(made("anfis"))
-    assert tracker_text(made("map")) == "tracker inverse reads it"
+    for name, module in METHODS.items():
+        assert module.NAME == name and module.HELP and module.TRACKER
+        assert (module.TRACKER == COMPILED) == isinstance(made(name), Steady), name
+        assert from_file(name, name, made(name)).tracker == module.TRACKER
+
+
+def test_a_compiled_map_takes_its_ranges_by_key() -> None:
+    low = made("anfis").box.low * [0.5, 1.0, 1.0]  # the largest force is that of the other end
+    one = replace(made("anfis"), box=replace(made("anfis").box, low=low))
+
+    class Backwards:
+        """Its inputs in another order."""
+
+        box = Box(one.box.keys[::-1], one.box.low[::-1], one.box.high[::-1])
+        max_current_A = MOST_A
+        steady_A = one.steady_A
+
+    there, back = steady_map(one).forces, steady_map(Backwards()).forces
+    np.testing.assert_array_equal(there.force_N, back.force_N)
+    np.testing.assert_array_equal(there.velocities_m_s, back.velocities_m_s)
 
 
 # Broken files
@@ -230,6 +309,10 @@ BAD = [
     ("anfis", ("parameters", "memberships"), 1, "memberships: expected an integer"),
     ("anfis", ("parameters", "widths"), [0.0] * 9, "widths: expected numbers > 0"),
     ("anfis", ("parameters", "conclusions"), [0.0], "conclusions: expected 27 finite"),
+    ("ffn", ("parameters", "force_N"), {"range": [0, 1 << 70]}, "check: the file was changed"),
+    ("ffn", ("parameters", "force_N"), {"range": [0, 10**400]}, "range: expected 2 finite"),
+    ("ffn", ("parameters", "sample_time_s"), 10**400, "sample_time_s: expected a number"),
+    ("ffn", ("made_on",), datetime.date(2024, 5, 1), "check: the file was changed"),
     ("steps", ("parameters", "tolerance_N"), True, "tolerance_N: expected a number"),
     ("steps", ("parameters", "damper"), None, "damper: expected a table"),
     ("steps", ("parameters", "damper", "model"), "nothing", "damper"),
@@ -258,6 +341,14 @@ def test_the_check_word_is_of_everything_else() -> None:
     table = {"a": 1.0, "b": {"c": [1, 2]}}
     assert check_word(table) == check_word({"check": 7, "b": {"c": [1, 2]}, "a": 1.0})
     assert check_word(table) != check_word({"a": 1.0, "b": {"c": [2, 1]}})
+    days = [check_word({"a": datetime.date(2024, 5, day)}) for day in (1, 2)]
+    assert days[0] != days[1]
+
+
+def test_integers_of_any_length_are_numbers_while_a_float_holds_them() -> None:
+    assert is_number(1 << 70) and is_number(-1.5) and is_number(0)
+    for value in (10**400, -(10**400), float("nan"), float("inf"), True, "1", None):
+        assert not is_number(value)
 
 
 def test_words_that_the_firmware_refuses_are_refused(firmware: ctypes.CDLL, tmp_path: Path) -> None:
@@ -305,8 +396,32 @@ def test_command_makes_compares_writes_and_reads_back(tmp_path: Path, capsys) ->
     assert errors["ideal"] < errors["inverse_steps.toml"] < errors["constant"]
 
 
-def recording(file: Path, *currents_A: float) -> Path:
-    lines = ["time_s,disp_m,velocity_m_s,force_N,current_A"]
+def test_two_files_of_one_name_are_both_compared(tmp_path: Path, capsys, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = write(tmp_path / "damper.toml", dissipative_tanh())
+    files = [tmp_path / folder / "inverse.toml" for folder in ("a", "b")]
+    for one, tolerance_N in zip(files, (1.0, 300.0), strict=True):
+        one.parent.mkdir()
+        write_inverse(one, "steps", SteppedInverse(dissipative_tanh(), tolerance_N, MOST_A))
+    words = [file, "--max-current-A", "2", "--json"]
+    assert act(cli_inverse, *words, "--read", files[0], "--read", files[1]) == 0
+    errors = json.loads(capsys.readouterr().out)["tracking_error_pct"]
+    assert errors["a/inverse.toml"] < errors["b/inverse.toml"]
+    twice = ("--read", files[0], "--read", files[0])
+    assert "two inverses would be named 'a/inverse.toml'" in refused(cli_inverse, *words, *twice)
+
+
+def test_names_of_a_comparison_differ() -> None:
+    one = from_file("steps", "one", made("steps"))
+    with pytest.raises(UsageError, match="named 'one'"):
+        to_compare([one, one])
+    check_names(["ffn", "rnn"])
+    with pytest.raises(UsageError, match="named 'ideal'"):
+        check_names(["ffn", "ideal"])
+
+
+def recording(file: Path, *currents_A: float, command: str = "current_A") -> Path:
+    lines = [f"time_s,disp_m,velocity_m_s,force_N,{command}"]
     record = random_motion(1, 8.0)
     levels = np.array(currents_A)[(record.time_s / 0.7).astype(int) % len(currents_A)]
     force_N = forces_at(dissipative_tanh(), record, [*currents_A])
@@ -345,3 +460,49 @@ def test_bad_input_is_refused_in_one_line(tmp_path: Path) -> None:
     assert "expected an integer" in refused(cli_inverse, damper, "--seed", "-1")
     zero = recording(tmp_path / "zero.csv", 0.0)
     assert "no current above 0" in refused(cli_inverse, zero, "--method", "ffn")
+
+
+def test_a_voltage_is_no_current(tmp_path: Path) -> None:
+    good = write(tmp_path / "damper.toml", dissipative_tanh())
+    volts = replace(dissipative_tanh(), valid={"command_V": [0.0, 2.25]})
+    damper = write(tmp_path / "volts.toml", volts)
+    read = write_steps(tmp_path / "inverse.toml")
+    for words in ([damper], [damper, "--max-current-A", "2"], [damper, "--method", "map"]):
+        assert "its command is a voltage" in refused(cli_inverse, *words)
+    on = ("--max-current-A", "2", "--read", read, "--on", damper)
+    assert "its command is a voltage" in refused(cli_inverse, good, *on)
+    data = recording(tmp_path / "rig.csv", 0.0, 1.0, command="voltage_V")
+    assert "its command is a voltage" in refused(cli_inverse, data, "--method", "ffn")
+    both = replace(volts, valid={"command_V": [0.0, 2.25], "current_A": [0.0, 1.5]})
+    assert act(cli_inverse, write(tmp_path / "both.toml", both)) == 0
+
+
+def write_steps(file: Path) -> Path:
+    write_inverse(file, "steps", made("steps"))
+    return file
+
+
+def test_options_that_nothing_reads_are_refused(tmp_path: Path) -> None:
+    damper = write(tmp_path / "damper.toml", dissipative_tanh())
+    data = recording(tmp_path / "rig.csv", 0.0, 1.0)
+    most = ("--max-current-A", "2")
+    for words in (
+        ("--rate-hz", "100"), ("--force", "f"), ("--train", "part=0,0.5"), ("--flip-force",),
+        ("--current-a", "1"), ("--columns", "a.toml"),
+    ):  # fmt: skip
+        told = refused(cli_inverse, damper, *most, "--method", "map", *words)
+        assert told.startswith(f"{words[0]}: ") and "damper file" in told
+    for words in (("--seed", "1"), ("--on", damper)):
+        assert "are for --method or --read" in refused(cli_inverse, damper, *most, *words)
+    for words in (("--max-speed-m-s", "1"), ("--amplitude-mm", "5")):
+        told = refused(cli_inverse, data, "--method", "anfis", *words)
+        assert "are for a damper file" in told
+
+
+def test_help_has_every_method(capsys) -> None:
+    with pytest.raises(SystemExit):
+        act(cli_inverse, "--help")
+    told = capsys.readouterr().out
+    for name, module in METHODS.items():
+        assert f"  {name} " in told and module.HELP in told
+    assert ", ".join(METHODS) in " ".join(told.split())

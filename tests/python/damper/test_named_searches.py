@@ -5,9 +5,12 @@ import importlib.util
 import numpy as np
 import pytest
 from quiesce.base.errors import UsageError
+from quiesce.base.searches import bees as bee_colony
 from quiesce.base.searches import by_pymoo
 from quiesce.base.searches.methods import METHODS
+from quiesce.damper.fit import named
 from quiesce.damper.fit.named import fit_named
+from quiesce.damper.fit.population import values_of
 from quiesce.rules.optimize.methods import make_search, method_settings
 from test_damper_published_fits import small_problem
 
@@ -84,6 +87,40 @@ def test_a_damper_is_identified_by_name(name: str):
     assert found.evaluations >= 3000
     assert found.error < 0.2
     assert found.is_complete
+
+
+def test_wide_ranges_are_searched_by_their_logarithm():
+    """As by the genetic algorithms, whose points they are compared with."""
+    problem, told = small_problem(), []
+
+    def offered(points: np.ndarray) -> np.ndarray:
+        told.append(values_of(problem, points))
+        return told[-1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(named, "values_of", lambda _problem, points: offered(points))
+        fit_named("cuckoo", problem, 1, trials=60)
+    for one, found in zip(problem.variables, told[0].T, strict=True):
+        low, high = one.search
+        middle = np.sqrt(low * high) if one.is_log else 0.5 * (low + high)
+        assert 0.4 < np.mean(found < middle) < 0.6
+    assert {one.is_log for one in problem.variables} == {False, True}
+
+
+def test_onlookers_choose_by_what_the_employed_bees_found(monkeypatch: pytest.MonkeyPatch):
+    seen = []
+    shares = bee_colony.shares
+    monkeypatch.setattr(
+        bee_colony, "shares", lambda costs: seen.append(costs.copy()) or shares(costs)
+    )
+    rng = np.random.default_rng(4)
+    search = bee_colony.bees(rng.random((10, 3)), rng)
+    next(search)
+    search.send(np.full(10, 100.0))
+    found = np.full(10, 101.0)
+    found[7] = 0.0
+    search.send(found)
+    assert [list(one) for one in seen] == [[100.0] * 7 + [0.0] + [100.0] * 2]
 
 
 def test_without_the_extra_there_is_one_line():

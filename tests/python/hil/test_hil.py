@@ -13,7 +13,9 @@ from quiesce.hil.metrics import differing_cases
 from quiesce.hil.published import Published, load_reference
 from quiesce.hil.table import published_difference
 
-SELFTUNE_POINTS = 3.0
+# Self-tuning follows the estimator's velocity, which is not the simulation's; the reading that is
+# at work in the whole step does so in both of its halves.
+SELFTUNE_POINTS = {"fuzzy_selftune_reversed_ungated": 3.0}
 RUN_TYPES = {
     "scenario": str,
     "law": str,
@@ -137,7 +139,7 @@ def test_committed_results_are_those_of_this_firmware(metrics) -> None:
         if run["instr_worst"] is not None:
             for key in ("instr_median", "instr_worst"):
                 assert run[key] == pytest.approx(row[key], rel=0.02), (row, key)
-    assert compared >= 3 * (7 + 2)  # on the host seven laws at least, on the image two
+    assert compared == len(metrics["runs"])
 
 
 def test_metrics_have_the_agreed_shape(metrics) -> None:
@@ -233,9 +235,9 @@ def test_figures_agree_with_the_independent_simulation(noise_free) -> None:
     compared = 0
     for run in noise_free["runs"]:
         simulated = reference.simulated_for(run["scenario"], run["law"], run["freq_hz"])
-        # Self-tuning follows the estimator's velocity, which is not the simulation's.
-        is_tuned = "selftune" in run["law"]
-        tolerance, share = (SELFTUNE_POINTS, 0.05) if is_tuned else (0.5, 0.01)
+        tolerance, share = 0.5, 0.01
+        if "selftune" in run["law"]:
+            tolerance, share = SELFTUNE_POINTS.get(run["law"], 2.0), 0.05
         for key in ("amp_reduction_pct", "accel_rms_reduction_pct"):
             if key in simulated:
                 assert run[key] == pytest.approx(simulated[key], abs=tolerance), run

@@ -47,7 +47,7 @@ def measured(effort: Effort) -> tuple[dict[str, Any], str]:
         for record, one in zip(records, tests, strict=True)
         if one.kind == "sine"
     ]
-    models = frozen(sines, effort.seed)
+    models = frozen(sines, effort)
     everything = []
     for one, record in zip(tests, records, strict=True):
         adaptive, slow_share = adaptive_pct(record, sines)
@@ -71,8 +71,9 @@ def measured(effort: Effort) -> tuple[dict[str, Any], str]:
     return {"tests": everything, "settings": {"fitted_to_s": [low_s, high_s]}}, table_of(everything)
 
 
-def frozen(sines: Sequence[Segment], seed: int) -> dict[str, Simulate]:
-    plan = Plan(FROZEN, Choice(rig=("offset_N",)), seed=seed, quick=True, jobs=2)
+def frozen(sines: Sequence[Segment], effort: Effort) -> dict[str, Simulate]:
+    choice = Choice(rig=("offset_N",))
+    plan = Plan(FROZEN, choice, seed=effort.seed, quick=effort.is_quick, jobs=2)
     fitted = {f"{one.name}, fitted": simulator(one.damper) for one in identify(sines, [], plan)}
     published = {
         f"{name}, published": simulator(read_model(damper_file(name)))

@@ -13,7 +13,7 @@ NAMES = {"equation": "eq", "table": "Table", "figure": "Fig"}
 UP = "../../"  # from the page's folder to the tree
 UNKNOWN = "not recorded yet"
 HEAD = ("", "what", "where", "command", "published", "ours (difference)", "note")
-SUMMARY_HEAD = ("paper", *KINDS.values(), "rows", "without place or reason")
+SUMMARY_HEAD = ("paper", *KINDS.values(), "rows", "not yet", "without place or reason")
 
 
 def paper_table(name: str, committed: Committed) -> str:
@@ -27,8 +27,9 @@ def summary(paper: Paper) -> Sequence[str]:
     counts = [
         sum(len(positions(text, paper.name)) for text in paper.ranges[kind]) for kind in KINDS
     ]
-    bare = sum(not row.places and not row.reason for row in paper.rows)
-    return (paper.title, *map(str, counts), str(len(paper.rows)), str(bare))
+    waiting = sum(bool(row.pending) for row in paper.rows)
+    bare = sum(not (row.places or row.reason or row.pending) for row in paper.rows)
+    return (paper.title, *map(str, (*counts, len(paper.rows), waiting, bare)))
 
 
 def cells(row: Row, committed: Committed) -> Sequence[str]:
@@ -42,6 +43,8 @@ def cells(row: Row, committed: Committed) -> Sequence[str]:
 def where(row: Row) -> str:
     if row.places:
         return ", ".join(map(link, row.places))
+    if row.pending:
+        return f"**not yet**: {row.pending}"
     return row.reason or "**no place yet**"
 
 

@@ -13,7 +13,8 @@ Keys of a row:
     published  text, a number or a list of numbers
     ours       text; {key} or {key:format} is replaced by what the committed results say (page.py)
     note       where the paper is in error, or its numbers are lost
-    reason     why there is no place
+    reason     why there can be no place
+    pending    what has to be built before there is one
 """
 
 import re
@@ -29,7 +30,7 @@ from quiesce.base.paths import shown
 
 FOLDER = Path(__file__).parent / "rows"
 KINDS = {"equation": "equations", "table": "tables", "figure": "figures"}
-TEXTS = ("kind", "number", "what", "command", "part", "ours", "note", "reason")
+TEXTS = ("kind", "number", "what", "command", "part", "ours", "note", "reason", "pending")
 NEEDED = ("kind", "number", "what")
 NUMBER = re.compile(r"(?:(?P<chapter>\d+)\.)?(?P<index>\d+)|(?P<roman>[IVX]+)")
 ROMAN = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII", "XIII", "XIV")
@@ -50,6 +51,7 @@ class Row:
     ours: str = ""
     note: str = ""
     reason: str = ""
+    pending: str = ""
 
     @property
     def typed(self) -> str:
@@ -186,5 +188,6 @@ def missing(place: str, root: Path) -> str:
 
 
 def without_place(paper: Paper, root: Path) -> Iterator[Row]:
-    """Rows with neither a place in this tree nor a reason."""
-    return (row for row in paper.rows if not row.reason and not row.is_placed(root))
+    """Rows with neither a place in this tree nor a reason, nor a word of what they wait for."""
+    known = (row for row in paper.rows if not row.reason and not row.pending)
+    return (row for row in known if not row.is_placed(root))

@@ -1,7 +1,8 @@
 """The labelled rule bases, and how they are judged: each in closed loop on its own rig."""
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from quiesce.engine.bench import Bench
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.evaluate import ClosedLoop, Place
-from quiesce.rules.optimize.objective import OBJECTIVES, Objective, Steady
+from quiesce.rules.optimize.objective import OBJECTIVES, Objective, Outcome, Steady
 from quiesce.rules.optimize.scenarios import steady_scenarios
 
 FOLDER = root() / "sim_hil/data/rules"
@@ -35,6 +36,11 @@ class Rig:
 
 # The published cases.
 CANTILEVER = Rig(default_plant(), (5.0, 10.0, 15.0, 20.0), (0.09, 0.10, 0.12), 6, 5.0)
+# At which no current is right at all drives: 12 Hz.
+LEVELS = Rig(
+    root() / "sim_hil/data/plants/isolated_machine.toml", (12.0,), (0.2, 0.6, 0.9, 1.5), 4, 2.0,
+)  # fmt: skip
+CONSTANTS_A = (0.3, 0.7, 1.2, 2.0)
 # Searched at 0.3, 0.9 and 1.5 V: judged between these levels and below them.
 MACHINE = Rig(
     root() / "sim_hil/data/plants/isolated_machine.toml",
@@ -52,14 +58,28 @@ class Judged:
 
 
 def judge(bench: Bench, rig: Rig, bases: Sequence[RuleBase], seed: int) -> list[Judged]:
-    objective = Objective(OBJECTIVES["balanced"], rig.max_current_A)
+    with closed_loop(bench, rig, seed) as loop:
+        return [judged(rig, loop, loop.of_rules(base)) for base in bases]
+
+
+def judge_constants(bench: Bench, rig: Rig, currents_A: Sequence[float], seed: int) -> list[Judged]:
+    """What one current does, whatever moves."""
+    with closed_loop(bench, rig, seed) as loop:
+        return [judged(rig, loop, loop.of_constant(round(1000.0 * one))) for one in currents_A]
+
+
+@contextmanager
+def closed_loop(bench: Bench, rig: Rig, seed: int) -> Iterator[ClosedLoop]:
     with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
         scenarios = steady_scenarios(
             bench, Path(folder), rig.plant, rig.freqs_Hz, rig.drives_V, rig.settle_s
         )
-        loop = ClosedLoop(bench, scenarios, rig.settings, ("--seed", str(seed)))
-        outcomes = [loop.of_rules(base) for base in bases]
-    return [Judged(loop.places, found, objective.cost(found)) for found in outcomes]
+        yield ClosedLoop(bench, scenarios, rig.settings, ("--seed", str(seed)))
+
+
+def judged(rig: Rig, loop: ClosedLoop, found: Outcome) -> Judged:
+    objective = Objective(OBJECTIVES["balanced"], rig.max_current_A)
+    return Judged(loop.places, found, objective.cost(found))
 
 
 def held_at(base: RuleBase, column: int) -> RuleBase:

@@ -11,7 +11,7 @@ from quiesce.base.paths import root
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
 from quiesce.damper.inverse import forces_at
-from quiesce.damper.learned.inverse_support_vector import InverseSupportVector
+from quiesce.damper.inverses.support_vector import InverseSupportVector
 from quiesce.damper.learned.temperature import ThermalFactors
 from quiesce.damper.library import values_at
 from quiesce.damper.model_file import DamperModel, read_model

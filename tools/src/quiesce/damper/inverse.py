@@ -30,6 +30,7 @@ _FINE = 201  # currents of the check; fewer for models that have to be integrate
 _COARSE = 31
 # A step down by this part of the range of forces is not noise of the integration.
 _FALLING = 1e-6
+VOLTAGE = "its command is a voltage; an inverse gives a current in A"
 
 Forces = Callable[[Record, np.ndarray], np.ndarray]
 
@@ -185,6 +186,18 @@ def check_current(max_current_A: float) -> None:
         raise UsageError(f"largest current {max_current_A:g} A: it has to be above 0")
 
 
+def check_amperes(damper: DamperModel) -> None:
+    """UsageError for a file that is valid up to a voltage and to no current."""
+    if "command_V" in damper.valid and not {"max_current_A", "current_A"} & set(damper.valid):
+        raise UsageError(f"{damper.name}: {VOLTAGE}")
+
+
+def check_finite(damper: DamperModel, force_N: np.ndarray) -> None:
+    """UsageError where a force, of any shape, is infinite or no number."""
+    if not np.isfinite(force_N).all():
+        raise UsageError(f"{damper.name}: its force is not finite; a lower --max-speed-m-s may do")
+
+
 # Monotonicity
 
 
@@ -254,13 +267,15 @@ def monotone_range(
     simulate: Simulate | None = None,
 ) -> Monotone:
     """Velocities: 3 % to all of the model's speed, both ways, unless given. Beyond limit_A two
-    currents give one force, so that the inverse ends there."""
+    currents give one force, so that the inverse ends there. UsageError where a force is not
+    finite."""
     check_current(max_current_A)
     if velocities_m_s is None:
         velocities_m_s = default_velocities(damper)
     is_static = damper.is_kernel and damper.kernel_row()[0].states == 0
     currents = np.linspace(0.0, max_current_A, _FINE if is_static else _COARSE)
     found = steady_forces(damper, velocities_m_s, currents, simulate=simulate)
+    check_finite(damper, found.force_N)
     limits = np.array([rising_until(currents, row) for row in found.force_N])
     return Monotone(float(limits.min()), limits, found)
 

@@ -95,6 +95,8 @@ def stream_of(records: Sequence[Record], change_s: float | None, settle_s: float
             f"{at}; models are fitted to what precedes it, at least {LEAST_BEFORE_s:g} s: "
             "--change-s states another"
         )
+    if round(settle_s * rate_Hz) < 1:
+        raise UsageError(f"--settle-s {settle_s:g}: less than a row, {1.0 / rate_Hz:g} s")
     if change + settle_s * rate_Hz >= len(stream) - 1:
         raise UsageError(
             f"{at}; nothing is left {settle_s:g} s later: --change-s or --settle-s states another"
@@ -178,6 +180,10 @@ class Followed:
     end: SelfTuning
     notes: tuple[str, ...] = field(default=())
 
+    def models_N(self) -> dict[str, np.ndarray]:
+        """All of them."""
+        return {ADAPTIVE: self.adaptive_N, **self.frozen_N, **self.beside_N}
+
     def parts(self) -> dict[str, slice]:
         """Rows before (its second half), during and after the change."""
         change = self.stream.change
@@ -194,14 +200,14 @@ class Followed:
         force_N = self.stream.column("force_N")[rows]
         with np.errstate(all="ignore"):
             rest = float(np.linalg.norm(force_N - model_N[rows]))
-        return 100.0 * rest / float(np.linalg.norm(force_N)) if np.isfinite(rest) else np.inf
+        size = max(float(np.linalg.norm(force_N)), 1e-300)
+        return 100.0 * rest / size if np.isfinite(rest) else np.inf
 
     def errors_pct(self) -> dict[str, dict[str, float]]:
         """By model, by part."""
-        models = {ADAPTIVE: self.adaptive_N, **self.frozen_N, **self.beside_N}
         return {
             name: {part: self.error_pct(force_N, part) for part in self.parts()}
-            for name, force_N in models.items()
+            for name, force_N in self.models_N().items()
         }
 
     def best_frozen(self) -> str:
@@ -238,7 +244,8 @@ def follow(
     beside: Sequence[tuple[str, Simulate]] = (),
     say: Say = lambda _text: None,
 ) -> Followed:
-    """plan: the models to fit and to freeze. beside: others, as they are."""
+    """plan: the models to fit and to freeze. beside: others, as they are; their names differ from
+    those of the plan."""
     before = stream.before()
     fitted = identify(before, [], plan, say=say)
     frozen_N = {one.name: stream.simulated(simulator(one.damper)) for one in fitted}

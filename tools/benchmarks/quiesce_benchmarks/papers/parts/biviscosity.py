@@ -28,15 +28,15 @@ TITLE = "the squeeze film identified from recordings (000: III.B, eq 18, Tables 
 FIGURES = (
     ("biviscosity_ga_cells_within", "cells", 3.0, "higher"),
     ("biviscosity_search_cells_within", "cells", 3.0, "higher"),
-    ("biviscosity_param_error_pct", "%", 5.0, "lower"),
+    ("biviscosity_param_error_pct", "%", 5.0, "lower"),  # of our own search
+    ("biviscosity_ga_param_error_pct", "%", 5.0, "lower"),
+    ("biviscosity_determined", "1", None, "higher"),  # parameters of a film, the fewest
 )
 # As `identify --method ga`, `identify` by itself, and `identify --method ga-plain`.
 METHODS: dict[str, Search] = {"ga": fit_binary_ga, "search": fit_small, "ga_plain": fit_plain_ga}
-# The first two have a figure of cells. That of the parameters is of the search: an algorithm that
-# does not end in least squares says less than the recordings do. All are reported.
-CELLS_OF = ("ga", "search")
-PARAMETERS_OF = "search"
-# Beside --seed: recordings and searches.
+# The first two have figures. All are reported.
+WITH_FIGURES = ("ga", "search")
+# Added to --seed, for recordings and searches: 1, 2, 7 and 11 by default, as in other benchmarks.
 MORE_SEEDS = (1, 6, 10)
 # A parameter is determined where half of its 95 % interval is at most the goal of its error.
 DETERMINED_PCT = 5.0
@@ -56,16 +56,18 @@ class Trial:
 def measure(effort: Effort) -> Measured:
     more = () if effort.is_quick else MORE_SEEDS
     seeds = [effort.seed, *(effort.seed + further for further in more)]
-    methods = CELLS_OF if effort.is_quick else tuple(METHODS)
+    methods = WITH_FIGURES if effort.is_quick else tuple(METHODS)
     trials = [trial(film, seed, methods) for film in films() for seed in seeds]
     values = {
         f"biviscosity_{method}_cells_within": float(
             min(min(one.found[method].within) for one in trials)
         )
-        for method in CELLS_OF
+        for method in WITH_FIGURES
     }
     determined = determined_by(trials)
-    values["biviscosity_param_error_pct"] = worst_error_pct(trials, determined)
+    values["biviscosity_param_error_pct"] = worst_error_pct(trials, determined, "search")
+    values["biviscosity_ga_param_error_pct"] = worst_error_pct(trials, determined, "ga")
+    values["biviscosity_determined"] = float(min(map(len, determined.values())))
     reported = {
         "sensors": asdict(Sensors()),
         "cells": [{"amplitude_m": a, "freq_Hz": f} for a, f in CELLS],
@@ -101,11 +103,9 @@ def determined_by(trials: list[Trial]) -> dict[str, list[str]]:
     }
 
 
-def worst_error_pct(trials: list[Trial], determined: dict[str, list[str]]) -> float:
+def worst_error_pct(trials: list[Trial], determined: dict[str, list[str]], method: str) -> float:
     """Of all determined parameters, films and seeds."""
-    return max(
-        one.errors_pct(PARAMETERS_OF)[name] for one in trials for name in determined[one.film.name]
-    )
+    return max(one.errors_pct(method)[name] for one in trials for name in determined[one.film.name])
 
 
 def of_film(film: Film, trials: list[Trial], determined: dict[str, list[str]]) -> dict[str, Any]:

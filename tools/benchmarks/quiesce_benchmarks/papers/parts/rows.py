@@ -14,6 +14,7 @@ TITLE = "rows of the five papers: places and commands"
 FIGURES = (
     ("rows", "1", None, "higher"),
     ("rows_without_place", "1", 0.0, "lower"),  # nor a reason
+    ("rows_pending", "1", 0.0, "lower"),  # what they need is to be built
     ("commands_refused", "1", 0.0, "lower"),  # rows whose command cannot be typed
 )
 
@@ -25,6 +26,7 @@ def measure(effort: Effort) -> Measured:
     values = {
         "rows": float(sum(len(paper.rows) for paper in found.values())),
         "rows_without_place": float(sum(map(len, bare.values()))),
+        "rows_pending": float(sum(bool(row.pending) for one in found.values() for row in one.rows)),
         "commands_refused": float(sum(map(len, wrong.values()))),
     }
     lines = [

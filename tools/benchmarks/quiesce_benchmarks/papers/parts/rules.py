@@ -17,13 +17,16 @@ from quiesce.rules.formats.files import read_rules
 from quiesce_benchmarks.papers.part import Effort, Measured
 from quiesce_benchmarks.papers.rules_bases import (
     CANTILEVER,
+    CONSTANTS_A,
     LEVELLED,
+    LEVELS,
     MACHINE,
     PUBLISHED,
     SHIPPED,
     Judged,
     frozen_bases,
     judge,
+    judge_constants,
 )
 
 TITLE = "rule bases: best, as published, and one that needs its RMS input"
@@ -64,8 +67,22 @@ def cell(one: dict[str, float]) -> str:
     return f"{one['displacement']:.1f} / {one['acceleration']:.1f}; {one['current_A']:.2f}"
 
 
+def left_table(constants: dict[float, Judged]) -> str:
+    """A row a place: displacement / acceleration left by each current, in % of those at 0 A."""
+    found = [by_place(judged) for judged in constants.values()]
+    rows = [[place, *(left(at[place]) for at in found)] for place in found[0]]
+    head = ["left of x / a, %, by", *(f"{one:g} A" for one in constants)]
+    return format_table(head, rows, left=(0,))
+
+
+def left(one: dict[str, float]) -> str:
+    return f"{100.0 - one['displacement']:.0f} / {100.0 - one['acceleration']:.0f}"
+
+
 def measure(effort: Effort) -> Measured:
     bench = Bench()
+    at_one_current = judge_constants(bench, LEVELS, CONSTANTS_A, effort.seed)
+    constants = dict(zip(CONSTANTS_A, at_one_current, strict=True))
     shipped, published = judge(
         bench, CANTILEVER, [read_rules(SHIPPED), read_rules(PUBLISHED)], effort.seed
     )
@@ -89,6 +106,7 @@ def measure(effort: Effort) -> Measured:
             "published_5Hz_pct": PUBLISHED_5Hz_pct,
             "cantilever": {"best": by_place(shipped), "as_published": by_place(published)},
             "machine": {"with_rms": by_place(full), "frozen": by_place(frozen[best])},
+            "by_constant": {f"{one:g} A": by_place(judged) for one, judged in constants.items()},
             "left_pct": {
                 "with_rms": full.cost_pct,
                 "frozen": {name: judged.cost_pct for name, judged in frozen.items()},
@@ -96,6 +114,7 @@ def measure(effort: Effort) -> Measured:
         },
         (
             table({"best": shipped, "as published": published}),
+            left_table(constants),
             table({"with RMS": full, f"frozen, {best}": frozen[best]}),
         ),
     )

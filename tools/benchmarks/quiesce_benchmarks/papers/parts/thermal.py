@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from quiesce.base.table import format_table
-from quiesce.damper.learned.inverse_support_vector import train
+from quiesce.damper.inverses.support_vector import train
 from quiesce.damper.library import Scales
 
 from quiesce_benchmarks.papers.part import Effort, Measured

@@ -19,8 +19,8 @@ def bees(first: np.ndarray, rng: np.random.Generator) -> Generator[np.ndarray, n
     count, dimensions = sources.shape
     tried = np.zeros(count)
     while True:
-        for share in (None, shares(costs)):
-            at = np.arange(count) if share is None else rng.choice(count, count, p=share)
+        for is_onlooker in (False, True):
+            at = rng.choice(count, count, p=shares(costs)) if is_onlooker else np.arange(count)
             trials = neighbours(sources, at, rng)
             found = yield trials
             for bee, source in enumerate(at):

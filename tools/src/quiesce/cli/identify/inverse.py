@@ -6,8 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from quiesce.base.command import real_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
@@ -24,16 +22,12 @@ of the check says why not, map.words: the map that tracker inverse of a controll
 (quiesce_bench run --force-map). Currents saturate where the force is not feasible.
 
 With --method, inverses are made and follow wanted forces (sines, a sweep, band noise) on the
-damper, beside the best constant current and the ideal inverse. map and steps stand on a damper
-file; ffn, rnn and anfis learn from recordings, or from tests made with the damper file. --out
-writes a file for each (map.words, inverse_NAME.toml; --read reads them back), map_NAME.words for
-those that the tracker can have as a map (ffn, anfis), and inverse.html.
-  map    the controller's table of forces
-  steps  moves the current by the part of the force that is missing (a model in the loop)
-  ffn    feed-forward network over force, displacement and velocity, now and before
-  rnn    the same with its own earlier currents
-  anfis  Gaussians on a grid
-
+damper, beside the best constant current and the ideal inverse. Some methods need a damper file,
+others learn from recordings, or from tests made with the damper file. --out writes a file for each
+(map.words, inverse_NAME.toml; --read reads them back), map_NAME.words for those that the tracker
+can have as a map, and inverse.html.
+"""
+EXAMPLES = """
 examples:
   quiesce identify inverse damper.toml --max-current-A 2 --out build/inverse
   quiesce identify inverse damper.toml --method all --out build/inverse
@@ -43,7 +37,7 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    fill(parser, EPILOG)
+    fill(parser, EPILOG + inverse_methods.help_lines() + EXAMPLES)
     parser.add_argument(
         "files", type=Path, nargs="+", metavar="FILE", help="damper file, or recordings (CSV)"
     )
@@ -65,23 +59,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.damper.inverse import check_amperes
     from quiesce.damper.simulate import simulator_of_file
 
-    has_methods = bool(args.method or args.read)
-    if inverse_methods.is_recording(args.files):
-        if not args.method:
-            raise UsageError(
-                f"{shown(args.files[0])}: name a damper file (TOML); with --method ffn, rnn or "
-                "anfis an inverse is made from a recording"
-            )
+    is_recording = inverse_methods.is_recording(args.files)
+    inverse_methods.check_options(args, is_recording)
+    if is_recording:
         return inverse_methods.run(args, None, None, 0.0)
     damper, simulate = simulator_of_file(args.files[0])
+    check_amperes(damper)
     if args.max_speed_m_s:
         damper = replace(damper, speed_m_s=args.max_speed_m_s)
     if args.amplitude_mm:
         damper = replace(damper, stroke_m=2e-3 * args.amplitude_mm)
     most_A = args.max_current_A or stated_current(damper)
-    if has_methods:
+    if args.method or args.read:
         return inverse_methods.run(args, damper, simulate, most_A)
     return check(args, damper, simulate, most_A)
 
@@ -92,7 +84,6 @@ def check(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -
 
     velocities = default_velocities(damper)
     found = monotone_range(damper, most_A, velocities, None if damper.is_kernel else simulate)
-    check_finite(damper, found)
     if args.out:
         write_map(args.out, damper, found)
     print(json.dumps(numbers_of(damper, found), indent=1) if args.json else text_of(damper, found))
@@ -103,14 +94,9 @@ def check(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -
 
 
 def stated_current(damper: Any) -> float:
-    limits = [damper.valid.get(key) for key in ("max_current_A", "current_A", "command_V")]
+    limits = [damper.valid.get(key) for key in ("max_current_A", "current_A")]
     for limit in limits:
         values = limit if isinstance(limit, list) else [limit]
         if all(isinstance(value, int | float) for value in values) and values and max(values) > 0.0:
             return float(max(values))
     raise UsageError(f"{damper.name}: the file states no largest current; --max-current-A A does")
-
-
-def check_finite(damper: Any, found: Any) -> None:
-    if not np.isfinite(found.forces.force_N).all():
-        raise UsageError(f"{damper.name}: its force is not finite; a lower --max-speed-m-s may do")

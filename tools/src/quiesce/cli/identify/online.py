@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("--train and --test: the change divides the rows here; see --change-s")
     names = list(FROZEN) if args.model is None else names_of(args.model)
     rates = RATES if args.rates is None else rates_of(args.rates)
-    beside = [(one.stem, simulator_of(one)) for one in args.beside]
+    beside = [(name, simulator_of(one)) for name, one in named(args.beside)]
     data = records_of(args)
     stream = stream_of(data.records, args.change_s, args.settle_s)
     plan = Plan(names, seed=args.seed, quick=args.effort == "quick", jobs=os.cpu_count() or 1)
@@ -94,6 +94,18 @@ def run(args: argparse.Namespace) -> int:
     if args.out and not args.json:
         print(f"\nwritten: {shown(args.out)}/{PAGE}, {MODEL}")
     return 0
+
+
+def named(files: list[Path]) -> list[tuple[str, Path]]:
+    """By their names, by their paths where those are equal. No model has a name that ends so."""
+    names = [one.name for one in files]
+    found = [
+        (name if names.count(name) == 1 else shown(one), one)
+        for name, one in zip(names, files, strict=True)
+    ]
+    if len(dict(found)) < len(found):
+        raise UsageError("--beside: a file is named twice")
+    return found
 
 
 def simulator_of(file: Path) -> Any:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.damper.fit.population import errors_of
+from quiesce.damper.fit.population import errors_of, values_of
 from quiesce.damper.fit.problem import Problem
 from quiesce.damper.fit.search import EFFORT, Clock, Effort, Fit, Progress
 
@@ -108,8 +108,7 @@ def decoded(problem: Problem, genes: np.ndarray, bits: int, window: Window) -> n
     binary = np.logical_xor.accumulate(gray, axis=2)
     codes = binary @ (1 << np.arange(bits)[::-1])
     parts = window.low + (window.high - window.low) * codes / ((1 << bits) - 1)
-    columns = [one.to_value(part) for one, part in zip(problem.variables, parts.T, strict=True)]
-    return np.stack(columns, axis=1)
+    return values_of(problem, parts)
 
 
 def next_generation(

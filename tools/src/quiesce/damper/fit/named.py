@@ -1,15 +1,17 @@
 """Searches that papers name (quiesce.base.searches.methods) over all variables of a problem, none
-projected out, no polish: as many trials as the squeeze-mode paper's genetic algorithm gets."""
+projected out, no polish: as many trials as the squeeze-mode paper's genetic algorithm gets, and
+the same search coordinates."""
 
 import numpy as np
 
 from quiesce.base.searches.methods import METHODS
-from quiesce.damper.fit.population import errors_of, ranges_of
+from quiesce.damper.fit.binary_ga import PLAIN
+from quiesce.damper.fit.population import errors_of, values_of
 from quiesce.damper.fit.problem import Problem
 from quiesce.damper.fit.search import EFFORT, Clock, Effort, Fit, Progress, sobol
 
-POPULATION = 60
-TRIALS = 12_000
+POPULATION = PLAIN.population
+TRIALS = POPULATION * (PLAIN.generations + 1)
 
 
 def fit_named(
@@ -24,13 +26,12 @@ def fit_named(
     UsageError where the method needs an extra that is not installed."""
     clock = Clock(problem, effort, progress)
     rng = np.random.default_rng(seed)
-    low, high = ranges_of(problem)
-    search = METHODS[name](sobol(len(low), POPULATION, rng), rng)
+    search = METHODS[name](sobol(len(problem.variables), POPULATION, rng), rng)
     count = 0
     try:
         points = next(search)
         while count < trials and not clock.is_over():
-            values = low + (high - low) * points
+            values = values_of(problem, points)
             errors = errors_of(problem, values)
             count += len(values)
             clock.offer(values, errors, f"{name}, trial {count}")

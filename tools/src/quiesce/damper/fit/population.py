@@ -15,6 +15,12 @@ def ranges_of(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
+def values_of(problem: Problem, parts: np.ndarray) -> np.ndarray:
+    """Values from search coordinates 0 .. 1, [candidates, variables] each."""
+    columns = [one.to_value(part) for one, part in zip(problem.variables, parts.T, strict=True)]
+    return np.stack(columns, axis=1)
+
+
 def errors_of(problem: Problem, values: np.ndarray) -> np.ndarray:
     """||F - F_model|| / ||F|| of [candidates, variables]; infinite where a candidate diverges."""
     samples = sum(len(record) for record in problem.records)

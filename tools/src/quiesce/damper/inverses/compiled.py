@@ -9,17 +9,13 @@ from quiesce.damper.force_map import MAX_CURRENTS, map_words, why_no_map
 from quiesce.damper.inverse import Monotone, SteadyForces
 from quiesce.damper.inverses.demand import Inverse
 from quiesce.damper.inverses.mapped import MapInverse
-from quiesce.damper.inverses.steps import SteppedInverse
 from quiesce.damper.learned.inputs import Box
 
 _FORCES = 2001
 # Of the largest speed of the training, from where the answer is not held any more.
 _PARTS = (0.1, 0.15, 0.22, 0.32, 0.45, 0.65, 1.0)
-STEPS_TEXT = "has no tracker; its rest is tracker inverse with the same model's map"
-RECURRENT_TEXT = (
-    "has a memory: no table holds it; the firmware has no tracker with delayed inputs, weights and "
-    "tanh layers"
-)
+# What methods that have a map say of themselves as TRACKER.
+COMPILED = "tracker inverse reads its compiled map"
 
 
 @runtime_checkable
@@ -30,15 +26,6 @@ class Steady(Protocol):
     max_current_A: float
 
     def steady_A(self, force_N: np.ndarray, velocity_m_s: float) -> np.ndarray: ...
-
-
-def tracker_text(inverse: Inverse) -> str:
-    """What the controller can do with it."""
-    if isinstance(inverse, MapInverse):
-        return "tracker inverse reads it"
-    if isinstance(inverse, Steady):
-        return "tracker inverse reads its compiled map"
-    return STEPS_TEXT if isinstance(inverse, SteppedInverse) else RECURRENT_TEXT
 
 
 def compiled(inverse: Inverse) -> MapInverse | None:
@@ -52,16 +39,16 @@ def compiled(inverse: Inverse) -> MapInverse | None:
 def steady_map(inverse: Steady) -> Monotone:
     """At every velocity the force at which the inverse begins to ask for each current. Where it
     asks for less current for more force, the largest current so far stands."""
-    index = inverse.box.keys.index
-    largest_N = float(np.abs([inverse.box.low[index("force_N")], inverse.box.high[0]]).max())
-    where = index("velocity_m_s")
-    speed_m_s = float(min(-inverse.box.low[where], inverse.box.high[where]))
+    box, index = inverse.box, inverse.box.keys.index
+    force, velocity = index("force_N"), index("velocity_m_s")
+    largest_N = float(np.abs([box.low[force], box.high[force]]).max())
+    speed_m_s = float(min(-box.low[velocity], box.high[velocity]))
     velocities = speed_m_s * np.concatenate([-np.array(_PARTS)[::-1], _PARTS])
     currents_A = np.linspace(0.0, inverse.max_current_A, MAX_CURRENTS)
     wanted_N = np.linspace(0.0, largest_N, _FORCES)
     rows = []
-    for velocity in velocities:
-        asked = inverse.steady_A(np.sign(velocity) * wanted_N, float(velocity))
+    for one_m_s in velocities:
+        asked = inverse.steady_A(np.sign(one_m_s) * wanted_N, float(one_m_s))
         rows.append(beginnings(np.maximum.accumulate(asked), wanted_N, currents_A))
     limits = np.full(len(velocities), inverse.max_current_A)
     steady = SteadyForces(velocities, currents_A, np.array(rows))

@@ -35,6 +35,10 @@ class Source:
             )
         return self.damper
 
+    def part(self, record: Record) -> np.ndarray:
+        """A record's command in parts of the largest current, [samples]."""
+        return record.command / self.max_current_A
+
 
 class Inverse(Protocol):
     max_current_A: float
@@ -47,10 +51,15 @@ class Inverse(Protocol):
         """What its file holds."""
 
 
+def resists(force_N: Any, velocity_m_s: Any) -> Any:
+    """Whether a force, or each of [samples], has the sign of its velocity."""
+    return force_N * velocity_m_s > 0.0
+
+
 def judged(demand: Record) -> Record:
     """The demand with 0 N where it does not resist the motion."""
-    resists = demand.force_N * demand.velocity_m_s > 0.0
-    return replace(demand, force_N=np.where(resists, demand.force_N, 0.0))
+    is_resisting = resists(demand.force_N, demand.velocity_m_s)
+    return replace(demand, force_N=np.where(is_resisting, demand.force_N, 0.0))
 
 
 def commanded(inverse: Inverse, demand: Record) -> np.ndarray:

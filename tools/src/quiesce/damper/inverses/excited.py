@@ -6,6 +6,7 @@ import numpy as np
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, whole
 from quiesce.damper.excitation import random_motion, switched_current, times
+from quiesce.damper.inverse import check_finite
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.score import Simulate
 
@@ -37,7 +38,8 @@ def swinging_A(time_s: np.ndarray, most_A: float, seed: int) -> np.ndarray:
 def excited(
     damper: DamperModel, simulate: Simulate, most_A: float, seed: int, tests: int = TESTS
 ) -> list[Segment]:
-    """`tests` recordings with measured force, every other with a current in steps."""
+    """`tests` recordings with measured force, every other with a current in steps. UsageError where
+    the damper's force is not finite."""
     from dataclasses import replace
 
     rng = np.random.default_rng(seed)
@@ -56,6 +58,7 @@ def excited(
         )
         record = moved(f"random motion {k + 1}", time_s, disp_m, command_A)
         force_N = simulate(record)
+        check_finite(damper, force_N)
         noise_N = (
             NOISE_PART * float(np.sqrt(np.mean(force_N**2))) * rng.standard_normal(len(record))
         )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.damper.data.record import Record
+from quiesce.damper.inverses.compiled import COMPILED
 from quiesce.damper.inverses.demand import Source, checked_levels
 from quiesce.damper.inverses.keys import box_of, lags_of, network_of, number
 from quiesce.damper.inverses.taps import (
@@ -17,17 +18,18 @@ from quiesce.damper.inverses.taps import (
     LEAST_SPEED,
     held,
     largest_speed_m_s,
-    series_to_current,
     spread,
     taught_rows,
 )
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.model import Report, silent
-from quiesce.damper.learned.network import Network, fit
-from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows
+from quiesce.damper.learned.network import Network, fitted
+from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows, series_of
 
 NAME = "ffn"
 TITLE = "feed-forward inverse network (eq 38)"
+HELP = "feed-forward network over force, displacement and velocity, now and before"
+TRACKER = COMPILED
 
 
 @dataclass(frozen=True)
@@ -101,12 +103,9 @@ def make(
     time_s = settings.sample_time_s or sample_time_s(segments)
     least_m_s = LEAST_SPEED * largest_speed_m_s(segments)
     box = Box.of(segments, INPUTS)
-    series = series_to_current(segments, box, settings.lags, time_s, most_A)
+    series = series_of(segments, box, settings.lags, time_s, source.part)
     inputs, targets = taught_rows(segments, series, time_s, least_m_s, settings.most_rows)
     rng = np.random.default_rng(seed)
-    network = Network.random((inputs.shape[1], *settings.hidden, 1), rng)
-    network.biases[-1][:] = targets.mean()
-    fit(network, inputs, targets[:, None], rng, settings.epochs, decay=settings.decay)
-    error = most_A * float(np.sqrt(np.mean((network(inputs)[:, 0] - targets) ** 2)))
-    progress(f"ffn: {error:.3g} A root mean square on {len(inputs)} rows")
+    network, error = fitted(inputs, targets, settings.hidden, rng, settings.epochs, settings.decay)
+    progress(f"{NAME}: {error * most_A:.3g} A root mean square on {len(inputs)} rows")
     return FeedForwardInverse(box, settings.lags, time_s, least_m_s, most_A, network)

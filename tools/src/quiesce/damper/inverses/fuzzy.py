@@ -9,6 +9,7 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
+from quiesce.damper.inverses.compiled import COMPILED
 from quiesce.damper.inverses.demand import Source, checked_levels
 from quiesce.damper.inverses.keys import MOST_UNITS, box_of, number, numbers
 from quiesce.damper.inverses.taps import (
@@ -16,16 +17,17 @@ from quiesce.damper.inverses.taps import (
     LEAST_SPEED,
     held,
     largest_speed_m_s,
-    series_to_current,
     taught_rows,
 )
 from quiesce.damper.learned import anfis
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.model import Report, silent
-from quiesce.damper.learned.sampled import sample_time_s
+from quiesce.damper.learned.sampled import sample_time_s, series_of
 
 NAME = "anfis"
 TITLE = "inverse ANFIS"
+HELP = "Gaussians on a grid of force, displacement and velocity"
+TRACKER = COMPILED
 MEMBERSHIPS = 4
 MOST_ROWS = 4_000
 
@@ -96,7 +98,7 @@ def make(
     time_s = sample_time_s(segments)
     least_m_s = LEAST_SPEED * largest_speed_m_s(segments)
     box = Box.of(segments, INPUTS)
-    series = series_to_current(segments, box, (0,), time_s, source.max_current_A)
+    series = series_of(segments, box, (0,), time_s, source.part)
     u, parts = taught_rows(segments, series, time_s, least_m_s, MOST_ROWS)
     premises, conclusions, errors = anfis.hybrid(u, parts, settings, progress)
     progress(f"anfis: {errors[-1] * source.max_current_A:.3g} A root mean square on {len(u)} rows")

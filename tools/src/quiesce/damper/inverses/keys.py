@@ -1,5 +1,6 @@
 """Keys of inverses in files. UsageError with file and key where one is wrong."""
 
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -14,7 +15,9 @@ _MOST_LAG = 10_000
 
 
 def is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and np.isfinite(value)
+    """Finite as a float; an integer may have any length."""
+    is_real = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_real and abs(value) <= sys.float_info.max
 
 
 def number(table: Mapping[str, Any], key: str, where: str) -> float:

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from time import monotonic
 
-from quiesce.damper.inverses.compiled import compiled, tracker_text
+from quiesce.base.errors import UsageError
+from quiesce.damper.inverses.compiled import compiled
 from quiesce.damper.inverses.demand import Inverse, Source
 from quiesce.damper.inverses.mapped import MapInverse
 from quiesce.damper.inverses.methods import METHODS
+from quiesce.damper.inverses.tracking import CONSTANT, IDEAL
 from quiesce.damper.learned.model import Report, silent
 
 
@@ -24,7 +26,7 @@ class Made:
 
     @property
     def tracker(self) -> str:
-        return tracker_text(self.inverse)
+        return METHODS[self.method].TRACKER
 
     @property
     def map_name(self) -> str:
@@ -46,11 +48,19 @@ def from_file(method: str, name: str, inverse: Inverse) -> Made:
     return Made(method, name, inverse, compiled(inverse), 0.0)
 
 
+def check_names(names: Sequence[str]) -> None:
+    """UsageError where two are the same, or one is that of a peer in a comparison."""
+    for k, name in enumerate(names):
+        if name in (CONSTANT, IDEAL, *names[:k]):
+            raise UsageError(f"two inverses would be named '{name}'; leave one out")
+
+
 def to_compare(inverses: Sequence[Made]) -> dict[str, Inverse]:
-    """By name, compiled maps among them."""
-    out: dict[str, Inverse] = {}
+    """By name, compiled maps among them. UsageError from check_names."""
+    pairs: list[tuple[str, Inverse]] = []
     for one in inverses:
-        out[one.name] = one.inverse
+        pairs.append((one.name, one.inverse))
         if one.own_map is not None:
-            out[one.map_name] = one.own_map
-    return out
+            pairs.append((one.map_name, one.own_map))
+    check_names([name for name, _ in pairs])
+    return dict(pairs)

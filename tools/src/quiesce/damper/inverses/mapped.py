@@ -20,6 +20,8 @@ from quiesce.damper.simulate import simulator
 
 NAME = "map"
 TITLE = "force map of the controller"
+HELP = "the controller's table of forces, of a damper file"
+TRACKER = "tracker inverse reads it"
 SUFFIX = ".words"
 
 

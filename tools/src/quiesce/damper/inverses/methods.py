@@ -1,8 +1,8 @@
 """The methods by name, and their files (schema quiesce-inverse-damper).
 
-A method is a module with NAME, TITLE and make(source, seed, progress), and a line here; one whose
-file is TOML has read(keys, max_current_A, where), too. A map's file is the words that the
-controller loads.
+A method is a module with NAME, TITLE, HELP, TRACKER (what the controller can do with it) and
+make(source, seed, progress), and its place in METHODS; one whose file is TOML has read(keys,
+max_current_A, where), too. A map's file is the words that the controller loads.
 """
 
 import json
@@ -44,9 +44,9 @@ def file_name(method: str) -> str:
 
 
 def check_word(table: Mapping[str, Any]) -> int:
-    """CRC-32 of everything in the file but this."""
+    """CRC-32 of everything in the file but this; dates of TOML as text."""
     rest = {key: value for key, value in table.items() if key != "check"}
-    return zlib.crc32(json.dumps(rest, sort_keys=True).encode())
+    return zlib.crc32(json.dumps(rest, sort_keys=True, default=str).encode())
 
 
 def text_of(method: str, inverse: Inverse) -> str:

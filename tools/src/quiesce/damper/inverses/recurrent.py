@@ -17,15 +17,21 @@ import numpy as np
 from quiesce.damper.data.record import Record
 from quiesce.damper.inverses.demand import Source, checked_levels
 from quiesce.damper.inverses.keys import box_of, lags_of, network_of, number
-from quiesce.damper.inverses.taps import INPUTS, series_to_current, spread
+from quiesce.damper.inverses.taps import INPUTS, spread
 from quiesce.damper.learned import recurrent
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.model import Report, silent
+from quiesce.damper.learned.model import Report, named, silent
 from quiesce.damper.learned.network import Network
-from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows
+from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows, series_of
 
 NAME = "rnn"
 TITLE = "recurrent inverse network (eq 37)"
+HELP = "recurrent network over the same and its own earlier currents"
+TRACKER = (
+    "has a memory: no table holds it; the firmware has no tracker with delayed inputs, weights and "
+    "tanh layers"
+)
+LIMITS = (0.0, 1.0)  # of currents fed back, in parts of the largest
 # Much noise on the currents fed back in training: else the network learns to repeat the one before,
 # which tells nothing once it runs free.
 SETTINGS = recurrent.Settings(
@@ -47,7 +53,7 @@ class RecurrentInverse:
     def currents(self, demand: Record) -> np.ndarray:
         rows = sampled_rows(demand, self.sample_time_s)
         inputs = delayed(self.box.picked(demand)[rows], self.box, self.lags)
-        parts = recurrent.free_run(self.network, inputs, self.feedback, (0.0, 1.0))
+        parts = recurrent.free_run(self.network, inputs, self.feedback, LIMITS)
         return spread(self.max_current_A * parts, rows, len(demand))
 
     def parameters(self) -> dict[str, Any]:
@@ -87,10 +93,11 @@ def make(
     time_s = settings.sample_time_s or sample_time_s(segments)
     box = Box.of(segments, INPUTS)
     lags = settings.lags or (0,)
-    series = series_to_current(segments, box, lags, time_s, source.max_current_A)
-    found = recurrent.learned(series, settings, np.random.default_rng(seed), progress)
+    series = series_of(segments, box, lags, time_s, source.part)
+    report, rng = named(NAME, progress), np.random.default_rng(seed)
+    found = recurrent.learned(series, settings, rng, report, LIMITS)
     error_A = found.error * source.max_current_A
-    progress(f"rnn: {error_A:.3g} A root mean square, running free")
+    report(f"{error_A:.3g} A root mean square, running free")
     return RecurrentInverse(
         box, lags, settings.feedback, time_s, source.max_current_A, found.network
     )

@@ -23,6 +23,8 @@ from quiesce.damper.simulate import simulator
 
 NAME = "steps"
 TITLE = "steps of the current (eq 35)"
+HELP = "moves the current by the part of the force that is missing (a damper file in the loop)"
+TRACKER = "has no tracker; its rest is tracker inverse with the same model's map"
 CURRENTS = 11
 TOLERANCE = 0.01  # of the largest force of the tests
 
@@ -36,11 +38,12 @@ class SteppedInverse:
     def currents(self, demand: Record) -> np.ndarray:
         simulate = None if self.damper.is_kernel else simulator(self.damper)
         grid_A = np.linspace(0.0, self.max_current_A, CURRENTS)
-        forces = np.abs(forces_by(self.damper, simulate)(demand, grid_A))
+        side = np.sign(demand.velocity_m_s)
+        along = side * forces_by(self.damper, simulate)(demand, grid_A)
         out = np.empty(len(demand))
         current_A = 0.0
-        for k, wanted_N in enumerate(np.abs(demand.force_N)):
-            column = forces[:, k]
+        for k, wanted_N in enumerate(side * demand.force_N):
+            column = along[:, k]
             now_N = float(np.interp(current_A, grid_A, column))
             current_A = stepped_current(
                 current_A, wanted_N, now_N, column[0], column[-1], self.max_current_A,
@@ -67,9 +70,9 @@ def stepped_current(
     most_A: float,
     tolerance_N: float,
 ) -> float:
-    """The next current, within 0 .. most_A, from magnitudes of forces: a forward model's now and at
-    both ends. Kept within the tolerance; raised or lowered by the part of the way that is
-    missing."""
+    """The next current, within 0 .. most_A, from forces along the motion (> 0 resists): a forward
+    model's now and at both ends. Kept within the tolerance; raised or lowered by the part of the
+    way that is missing."""
     missing_N = wanted_N - force_N
     if abs(missing_N) <= tolerance_N:
         return current_A

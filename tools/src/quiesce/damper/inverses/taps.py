@@ -11,8 +11,8 @@ import numpy as np
 
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
-from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.sampled import Series, delayed, sampled_rows
+from quiesce.damper.inverses.demand import resists
+from quiesce.damper.learned.sampled import Series, sampled_rows
 
 INPUTS = ("force_N", "displacement_m", "velocity_m_s")
 LEAST_SPEED = 0.1  # of the largest: slower than this the answer is held
@@ -22,24 +22,10 @@ def largest_speed_m_s(segments: Sequence[Segment]) -> float:
     return max(float(np.max(np.abs(one.record.velocity_m_s[one.rows]))) for one in segments)
 
 
-def series_to_current(
-    segments: Sequence[Segment], box: Box, lags: Sequence[int], time_s: float, most_A: float
-) -> list[Series]:
-    """Taps, and the command in parts of the largest in the place of the force."""
-    out = []
-    for one in segments:
-        rows = sampled_rows(one.record, time_s)
-        rows = rows[rows < one.end]
-        inputs = delayed(box.picked(one.record)[rows], box, lags)
-        first = int(np.searchsorted(rows, one.first))
-        out.append(Series(inputs, one.record.command[rows] / most_A, first))
-    return out
-
-
 def is_told(record: Record, rows: np.ndarray, least_m_s: float) -> np.ndarray:
     """Rows that tell the current: fast enough, and the force resists."""
     velocity = record.velocity_m_s[rows]
-    return (np.abs(velocity) >= least_m_s) & (record.force_N[rows] * velocity > 0.0)
+    return (np.abs(velocity) >= least_m_s) & resists(record.force_N[rows], velocity)
 
 
 def taught_rows(
@@ -57,7 +43,7 @@ def taught_rows(
         kept = is_told(one.record, rows, least_m_s)
         kept[: taps.first] = False
         inputs.append(taps.inputs[kept])
-        targets.append(taps.force[kept])
+        targets.append(taps.target[kept])
     u, y = np.concatenate(inputs), np.concatenate(targets)
     every = max(1, int(np.ceil(len(u) / most_rows)))
     return u[::every], y[::every]

@@ -15,7 +15,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
 from quiesce.damper.excitation import random_motion, sine, sweep, times
-from quiesce.damper.inverse import InverseByInterpolation, forces_by
+from quiesce.damper.inverse import InverseByInterpolation, check_finite, forces_by
 from quiesce.damper.inverses.demand import Inverse, commanded, judged
 from quiesce.damper.inverses.excited import SPEED_PART, STROKE_PART, moved
 from quiesce.damper.model_file import DamperModel
@@ -91,7 +91,8 @@ def tasks_for(
     seed: int,
     duration_s: float = DURATION_s,
 ) -> list[Task]:
-    """UsageError where the damper's file states no stroke or no speed."""
+    """UsageError where the damper's file states no stroke or no speed, or where its force is not
+    finite."""
     if not (damper.speed_m_s > 0.0 and damper.stroke_m > 0.0):
         raise UsageError(f"{damper.name}: the file states no stroke or no speed")
     time_s = times(duration_s, RATE_Hz)
@@ -101,6 +102,7 @@ def tasks_for(
     for name, (disp_m, shape) in shapes(time_s, seed, reach).items():
         record = moved(name, time_s, disp_m, np.zeros(len(time_s)))
         bank = forces(record, np.linspace(0.0, max_current_A, _CONSTANTS))
+        check_finite(damper, bank)
         wanted_N = _FORCE_PART * float(np.abs(bank).max()) * shape
         demand = judged(replace(record, force_N=wanted_N))
         out.append(Task(demand, nearest(bank, demand)))

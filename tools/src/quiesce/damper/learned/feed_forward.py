@@ -8,7 +8,7 @@ import numpy as np
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import Box, input_keys, stacked
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
-from quiesce.damper.learned.network import Network, fit
+from quiesce.damper.learned.network import fitted
 from quiesce.damper.learned.sampled import default_lags, sample_time_s, series_of
 from quiesce.damper.library import Scales
 
@@ -36,16 +36,13 @@ def train(
     lags = default_lags(time_s) if settings.lags is None else settings.lags
     box = Box.of(segments, input_keys(segments) if not lags else input_keys(segments)[:3])
     if lags:
-        series = series_of(segments, box, lags, time_s, scales.force_N)
+        series = series_of(segments, box, lags, time_s, lambda one: one.force_N / scales.force_N)
         inputs = np.concatenate([one.inputs[one.first :] for one in series])
-        force = np.concatenate([one.force[one.first :] for one in series])
+        force = np.concatenate([one.target[one.first :] for one in series])
     else:
         inputs, force_N = stacked(segments, box)
         force = force_N / scales.force_N
-    network = Network.random((inputs.shape[1], *settings.hidden, 1), rng)
-    network.biases[-1][:] = force.mean()
-    fit(network, inputs, force[:, None], rng, settings.epochs, decay=settings.decay)
-    error = float(np.sqrt(np.mean((network(inputs)[:, 0] - force) ** 2)))
+    network, error = fitted(inputs, force, settings.hidden, rng, settings.epochs, settings.decay)
     progress(f"feed_forward_network: error {error:.4g} of the largest force")
     delays = {"lags": list(lags), "sample_time_s": float(time_s)} if lags else {}
     parameters = {

@@ -17,7 +17,8 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import MOST_ROWS, Box
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
-from quiesce.damper.learned.network import Network, fit
+from quiesce.damper.learned.network import Network
+from quiesce.damper.learned.network import fitted as fitted_network
 from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows
 from quiesce.damper.library import Scales
 
@@ -156,10 +157,7 @@ def fitted(
     every = max(1, int(np.ceil(len(u) / MOST_ROWS)))
     u, y = u[::every], y[::every]
     rng = np.random.default_rng(seed)
-    network = Network.random((u.shape[1], *settings.hidden, 1), rng)
-    network.biases[-1][:] = y.mean()
-    fit(network, u, y[:, None], rng, settings.epochs, decay=settings.decay)
-    error = float(np.sqrt(np.mean((network(u)[:, 0] - y) ** 2)))
+    network, error = fitted_network(u, y, settings.hidden, rng, settings.epochs, settings.decay)
     return TapNetwork(box, settings.lags, time_s, scales.force_N, features, network, error)
 
 

@@ -26,6 +26,11 @@ def silent(_text: str) -> None:
     """A Report that nobody reads."""
 
 
+def named(name: str, report: Report) -> Report:
+    """Each line after this name."""
+    return lambda text: report(f"{name}: {text}")
+
+
 @dataclass(frozen=True)
 class LearnedDamper:
     model: str  # name in damper files

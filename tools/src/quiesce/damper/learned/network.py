@@ -114,3 +114,19 @@ def fit(
             layers = network.forward(inputs[rows])
             gradients, _ = network.backward(layers, (layers[-1] - targets[rows]) / len(rows))
             adam.step(gradients, falling_rate(rate, (epoch + k / batches) / epochs))
+
+
+def fitted(
+    inputs: np.ndarray,
+    targets: np.ndarray,
+    hidden: Sequence[int],
+    rng: np.random.Generator,
+    epochs: int,
+    decay: float,
+) -> tuple[Network, float]:
+    """A network of one output from chance, its start the mean, fitted to targets [rows] by inputs
+    [rows, inputs]; and its root mean square error, in the targets' unit."""
+    network = Network.random((inputs.shape[1], *hidden, 1), rng)
+    network.biases[-1][:] = targets.mean()
+    fit(network, inputs, targets[:, None], rng, epochs, decay=decay)
+    return network, float(np.sqrt(np.mean((network(inputs)[:, 0] - targets) ** 2)))

@@ -11,10 +11,13 @@ import numpy as np
 
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
+from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, named, silent
 from quiesce.damper.learned.network import Adam, Network, falling_rate, fit
 from quiesce.damper.learned.sampled import Series, default_lags, sample_time_s, series_of
 from quiesce.damper.library import Scales
+
+Limits = tuple[float, float]  # of what is fed back, in parts of the largest
+FREE: Limits = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ def free_run(
     network: Network,
     inputs: np.ndarray,
     feedback: Sequence[int],
-    limits: tuple[float, float] = (-np.inf, np.inf),
+    limits: Limits = FREE,
 ) -> np.ndarray:
     """Forces [samples] from rest, only the network's own fed back; within the limits."""
     depth = max(feedback)
@@ -57,9 +60,15 @@ def free_run(
     return out[depth:]
 
 
-def free_error(network: Network, series: Sequence[Series], feedback: Sequence[int]) -> float:
-    """Root mean square over what is to be learned, of the largest force."""
-    errors = [(free_run(network, one.inputs, feedback) - one.force)[one.first :] for one in series]
+def free_error(
+    network: Network, series: Sequence[Series], feedback: Sequence[int], limits: Limits = FREE
+) -> float:
+    """Root mean square over what is to be learned, in parts of the largest, as `free_run` has it
+    within these limits."""
+    errors = [
+        (free_run(network, one.inputs, feedback, limits) - one.target)[one.first :]
+        for one in series
+    ]
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 
@@ -99,7 +108,7 @@ def drawn_windows(
         one = long_enough[index]
         at = int(rng.integers(one.first, len(one) - length + 1))
         inputs.append(one.inputs[at : at + length])
-        force.append(one.force[at : at + length])
+        force.append(one.target[at : at + length])
     return np.stack(inputs), np.stack(force)
 
 
@@ -114,9 +123,11 @@ def tune_free(
     settings: Settings,
     rng: np.random.Generator,
     report: Report,
+    limits: Limits,
 ) -> tuple[Network, float]:
-    """The best of the networks seen while training free-running, and its error."""
-    best, best_error = network.copy(), free_error(network, series, settings.feedback)
+    """The best of the networks seen while training free-running, and its error within the limits;
+    the training itself has none."""
+    best, best_error = network.copy(), free_error(network, series, settings.feedback, limits)
     length = max(settings.feedback) + settings.window
     if not any(len(one) - one.first >= length for one in series):
         return best, best_error
@@ -127,8 +138,8 @@ def tune_free(
         )
         adam.step(clipped(gradients), falling_rate(3e-3, step / settings.free_steps))
         if step % 100 == 99:
-            error = free_error(network, series, settings.feedback)
-            report(f"recurrent_network: step {step + 1}, free-running error {error:.4g}")
+            error = free_error(network, series, settings.feedback, limits)
+            report(f"step {step + 1}, free-running error {error:.4g}")
             if error < best_error:
                 best, best_error = network.copy(), error
     return best, best_error
@@ -136,8 +147,8 @@ def tune_free(
 
 @dataclass(frozen=True)
 class Learned:
-    """Free-running errors, of the largest force: with measured forces fed back in training, then at
-    the end."""
+    """Free-running errors, in parts of the largest: with measured values fed back in training, then
+    at the end."""
 
     network: Network
     start: float
@@ -145,19 +156,23 @@ class Learned:
 
 
 def learned(
-    series: Sequence[Series], settings: Settings, rng: np.random.Generator, progress: Report
+    series: Sequence[Series],
+    settings: Settings,
+    rng: np.random.Generator,
+    report: Report,
+    limits: Limits = FREE,
 ) -> Learned:
-    """Both trainings."""
-    fed_back = [earlier(one.force, settings.feedback)[one.first :] for one in series]
+    """Both trainings; errors are of the network as it runs within the limits."""
+    fed_back = [earlier(one.target, settings.feedback)[one.first :] for one in series]
     inputs = np.concatenate([one.inputs[one.first :] for one in series])
-    force = np.concatenate([one.force[one.first :] for one in series])
+    force = np.concatenate([one.target[one.first :] for one in series])
     noisy = np.concatenate(fed_back)
     noisy = noisy + settings.noise * rng.normal(size=noisy.shape)
     seen = np.concatenate([inputs, noisy], axis=1)
     network = Network.random((seen.shape[1], *settings.hidden, 1), rng)
     fit(network, seen, force[:, None], rng, settings.epochs, decay=settings.decay)
-    start = free_error(network, series, settings.feedback)
-    network, error = tune_free(network, series, settings, rng, progress)
+    start = free_error(network, series, settings.feedback, limits)
+    network, error = tune_free(network, series, settings, rng, report, limits)
     return Learned(network, start, error)
 
 
@@ -173,8 +188,8 @@ def train(
     time_s = settings.sample_time_s or sample_time_s(segments)
     lags = settings.lags or default_lags(time_s)
     box = Box.of(segments)
-    series = series_of(segments, box, lags, time_s, scales.force_N)
-    found = learned(series, settings, rng, progress)
+    series = series_of(segments, box, lags, time_s, lambda one: one.force_N / scales.force_N)
+    found = learned(series, settings, rng, named("recurrent_network", progress))
     parameters = {
         "force_scale_N": float(scales.force_N),
         "sample_time_s": float(time_s),

@@ -1,6 +1,6 @@
 """Delayed copies of the inputs at a model's own sample time, as the C++ library makes them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +18,11 @@ class Series:
     """One segment at the sample time. Rows first .. count - 1 are to be learned."""
 
     inputs: np.ndarray  # scaled and delayed, [samples, lags * inputs]
-    force: np.ndarray  # of the largest force, [samples]
+    target: np.ndarray  # in parts of the largest, [samples]
     first: int
 
     def __len__(self) -> int:
-        return len(self.force)
+        return len(self.target)
 
 
 def sample_time_s(segments: Sequence[Segment]) -> float:
@@ -54,16 +54,18 @@ def delayed(picked: np.ndarray, box: Box, lags: Sequence[int]) -> np.ndarray:
 
 
 def series_of(
-    segments: Sequence[Segment], box: Box, lags: Sequence[int], time_s: float, force_N: float
+    segments: Sequence[Segment],
+    box: Box,
+    lags: Sequence[int],
+    time_s: float,
+    target: Callable[[Record], np.ndarray],
 ) -> list[Series]:
+    """target: [samples] of a record, in parts of the largest."""
     out = []
     for one in segments:
         rows = sampled_rows(one.record, time_s)
         rows = rows[rows < one.end]
         inputs = delayed(box.picked(one.record)[rows], box, lags)
-        out.append(
-            Series(
-                inputs, one.record.force_N[rows] / force_N, int(np.searchsorted(rows, one.first))
-            )
-        )
+        first = int(np.searchsorted(rows, one.first))
+        out.append(Series(inputs, target(one.record)[rows], first))
     return out

@@ -107,10 +107,9 @@ def over_time(found: Followed) -> dict[str, list[float]]:
     """Times in s and each model's error in % over the window before, twenty a window."""
     step = max(1, round(WINDOW_s * found.stream.rate_Hz / 20.0))
     rows = slice(step - 1, None, step)
-    models = {ADAPTIVE: found.adaptive_N, **found.frozen_N, **found.beside_N}
     curves = {
         name: found.error_over_time_pct(force_N, WINDOW_s)[rows].tolist()
-        for name, force_N in models.items()
+        for name, force_N in found.models_N().items()
     }
     return {"time_s": found.stream.time_s[rows].tolist(), **curves}
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.rules.optimize.genes import Genome
-from quiesce.rules.optimize.search import Search, middle_point, nearest_genome
+from quiesce.rules.optimize.search import Search, latin_hypercube, middle_point, nearest_genome
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,6 @@ def search(
         better = costs[:, 0] <= cost
         points[better] = trials[better]
         cost[better] = costs[better, 0]
-
-
-def latin_hypercube(count: int, size: int, rng: np.random.Generator) -> np.ndarray:
-    """Points of the unit cube, shape (count, size), one in each of `count` slices of every axis."""
-    slices = np.stack([rng.permutation(count) for _ in range(size)], axis=1)
-    return (slices + rng.random((count, size))) / count
 
 
 def make_trials(

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.base.searches.methods import METHODS
-from quiesce.rules.optimize.de import latin_hypercube
 from quiesce.rules.optimize.genes import Genome
-from quiesce.rules.optimize.search import Search, middle_point, nearest_genome
+from quiesce.rules.optimize.search import Search, latin_hypercube, middle_point, nearest_genome
 
 
 @dataclass(frozen=True)

@@ -25,3 +25,9 @@ def nearest_genome(point: np.ndarray, levels: np.ndarray) -> Genome:
 def middle_point(genome: Genome, levels: np.ndarray) -> np.ndarray:
     """The middle of a genome's share of the unit cube."""
     return (np.array(genome) + 0.5) / levels
+
+
+def latin_hypercube(count: int, size: int, rng: np.random.Generator) -> np.ndarray:
+    """Points of the unit cube, shape (count, size), one in each of `count` slices of every axis."""
+    slices = np.stack([rng.permutation(count) for _ in range(size)], axis=1)
+    return (slices + rng.random((count, size))) / count

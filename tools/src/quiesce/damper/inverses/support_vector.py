@@ -13,19 +13,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
+from quiesce.damper.inverses.demand import Source, checked_levels, resists
+from quiesce.damper.inverses.taps import INPUTS, LEAST_SPEED, is_told
+from quiesce.damper.learned.inputs import Box, column
 from quiesce.damper.learned.support_vector import fitted
 from quiesce.damper.library import Scales
 
-# Force, displacement, velocity, temperature: what the machine sees, in this order.
-_LEAST_KINDS, _ALL_KINDS = 3, 4
+TEMPERATURE = "temperature_C"
 
 
 @dataclass(frozen=True)
 class Settings:
     rows: int = 1500  # most rows to train on
-    least_speed: float = 0.1  # of the largest: below it rows are left out and the answer is held
+    # Of the largest: below it rows are left out and the answer is held.
+    least_speed: float = LEAST_SPEED
     penalty: float = 30.0  # C of the current in parts of the largest
     gamma: float = 1.0  # of the scaled inputs
     epsilon: float = 0.03  # of the largest current
@@ -37,8 +39,7 @@ class Settings:
 class InverseSupportVector:
     """Inputs are cut off at the ranges of the training and scaled to -1 .. 1."""
 
-    low: np.ndarray  # [3 or 4], SI and degrees C
-    high: np.ndarray
+    box: Box  # INPUTS and, where it is known, TEMPERATURE
     max_current_A: float
     least_speed_m_s: float
     gamma: float
@@ -48,7 +49,7 @@ class InverseSupportVector:
 
     @property
     def knows_temperature(self) -> bool:
-        return len(self.low) == _ALL_KINDS
+        return TEMPERATURE in self.box.keys
 
     def current_A(
         self,
@@ -62,20 +63,15 @@ class InverseSupportVector:
         resist the motion. temperature_C counts where it was trained with one."""
         if abs(velocity_m_s) < self.least_speed_m_s:
             return held_A
-        if force_N * velocity_m_s < 0.0:
+        if not resists(force_N, velocity_m_s):
             return 0.0
-        seen = np.array([force_N, disp_m, velocity_m_s, temperature_C])[: len(self.low)]
+        seen = np.array([force_N, disp_m, velocity_m_s, temperature_C])[: len(self.box)]
         return float(self._part(seen)) * self.max_current_A
 
     def _part(self, seen: np.ndarray) -> float:
-        u = scaled(seen, self.low, self.high)
-        distance2 = np.sum((self.vectors - u) ** 2, axis=1)
+        distance2 = np.sum((self.vectors - self.box.scaled(seen)) ** 2, axis=1)
         part = self.intercept + self.coefficients @ np.exp(-self.gamma * distance2)
         return min(max(part, 0.0), 1.0)
-
-
-def scaled(seen: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    return 2.0 * (np.clip(seen, low, high) - low) / (high - low) - 1.0
 
 
 def train(
@@ -89,31 +85,19 @@ def train(
     is the same throughout, or where a test lacks its temperature."""
     settings = settings or Settings()
     rng = np.random.default_rng(seed)
-    seen = np.concatenate([columns(one.record)[one.rows] for one in segments])
-    current_A = np.concatenate([one.record.command[one.rows] for one in segments])
-    most_A = float(current_A.max())
-    if not np.ptp(current_A) > 1e-3 * max(most_A, 1e-9):
-        raise UsageError("an inverse model needs tests at two currents or more")
-    kinds = _ALL_KINDS if with_temperature else _LEAST_KINDS
-    seen = seen[:, :kinds]
-    if not np.all(np.isfinite(seen)):
-        raise UsageError("an inverse model with temperature needs one in every test")
+    most_A = max(float(one.record.command[one.rows].max()) for one in segments)
+    source = Source(segments, most_A)
+    checked_levels(source)
+    keys = (*INPUTS, TEMPERATURE) if with_temperature else INPUTS
     least_m_s = settings.least_speed * scales.speed_m_s
-    is_usable = (np.abs(seen[:, 2]) >= least_m_s) & (seen[:, 0] * seen[:, 2] > 0.0)
-    seen, part = beyond(seen[is_usable], current_A[is_usable] / most_A, settings, rng)
+    seen, part = beyond(*told(source, keys, least_m_s), settings, rng)
     chosen = rng.permutation(len(seen))[: settings.rows]
-    low, high = seen.min(axis=0), seen.max(axis=0)
-    high = np.maximum(high, low + 1e-9 * np.maximum(np.abs(low), 1.0))
+    box = box_around(keys, seen)
     machine = fitted(
-        scaled(seen[chosen], low, high),
-        part[chosen],
-        settings.penalty,
-        settings.gamma,
-        settings.epsilon,
+        box.scaled(seen[chosen]), part[chosen], settings.penalty, settings.gamma, settings.epsilon
     )
     return InverseSupportVector(
-        low,
-        high,
+        box,
         most_A,
         least_m_s,
         settings.gamma,
@@ -123,11 +107,29 @@ def train(
     )
 
 
-def columns(record: Record) -> np.ndarray:
-    """[samples, 4]; NaN where no temperature was measured."""
-    unknown = np.full(len(record), np.nan)
-    warm = unknown if record.temperature_C is None else record.temperature_C
-    return np.stack([record.force_N, record.disp_m, record.velocity_m_s, warm], axis=1)
+def told(source: Source, keys: Sequence[str], least_m_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Inputs [rows, keys] and current in parts of the largest [rows], of the rows that tell it.
+    UsageError where a test lacks its temperature."""
+    seen, part = [], []
+    for one in source.segments:
+        if TEMPERATURE in keys and not has_temperature(one):
+            raise UsageError("an inverse model with temperature needs one in every test")
+        rows = np.arange(one.first, one.end)
+        rows = rows[is_told(one.record, rows, least_m_s)]
+        seen.append(np.stack([column(one.record, key)[rows] for key in keys], axis=1))
+        part.append(source.part(one.record)[rows])
+    return np.concatenate(seen), np.concatenate(part)
+
+
+def has_temperature(segment: Segment) -> bool:
+    measured = segment.record.temperature_C
+    return measured is not None and bool(np.isfinite(measured[segment.rows]).all())
+
+
+def box_around(keys: Sequence[str], seen: np.ndarray) -> Box:
+    """Ranges of inputs [rows, keys], those that do not vary a little wider."""
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    return Box(tuple(keys), low, np.maximum(high, low + 1e-9 * np.maximum(np.abs(low), 1.0)))
 
 
 def beyond(
