@@ -99,7 +99,7 @@ def test_set_changes_all_or_nothing(controller: Controller, tool) -> None:
 
 @pytest.mark.slow
 def test_set_says_where_it_could_not_be_stored(controller: Controller, tool) -> None:
-    controller.start("--no-store")
+    controller.start("--idle", "--no-store")
     result = tool("set", "law=off", "--save")
     assert result.returncode == 1 and "STORE_FAILED" in result.stderr
     assert values(tool)["law"] == 0
