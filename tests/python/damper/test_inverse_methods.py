@@ -19,7 +19,7 @@ from learned_data import random_motion, sine
 from quiesce.base.errors import UsageError
 from quiesce.cli.identify import inverse as cli_inverse
 from quiesce.damper.data.record import Record
-from quiesce.damper.data.split import whole
+from quiesce.damper.data.split import is_number, whole
 from quiesce.damper.example import EXAMPLE
 from quiesce.damper.force_map import map_of_words
 from quiesce.damper.inverse import InverseByInterpolation, forces_at
@@ -27,7 +27,6 @@ from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, step
 from quiesce.damper.inverses.compiled import COMPILED, Steady, beginnings, compiled, steady_map
 from quiesce.damper.inverses.demand import Source, commanded, judged
 from quiesce.damper.inverses.excited import excited
-from quiesce.damper.inverses.keys import is_number
 from quiesce.damper.inverses.made import check_names, from_file, to_compare
 from quiesce.damper.inverses.methods import METHODS, check_word, read_inverse, write_inverse
 from quiesce.damper.inverses.steps import SteppedInverse, stepped_current

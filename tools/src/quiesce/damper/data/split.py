@@ -1,5 +1,6 @@
 """Which rows are fitted, which are held out, and how the fitted ones are divided for validation."""
 
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -94,7 +95,9 @@ def parse_part(where: str, table: Any) -> Part:
 
 
 def is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and np.isfinite(value)
+    """Finite as a float; an integer may have any length."""
+    is_real = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_real and abs(value) <= sys.float_info.max
 
 
 def part_from_text(option: str, text: str) -> Part:

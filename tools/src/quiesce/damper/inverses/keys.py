@@ -1,23 +1,17 @@
 """Keys of inverses in files. UsageError with file and key where one is wrong."""
 
-import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.damper.data.split import is_number
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.network import Network
 
 MOST_UNITS = 1024
 _MOST_LAG = 10_000
-
-
-def is_number(value: Any) -> bool:
-    """Finite as a float; an integer may have any length."""
-    is_real = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_real and abs(value) <= sys.float_info.max
 
 
 def number(table: Mapping[str, Any], key: str, where: str) -> float:
