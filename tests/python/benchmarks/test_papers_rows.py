@@ -54,6 +54,16 @@ def file(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("name", COUNTED)
+def test_a_row_whose_command_measures_says_what_comes_out(name: str) -> None:
+    silent = [
+        f"{row.kind} {row.number}: {row.what}"
+        for row in papers()[name].rows
+        if row.part and not row.ours
+    ]
+    assert silent == []
+
+
+@pytest.mark.parametrize("name", COUNTED)
 def test_every_number_of_a_paper_has_a_row_and_no_other_has_one(name: str) -> None:
     paper = papers()[name]
     for kind, count in zip(KINDS, COUNTED[name], strict=True):
