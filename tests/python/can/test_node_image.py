@@ -36,6 +36,11 @@ CONTROLLER = {
 }
 
 
+# Let go, then pressed for longer: commands and statuses come ten times a second, and a command
+# counts once its counter and its time have fitted.
+LET_GO_STATUSES, PRESSED_STATUSES = 5, 25
+
+
 class Rig:
     """Sensor node and operator around the controller on a bus."""
 
@@ -115,20 +120,24 @@ class Rig:
         self.until(state, lambda name: name == "Status" and self.seen[name]["state"] == state)
 
     def run(self) -> None:
-        """Lets go, and enables where that counts. An enable that a late frame has undone is let go
-        and given again: what is held arms nothing."""
+        """Lets go, and enables where that counts, by turns: what is held when the controller starts
+        anew, or a late frame has undone, arms nothing."""
         self.enable = 0
-        presses = 0
+        idle = presses = 0
 
         def runs(name: str) -> bool:
-            nonlocal presses
-            status = self.seen.get("Status", {})
-            if name == "Status" and status["state"] == "IDLE":
-                pressed = int(status["is_enabled"] == 0)
+            nonlocal idle, presses
+            if name != "Status":
+                return False
+            state = self.seen["Status"]["state"]
+            if state == "IDLE":
+                idle += 1
+                turn = idle % (LET_GO_STATUSES + PRESSED_STATUSES)
+                pressed = int(turn >= LET_GO_STATUSES)
                 presses += int(pressed > self.enable)
                 assert presses <= 3, "enabled in vain"
                 self.enable = pressed
-            return name == "Status" and status["state"] == "RUN" and self.enable == 1
+            return state == "RUN" and self.enable == 1
 
         self.until("RUN", runs)
 
