@@ -44,6 +44,9 @@ def passes(command: list[str], folder: Path) -> tuple[bool, str]:
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             said, _ = process.communicate()
+        except BaseException:  # interrupted: its session would outlive this one
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
         return process.returncode == 0, said
 
 
