@@ -36,9 +36,10 @@ CONTROLLER = {
 }
 
 
-# Let go, then pressed for longer: commands and statuses come ten times a second, and a command
-# counts once its counter and its time have fitted.
-LET_GO_STATUSES, PRESSED_STATUSES = 5, 25
+# Let go, then pressed for longer, in whole commands: they come ten times a second, statuses a
+# hundred times, and a command counts once its counter and its time have fitted.
+LET_GO_COMMANDS, PRESSED_COMMANDS = 4, 12
+MOST_PRESSES = 6
 
 
 class Rig:
@@ -123,19 +124,19 @@ class Rig:
         """Lets go, and enables where that counts, by turns: what is held when the controller starts
         anew, or a late frame has undone, arms nothing."""
         self.enable = 0
-        idle = presses = 0
+        first = self.alive.get("OperatorCommand", 0)
+        presses = 0
 
         def runs(name: str) -> bool:
-            nonlocal idle, presses
+            nonlocal presses
             if name != "Status":
                 return False
             state = self.seen["Status"]["state"]
             if state == "IDLE":
-                idle += 1
-                turn = idle % (LET_GO_STATUSES + PRESSED_STATUSES)
-                pressed = int(turn >= LET_GO_STATUSES)
+                sent = self.alive.get("OperatorCommand", 0) - first
+                pressed = int(sent % (LET_GO_COMMANDS + PRESSED_COMMANDS) >= LET_GO_COMMANDS)
                 presses += int(pressed > self.enable)
-                assert presses <= 3, "enabled in vain"
+                assert presses <= MOST_PRESSES, "enabled in vain"
                 self.enable = pressed
             return state == "RUN" and self.enable == 1
 
