@@ -3,38 +3,32 @@
 //
 // To run it: copy this file into firmware/law/ and add "constant_force" to the labels of parameter
 // law in firmware/param/parameters.toml, then run tools/gen/params.py.
-#include "crc32.h"
 #include "law.h"
+#include "table.h"
 
-// Its table is one number.
-enum { MAGIC, CRC, WORDS, FORCE_mN, TABLE_WORDS };
+// Its table is one number after the head of all tables.
+enum { FORCE_mN = TABLE_HEAD_WORDS, MY_WORDS };
 
 #define CONSTANT_FORCE_MAGIC UINT32_C(0x31464351)
 
-static const uint32_t shipped[TABLE_WORDS] = {
-    [MAGIC] = CONSTANT_FORCE_MAGIC,
-    [CRC] = UINT32_C(0xB98CF628),
-    [WORDS] = TABLE_WORDS,
+static const uint32_t shipped[MY_WORDS] = {
+    [TABLE_MAGIC] = CONSTANT_FORCE_MAGIC,
+    [TABLE_CRC] = UINT32_C(0xB98CF628),
+    [TABLE_WORDS] = MY_WORDS,
     [FORCE_mN] = 50000,
 };
 
 static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    if (count != TABLE_WORDS) {
-        return QUIESCE_TABLE_SIZE;
-    }
-    if (words[MAGIC] != CONSTANT_FORCE_MAGIC) {
-        return QUIESCE_TABLE_MAGIC;
-    }
-    if (words[WORDS] != TABLE_WORDS) {
-        return QUIESCE_TABLE_SIZE;
-    }
-    if (words[CRC] != crc32_words(&words[WORDS], TABLE_WORDS - WORDS)) {
-        return QUIESCE_TABLE_CRC;
+    const quiesce_table_verdict_t verdict =
+        table_check_head(words, count, CONSTANT_FORCE_MAGIC, MY_WORDS - TABLE_HEAD_WORDS);
+    if (verdict != QUIESCE_TABLE_OK || count != MY_WORDS) {
+        return verdict != QUIESCE_TABLE_OK ? verdict : QUIESCE_TABLE_SIZE;
     }
     return words[FORCE_mN] <= VIEW_LIMIT ? QUIESCE_TABLE_OK : QUIESCE_TABLE_POINT;
 }
 
-static const law_table_kind_t force = {.shipped = shipped, .check = check};
+static const law_table_kind_t force = {
+    .magic = CONSTANT_FORCE_MAGIC, .shipped = shipped, .check = check};
 
 // Against the motion, whichever way it goes; nothing at rest.
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {

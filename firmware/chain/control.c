@@ -4,13 +4,18 @@
 
 #define TABLE_CRC_WORD 1 ///< of every kind of table
 
-// Of what a law needs that demands forces: a bit that no view has. Such a law fails the first test
-// of a tick, and the others do not pay for a second one.
-#define FORCES (UINT64_C(1) << 63)
+// Of what a law needs that demands forces, or lacks its table: a bit that no view has. Such a law
+// fails the first test of a tick, and the others do not pay for a second one.
+#define MORE (UINT64_C(1) << 63)
 
-uint64_t control_needs(const quiesce_params_t *params) {
+static uint64_t control_needs(const quiesce_params_t *params) {
     const law_t *law = law_find(params->law);
     return law->needs | forces_need(law, params);
+}
+
+uint64_t control_serves(const quiesce_params_t *params) {
+    const law_table_kind_t *kind = law_find(params->law)->kind;
+    return kind != NULL && kind->needs != NULL ? ~UINT64_C(0) : control_needs(params);
 }
 
 static void start(control_t *self) {
@@ -87,22 +92,37 @@ bool quiesce_provided(const quiesce_board_t *board, uint32_t index, quiesce_sign
     return find_signal(places_provide(&places), index, provided);
 }
 
+// A law works with a table, and there is none.
+static bool lacks_table(const control_t *self) {
+    return self->law->kind != NULL && self->setup.table == NULL;
+}
+
+static void find_needs(control_t *self) {
+    const law_table_kind_t *kind = self->law->kind;
+    const bool has_own = kind != NULL && kind->needs != NULL && self->setup.table != NULL;
+    const bool wants_more = self->forces.track != NULL || lacks_table(self);
+    self->needs = self->fixed_needs | (has_own ? kind->needs(self->setup.table) : 0) |
+                  (wants_more ? MORE : 0);
+}
+
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
     self->law = law_find(params->law);
     forces_init(&self->forces, self->law, params, places->dampers);
-    self->needs =
-        needs_there(control_needs(params), places) | (self->forces.track != NULL ? FORCES : 0);
+    self->fixed_needs = needs_there(control_needs(params), places);
+    self->provided = places_provide(places);
     self->setup = (law_setup_t){
         .params = *params,
         .table = self->law->kind != NULL ? self->law->kind->shipped : NULL,
     };
     self->blind_ticks = 0;
     self->blind_most_ticks = ticks_in_ms(CONTROL_BLIND_ms, params->tick_rate_Hz);
+    find_needs(self);
     start(self);
 }
 
 static void use_law_table(control_t *self, const uint32_t *words) {
     self->setup.table = words;
+    find_needs(self);
     if (self->law->retable != NULL) {
         self->law->retable(self->state, &self->setup);
     } else {
@@ -117,7 +137,7 @@ quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
         return QUIESCE_TABLE_OK;
     }
     const law_table_kind_t *kind = self->law->kind;
-    if (kind == NULL || kind->shipped == NULL || magic != kind->shipped[0]) {
+    if (kind == NULL || magic != kind->magic) {
         return QUIESCE_TABLE_MAGIC;
     }
     use_law_table(self, kind->shipped);
@@ -128,10 +148,21 @@ quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
 static quiesce_table_verdict_t use_shipped(control_t *self) {
     const law_table_kind_t *kind = self->law->kind;
     const track_table_kind_t *map = forces_kind(&self->forces);
-    if (kind != NULL && kind->shipped != NULL) {
-        return control_drop(self, kind->shipped[0]);
+    if (kind != NULL) {
+        return control_drop(self, kind->magic);
     }
-    return kind == NULL && map != NULL ? control_drop(self, map->magic) : QUIESCE_TABLE_MAGIC;
+    return map != NULL ? control_drop(self, map->magic) : QUIESCE_TABLE_MAGIC;
+}
+
+// Whether it is good, and the board has what it needs.
+static quiesce_table_verdict_t check_law_table(const control_t *self, const uint32_t *words,
+                                               uint32_t count) {
+    const law_table_kind_t *kind = self->law->kind;
+    const quiesce_table_verdict_t verdict =
+        kind != NULL ? kind->check(words, count) : QUIESCE_TABLE_MAGIC;
+    const bool is_served = verdict != QUIESCE_TABLE_OK || kind->needs == NULL ||
+                           (kind->needs(words) & ~self->provided) == 0;
+    return is_served ? verdict : QUIESCE_TABLE_FIT;
 }
 
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
@@ -139,13 +170,9 @@ quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint
         return use_shipped(self);
     }
     const track_table_kind_t *map = forces_kind(&self->forces);
-    const law_table_kind_t *kind = self->law->kind;
     const bool is_map = map != NULL && count > 0 && words[0] == map->magic;
-    if (!is_map && kind == NULL) {
-        return QUIESCE_TABLE_MAGIC;
-    }
     const quiesce_table_verdict_t verdict =
-        is_map ? map->check(words, count) : kind->check(words, count);
+        is_map ? map->check(words, count) : check_law_table(self, words, count);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
@@ -162,24 +189,27 @@ static bool has_all(const control_t *self, uint64_t valid) {
 }
 
 bool control_sees(const control_t *self, const view_t *view) {
-    return has_all(self, view->valid | (forces_are_ready(&self->forces) ? FORCES : 0));
+    const bool is_ready = !lacks_table(self) && forces_are_ready(&self->forces);
+    return has_all(self, view->valid | (is_ready ? MORE : 0));
 }
 
 static bool ask(control_t *self, const view_t *view, law_demand_t *out) {
     return self->law->step(self->state, &self->setup, view, out);
 }
 
-static bool ask_forces(control_t *self, const view_t *view, law_demand_t *out) {
+static bool ask_more(control_t *self, const view_t *view, law_demand_t *out) {
     if (!control_sees(self, view) || !ask(self, view, out)) {
         return false;
     }
-    forces_step(&self->forces, &self->setup.params, view, out);
+    if (self->forces.track != NULL) {
+        forces_step(&self->forces, &self->setup.params, view, out);
+    }
     return true;
 }
 
 bool control_step(control_t *self, const view_t *view, law_demand_t *out) {
     if ((has_all(self, view->valid) && ask(self, view, out)) ||
-        (self->forces.track != NULL && ask_forces(self, view, out))) {
+        ((self->needs & MORE) != 0 && ask_more(self, view, out))) {
         self->blind_ticks = 0;
         return true;
     }

@@ -12,7 +12,9 @@
 
 typedef struct {
     const law_t *law;
-    uint64_t needs; ///< of those that there are
+    uint64_t needs;       ///< of law, tracker and table, of those that there are
+    uint64_t fixed_needs; ///< those of law and tracker
+    uint64_t provided;    ///< what the board's sensors can
     law_setup_t setup;
     uint32_t blind_ticks; ///< in a row, with the output on
     uint32_t blind_most_ticks;
@@ -20,14 +22,15 @@ typedef struct {
     uint64_t state[LAW_STATE_BYTES / sizeof(uint64_t)];
 } control_t;
 
-/// VIEW_ bits that the law of these parameters needs, and its tracker. Both are in their ranges.
-uint64_t control_needs(const quiesce_params_t *params);
+/// VIEW_ bits that the law of these parameters and its tracker are served with: what they need, and
+/// what a table of the law may need. Both are in their ranges.
+uint64_t control_serves(const quiesce_params_t *params);
 
 /// The law of the parameters, which have been checked, with the table that ships, from rest.
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params);
 
-/// Another table, of the law or of the tracker; NULL: the one of the law that ships. A table that
-/// is refused changes nothing.
+/// Another table, of the law or of the tracker; NULL: the one of the law that ships, or none. A
+/// table that is refused changes nothing.
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count);
 
 /// As quiesce_table_drop.

@@ -21,7 +21,7 @@ const track_table_kind_t *forces_kind(const forces_t *self) {
 }
 
 bool forces_are_ready(const forces_t *self) {
-    return self->track != NULL && (self->track->kind == NULL || self->table != NULL);
+    return self->track == NULL || self->track->kind == NULL || self->table != NULL;
 }
 
 void forces_step(forces_t *self, const quiesce_params_t *params, const view_t *view,

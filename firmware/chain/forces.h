@@ -24,7 +24,7 @@ void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *param
 /// The kind of the tracker's table. NULL: no tracker, or it needs none.
 const track_table_kind_t *forces_kind(const forces_t *self);
 
-/// Whether there is a tracker, and its table if it needs one.
+/// Whether no table of a tracker is missing.
 bool forces_are_ready(const forces_t *self);
 
 /// Makes currents of the forces of all dampers, in place; once they are ready.

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "view_signal.h"
+
 // Bits of a quantity of a body or damper.
 static uint64_t bit(uint64_t quantity, int32_t at) {
     return quantity << at;
@@ -91,32 +93,13 @@ static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
     position_init(&self->position, rate_Hz, p->velocity_cutoff_mHz);
 }
 
-#define OF_BODY(field) (offsetof(view_t, body) + offsetof(view_body_t, field))
-#define OF_DAMPER(field) (offsetof(view_t, damper) + offsetof(view_damper_t, field))
-
-static const struct {
-    uint16_t offset; ///< in view_t, of the first body or damper
-    uint64_t quantity;
-} quantities[QUIESCE_SENSES] = {
-    [QUIESCE_SENSE_ACCEL] = {OF_BODY(accel_um_s2), VIEW_ACCEL},
-    [QUIESCE_SENSE_VELOCITY] = {OF_BODY(velocity_um_s), VIEW_VELOCITY},
-    [QUIESCE_SENSE_DISPLACEMENT] = {OF_BODY(displacement_nm), VIEW_DISPLACEMENT},
-    [QUIESCE_SENSE_STROKE] = {OF_DAMPER(stroke_nm), VIEW_STROKE},
-    [QUIESCE_SENSE_STROKE_VELOCITY] = {OF_DAMPER(velocity_um_s), VIEW_STROKE_VELOCITY},
-    [QUIESCE_SENSE_FORCE] = {OF_DAMPER(force_mN), VIEW_FORCE},
-    [QUIESCE_SENSE_VOLTAGE] = {OF_DAMPER(voltage_mV), VIEW_VOLTAGE},
-    [QUIESCE_SENSE_TEMPERATURE] = {OF_DAMPER(temperature_mdegC), VIEW_TEMPERATURE},
-    [QUIESCE_SENSE_SUPPLY] = {offsetof(view_t, supply_mV), VIEW_SUPPLY},
-};
-
 static sensor_place_t place_of(const quiesce_board_sensor_t *sensor) {
-    const size_t stride =
-        quiesce_sense_is_of_body(sensor->sense) ? sizeof(view_body_t) : sizeof(view_damper_t);
+    const view_quantity_t *quantity = &view_quantity[sensor->sense];
     return (sensor_place_t){
         .sense = (uint8_t)sensor->sense,
         .at = (uint8_t)sensor->at,
-        .offset = (uint16_t)(quantities[sensor->sense].offset + stride * (size_t)sensor->at),
-        .bit = bit(quantities[sensor->sense].quantity, sensor->at),
+        .offset = (uint16_t)(quantity->offset + quantity->stride * (uint32_t)sensor->at),
+        .bit = bit(quantity->bit, sensor->at),
     };
 }
 

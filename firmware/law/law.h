@@ -44,8 +44,13 @@ static inline int32_t law_unlock_mA(const quiesce_params_t *params, const view_t
 /// One kind of table. Its words begin with magic (kind and version), CRC-32 and their number; its
 /// check knows them.
 typedef struct {
-    const uint32_t *shipped; ///< used until another one is; NULL: none ships
+    uint32_t magic;
+    const uint32_t *shipped; ///< used until another one is; NULL: none ships, and until one is in
+                             ///< use the law is not stepped
     quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
+    /// VIEW_ bits that a checked table needs beside the law; one that the board cannot serve is
+    /// refused. NULL: none.
+    uint64_t (*needs)(const uint32_t *words);
 } law_table_kind_t;
 
 typedef struct {

@@ -2,15 +2,13 @@
 
 #include <stddef.h>
 
-#include "crc32.h"
+#include "table.h"
 #include "view.h"
 
 enum { HEADER_WORDS = 5, HALF_Q30 = 1 << 29 };
 
 typedef struct {
-    uint32_t magic;
-    uint32_t crc;
-    uint32_t words;
+    uint32_t head[TABLE_HEAD_WORDS];
     uint32_t velocities;
     uint32_t currents;
     int32_t value[]; ///< velocities, currents, forces
@@ -36,7 +34,7 @@ static bool has_shape(const force_map_t *map) {
     const uint32_t m = map->currents;
     return n >= FORCE_MAP_MIN_POINTS && n <= FORCE_MAP_MAX_VELOCITIES &&
            m >= FORCE_MAP_MIN_POINTS && m <= FORCE_MAP_MAX_CURRENTS &&
-           map->words == HEADER_WORDS + n + m + n * m;
+           map->head[TABLE_WORDS] == HEADER_WORDS + n + m + n * m;
 }
 
 static bool is_rising(const int32_t *values, uint32_t count) {
@@ -86,17 +84,10 @@ static bool are_points_good(const force_map_t *map) {
 
 quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count) {
     const force_map_t *map = as_map(words);
-    if (count < HEADER_WORDS || count > QUIESCE_TABLE_WORDS) {
-        return QUIESCE_TABLE_SIZE;
-    }
-    if (map->magic != FORCE_MAP_MAGIC) {
-        return QUIESCE_TABLE_MAGIC;
-    }
-    if (map->words != count) {
-        return QUIESCE_TABLE_SIZE;
-    }
-    if (crc32_words(&words[2], count - 2u) != map->crc) {
-        return QUIESCE_TABLE_CRC;
+    const quiesce_table_verdict_t verdict =
+        table_check_head(words, count, FORCE_MAP_MAGIC, HEADER_WORDS - TABLE_HEAD_WORDS);
+    if (verdict != QUIESCE_TABLE_OK) {
+        return verdict;
     }
     if (!has_shape(map)) {
         return QUIESCE_TABLE_SHAPE;

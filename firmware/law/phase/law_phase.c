@@ -30,6 +30,7 @@ static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
 }
 
 static const law_table_kind_t pulses = {
+    .magic = PHASE_TABLE_MAGIC,
     .shipped = plant_pulses_table,
     .check = check,
 };

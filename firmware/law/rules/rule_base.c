@@ -26,6 +26,7 @@ static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
 }
 
 const law_table_kind_t rule_base_kind = {
+    .magic = FUZZY_MAGIC,
     .shipped = plant_rules_table,
     .check = check,
 };
