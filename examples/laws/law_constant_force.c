@@ -19,10 +19,12 @@ static const uint32_t shipped[MY_WORDS] = {
 };
 
 static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    const quiesce_table_verdict_t verdict =
-        table_check_head(words, count, CONSTANT_FORCE_MAGIC, MY_WORDS - TABLE_HEAD_WORDS);
-    if (verdict != QUIESCE_TABLE_OK || count != MY_WORDS) {
-        return verdict != QUIESCE_TABLE_OK ? verdict : QUIESCE_TABLE_SIZE;
+    if (count != MY_WORDS) {
+        return QUIESCE_TABLE_SIZE;
+    }
+    const quiesce_table_verdict_t verdict = table_check_head(words, count, CONSTANT_FORCE_MAGIC, 1);
+    if (verdict != QUIESCE_TABLE_OK) {
+        return verdict;
     }
     return words[FORCE_mN] <= VIEW_LIMIT ? QUIESCE_TABLE_OK : QUIESCE_TABLE_POINT;
 }

@@ -1,9 +1,10 @@
 /// A linear system in integers: x(k+1) - x(k) = A x(k) + B u(k), y(k) = C x(k) + D u(k).
 ///
 /// Inputs u and states x are below 2^30 in magnitude, in units that whoever makes the coefficients
-/// has chosen; coefficients are below 2^24, each row's in units of 2^-shift. Of A only the change in
-/// a tick is kept, so that slow and lightly damped poles keep all their digits. What a state's shift
-/// cuts off is carried to the next tick: what is rounded away has the mean 0 and adds up to nothing.
+/// has chosen; coefficients are below 2^24, each row's in units of 2^-shift. Of A only the change
+/// in a tick is kept, so that slow and lightly damped poles keep all their digits. What a state's
+/// shift cuts off is carried to the next tick: what is rounded away has the mean 0 and adds up to
+/// nothing.
 ///
 /// Words of a state: shift, n coefficients of x, m of u. Products are below 2^54 and sums of 24 of
 /// them and a remainder below 2^59. About 8 instructions a coefficient that is worked off.
@@ -15,7 +16,7 @@
 
 #define STATE_SPACE_MAX_STATES 12u
 #define STATE_SPACE_MAX_INPUTS 12u
-#define STATE_SPACE_MAX_SHIFT 46u  ///< of a state
+#define STATE_SPACE_MAX_SHIFT 46u ///< of a state
 #define STATE_SPACE_COEFFICIENT_LIMIT (1 << 24)
 
 /// Zeros: at rest.

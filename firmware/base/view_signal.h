@@ -37,8 +37,7 @@ bool view_inputs_are_good(const view_input_t *inputs, uint32_t count);
 uint64_t view_inputs_need(const view_input_t *inputs, uint32_t count);
 
 /// Reads good ones, all of places that the build has. About 15 instructions each.
-void view_inputs_read(const view_input_t *inputs, uint32_t count, const view_t *view,
-                      int32_t *out);
+void view_inputs_read(const view_input_t *inputs, uint32_t count, const view_t *view, int32_t *out);
 
 /// The bit that stands for damper i itself: its current, known wherever there is that damper.
 static inline uint64_t view_needs_damper(uint32_t i) {

@@ -97,6 +97,13 @@ static bool lacks_table(const control_t *self) {
     return self->law->kind != NULL && self->setup.table == NULL;
 }
 
+const char *control_lacks_table(const control_t *self) {
+    if (lacks_table(self)) {
+        return self->law->name;
+    }
+    return forces_are_ready(&self->forces) ? NULL : self->forces.track->name;
+}
+
 static void find_needs(control_t *self) {
     const law_table_kind_t *kind = self->law->kind;
     const bool has_own = kind != NULL && kind->needs != NULL && self->setup.table != NULL;

@@ -36,6 +36,9 @@ quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint
 /// As quiesce_table_drop.
 quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic);
 
+/// As quiesce_lacks_table.
+const char *control_lacks_table(const control_t *self);
+
 /// Whether law and tracker see what they need, the tracker's table included.
 bool control_sees(const control_t *self, const view_t *view);
 

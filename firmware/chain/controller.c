@@ -416,6 +416,10 @@ void quiesce_watch(quiesce_t *self, uint32_t which, const uint32_t *words, uint3
     }
 }
 
+const char *quiesce_lacks_table(const quiesce_t *self) {
+    return control_lacks_table(known_of(self));
+}
+
 uint32_t quiesce_table_hash(const quiesce_t *self) {
     return control_table_hash(known_of(self));
 }

@@ -211,13 +211,16 @@ typedef enum {
     QUIESCE_TABLE_CELL = 5,   ///< memberships
     QUIESCE_TABLE_RULE = 6,   ///< a rule names what is not there
     QUIESCE_TABLE_OUTPUT = 7, ///< a term out of range
-    QUIESCE_TABLE_FIT = 8,    ///< inputs, outputs or their units are not the law's
+    QUIESCE_TABLE_FIT = 8,    ///< inputs, outputs or their units are not the law's; it needs a
+                              ///< signal or a damper that the board does not have
     QUIESCE_TABLE_POINT = 9,  ///< a frequency that does not rise, a floor above its level, a long
-                              ///< ramp; an axis or a force of a map
+                              ///< ramp; an axis or a force of a map; a coefficient, limit, band,
+                              ///< power or current of a law in form of a table
 } quiesce_table_verdict_t;
 
 /// The law that runs uses another table (rules, pulses, ..) from the next tick on: words from
-/// `quiesce rules compile`, `quiesce tune`, .., count of them; NULL: the one that ships. What was
+/// `quiesce rules compile`, `quiesce tune`, `quiesce law make`, .., count of them; NULL: the one
+/// that ships, or none where none ships: such a law requests nothing until it has one. What was
 /// learnt about another table is forgotten. The words stay the caller's and must not change while
 /// they are in use. A table that is refused changes nothing. Call between steps, also while
 /// running: the swap is one pointer. quiesce_init goes back to the one that ships.
@@ -231,6 +234,10 @@ quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words
 /// Back to the table that ships of one kind, by its first word, or to none where none ships; tables
 /// of other kinds stay in use. Returns QUIESCE_TABLE_MAGIC iff nothing here works with that kind.
 quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic);
+
+/// Whose table is missing, so that nothing is requested but the fallback: the law's or the
+/// tracker's name. Returns NULL iff none is.
+const char *quiesce_lacks_table(const quiesce_t *self);
 
 /// CRC-32 that the table in use carries: the law's, else its tracker's; 0 where there is none.
 uint32_t quiesce_table_hash(const quiesce_t *self);

@@ -51,6 +51,7 @@ int cmd_compare(const std::vector<std::string> &words) {
     const std::vector<std::uint64_t> seeds = parse_seeds(arguments.required("seeds"));
     arguments.required("target");
     RunSetup setup = run_setup(arguments);
+    require_tables(arguments, setup.board(), setup.params);
     // Instructions are those of the control step: a report is made for those who ask.
     setup.wants_report = !arguments.text("plugin").has_value();
     InProcessLink host;

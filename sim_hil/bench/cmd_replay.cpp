@@ -182,6 +182,7 @@ int cmd_replay(const std::vector<std::string> &words) {
     if (board) {
         require_signals(*board, params);
     }
+    require_tables(arguments, board ? &board->board : nullptr, params);
     const std::vector<std::int32_t> counts = read_counts(arguments.required("counts"));
     const std::string trace_file = arguments.required("trace");
     const Plan plan = plan_from(arguments, std::move(board), params.law, counts);

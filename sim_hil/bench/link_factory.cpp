@@ -32,6 +32,8 @@ void refuse_tables(const LinkOptions &options) {
            "only the host target takes a table of pulses");
     refuse(!options.force_map_path.empty(), "--force-map",
            "only the host target takes a damper's map");
+    refuse(!options.law_table_path.empty(), "--law-table",
+           "only the host target takes a law's table");
 }
 
 void refuse_can(const LinkOptions &options) {
@@ -85,6 +87,9 @@ const Target kTargets[] = {
          }
          if (!options.phase_table_path.empty()) {
              tables.push_back(load_pulses(options.phase_table_path));
+         }
+         if (!options.law_table_path.empty()) {
+             tables.push_back(load_law_table(options.law_table_path));
          }
          if (!options.force_map_path.empty()) {
              tables.push_back(load_force_map(options.force_map_path));

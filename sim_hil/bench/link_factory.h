@@ -18,6 +18,7 @@ struct LinkOptions {
     std::string rules_path;       ///< --rules: rule table for the controller, host only
     std::string phase_table_path; ///< --phase-table: table of pulses, host only
     std::string force_map_path;   ///< --force-map: a damper's map for the tracker, host only
+    std::string law_table_path;   ///< --law-table: a table of the law that runs, host only
     std::string can_channel;      ///< --can: CAN channel, linux only (channel_factory.h)
     /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux only
     std::optional<std::int64_t> telemetry_every_ticks;

@@ -34,7 +34,8 @@ const Entry kCommands[] = {
      "--scenario FILE --law NAME [--plant FILE] [--board FILE] [--set NAME=VALUE]... [--target T] "
      "[--image ELF] "
      "[--plugin SO] [--can CHANNEL] [--telemetry-every N] [--wait-s X] [--rules FILE] "
-     "[--phase-table FILE] [--force-map FILE] [--seed N] [--noise-mg X] [--dt-us N] "
+     "[--phase-table FILE] [--force-map FILE] [--law-table FILE] [--seed N] [--noise-mg X] "
+     "[--dt-us N] "
      "[--trace FILE] "
      "[--columns NAME,NAME...] [--every N] [--repeat N]",
      quiesce::cmd_run},

@@ -31,6 +31,11 @@ quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base);
 /// The same for a board, which takes the place of some of them: those are refused.
 quiesce_params_t params_for_board(const Arguments &arguments, quiesce_params_t base);
 
+/// Throws InputError where the law of these parameters, or its tracker, is given a table that it
+/// refuses, or lacks one.
+void require_tables(const Arguments &arguments, const quiesce_board_t *board,
+                    const quiesce_params_t &params);
+
 /// The link that the target options describe; the host without --target.
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments);
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "input_error.h"
+#include "param_options.h"
 
 namespace quiesce {
 
@@ -90,6 +91,20 @@ std::vector<std::uint32_t> text_words(const std::string &file, const TextTable &
     return words;
 }
 
+/// The controller's reason, in words of the laws that are tables.
+const char *reason_of_form(quiesce_table_verdict_t verdict) {
+    if (verdict == QUIESCE_TABLE_FIT) {
+        return "it needs a signal or a damper that this board does not have (quiesce law show says "
+               "which it needs, quiesce board show what there is)";
+    }
+    if (verdict == QUIESCE_TABLE_SHAPE) {
+        return "its numbers of states, inputs, rows, sections, signs or terms are out of range";
+    }
+    return verdict == QUIESCE_TABLE_POINT
+               ? "a coefficient, limit, band, power or current is out of range"
+               : reason(verdict);
+}
+
 /// What a controller with this law says of them.
 void try_table(const std::string &file, std::int32_t law, const std::vector<std::uint32_t> &words) {
     quiesce_params_t params;
@@ -129,6 +144,45 @@ std::vector<std::uint32_t> load_force_map(const std::string &file) {
         throw InputError(file + ": " + kRefused + reason(verdict));
     }
     return words;
+}
+
+std::vector<std::uint32_t> load_law_table(const std::string &file) {
+    return text_words(file, {"law's table", "quiesce law make"});
+}
+
+namespace {
+
+void require_accepted_table(quiesce_t &controller, const std::string &file) {
+    const std::vector<std::uint32_t> words = load_law_table(file);
+    const quiesce_table_verdict_t verdict =
+        quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
+    if (verdict != QUIESCE_TABLE_OK) {
+        throw InputError(file + ": " + kRefused + reason_of_form(verdict));
+    }
+}
+
+} // namespace
+
+void require_tables(const quiesce_board_t *board, const quiesce_params_t &params,
+                    const std::string &law_table, const std::string &force_map) {
+    const auto controller = std::make_unique<quiesce_t>();
+    if (board != nullptr) {
+        quiesce_init_board(controller.get(), board, &params);
+    } else {
+        quiesce_init(controller.get(), &params);
+    }
+    if (!law_table.empty()) {
+        require_accepted_table(*controller, law_table);
+    }
+    const char *lacking = quiesce_lacks_table(controller.get());
+    if (lacking != nullptr && law_label(params) == lacking) {
+        throw InputError("law " + std::string(lacking) +
+                         " works with a table: --law-table FILE (quiesce law make)");
+    }
+    if (lacking != nullptr && force_map.empty()) {
+        throw InputError("tracker " + std::string(lacking) +
+                         " works with a damper's map: --force-map FILE (quiesce identify inverse)");
+    }
 }
 
 std::vector<std::uint32_t> load_pulses(const std::string &file) {

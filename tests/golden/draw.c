@@ -1,5 +1,7 @@
 #include "draw.h"
 
+#include <string.h>
+
 uint32_t draw_below(uint32_t *seed, uint32_t count) {
     *seed += 0x9E3779B9u;
     uint32_t word = *seed;
@@ -25,12 +27,17 @@ int32_t draw_sine(int32_t amplitude, uint32_t phase_turn) {
     return (int32_t)(amplitude * bent / 32768);
 }
 
+// Of laws those that were there when the streams were recorded: the others need tables.
+static int32_t most_of(const quiesce_param_info_t *info) {
+    return strcmp(info->name, "law") == 0 ? QUIESCE_LAW_PHASE : info->max;
+}
+
 static int32_t any_value(uint32_t *seed, const quiesce_param_info_t *info) {
     if (info->choice_count > 0) {
         return info->choices[draw_below(seed, info->choice_count)];
     }
     if (info->default_value == 0 || draw_one_in(seed, 3)) {
-        return draw_between(seed, info->min, info->max);
+        return draw_between(seed, info->min, most_of(info));
     }
     // An eighth to four times the default.
     const int64_t part_q8 = 32 << draw_below(seed, 5);

@@ -4,9 +4,9 @@
 //
 // Its table, after the head of all tables: sections, one a damper from the first on: {gain in N/m,
 // least peak in nm, limit in mN, band in um/s, ways}. A peak is the stroke's extreme since its
-// velocity last changed its sign, found when that changes the sign again, beyond the band; below the
-// least peak there is no demand. Bit 0 of ways: where the stroke grows away from 0, bit 1: where it
-// comes back. `quiesce law make` writes them.
+// velocity last changed its sign, found when that changes the sign again, beyond the band; below
+// the least peak there is no demand. Bit 0 of ways: where the stroke grows away from 0, bit 1:
+// where it comes back. `quiesce law make` writes them.
 #include "fixq.h"
 #include "law.h"
 #include "table.h"

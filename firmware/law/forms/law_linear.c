@@ -123,8 +123,8 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
         const linear_row_t *row = row_of(table, i);
         int32_t *demand_mN = &out->value[row->damper];
         // Below 2^31: each of the two is below 2^30.
-        *demand_mN = clamp_i32(*demand_mN + force_mN(row, table, &self->system, u), -VIEW_LIMIT,
-                               VIEW_LIMIT);
+        *demand_mN =
+            clamp_i32(*demand_mN + force_mN(row, table, &self->system, u), -VIEW_LIMIT, VIEW_LIMIT);
     }
     const bool is_inside =
         state_space_step(&self->system, states_of(table), table->states, table->inputs, u);

@@ -157,8 +157,7 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
     return true;
 }
 
-static const law_table_kind_t terms = {
-    .magic = POLYNOMIAL_MAGIC, .check = check, .needs = needs};
+static const law_table_kind_t terms = {.magic = POLYNOMIAL_MAGIC, .check = check, .needs = needs};
 
 extern const law_t law_polynomial;
 const law_t law_polynomial = {.name = "polynomial", .kind = &terms, .step = step};

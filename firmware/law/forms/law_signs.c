@@ -3,10 +3,10 @@
 //
 // Its table, after the head of all tables: sections, one a damper from the first on. A section:
 // inputs m, signs s, idle current; m inputs (view_signal.h); s combinations {band, shift of the
-// band, m coefficients below 2^24}; 2^s currents in mA. Sign j is on where the sum of coefficients x
-// inputs is above band x 2^shift, off where it is below -band x 2^shift, else it stays. The current
-// is number sum of 2^j of the signs that are on; until each has been decided once, and at rest, the
-// idle one. Sums are below 2^58. `quiesce law make` writes them.
+// band, m coefficients below 2^24}; 2^s currents in mA. Sign j is on where the sum of coefficients
+// x inputs is above band x 2^shift, off where it is below -band x 2^shift, else it stays. The
+// current is number sum of 2^j of the signs that are on; until each has been decided once, and at
+// rest, the idle one. Sums are below 2^58. `quiesce law make` writes them.
 #include "fixq.h"
 #include "law.h"
 #include "state_space.h"
@@ -59,8 +59,7 @@ static const section_t *after(const section_t *section) {
 
 static const combination_t *combination_of(const section_t *section, uint32_t i) {
     const uint32_t *first = (const uint32_t *)(const void *)&section->input[section->inputs];
-    return (const combination_t *)(const void *)(first +
-                                                 i * (COMBINATION_WORDS + section->inputs));
+    return (const combination_t *)(const void *)(first + i * (COMBINATION_WORDS + section->inputs));
 }
 
 static const uint32_t *currents_of(const section_t *section) {

@@ -79,7 +79,7 @@ class TextFile {
   public:
     explicit TextFile(const std::string &text)
         : name_((std::filesystem::temp_directory_path() /
-                 ("quiesce_rules_" + std::to_string(::getpid())))
+                 ("quiesce_rules_" + std::to_string(::getpid()) + "_" + std::to_string(made_++)))
                     .string()) {
         std::ofstream(name_, std::ios::binary) << text;
     }
@@ -90,6 +90,7 @@ class TextFile {
     const std::string &name() const { return name_; }
 
   private:
+    inline static int made_ = 0;
     std::string name_;
 };
 
@@ -281,6 +282,66 @@ TEST(ForceMapFile, only_the_host_takes_one) {
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_EQ(outcome.output,
               "quiesce_bench: --force-map: only the host target takes a damper's map\n");
+}
+
+// Friction of the first damper: 5 kN/m of the last peak, at most 30 N.
+Words friction() {
+    return with_crc({0x31524651u, 0, 9, 1, 5000, 100000, 30000, 200, 3});
+}
+
+constexpr const char *kTwoStoreys =
+    "run --scenario sim_hil/data/rigs/two_storeys.toml --law friction --set tracker=";
+
+std::string refusal(const std::string &options) {
+    const Outcome outcome = bench(kTwoStoreys + options);
+    EXPECT_EQ(outcome.exit_code, 2);
+    return outcome.output;
+}
+
+TEST(LawTable, runs_with_its_map_and_is_missed_without) {
+    const TextFile table(hex(friction()));
+    const TextFile map(hex(force_map()));
+    const std::string both = "inverse --law-table " + table.name() + " --force-map " + map.name();
+    const Outcome outcome = bench(kTwoStoreys + both);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_EQ(refusal("inverse"),
+              "quiesce_bench: law friction works with a table: --law-table FILE "
+              "(quiesce law make)\n");
+    EXPECT_EQ(refusal("inverse --law-table " + table.name()),
+              "quiesce_bench: tracker inverse works with a damper's map: --force-map FILE (quiesce "
+              "identify inverse)\n");
+}
+
+TEST(LawTable, is_refused_with_the_reason) {
+    Words words = friction();
+    words[8] = 0;
+    const TextFile ways(hex(with_crc(words)));
+    EXPECT_EQ(
+        refusal("inverse --law-table " + ways.name()),
+        "quiesce_bench: " + ways.name() +
+            ": the controller refuses the table: a coefficient, limit, band, power or current "
+            "is out of range\n");
+    Words three = {0x31524651u, 0, 19, 3};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        three.insert(three.end(), {5000, 100000, 30000, 200, 3});
+    }
+    const TextFile dampers(hex(with_crc(three))); // the board has two
+    EXPECT_NE(refusal("inverse --law-table " + dampers.name()).find("a signal or a damper that"),
+              std::string::npos);
+    const TextFile rules(hex(shipped()));
+    EXPECT_NE(refusal("inverse --law-table " + rules.name()).find("it is not a table for this law"),
+              std::string::npos);
+}
+
+TEST(LawTable, only_the_host_takes_one) {
+    const TextFile table(hex(friction()));
+    const TextFile map(hex(force_map()));
+    EXPECT_EQ(refusal("inverse --target mps2 --image none.elf --law-table " + table.name()),
+              "quiesce_bench: tracker inverse works with a damper's map: --force-map FILE (quiesce "
+              "identify inverse)\n");
+    const Outcome outcome = bench("run --scenario sim_hil/data/scenarios/sine_5Hz.toml --law off "
+                                  "--target mps2 --image none.elf --law-table none");
+    EXPECT_EQ(outcome.exit_code, 2);
 }
 
 } // namespace

@@ -188,7 +188,7 @@ const Malformed kMalformed[] = {
      "q.toml:8: parameters.constant_current_mA: expected an integer"},
     {"param_label", "[parameters]\nlaw = \"magic\"\n",
      "q.toml:8: parameters.law: expected one of: off, constant, fuzzy, fuzzy_selftune, phase"},
-    {"param_number", "[parameters]\nlaw = 5\n", "q.toml:8: parameters.law: expected an integer"},
+    {"param_number", "[parameters]\nlaw = 50\n", "q.toml:8: parameters.law: expected an integer"},
     {"param_choice", "[parameters]\ntick_rate_Hz = 700\n",
      "q.toml:8: parameters.tick_rate_Hz: expected one of: 500, 1000, 2000, 4000; found 700"},
     {"param_contradiction", "[parameters]\nmax_current_mA = 6000\nsafe_current_mA = 7000\n",
