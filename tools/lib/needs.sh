@@ -13,6 +13,8 @@ needs_of() {
     "board "* | "chain "* | "params "* | "plant "* | "record "*) echo bench ;;
     "rules lookup" | "rules optimize" | "rules show") echo bench ;;
     "rules "*) ;;
+    "law make") echo bench ;;
+    "law "*) ;;
     "sweep "*) echo bench plant ;;
     "identify plan") ;;
     "identify "*) echo dampers ;;

@@ -215,7 +215,7 @@ def test_a_free_runs_error_is_within_its_limits() -> None:
 @pytest.fixture(scope="module")
 def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     library = tmp_path_factory.mktemp("force_map") / "force_map.so"
-    sources = ["track/force_map.c", "base/crc32.c"]
+    sources = ["track/force_map.c", "base/table.c", "base/crc32.c"]
     folders = ["include", "base", "track"]
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-shared", "-fPIC", "-o", library]

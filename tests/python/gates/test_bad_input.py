@@ -184,6 +184,8 @@ def test_other_command_is_refused(refused, arguments, words) -> None:
         ["params"],
         ["rules"],
         ["rules", "convert"],
+        ["law"],
+        ["law", "make"],
     ],
 )
 def test_help_is_on_stdout(quiesce, command) -> None:

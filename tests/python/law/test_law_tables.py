@@ -1,0 +1,108 @@
+"""Tables of laws: words both ways, what is refused, and that the firmware refuses the same."""
+
+import random
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from firmware_laws import verdict
+from quiesce.engine.bench import Bench
+from quiesce.law.forms.friction import FrictionSection, FrictionTable
+from quiesce.law.recipe import make, values_of
+from quiesce.law.recipes import RECIPES, find
+from quiesce.law.rig import LawRig, load_rig
+from quiesce.law.tables import FORMS, Table, table_of_words
+from quiesce.law.words import opened, sealed
+
+DATA = ROOT / "sim_hil/data"
+BUILDING = "three_storeys_1996"
+
+
+@pytest.fixture(scope="module")
+def rig(build: Path) -> LawRig:
+    return load_rig(
+        Bench(), DATA / f"boards/{BUILDING}.toml", DATA / f"plants/{BUILDING}.toml", 1000
+    )
+
+
+@pytest.fixture(scope="module")
+def two(build: Path) -> LawRig:
+    return load_rig(Bench(), DATA / "boards/two_storeys.toml", None, 1000)
+
+
+def tables(rig: LawRig) -> dict[str, Table]:
+    """Of all recipes that the building takes: those for two moving ends need another rig."""
+    names = [one.name for one in RECIPES if "hook" not in one.name or "sky" in one.name]
+    return {name: make(find(name), rig, values_of(find(name), [])).table for name in names}
+
+
+def test_every_recipe_makes_a_table_that_the_firmware_takes(rig: LawRig) -> None:
+    made = tables(rig)
+    assert len(made) == 15
+    for name, table in made.items():
+        words = table.words()
+        assert verdict(table.law, words) == 0, name
+        assert table_of_words(words) == table, name
+        assert table.dampers() == {0}
+
+
+def test_magics_are_those_of_the_firmware() -> None:
+    for magic, form in FORMS.items():
+        name = form.__name__.rpartition(".")[2]
+        text = (ROOT / f"firmware/law/forms/law_{name}.c").read_text()
+        assert f"MAGIC UINT32_C(0x{magic:08X})" in text
+
+
+def test_one_wrong_word_is_refused_on_both_sides(rig: LawRig) -> None:
+    """Any word as any number: Python and firmware say the same of each."""
+    dice = random.Random(5)
+    ends = [0, 1, 2, 5, 13, 47, 0x104, 0x1000000, 2**30 - 1, 2**30, 2**31 - 1, 2**31, 2**32 - 1]
+    refused = taken = 0
+    for table in tables(rig).values():
+        values = opened(table.words())
+        for _ in range(150):
+            spoiled = list(values)
+            spoiled[dice.randrange(len(values))] = dice.choice(ends)
+            words = sealed(table.words()[0], spoiled)
+            try:
+                table_of_words(words)
+                is_good = True
+            except ValueError as error:
+                assert "\n" not in str(error)
+                is_good = False
+            assert (verdict(table.law, words) == 0) == is_good, words
+            refused += not is_good
+            taken += is_good
+    assert refused > 300 and taken > 300
+
+
+CUTS: list[tuple[str, Callable[[list[int]], list[int]], str]] = [
+    ("nothing", lambda _: [], "is empty"),
+    ("magic", lambda words: [1, *words[1:]], "begins with 0x00000001"),
+    ("damaged", lambda words: [*words[:-1], words[-1] ^ 1], "CRC-32"),
+    ("cut", lambda words: words[:-1], "where its head says"),
+    ("head only", lambda words: words[:3], "expected 4"),
+    ("longer", lambda words: sealed(words[0], [*opened(words), 0]), "after its last part"),
+    ("shorter", lambda words: sealed(words[0], opened(words)[:-1]), "ends before"),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), [case[1:] for case in CUTS], ids=lambda _: "")
+def test_what_is_no_table_is_told(change: Callable, message: str) -> None:
+    words = FrictionTable((FrictionSection(1, 2, 3, 4, 3),)).words()
+    with pytest.raises(ValueError, match=message):
+        table_of_words(change(words))
+
+
+def test_a_recipe_says_which_signal_the_board_lacks(two: LawRig) -> None:
+    with pytest.raises(Exception, match="board two_storeys has no force of lower"):
+        make(find("bang_bang"), two, values_of(find("bang_bang"), []))
+
+
+def test_a_signs_law_never_passes_the_ceiling(rig: LawRig) -> None:
+    table = make(find("add"), rig, values_of(find("add"), ["on_A=20"])).table
+    values = np.random.default_rng(1).normal(size=(500, len(table.signals())))
+    currents = table.currents_A(values)
+    assert set(np.unique(currents[:, 0])) == {0.0, 2.25}

@@ -1,0 +1,1 @@
+"""The actions of `quiesce law`, one module each."""

@@ -1,0 +1,60 @@
+"""`quiesce law list`: the recipes that there are, and what one takes."""
+
+import argparse
+import json
+
+from quiesce.base.table import format_table
+from quiesce.law.recipe import Recipe
+from quiesce.law.recipes import RECIPES, find
+
+EPILOG = """examples:
+  quiesce law list                     one line a recipe
+  quiesce law list clipped_optimal     its source and settings
+"""
+
+
+def add_parser(actions: argparse._SubParsersAction) -> None:
+    parser = actions.add_parser(
+        "list",
+        help="published laws that `make` knows",
+        description="List the published laws that `quiesce law make` makes tables of.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("recipe", nargs="?", help="one of them: its source and settings")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.set_defaults(run=run)
+
+
+def described(recipe: Recipe) -> str:
+    rows = [
+        [one.name, f"{one.default:g}", f"{one.low:g} .. {one.high:g}", one.help]
+        for one in recipe.settings
+    ]
+    table = format_table(["setting", "default", "range", ""], rows, (0, 3))
+    tracker = f"\ntracker   {recipe.tracker} or another" if recipe.tracker else ""
+    return f"{recipe.name}: {recipe.summary}\nsource    {recipe.source}{tracker}\n\n{table}"
+
+
+def as_data(recipe: Recipe) -> dict:
+    return {
+        "summary": recipe.summary,
+        "source": recipe.source,
+        "tracker": recipe.tracker or None,
+        "settings": {
+            one.name: {"default": one.default, "low": one.low, "high": one.high}
+            for one in recipe.settings
+        },
+    }
+
+
+def run(args: argparse.Namespace) -> int:
+    chosen = RECIPES if args.recipe is None else (find(args.recipe),)
+    if args.json:
+        print(json.dumps({recipe.name: as_data(recipe) for recipe in chosen}, indent=2))
+    elif args.recipe is not None:
+        print(described(chosen[0]))
+    else:
+        rows = [[one.name, "force" if one.tracker else "current", one.summary] for one in chosen]
+        print(format_table(["recipe", "demands", ""], rows, (0, 1, 2)))
+    return 0

@@ -1,0 +1,135 @@
+"""A table in words: signals, gains in SI units, poles, limits, patterns."""
+
+import math
+
+import numpy as np
+
+from quiesce.base.table import format_table
+from quiesce.law.forms.friction import BACK, OUTWARD, FrictionTable
+from quiesce.law.forms.linear import LinearTable
+from quiesce.law.forms.polynomial import PolynomialTable
+from quiesce.law.forms.signs import Combination, SignsSection, SignsTable
+from quiesce.law.signal import Input
+from quiesce.law.tables import Table
+
+
+def described(table: Table, rate_Hz: int) -> str:
+    head = f"law {table.law}, demands {table.demands}; dampers {_dampers(table)}"
+    if isinstance(table, LinearTable):
+        return "\n\n".join([head, *_linear(table, rate_Hz)])
+    if isinstance(table, SignsTable):
+        parts = [_signs(i, section) for i, section in enumerate(table.sections)]
+    elif isinstance(table, FrictionTable):
+        parts = [_friction(table)]
+    else:
+        parts = [_polynomial(table)]
+    return "\n\n".join([head, *parts])
+
+
+def _dampers(table: Table) -> str:
+    return ", ".join(str(i + 1) for i in sorted(table.dampers()))
+
+
+def _limit(one: Input) -> str:
+    quantity = one.signal.quantity
+    return f"{one.limit / quantity.per_unit:.4g} {quantity.unit}"
+
+
+def _linear(table: LinearTable, rate_Hz: int) -> list[str]:
+    a, b, c, d = table.matrices()
+    scale = np.array([one.per_unit for one in table.inputs])
+    direct = 1e-3 * d * scale
+    constant = direct
+    if len(a):
+        constant = direct + 1e-3 * c @ np.linalg.solve(np.eye(len(a)) - a, b * scale)
+    head = ["signal", "limit"]
+    for i, row in enumerate(table.rows):
+        head += [f"row {i + 1}: damper {row.damper + 1}", "at once"]
+    rows = [
+        [one.signal.name, _limit(one), *_pairs(constant[:, k], direct[:, k])]
+        for k, one in enumerate(table.inputs)
+    ]
+    limits = ["limit", "", *(x for row in table.rows for x in (f"{1e-3 * row.limit_mN:.4g} N", ""))]
+    parts = [
+        "N for 1 in the signal's SI unit that lasts, and at once:\n"
+        + format_table(head, [*rows, limits], (0,))
+    ]
+    return parts + ([_poles(a, rate_Hz)] if len(a) else [])
+
+
+def _pairs(constant: np.ndarray, direct: np.ndarray) -> list[str]:
+    return [f"{x:.5g}" for pair in zip(constant, direct, strict=True) for x in pair]
+
+
+def _poles(a: np.ndarray, rate_Hz: int) -> str:
+    rows = []
+    for pole in np.linalg.eigvals(a):
+        if pole.imag < 0 or pole == 0:
+            continue
+        rate = np.log(pole) * rate_Hz
+        size = abs(rate)
+        rows.append([f"{size / (2 * math.pi):.5g} Hz", f"{-rate.real / size:.4g}"])
+    return format_table(["pole", "damping ratio"], sorted(rows), ())
+
+
+def _sum(section: SignsSection, one: Combination) -> str:
+    factors = np.array(one.coefficients) * np.array([x.per_unit for x in section.inputs])
+    size = np.abs(factors).max()
+    terms = [
+        f"{factor / size:+.4g} {x.signal.name}"
+        for factor, x in zip(factors, section.inputs, strict=True)
+        if factor
+    ]
+    return f"{' '.join(terms)}; band {one.band * 2.0**one.shift / size:.4g}"
+
+
+def _signs(damper: int, section: SignsSection) -> str:
+    count = len(section.combinations)
+    lines = [f"damper {damper + 1}"]
+    lines += [f"  sign {j + 1}: {_sum(section, one)}" for j, one in enumerate(section.combinations)]
+    rows = [
+        ["".join("+" if number >> j & 1 else "-" for j in range(count)), f"{mA / 1e3:g} A"]
+        for number, mA in enumerate(section.currents_mA)
+    ]
+    rows.append(["not known, at rest", f"{section.idle_mA / 1e3:g} A"])
+    return "\n".join(lines) + "\n" + format_table(["signs", "current"], rows, (0,))
+
+
+def _friction(table: FrictionTable) -> str:
+    rows = [
+        [
+            str(i + 1),
+            f"{one.gain_N_m} N/m",
+            f"{1e-6 * one.least_peak_nm:g} mm",
+            f"{1e-3 * one.limit_mN:g} N",
+            f"{1e-3 * one.band_um_s:g} mm/s",
+            {OUTWARD: "outward", BACK: "back"}.get(one.ways, "both"),
+        ]
+        for i, one in enumerate(table.sections)
+    ]
+    return format_table(["damper", "gain", "least peak", "limit", "band", "ways"], rows, (0, 5))
+
+
+def _polynomial(table: PolynomialTable) -> str:
+    rows = []
+    for i, section in enumerate(table.sections):
+        names = [
+            f"|{one.signal.name}|" if flag else one.signal.name
+            for one, flag in zip(section.inputs, section.is_magnitude, strict=True)
+        ]
+        for one in section.terms:
+            scale = np.prod(
+                [
+                    (x.per_unit / 2.0**30) ** p
+                    for x, p in zip(section.inputs, one.powers, strict=True)
+                ]
+            )
+            factors = [f"{n}^{p}" for n, p in zip(names, one.powers, strict=True) if p]
+            rows.append(
+                [
+                    str(i + 1),
+                    f"{1e-3 * one.coefficient / 256 * scale:.5g} A",
+                    " ".join(factors) or "1",
+                ]
+            )
+    return format_table(["damper", "factor, SI units", "of"], rows, (0, 2))

@@ -1,0 +1,53 @@
+"""Published laws as recipes: one file and one line each."""
+
+from quiesce.base.errors import UsageError
+from quiesce.law.recipe import Recipe
+from quiesce.law.recipes import (
+    add,
+    backstepping,
+    bang_bang,
+    clipped_linear,
+    clipped_optimal,
+    groundhook,
+    groundhook_on_off,
+    lyapunov,
+    max_dissipation,
+    mixed_hooks,
+    modulated_friction,
+    pid_sliding,
+    polynomial,
+    quasi_bang_bang,
+    sh_add,
+    skyhook,
+    skyhook_on_off,
+    sliding_mode,
+)
+
+RECIPES: tuple[Recipe, ...] = (
+    clipped_optimal.RECIPE,
+    clipped_linear.RECIPE,
+    skyhook.RECIPE,
+    groundhook.RECIPE,
+    mixed_hooks.RECIPE,
+    sliding_mode.RECIPE,
+    pid_sliding.RECIPE,
+    backstepping.RECIPE,
+    modulated_friction.RECIPE,
+    skyhook_on_off.RECIPE,
+    groundhook_on_off.RECIPE,
+    add.RECIPE,
+    sh_add.RECIPE,
+    lyapunov.RECIPE,
+    bang_bang.RECIPE,
+    quasi_bang_bang.RECIPE,
+    max_dissipation.RECIPE,
+    polynomial.RECIPE,
+)
+
+
+def find(name: str) -> Recipe:
+    """UsageError, with those that there are, where there is none of that name."""
+    for recipe in RECIPES:
+        if recipe.name == name:
+            return recipe
+    raise UsageError(f"no recipe '{name}'; there are: {', '.join(one.name for one in RECIPES)}")

@@ -1,0 +1,50 @@
+"""A current for each quadrant of displacement and velocity: Aly 2013."""
+
+from quiesce.law.forms.signs import SignsTable
+from quiesce.law.recipe import Recipe, Setting
+from quiesce.law.recipes.common import ON_A, BAND_m_s, Sign, section
+from quiesce.law.rig import LawRig
+
+
+def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
+    on = values["on_A"]
+    # By the bits x > 0 and v > 0: x < 0 and v < 0, x > 0 and v < 0, x < 0 and v > 0, both.
+    currents = (values["down_share"] * on, values["down_in_share"] * on,
+                values["up_in_share"] * on, values["up_share"] * on)  # fmt: skip
+    return SignsTable(
+        tuple(
+            section(
+                rig,
+                damper,
+                (
+                    Sign({("displacement", damper.a): 1.0}, values["band_m"]),
+                    Sign({("velocity", damper.a): 1.0}, values["band_m_s"]),
+                ),
+                currents,
+                currents[0],
+            )
+            for damper in rig.dampers
+        )
+    )
+
+
+def _share(name: str, default: float, which: str) -> Setting:
+    return Setting(name, default, 0.0, 1.0, f"share of on_A {which}")
+
+
+RECIPE = Recipe(
+    "quasi_bang_bang",
+    "a share of the current in each quadrant of displacement and velocity",
+    "review, eq 32, which is not its own mirror image; equal shares of opposite quadrants are",
+    "",
+    (
+        ON_A,
+        BAND_m_s,
+        Setting("band_m", 0.0001, 0.0, 1.0, "likewise of the displacement"),
+        _share("up_share", 0.2, "moving out, x > 0"),
+        _share("down_share", 0.2, "moving out, x < 0"),
+        _share("down_in_share", 1.0, "coming back, x > 0"),
+        _share("up_in_share", 1.0, "coming back, x < 0"),
+    ),
+    make,
+)
