@@ -13,7 +13,7 @@ needs_of() {
     "board "* | "chain "* | "params "* | "plant "* | "record "*) echo bench ;;
     "rules lookup" | "rules optimize" | "rules show") echo bench ;;
     "rules "*) ;;
-    "law make") echo bench ;;
+    "compare "* | "law make") echo bench ;;
     "law "*) ;;
     "sweep "*) echo bench plant ;;
     "identify plan") ;;

@@ -97,6 +97,7 @@ def busy(clone: Clone) -> Iterator[Clone]:
         ("chain", "bench"),
         ("rules compile x.fcl", ""),
         ("rules convert x.fcl", ""),
+        ("compare x", "bench"),
         ("law list", ""),
         ("law show x.words", ""),
         ("law make skyhook", "bench"),

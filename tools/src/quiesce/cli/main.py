@@ -20,6 +20,7 @@ COMMANDS = (
     ("params", "params", "parameters of the controller: unit, range, default"),
     ("chain", "chain", "magnitude and phase of the conditioning"),
     ("rules", "rules.command", "fuzzy rule files"),
+    ("compare", "compare", "control laws side by side on recorded ground motions"),
     ("law", "law.command", "published control laws as tables: list, make, show"),
     ("sweep", "sweep", "excitation and current steps to record, and the plant from a recording"),
     (

@@ -1,0 +1,127 @@
+"""`quiesce compare` on the bench, with a short shaking."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+DATA = ROOT / "sim_hil/data"
+
+
+@pytest.fixture
+def quake(tmp_path: Path) -> Path:
+    t = np.arange(0, 3, 0.01)
+    accel = np.sin(2 * np.pi * 3.0 * t) * np.exp(-t)
+    file = tmp_path / "quake.csv"
+    file.write_text(
+        "t_s,acc_g\n" + "".join(f"{a:.3f},{b:.6f}\n" for a, b in zip(t, accel, strict=True))
+    )
+    return file
+
+
+RIG = ["--rig", "two_storeys", "--accel-column", "acc_g", "--scale-to", "0.5"]
+
+
+def test_laws_stand_beside_constants_in_all_files(quiesce, quake: Path, tmp_path: Path) -> None:
+    table = tmp_path / "sky.words"
+    board = DATA / "boards/three_storeys_1996.toml"
+    assert quiesce("law", "make", "skyhook_on_off", "--board", board, "-o", table).returncode == 0
+    law = f"signs:table={table},as=sky"
+    rig = ["--rig", "three_storeys_1996", *RIG[2:]]  # its sensors have noise
+    words = [*rig, "--record", quake, "--law", law, "--seeds", "2", "--out", tmp_path / "out"]
+    result = quiesce("compare", *words)
+    assert result.returncode == 0, result.stderr
+    assert "sky, quake, seed 2" in result.stderr
+    for name in ("sky", "no current", "all current", "best constant"):
+        assert name in result.stdout
+    cells = json.loads((tmp_path / "out/compare.json").read_text())
+    assert len(cells) == 2 * 4
+    by_law = {(cell["law"], cell["seed"]): cell for cell in cells}
+    for seed in (1, 2):
+        assert by_law["all current", seed]["index"] == pytest.approx(1.0)
+        best = by_law["best constant", seed]
+        assert best["index"] <= 1.0 and best["note"].endswith(" A")
+        still = by_law["no current", seed]["figures"]
+        assert still["current_mean_A"] == 0
+        assert still["disp_peak_mm"] > by_law["sky", seed]["figures"]["disp_peak_mm"] > 0.01
+        assert by_law["sky", seed]["figures"]["chatter_A_s"] > 1.0
+    assert by_law["sky", 1]["figures"] != by_law["sky", 2]["figures"]  # other noise
+    rows = list(csv.DictReader((tmp_path / "out/compare.csv").open()))
+    assert [row["law"] for row in rows] == [cell["law"] for cell in cells]
+    page = (tmp_path / "out/compare.html").read_text()
+    assert page.count("<img") == 3 and "sky" in page
+
+
+def test_the_same_seeds_give_the_same_numbers(quiesce, quake: Path) -> None:
+    words = ["compare", *RIG, "--record", quake, "--law", "fuzzy", "--json"]
+    assert quiesce(*words).stdout == quiesce(*words).stdout
+
+
+def test_at2_files_are_read(quiesce, tmp_path: Path) -> None:
+    t = np.arange(0, 2, 0.02)
+    values = [f"{x: .7E}" for x in 0.05 * np.sin(2 * np.pi * 3 * t)]
+    lines = [" ".join(values[i : i + 5]) for i in range(0, len(values), 5)]
+    head = "A STATION\nAN EVENT\nACCELERATION IN UNITS OF G\nNPTS=  100, DT=   .0200 SEC,\n"
+    file = tmp_path / "quake.AT2"
+    file.write_text(head + "\n".join(lines) + "\n")
+    words = ["compare", "--rig", "two_storeys", "--record", file, "--json"]
+    cells = json.loads(quiesce(*words).stdout)["cells"]
+    assert {cell["record"] for cell in cells} == {"quake"}
+    file.write_text(head.replace("100", "99") + "\n".join(lines) + "\n")
+    assert "100 numbers where NPTS says 99" in quiesce(*words).stderr
+
+
+BAD = [
+    ([], "name the structure"),
+    (["--rig", "nowhere"], "--rig nowhere: there are: "),
+    (["--rig", "two_storeys", "--board", "x.toml"], "give it or them"),
+    ([*RIG, "--law", "nothing"], "no law 'nothing'"),
+    ([*RIG, "--law", "fuzzy:rules"], "expected key=value"),
+    ([*RIG, "--law", "signs:table=none.words"], "there is no file none.words"),
+    ([*RIG, "--law", "fuzzy", "--law", "fuzzy"], "two are called 'fuzzy'"),
+    ([*RIG, "--law", "fuzzy:nothing=1"], "nothing"),
+    ([*RIG, "--law", "linear"], "law linear works with a table"),
+    ([*RIG, "--seeds", "0"], "expected an integer in 1 .. 1000"),
+    (["--rig", "squeeze_2012"], "the plant has no such one"),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), BAD)
+def test_bad_input_is_one_line(quiesce, quake: Path, words: list[str], message: str) -> None:
+    column = [] if "--accel-column" in words else ["--accel-column", "acc_g"]
+    result = quiesce("compare", *words, *column, "--record", quake)
+    assert result.returncode == 2, result.stdout
+    lines = [line for line in result.stderr.splitlines() if line.startswith("quiesce: ")]
+    assert len(lines) == 1 and message in lines[0]
+
+
+MALFORMED = [
+    ("", "empty"),
+    ("t_s,acc_m_s2\n", "rows of data"),
+    ("t_s,acc_m_s2\n0,1\n0.01,x\n0.02,1\n", "line 3"),
+    ("t_s,acc_m_s2\n0,1\n0.01,nan\n0.02,1\n", "not a finite number"),
+    ("t_s,acc_m_s2\n0,1\n0.01,2\n0.05,1\n0.06,1\n", "0.0"),
+    ("t_s,acc_m_s2\n0,0\n0.01,0\n0.02,0\n", "all of it is 0"),
+    ("t_s,acc_m_s2\n0,1e5\n0.01,0\n0.02,0\n", "in which unit"),
+    ("t_s,other\n0,1\n0.01,0\n0.02,0\n", "no column 'acc_m_s2'"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), MALFORMED)
+def test_a_malformed_record_is_one_line(quiesce, tmp_path: Path, text: str, message: str) -> None:
+    file = tmp_path / "bad.csv"
+    file.write_text(text)
+    result = quiesce("compare", "--rig", "two_storeys", "--record", file)
+    assert result.returncode == 2
+    assert message in result.stderr and result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("text", ["", "no head\n1 2 3\n", "a\nb\nc\nNPTS=3, DT=0.01\n1 2 x\n"])
+def test_a_malformed_at2_is_one_line(quiesce, tmp_path: Path, text: str) -> None:
+    file = tmp_path / "bad.at2"
+    file.write_text(text)
+    result = quiesce("compare", "--rig", "two_storeys", "--record", file)
+    assert result.returncode == 2 and result.stderr.count("\n") == 1

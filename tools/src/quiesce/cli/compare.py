@@ -1,0 +1,138 @@
+"""`quiesce compare`: laws side by side on recorded ground motions."""
+
+import argparse
+import json
+from pathlib import Path
+
+from quiesce.base.atomic import output_files
+from quiesce.base.command import real_number, whole_number
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import measurements, root, shown
+from quiesce.compare.laws import ComparedLaw, read_laws
+from quiesce.compare.page import page
+from quiesce.compare.records import ACCEL, TIME, Record, read_record
+from quiesce.compare.run import Case, Cell, Comparison, Shaking
+from quiesce.compare.table import as_csv, as_data, text
+from quiesce.engine.bench import Bench
+
+MOST_SEEDS = 1000
+DRAWN = 6  # laws over time, or nothing can be told apart
+
+EPILOG = """a law is NAME[:key=value,...]; keys: table=FILE (quiesce law make), map=FILE (quiesce
+identify inverse), rules=FILE, pulses=FILE, as=LABEL, and any parameter of the controller
+
+examples:
+  quiesce compare --rig three_storeys_1996 --record quake.csv --time-scale 5 \\
+      --law signs:table=build/laws/sky.words,as=skyhook --out build/compare
+  quiesce compare --plant my_plant.toml --board my_board.toml --record quake.at2 --scale-to 3 \\
+      --law linear:table=optimal.words,tracker=compare --law fuzzy --seeds 5
+
+Beside the laws stand no current, all current, and the best of nine constant currents, which only
+hindsight knows. Written to --out: compare.html, compare.csv, compare.json.
+"""
+
+
+def add_parser(commands: argparse._SubParsersAction) -> None:
+    parser = commands.add_parser(
+        "compare",
+        description="Compare control laws on one structure, over recorded ground motions and seeds "
+        "of the sensors' noise.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    rig = parser.add_argument_group("structure")
+    rig.add_argument("--rig", metavar="NAME", help="a plant and a board that ship under one name")
+    rig.add_argument("--plant", type=Path, metavar="FILE", help="plant, TOML")
+    rig.add_argument("--board", type=Path, metavar="FILE", help="its board, TOML")
+    shake = parser.add_argument_group("ground motions")
+    shake.add_argument(
+        "--record", type=Path, action="append", default=[], metavar="FILE",
+        help="CSV or AT2; may be repeated (all that lie beside the project)",
+    )  # fmt: skip
+    shake.add_argument("--time-column", default=TIME, metavar="NAME", help="of CSV (%(default)s)")
+    shake.add_argument(
+        "--accel-column", default=ACCEL, metavar="NAME",
+        help="of CSV; its end is its unit, _m_s2, _mm_s2 or _g (%(default)s)",
+    )  # fmt: skip
+    shake.add_argument(
+        "--time-scale", type=real_number(0.01, 100.0), default=1.0, metavar="X",
+        help="play so many times as fast (%(default)s)",
+    )  # fmt: skip
+    shake.add_argument(
+        "--gain", type=real_number(1e-6, 1e6), default=1.0, metavar="X", help="(%(default)s)"
+    )
+    shake.add_argument(
+        "--scale-to", type=real_number(1e-6, 1e4), metavar="M_S2", help="peak of each record"
+    )
+    parser.add_argument("--law", action="append", default=[], metavar="LAW", help="see below")
+    parser.add_argument(
+        "--seeds", type=whole_number(1, MOST_SEEDS), default=1, metavar="N",
+        help="runs of each with other noise (%(default)s)",
+    )  # fmt: skip
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="page, CSV and JSON")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.set_defaults(run=run)
+
+
+def rig_files(args: argparse.Namespace) -> tuple[Path, Path]:
+    if args.rig is None and (args.plant is None or args.board is None):
+        raise UsageError("name the structure: --rig NAME, or --plant FILE and --board FILE")
+    if args.rig is not None and (args.plant or args.board):
+        raise UsageError("--rig stands for --plant and --board; give it or them")
+    if args.rig is None:
+        return args.plant, args.board
+    data = root() / "sim_hil/data"
+    names = sorted(
+        {one.stem for one in (data / "plants").glob("*.toml")}
+        & {one.stem for one in (data / "boards").glob("*.toml")}
+    )
+    if args.rig not in names:
+        raise UsageError(f"--rig {args.rig}: there are: {', '.join(names)}")
+    return data / f"plants/{args.rig}.toml", data / f"boards/{args.rig}.toml"
+
+
+def records_of(args: argparse.Namespace) -> list[Record]:
+    folder = measurements("earthquake")
+    files = args.record or sorted(folder.glob("*.csv"))
+    if not files:
+        raise UsageError(f"no records beside the project ({shown(folder)}); name some: --record")
+    found = [read_record(file, args.time_column, args.accel_column) for file in files]
+    names = [record.name for record in found]
+    for name in names:
+        if names.count(name) > 1:
+            raise UsageError(f"--record: two are called {name}")
+    return found
+
+
+def written(
+    args: argparse.Namespace, comparison: Comparison, cells: list[Cell],
+    laws: list[ComparedLaw], record: Record,
+) -> str:  # fmt: skip
+    board = comparison.rig.board
+    shown_laws = [*comparison.references(), *laws][:DRAWN]
+    traces = {law.label: comparison.trace(Case(law, record, 1)) for law in shown_laws}
+    title = f"laws on {board.name}"
+    with output_files(args.out) as folder:
+        files = {
+            "compare.html": page(title, cells, traces, board.bodies[-1], board.dampers[0]),
+            "compare.csv": as_csv(cells),
+            "compare.json": json.dumps(as_data(cells), indent=1) + "\n",
+        }
+        for name, content in files.items():
+            (folder / name).write_text(content, encoding="utf-8")
+    return f"written: {shown(args.out / 'compare.html')}, compare.csv, compare.json"
+
+
+def run(args: argparse.Namespace) -> int:
+    laws = read_laws(args.law)
+    plant, board = rig_files(args)
+    records = records_of(args)
+    shaking = Shaking(args.time_scale, args.gain, args.scale_to)
+    comparison = Comparison(Bench(), plant, board, shaking)
+    cells = comparison.cells(laws, records, range(1, args.seeds + 1))
+    told = written(args, comparison, cells, laws, records[0]) if args.out else ""
+    if args.json:
+        print(json.dumps({"board": comparison.rig.board.name, "cells": as_data(cells)}, indent=1))
+    else:
+        print("\n".join(filter(None, [text(cells), told])))
+    return 0

@@ -1,0 +1,91 @@
+"""The page of a comparison: table, radar of ratios, fronts, motion over time."""
+
+import html
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from quiesce.compare.figures import INDEXED
+from quiesce.compare.run import ALL, Cell
+from quiesce.compare.table import laws_of, means, rows
+from quiesce.engine.trace import Trace
+from quiesce.report.html import document, html_table, image, section
+from quiesce.report.plot_style import COLORS, pyplot, svg_of
+
+CYCLE = [COLORS[name] for name in ("open_loop", "reference", "constant_best", "main", "phase",
+                                   "phase_displacement", "current", "fuzzy_selftune_printed",
+                                   "bound")]  # fmt: skip
+
+
+def page(
+    title: str, cells: Sequence[Cell], traces: Mapping[str, Trace], body: str, damper: str
+) -> str:
+    """traces: of one record, by law; body and damper: whose motion and current are drawn."""
+    notes = [f"{cell.record}, seed {cell.seed}: {cell.note}" for cell in cells if cell.note]
+    best = f"Best constant current in hindsight: {html.escape('; '.join(notes))}." if notes else ""
+    lead = (
+        "Means over records and seeds. The index is the mean of six ratios to all current: peak "
+        f"and RMS of the last body's displacement, of drift, of acceleration. {best}"
+    )
+    parts = [
+        f"<h1>{html.escape(title)}</h1><p class='lead'>{lead}</p>",
+        f'<div class="wide">{html_table(rows(cells))}</div>',
+        section("Ratios to all current", "Inside the ring is better.", _radar(cells)),
+        section(
+            "Displacement against acceleration",
+            "Each point is a law on a record; nearer to the corner is better.",
+            _fronts(cells),
+        ),
+        section("Motion and current", "One record, the first seed.", _motion(traces, body, damper)),
+    ]
+    return document(title, "\n".join(parts))
+
+
+def _radar(cells: Sequence[Cell]) -> str:
+    plt = pyplot()
+    base = means(cells, ALL)
+    angles = np.linspace(0.0, 2 * np.pi, len(INDEXED) + 1)
+    figure, axes = plt.subplots(figsize=(7, 5.2), subplot_kw={"projection": "polar"})
+    for i, law in enumerate(laws_of(cells)):
+        found = means(cells, law)
+        ratios = [found[name] / base[name] for name in INDEXED]
+        axes.plot(angles, [*ratios, ratios[0]], color=CYCLE[i % len(CYCLE)], label=law)
+    axes.set_xticks(angles[:-1], [name.rsplit("_", 1)[0].replace("_", " ") for name in INDEXED])
+    axes.set_ylim(bottom=0.0)
+    axes.legend(loc="center left", bbox_to_anchor=(1.15, 0.5))
+    return image(svg_of(figure), "ratios of each law's figures to those of all current")
+
+
+def _fronts(cells: Sequence[Cell]) -> str:
+    plt = pyplot()
+    figure, axes = plt.subplots(figsize=(7, 4))
+    for i, law in enumerate(laws_of(cells)):
+        own = [cell.figures for cell in cells if cell.law == law]
+        axes.plot(
+            [one["disp_peak_mm"] for one in own],
+            [one["accel_peak_m_s2"] for one in own],
+            "o",
+            color=CYCLE[i % len(CYCLE)],
+            label=law,
+        )
+    axes.set_xlabel("peak displacement of the last body, mm")
+    axes.set_ylabel("peak acceleration, m/s2")
+    axes.legend()
+    return image(svg_of(figure), "peak displacement against peak acceleration of each law")
+
+
+def _motion(traces: Mapping[str, Trace], body: str, damper: str) -> str:
+    plt = pyplot()
+    figure, axes = plt.subplots(3, 1, figsize=(9, 6.4), sharex=True)
+    for i, (law, trace) in enumerate(traces.items()):
+        color: dict[str, Any] = {"color": CYCLE[i % len(CYCLE)], "linewidth": 0.9}
+        axes[0].plot(trace["t_s"], 1e-3 * trace[f"{body}_true_um"], label=law, **color)
+        axes[1].plot(trace["t_s"], 1e-3 * trace[f"{body}_true_mm_s2"], **color)
+        axes[2].plot(trace["t_s"], 1e-3 * trace[f"{damper}_true_mA"], **color)
+    axes[0].set_ylabel(f"{body}, mm")
+    axes[1].set_ylabel(f"{body}, m/s2")
+    axes[2].set_ylabel(f"current of {damper}, A")
+    axes[2].set_xlabel("s")
+    axes[0].legend(ncols=4, loc="lower right")
+    return image(svg_of(figure), "displacement, acceleration and current over time")
