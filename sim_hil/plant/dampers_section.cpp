@@ -70,7 +70,8 @@ Eigen::VectorXd shape_of(const PlantModel &model, const std::string &name) {
 PlantDamper read_joined(Shared &shared, TomlTable &section, const std::vector<std::string> &taken) {
     PlantDamper damper{};
     damper.name = read_name(section, taken);
-    damper.stroke = read_stroke(section, shared.model);
+    damper.ratio = section.number("ratio", {0.01, 100.0, "-"}, 1.0);
+    damper.stroke = damper.ratio * read_stroke(section, shared.model);
     std::optional<TomlTable> coil = section.optional_table("coil");
     return read_one(shared, section, std::move(coil), std::move(damper));
 }

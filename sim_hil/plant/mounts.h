@@ -36,6 +36,27 @@ class GappedMount final : public Mount {
     double damping_N_s_m_;
 };
 
+/// What is pressed on by a weight, such as a tyre on a road: at rest it carries preload_N, and it
+/// lifts off where it would have to pull. Resisting forces are those beside the preload, so that
+/// they end there.
+class ContactMount final : public Mount {
+  public:
+    /// preload_N > 0, the others >= 0.
+    ContactMount(double stiffness_N_m, double damping_N_s_m, double preload_N)
+        : stiffness_N_m_(stiffness_N_m), damping_N_s_m_(damping_N_s_m), preload_N_(preload_N) {}
+
+    double force_N(double stroke_m, double velocity_m_s) const override {
+        return std::min(stiffness_N_m_ * stroke_m + damping_N_s_m_ * velocity_m_s, preload_N_);
+    }
+    double stiffest_N_m() const override { return stiffness_N_m_; }
+    double stiffest_N_s_m() const override { return damping_N_s_m_; }
+
+  private:
+    double stiffness_N_m_;
+    double damping_N_s_m_;
+    double preload_N_;
+};
+
 /// A spring that gives way: F = limit tanh(stiffness x / limit).
 class SofteningMount final : public Mount {
   public:

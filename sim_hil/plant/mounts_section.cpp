@@ -13,7 +13,14 @@ constexpr Range kDamping = {0.0, 1e9, "N s/m"};
 constexpr Range kForce = {1e-9, 1e9, "N"};
 
 std::shared_ptr<const Mount> read_law(TomlTable &section) {
-    if (section.choice("kind", {"gap", "softening"}) == "gap") {
+    const std::string kind = section.choice("kind", {"gap", "softening", "contact"});
+    if (kind == "contact") {
+        const double stiffness_N_m = section.number("stiffness_N_m", kStiffness);
+        const double damping_N_s_m = section.number("damping_N_s_m", kDamping, 0.0);
+        return std::make_shared<ContactMount>(stiffness_N_m, damping_N_s_m,
+                                              section.number("preload_N", kForce));
+    }
+    if (kind == "gap") {
         const double gap_m = section.number("gap_m", kLength);
         const double stiffness_N_m = section.number("stiffness_N_m", kStiffness);
         return std::make_shared<GappedMount>(gap_m, stiffness_N_m,

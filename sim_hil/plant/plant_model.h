@@ -35,8 +35,9 @@ inline const char *const kOnlyDamper = "damper";
 struct PlantDamper {
     std::string name;
     std::shared_ptr<const Damper> damper;
-    Eigen::VectorXd stroke; ///< that 1 of each mode gives, kg^-1/2: its end a less its end b
+    Eigen::VectorXd stroke; ///< that 1 of each mode gives, kg^-1/2: ratio x (end a less end b)
     CoilParams coil;
+    double ratio = 1.0; ///< of its stroke to what its ends do: a lever
 };
 
 struct PlantModel {

@@ -36,7 +36,7 @@ needs_of_target() {
 # needs_of_benchmark NAME...: of `benchmark`. Images that only benchmarks run: their build_images.
 needs_of_benchmark() {
     case "${1:-}" in
-    can | fuzzy | house | signal) echo bench ;;
+    can | fuzzy | house | laws | signal) echo bench ;;
     controller) echo bench dampers images ;;
     control | sweep) echo bench plant ;;
     trust) echo bench images trust ;;

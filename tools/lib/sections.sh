@@ -4,7 +4,7 @@
 
 WHOLE=1
 # The full ones of identify take hours.
-BENCHMARKS=(house signal fuzzy controller control sweep "identify --quick" can trust papers)
+BENCHMARKS=(house signal fuzzy controller control sweep "identify --quick" can trust papers laws)
 
 run_ctest() {
     ctest --preset "$1" --parallel "$(nproc)" --no-tests=error

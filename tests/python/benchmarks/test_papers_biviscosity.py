@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from quiesce.damper.fit.small import fit_small
 from quiesce_benchmarks.papers import biviscosity_fit as fit
+from quiesce_benchmarks.papers import parts
 from quiesce_benchmarks.papers.biviscosity_fit import Judged
-from quiesce_benchmarks.papers.part import Effort, all_parts
 from quiesce_benchmarks.papers.parts import biviscosity
 from quiesce_benchmarks.papers.parts.biviscosity import Trial, determined_by, worst_error_pct
 from quiesce_benchmarks.papers.squeeze_rig import (
@@ -25,6 +25,7 @@ from quiesce_benchmarks.papers.squeeze_rig import (
     sine,
     without_noise,
 )
+from quiesce_benchmarks.part import Effort, all_parts
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -101,7 +102,7 @@ def test_cells_count_up_to_the_published_error_and_without_the_fitted_one() -> N
 
 @pytest.mark.slow
 def test_part_has_its_figures_and_can_be_written(tmp_path: Path) -> None:
-    part = all_parts()["biviscosity"]
+    part = all_parts(parts)["biviscosity"]
     found = part.measure(Effort(1, True, tmp_path))
     assert set(found.values) == {name for name, *_ in part.FIGURES}
     assert found.values["biviscosity_search_cells_within"] == 3.0

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from conftest import require
 from quiesce.engine.bench import Bench
-from quiesce_benchmarks.papers.part import Effort
 from quiesce_benchmarks.papers.parts import fft
+from quiesce_benchmarks.part import Effort
 from quiesce_benchmarks.signal import accuracy, estimators
 from quiesce_benchmarks.signal.cost import measure_ticks
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from quiesce_benchmarks.papers import frame_laws
 from quiesce_benchmarks.papers.frame_laws import MAX_A, Observer, clipped_optimal, fuzzy, shaken
-from quiesce_benchmarks.papers.part import Effort
 from quiesce_benchmarks.papers.parts import fuzzy_vs_clipped
+from quiesce_benchmarks.part import Effort
 
 
 @pytest.fixture

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from quiesce.base.paths import default_plant
 from quiesce.damper.inverses.methods import METHODS
-from quiesce_benchmarks.papers.part import Effort, all_parts
+from quiesce_benchmarks.papers import parts
 from quiesce_benchmarks.papers.parts import inverse
+from quiesce_benchmarks.part import Effort, all_parts
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -19,7 +20,7 @@ def test_the_damper_is_the_plants_with_its_coil() -> None:
 
 
 def test_every_method_and_both_peers_have_a_figure() -> None:
-    assert all_parts()["inverse"] is inverse
+    assert all_parts(parts)["inverse"] is inverse
     names = [name for name, *_ in inverse.FIGURES]
     for method in (*METHODS, "constant", "ideal"):
         assert f"{inverse.FIGURE}_{method}" in names

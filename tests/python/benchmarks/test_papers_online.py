@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from quiesce.damper.online import ADAPTIVE, FROZEN, LAST_FORCE, STOPPED
 from quiesce.damper.simulate import simulator
+from quiesce_benchmarks.papers import parts
 from quiesce_benchmarks.papers.online_changes import (
     CHANGES,
     PUBLISHED,
@@ -22,7 +23,7 @@ from quiesce_benchmarks.papers.online_rig import (
     recorded,
     warmed,
 )
-from quiesce_benchmarks.papers.part import Effort, all_parts
+from quiesce_benchmarks.part import Effort, all_parts
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -69,7 +70,7 @@ def test_every_kind_of_change_is_there() -> None:
 
 
 def test_worst_change_is_the_figure() -> None:
-    part = all_parts()["online"]
+    part = all_parts(parts)["online"]
     assert [name for name, *_ in part.FIGURES] == [
         "online_error_after_change_pct",
         "online_over_best_frozen",

@@ -7,10 +7,10 @@ import pytest
 from conftest import ROOT
 from quiesce.base.errors import UsageError
 from quiesce_benchmarks.house.committed import Committed
+from quiesce_benchmarks.papers import parts
 from quiesce_benchmarks.papers.commands import refused
 from quiesce_benchmarks.papers.page import ours_text as ours
 from quiesce_benchmarks.papers.page import paper_table, published_text, where
-from quiesce_benchmarks.papers.part import Effort, all_parts
 from quiesce_benchmarks.papers.parts import rows as rows_part
 from quiesce_benchmarks.papers.rows import (
     KINDS,
@@ -22,6 +22,7 @@ from quiesce_benchmarks.papers.rows import (
     read,
     without_place,
 )
+from quiesce_benchmarks.part import Effort, all_parts
 
 # Counted in the papers: equations, tables, figures.
 COUNTED = {
@@ -87,8 +88,8 @@ def test_every_place_that_a_row_names_exists(name: str) -> None:
 
 @pytest.mark.parametrize("name", COUNTED)
 def test_every_command_is_accepted_where_its_part_is_there(name: str) -> None:
-    parts = all_parts()
-    rows = [row for row in papers()[name].rows if row.command or row.part in parts]
+    measured = all_parts(parts)
+    rows = [row for row in papers()[name].rows if row.command or row.part in measured]
     assert [why for row in rows if row.typed and (why := refused(row.typed, ROOT))] == []
 
 

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from quiesce_benchmarks.papers import elastomer_mount, modes_beam
-from quiesce_benchmarks.papers.part import Effort, Measured, all_parts
+from quiesce_benchmarks.papers import elastomer_mount, modes_beam, parts
 from quiesce_benchmarks.papers.parts import modes
+from quiesce_benchmarks.part import Effort, Measured, all_parts
 
 
 def measured(name: str, folder: Path) -> Measured:
-    part = all_parts()[name]
+    part = all_parts(parts)[name]
     found = part.measure(Effort(1, True, folder))
     assert set(found.values) == {figure[0] for figure in part.FIGURES}
     assert all(table for table in found.tables)

@@ -15,8 +15,8 @@ from quiesce.damper.library import Scales
 from quiesce.plant.library import Plant
 from quiesce.plant.stepping import Run
 from quiesce_benchmarks.papers import thermal_loop
-from quiesce_benchmarks.papers.part import Effort
 from quiesce_benchmarks.papers.parts import thermal
+from quiesce_benchmarks.part import Effort
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from quiesce_benchmarks.damper.one_set import error_pct
-from quiesce_benchmarks.papers import thesis_laws, thesis_spreads, thesis_test
+from quiesce_benchmarks.papers import parts, thesis_laws, thesis_spreads, thesis_test
 from quiesce_benchmarks.papers import thesis_published as published
 from quiesce_benchmarks.papers import thesis_scenarios as scenarios
-from quiesce_benchmarks.papers.part import Effort, all_parts
+from quiesce_benchmarks.part import Effort, all_parts
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -84,12 +84,12 @@ def test_search_stays_within_the_printed_bounds_and_finds_a_fit() -> None:
 
 
 def test_part_reports_one_figure_without_a_goal() -> None:
-    assert all_parts()["thesis"].FIGURES == (("anfis27_one_set_pct", "%", None, "lower"),)
+    assert all_parts(parts)["thesis"].FIGURES == (("anfis27_one_set_pct", "%", None, "lower"),)
 
 
 @pytest.mark.slow
 def test_part_fits_every_model_in_every_scenario(tmp_path: Path) -> None:
-    found = all_parts()["thesis"].measure(Effort(1, True, tmp_path))
+    found = all_parts(parts)["thesis"].measure(Effort(1, True, tmp_path))
     assert 1.0 < found.values["anfis27_one_set_pct"] < 10.0
     for name, errors in found.reported["fitted"].items():
         assert set(errors) == set("ABCD"), name

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from firmware_laws import verdict
 from quiesce.engine.bench import Bench
 from quiesce.law.forms.friction import FrictionSection, FrictionTable
 from quiesce.law.recipe import make, values_of
@@ -15,6 +14,7 @@ from quiesce.law.recipes import RECIPES, find
 from quiesce.law.rig import LawRig, load_rig
 from quiesce.law.tables import FORMS, Table, table_of_words
 from quiesce.law.words import opened, sealed
+from quiesce_benchmarks.laws.firmware_laws import verdict
 
 DATA = ROOT / "sim_hil/data"
 BUILDING = "three_storeys_1996"

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from firmware_laws import demands
 from quiesce.law.block import System, compile_system
 from quiesce.law.forms.friction import FrictionSection, FrictionTable
 from quiesce.law.forms.polynomial import PolynomialSection, PolynomialTable, term
 from quiesce.law.forms.signs import SignsSection, SignsTable, combination
 from quiesce.law.signal import Input, signal
+from quiesce_benchmarks.laws.firmware_laws import demands
 
 TICKS = 20000
 

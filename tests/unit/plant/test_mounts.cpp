@@ -15,6 +15,7 @@ namespace {
 
 using quiesce::Equations;
 using quiesce::expect_message;
+using quiesce::ContactMount;
 using quiesce::GappedMount;
 using quiesce::Mistake;
 using quiesce::PlantModel;
@@ -51,6 +52,15 @@ TEST(GappedMount, drags_what_comes_and_never_pulls_what_leaves) {
     EXPECT_DOUBLE_EQ(mount.force_N(-1.5e-3, -0.1), -70.0);
     EXPECT_EQ(mount.force_N(-1.5e-3, 10.0), 0.0);
     EXPECT_EQ(mount.force_N(0.0, 10.0), 0.0);
+}
+
+TEST(ContactMount, presses_and_lifts_off_where_it_would_pull) {
+    const ContactMount mount(1e5, 100.0, 300.0);
+    EXPECT_DOUBLE_EQ(mount.force_N(-1e-2, 0.0), -1000.0);
+    EXPECT_DOUBLE_EQ(mount.force_N(1e-3, -0.5), 50.0);
+    EXPECT_DOUBLE_EQ(mount.force_N(3e-3, 0.0), 300.0);
+    EXPECT_EQ(mount.force_N(1.0, 10.0), 300.0); // its weight is all that draws it back
+    EXPECT_EQ(mount.force_N(0.0, 0.0), 0.0);
 }
 
 TEST(SofteningMount, is_a_spring_at_rest_and_tends_to_its_limit) {
@@ -111,6 +121,15 @@ TEST(MountFile, both_kinds_are_read_and_ground_is_an_end) {
         << "no drag, where none is said";
 }
 
+TEST(MountFile, a_contact_is_read) {
+    const PlantModel model =
+        changed("kind = \"gap\"\ngap_m = 0.0008\nstiffness_N_m = 140000.0\ndamping_N_s_m = 400.0",
+                "kind = \"contact\"\nstiffness_N_m = 1000.0\npreload_N = 5.0");
+    ASSERT_EQ(model.mounts.size(), 1u);
+    EXPECT_DOUBLE_EQ(model.mounts[0].mount->force_N(1.0, 0.0), 5.0);
+    EXPECT_DOUBLE_EQ(model.mounts[0].mount->force_N(-1.0, 7.0), -1000.0);
+}
+
 TEST(MountFile, mistakes_name_line_and_key) {
     const std::vector<Mistake> mistakes = {
         {"unknown kind", "kind = \"gap\"", "kind = \"rubber\"", "softening"},
@@ -122,6 +141,7 @@ TEST(MountFile, mistakes_name_line_and_key) {
         {"text", "damping_N_s_m = 400.0", "damping_N_s_m = \"400\"", "damping_N_s_m"},
         {"unknown key", "gap_m = 0.0008", "gap_m = 0.0008\nlimit_N = 3.0", "limit_N"},
         {"no limit", "kind = \"gap\"\ngap_m = 0.0008", "kind = \"softening\"", "limit_N"},
+        {"no weight", "kind = \"gap\"\ngap_m = 0.0008", "kind = \"contact\"", "preload_N"},
         {"no table", "[[mount]]\n", "[mount]\n", "mount"},
     };
     for (const Mistake &mistake : mistakes) {

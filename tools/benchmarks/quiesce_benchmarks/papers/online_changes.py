@@ -12,7 +12,7 @@ from quiesce.damper.task import Plan
 from quiesce_benchmarks.damper.one_set import records_of_test
 from quiesce_benchmarks.damper.real import data_folder
 from quiesce_benchmarks.papers.online_rig import Rig, recorded, test_of
-from quiesce_benchmarks.papers.part import Effort
+from quiesce_benchmarks.part import Effort
 
 TANH, BOUC_WEN = "rd1005_kwok_tanh_smooth", "rd1005_kwok_bouc_wen_soft"
 SETTLE_s = 2.0

@@ -23,7 +23,7 @@ from quiesce.damper.task import Plan
 
 from quiesce_benchmarks.papers.online_changes import BOUC_WEN, TANH
 from quiesce_benchmarks.papers.online_rig import Rig, damper_file, protocol, recorded
-from quiesce_benchmarks.papers.part import Effort
+from quiesce_benchmarks.part import Effort
 
 BINGHAM = "rd1005_bingham"
 # Of every sine, what models are fitted to: periods enough, and not the run-up.

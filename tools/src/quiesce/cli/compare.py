@@ -11,6 +11,7 @@ from quiesce.base.paths import measurements, root, shown
 from quiesce.compare.laws import ComparedLaw, read_laws
 from quiesce.compare.page import page
 from quiesce.compare.records import ACCEL, TIME, Record, read_record
+from quiesce.compare.roads import read_road
 from quiesce.compare.run import Case, Cell, Comparison, Shaking
 from quiesce.compare.table import as_csv, as_data, text
 from quiesce.engine.bench import Bench
@@ -48,6 +49,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     shake.add_argument(
         "--record", type=Path, action="append", default=[], metavar="FILE",
         help="CSV or AT2; may be repeated (all that lie beside the project)",
+    )  # fmt: skip
+    shake.add_argument(
+        "--road", action="append", default=[], metavar="ROAD",
+        help="CLASS:KM_H of ISO 8608, as in C:72, or bump:HEIGHT_M:LENGTH_M:KM_H; may be repeated",
     )  # fmt: skip
     shake.add_argument("--time-column", default=TIME, metavar="NAME", help="of CSV (%(default)s)")
     shake.add_argument(
@@ -93,10 +98,11 @@ def rig_files(args: argparse.Namespace) -> tuple[Path, Path]:
 
 def records_of(args: argparse.Namespace) -> list[Record]:
     folder = measurements("earthquake")
-    files = args.record or sorted(folder.glob("*.csv"))
-    if not files:
+    files = args.record or ([] if args.road else sorted(folder.glob("*.csv")))
+    if not files and not args.road:
         raise UsageError(f"no records beside the project ({shown(folder)}); name some: --record")
     found = [read_record(file, args.time_column, args.accel_column) for file in files]
+    found += [read_road(text) for text in args.road]
     names = [record.name for record in found]
     for name in names:
         if names.count(name) > 1:

@@ -1,6 +1,7 @@
 """Figures of one run, from the true motion that the bench records."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,6 +25,13 @@ FIGURES = (
     ("vdv_m_s175", "m/s^1.75", "vibration dose of that"),
     ("velocity_rms_mm_s", "mm/s", "largest RMS velocity of a body, 10 .. 1000 Hz"),
 )
+# Of plants with a tyre or another contact that lifts off.
+OF_CONTACTS = (
+    ("tyre_share", "-", "RMS of what a contact's load varies by, over its load at rest; the worst"),
+    ("lift_pct", "%", "of the time without contact, the worst"),
+    ("rattle_mm", "mm", "largest peak of a damper's stroke"),
+)
+ALL_FIGURES = (*FIGURES, *OF_CONTACTS)
 # Ratios of these to those of all current make the index: response, drift, acceleration.
 INDEXED = (
     "disp_peak_mm", "disp_rms_mm", "drift_peak_mm", "drift_rms_mm", "accel_peak_m_s2",
@@ -31,6 +39,16 @@ INDEXED = (
 )  # fmt: skip
 
 Figures = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Between a body and the moving base: it carries preload_N at rest and never pulls."""
+
+    body: str
+    stiffness_N_m: float
+    damping_N_s_m: float
+    preload_N: float
 
 
 def columns(bodies: Sequence[str], dampers: Sequence[str]) -> list[str]:
@@ -44,7 +62,12 @@ def columns(bodies: Sequence[str], dampers: Sequence[str]) -> list[str]:
     return names
 
 
-def figures_of(trace: Trace, bodies: Sequence[str], dampers: Sequence[str]) -> Figures:
+def figures_of(
+    trace: Trace,
+    bodies: Sequence[str],
+    dampers: Sequence[str],
+    contacts: Sequence[Contact] = (),
+) -> Figures:
     time_s = trace["t_s"]
     rate_Hz = (len(time_s) - 1) / (time_s[-1] - time_s[0])
     places = np.array([1e-3 * trace[f"{name}_true_um"] for name in bodies])
@@ -56,6 +79,7 @@ def figures_of(trace: Trace, bodies: Sequence[str], dampers: Sequence[str]) -> F
     strokes = np.array([1e-6 * trace[f"{name}_true_stroke_um"] for name in dampers])
     felt = weighted(accels[-1], rate_Hz)
     duration_s = time_s[-1] - time_s[0]
+    of_contacts = _of_contacts(trace, contacts, strokes) if contacts else {}
     return {
         "disp_peak_mm": _peak(places[-1]),
         "disp_rms_mm": _rms(places[-1]),
@@ -71,6 +95,25 @@ def figures_of(trace: Trace, bodies: Sequence[str], dampers: Sequence[str]) -> F
         "weighted_m_s2": _rms(felt),
         "vdv_m_s175": vibration_dose(felt, rate_Hz),
         "velocity_rms_mm_s": max(velocity_rms_mm_s(one, rate_Hz) for one in accels),
+        **of_contacts,
+    }
+
+
+def _of_contacts(trace: Trace, contacts: Sequence[Contact], strokes: np.ndarray) -> Figures:
+    """The base's motion is the road's: a body's own is what the contact is pressed by."""
+    varied, lifted = [], []
+    for one in contacts:
+        way_m = 1e-6 * trace[f"{one.body}_true_um"]
+        speed_m_s = np.gradient(way_m, trace["t_s"])
+        load_N = np.minimum(
+            one.stiffness_N_m * way_m + one.damping_N_s_m * speed_m_s, one.preload_N
+        )
+        varied.append(_rms(load_N - load_N.mean()) / one.preload_N)
+        lifted.append(100.0 * float(np.mean(load_N >= one.preload_N)))
+    return {
+        "tyre_share": max(varied),
+        "lift_pct": max(lifted),
+        "rattle_mm": 1e3 * _peak(strokes),
     }
 
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from quiesce.compare.figures import Figures, columns, figures_of, index
+from quiesce.compare.figures import Contact, Figures, columns, figures_of, index
 from quiesce.compare.laws import ComparedLaw, constant
 from quiesce.compare.records import ACCEL, TIME, Record
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import Board, load_board
 from quiesce.engine.pool import run_work
+from quiesce.engine.scenarios import read_toml
 from quiesce.engine.trace import Trace, read_trace
 
 OFF, ALL, BEST = "no current", "all current", "best constant"
@@ -28,6 +29,15 @@ class Rig:
     @property
     def all_mA(self) -> int:
         return self.board.ceiling_mA
+
+
+def contacts_of(plant: Path) -> list[Contact]:
+    """Its mounts of kind contact between a body and the base; the bench checks the file."""
+    return [
+        Contact(one["a"], one["stiffness_N_m"], one.get("damping_N_s_m", 0.0), one["preload_N"])
+        for one in read_toml(plant).get("mount", [])
+        if one.get("kind") == "contact" and one.get("b") == "ground"
+    ]
 
 
 @dataclass(frozen=True)
@@ -67,6 +77,7 @@ class Comparison:
     def __init__(self, bench: Bench, plant: Path, board: Path, shaking: Shaking) -> None:
         self._bench = bench
         self.rig = Rig(plant.resolve(), load_board(bench, board))
+        self._contacts = contacts_of(plant)
         self._shaking = shaking
 
     def cells(
@@ -103,7 +114,7 @@ class Comparison:
 
     def _figures(self, case: Case, file: Path) -> Figures:
         trace = self._run(case, file)
-        return figures_of(trace, self.rig.board.bodies, self.rig.board.dampers)
+        return figures_of(trace, self.rig.board.bodies, self.rig.board.dampers, self._contacts)
 
     def _run(self, case: Case, file: Path) -> Trace:
         board = self.rig.board

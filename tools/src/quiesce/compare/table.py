@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.table import format_table
-from quiesce.compare.figures import FIGURES, zone_of
+from quiesce.compare.figures import ALL_FIGURES, zone_of
 from quiesce.compare.run import Cell
 
 SHOWN = (
     "disp_peak_mm", "drift_peak_mm", "accel_peak_m_s2", "accel_rms_m_s2", "force_peak_N",
-    "current_mean_A", "chatter_A_s", "weighted_m_s2",
+    "current_mean_A", "chatter_A_s", "weighted_m_s2", "tyre_share", "rattle_mm",
 )  # fmt: skip
 
 
@@ -25,27 +25,28 @@ def laws_of(cells: Sequence[Cell]) -> list[str]:
 def means(cells: Sequence[Cell], law: str) -> dict[str, float]:
     """Of a law over all records and seeds; with `index` and `index_worst`."""
     own = [cell for cell in cells if cell.law == law]
-    out = {name: float(np.mean([cell.figures[name] for cell in own])) for name, _, _ in FIGURES}
+    out = {name: float(np.mean([cell.figures[name] for cell in own])) for name in own[0].figures}
     indices = [cell.index for cell in own]
     return {**out, "index": float(np.mean(indices)), "index_worst": max(indices)}
 
 
 def rows(cells: Sequence[Cell]) -> tuple[list[str], list[list[str]]]:
     """A row a law, means over records and seeds, the best index first."""
-    units = {name: unit for name, unit, _ in FIGURES}
-    head = ["law", "index", "worst", *(f"{_short(name)} {units[name]}" for name in SHOWN)]
+    units = {name: unit for name, unit, _ in ALL_FIGURES}
+    shown = [name for name in SHOWN if name in cells[0].figures]
+    head = ["law", "index", "worst", *(f"{_short(name)} {units[name]}" for name in shown)]
     found = sorted(
         ((law, means(cells, law)) for law in laws_of(cells)), key=lambda x: x[1]["index"]
     )
     body = [
-        [law, f"{m['index']:.3f}", f"{m['index_worst']:.3f}", *(f"{m[name]:.4g}" for name in SHOWN)]
+        [law, f"{m['index']:.3f}", f"{m['index_worst']:.3f}", *(f"{m[name]:.4g}" for name in shown)]
         for law, m in found
     ]
     return head, body
 
 
 def _short(name: str) -> str:
-    for unit in ("_m_s2", "_mm", "_N", "_A_s", "_A"):
+    for unit in ("_m_s2", "_mm", "_N", "_A_s", "_A", "_share"):
         name = name.removesuffix(unit)
     return name.replace("_", " ")
 
@@ -62,9 +63,10 @@ def as_data(cells: Sequence[Cell]) -> list[dict[str, Any]]:
 def as_csv(cells: Sequence[Cell]) -> str:
     stream = io.StringIO()
     out = csv.writer(stream, lineterminator="\n")
-    out.writerow(["law", "record", "seed", "index", *(name for name, _, _ in FIGURES), "zone"])
+    out.writerow(["law", "record", "seed", "index", *(name for name, _, _ in ALL_FIGURES), "zone"])
     for cell in cells:
-        values = [f"{cell.figures[name]:.9g}" for name, _, _ in FIGURES]
+        known = cell.figures
+        values = [f"{known[name]:.9g}" if name in known else "" for name, _, _ in ALL_FIGURES]
         row = [
             cell.law,
             cell.record,

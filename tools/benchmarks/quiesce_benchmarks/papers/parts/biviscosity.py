@@ -11,7 +11,6 @@ from quiesce.damper.fit.small import fit_small
 
 from quiesce_benchmarks.papers import biviscosity_fit as fit
 from quiesce_benchmarks.papers.biviscosity_fit import Judged, Search
-from quiesce_benchmarks.papers.part import Effort, Measured
 from quiesce_benchmarks.papers.squeeze_rig import (
     CELLS,
     CURRENTS_A,
@@ -23,6 +22,7 @@ from quiesce_benchmarks.papers.squeeze_rig import (
     table_iii_record,
     without_noise,
 )
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "the squeeze film identified from recordings (000: III.B, eq 18, Tables III to V)"
 FIGURES = (

@@ -16,7 +16,7 @@ from quiesce.report.plot_style import pyplot, svg_of
 
 from quiesce_benchmarks.papers import elastomer_mount as mount
 from quiesce_benchmarks.papers.elastomer_mount import Bode
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "elastomer: stiffness, damping and the Bode figure of 5 kg"
 FIGURES = (

@@ -9,7 +9,7 @@ import sys
 from quiesce.base.errors import UsageError
 from quiesce.engine.bench import Bench, require_emulator
 
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 from quiesce_benchmarks.signal import accuracy, estimators
 
 TITLE = "frequency by FFT, beside the sliding fit"

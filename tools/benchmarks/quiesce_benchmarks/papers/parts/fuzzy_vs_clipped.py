@@ -17,7 +17,7 @@ from quiesce.base.table import format_table
 
 from quiesce_benchmarks.papers import frame_laws
 from quiesce_benchmarks.papers.frame_laws import MAX_A, Frame, Law, Response, shaken
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 from quiesce_benchmarks.seeds import generator
 
 TITLE = "fuzzy beside clipped optimal control: tuned alike, judged on other earthquakes"

@@ -33,7 +33,7 @@ from quiesce.damper.model_file import DamperModel, read_model
 from quiesce.damper.score import score
 from quiesce.damper.simulate import simulator
 
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 from quiesce_benchmarks.seeds import generator
 
 TITLE = "network over envelope, frequency and phase (review, eq 34)"

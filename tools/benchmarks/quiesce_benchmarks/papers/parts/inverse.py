@@ -22,7 +22,7 @@ from quiesce.damper.model_file import DamperModel, read_model
 from quiesce.damper.report.tracking import error_table, numbers_of
 from quiesce.damper.simulate import simulator
 
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "inverses of a damper in force tracking (review, eqs 35, 37, 38)"
 FIGURE = "inverse_tracking_error_pct"

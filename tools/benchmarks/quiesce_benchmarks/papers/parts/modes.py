@@ -12,7 +12,7 @@ from quiesce.plant.library import Plant
 from quiesce.plant.variant import read_plant_data
 
 from quiesce_benchmarks.papers import modes_beam
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "modes: frequencies of Table VI, shapes of eq 24"
 # The plant file states the published frequencies: here its response has to peak there.

@@ -13,7 +13,7 @@ from quiesce_benchmarks.papers.online_changes import (
     table_of,
     worst,
 )
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "self-tuning fuzzy model on line, over changes of current, temperature and damper"
 # Worst over the kinds of change, from 2 s after it on.

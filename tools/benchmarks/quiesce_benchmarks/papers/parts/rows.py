@@ -7,8 +7,8 @@ from quiesce.base.paths import root
 from quiesce.base.table import format_table
 
 from quiesce_benchmarks.papers.commands import refused
-from quiesce_benchmarks.papers.part import Effort, Measured
 from quiesce_benchmarks.papers.rows import KINDS, Paper, Row, missing, papers, without_place
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "rows of the five papers: places and commands"
 FIGURES = (

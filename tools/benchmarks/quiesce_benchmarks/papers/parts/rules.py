@@ -14,7 +14,6 @@ from quiesce.base.table import format_table
 from quiesce.engine.bench import Bench
 from quiesce.rules.formats.files import read_rules
 
-from quiesce_benchmarks.papers.part import Effort, Measured
 from quiesce_benchmarks.papers.rules_bases import (
     CANTILEVER,
     CONSTANTS_A,
@@ -28,6 +27,7 @@ from quiesce_benchmarks.papers.rules_bases import (
     judge,
     judge_constants,
 )
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "rule bases: best, as published, and one that needs its RMS input"
 FIGURES = (

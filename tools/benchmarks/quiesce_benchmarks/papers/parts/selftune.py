@@ -15,7 +15,7 @@ from quiesce.engine.laws import CONSTANT_BEST, LAWS, OPEN_LOOP, SELFTUNE_PUBLISH
 from quiesce.engine.scenarios import load
 from quiesce.hil.published import load_reference
 
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "self-tuning: both polarities, with and without the gate at 7.5 Hz"
 FIGURES = (

@@ -13,7 +13,7 @@ from quiesce.base.table import format_table
 from quiesce.engine.bench import Bench
 from quiesce.engine.pool import run_all
 
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "sensors: band, corner, noise and drift of the published parts"
 FIGURES = (

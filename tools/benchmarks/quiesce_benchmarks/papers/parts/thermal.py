@@ -15,7 +15,6 @@ from quiesce.base.table import format_table
 from quiesce.damper.inverses.support_vector import train
 from quiesce.damper.library import Scales
 
-from quiesce_benchmarks.papers.part import Effort, Measured
 from quiesce_benchmarks.papers.thermal_loop import (
     COLD_C,
     CONDUCTANCE_W_K,
@@ -27,6 +26,7 @@ from quiesce_benchmarks.papers.thermal_loop import (
     whole,
     write_plant,
 )
+from quiesce_benchmarks.part import Effort, Measured
 from quiesce_benchmarks.seeds import generator
 
 TITLE = "a damper that warms up, tracked by support vectors with and without its temperature"

@@ -11,7 +11,7 @@ from quiesce_benchmarks.damper.real import data_folder
 from quiesce_benchmarks.papers import thesis_laws, thesis_spreads, thesis_test
 from quiesce_benchmarks.papers import thesis_published as published
 from quiesce_benchmarks.papers import thesis_scenarios as scenarios
-from quiesce_benchmarks.papers.part import Effort, Measured
+from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "scenarios of the RD-8040-1 thesis: ANFIS beside its parametric models"
 # Printed: 3.24 to 6.40 %, 4.58 % in the mean. The mean over six currents; the worst is reported.

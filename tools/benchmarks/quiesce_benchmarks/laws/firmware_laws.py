@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 import numpy as np
-from conftest import ROOT
+from quiesce.base.paths import root
 from quiesce.law.tables import Table
 
 LAWS = ("linear", "signs", "friction", "polynomial")
@@ -17,7 +17,7 @@ NO_DEMAND = 2**31 - 1
 
 @cache
 def library() -> ctypes.CDLL:
-    firmware = ROOT / "firmware"
+    firmware = root() / "firmware"
     file = Path(mkdtemp(prefix="quiesce-laws-")) / "laws.so"
     sources = [firmware / "base" / f"{one}.c" for one in ("state_space", "table", "view_signal")]
     sources += [firmware / "base/crc32.c", *sorted((firmware / "law/forms").glob("*.c"))]

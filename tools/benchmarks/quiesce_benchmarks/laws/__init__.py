@@ -1,0 +1,1 @@
+"""Published laws on structures with published results."""

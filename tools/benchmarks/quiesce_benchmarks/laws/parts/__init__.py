@@ -1,0 +1,1 @@
+"""One module a part: TITLE, FIGURES and measure(effort)."""
