@@ -55,6 +55,7 @@ def bump(height_m: float, length_m: float, speed_km_h: float) -> Record:
     """One wave 1 - cos, after a second of flat road."""
     w = 2 * np.pi * speed_km_h / 3.6 / length_m
     time_s = np.arange(0.0, 5.0, 1.0 / RATE_Hz) - 1.0
-    inside = (time_s >= 0) & (w * time_s < 2 * np.pi * (1 - 1e-9))
-    accel = np.where(inside, 0.5 * height_m * w**2 * np.cos(w * time_s), 0.0)
+    height = 0.5 * height_m * (1.0 - np.cos(np.clip(w * time_s, 0.0, 2 * np.pi)))
+    # Second differences: played with straight lines between its samples it comes back to flat.
+    accel = np.concatenate([[0.0], np.diff(height, 2) * RATE_Hz**2, [0.0]])
     return Record(f"bump_{speed_km_h:g}", RATE_Hz, accel)
