@@ -36,8 +36,9 @@ needs_of_target() {
 # needs_of_benchmark NAME...: of `benchmark`. Images that only benchmarks run: their build_images.
 needs_of_benchmark() {
     case "${1:-}" in
-    can | fuzzy | house | laws | signal) echo bench ;;
+    can | fuzzy | house | signal) echo bench ;;
     controller) echo bench dampers images ;;
+    laws) echo bench dampers ;;
     control | sweep) echo bench plant ;;
     trust) echo bench images trust ;;
     *) echo bench plant dampers ;;

@@ -32,9 +32,15 @@ PUBLISHED = {
 }
 # Of the third floor's acceleration against the force; found by hand on this record.
 PUBLISHED_WEIGHTS = {"force_1_N2": 1e-12}
-# Ours on this record alone, found by a search over weights and the tracker's gain.
-BEST_WEIGHTS = {"force_1_N2": 1e-10, "accel_s4_m2": 1.0}
-BEST_GAIN_mA_kN = 200
+# Ours on this record alone, found by searches of 900 trials over weights and the tracker's gain. The
+# gain trades the two figures for one another: 190 gives 0.2154 with 710 cm/s2.
+BEST_WEIGHTS = {
+    "force_1_N2": 1.237e-14,
+    "displacement_1_m2": 61.55,
+    "drift_1_m2": 45.46,
+    "accel_noise_m_s2": 0.1959,
+}
+BEST_GAIN_mA_kN = 188
 SEEDS = (1, 2, 3, 4, 5)
 
 
