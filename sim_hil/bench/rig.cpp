@@ -86,8 +86,7 @@ void require_same_ends(const Rig &rig, const PlantModel &plant) {
         const quiesce_board_damper_t &wired = rig.board().damper[i];
         const PlantDamper &damper = plant.dampers[rig.damper_of[i]];
         const Eigen::VectorXd stroke =
-            damper.ratio *
-            (shape_of(rig, plant, wired.end_a) - shape_of(rig, plant, wired.end_b));
+            damper.ratio * (shape_of(rig, plant, wired.end_a) - shape_of(rig, plant, wired.end_b));
         if ((stroke - damper.stroke).norm() > kRounding * (1.0 + damper.stroke.norm())) {
             throw InputError("damper '" + rig.file.dampers[i] +
                              "': its ends on the board, end_a and end_b, are not those of the "

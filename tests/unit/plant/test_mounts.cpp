@@ -13,9 +13,9 @@
 
 namespace {
 
+using quiesce::ContactMount;
 using quiesce::Equations;
 using quiesce::expect_message;
-using quiesce::ContactMount;
 using quiesce::GappedMount;
 using quiesce::Mistake;
 using quiesce::PlantModel;

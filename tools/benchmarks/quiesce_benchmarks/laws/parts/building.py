@@ -32,8 +32,8 @@ PUBLISHED = {
 }
 # Of the third floor's acceleration against the force; found by hand on this record.
 PUBLISHED_WEIGHTS = {"force_1_N2": 1e-12}
-# Ours on this record alone, found by searches of 900 trials over weights and the gain of the tracker,
-# which trades the two figures for one another: 190 gives 0.2154 with 710 cm/s2.
+# Ours on this record alone, found by searches of 900 trials over weights and its tracker's gain:
+# that trades the two figures for one another, 190 gives 0.2154 with 710 cm/s2.
 BEST_WEIGHTS = {
     "force_1_N2": 1.237e-14,
     "displacement_1_m2": 61.55,
