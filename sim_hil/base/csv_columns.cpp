@@ -100,4 +100,27 @@ std::vector<CsvRow> read_csv_columns(const std::string &file,
     return rows;
 }
 
+std::vector<CsvRow> read_csv_numbers(const std::string &file) {
+    std::ifstream in(file);
+    std::string text;
+    std::vector<CsvRow> rows;
+    for (std::size_t line = 1; !std::filesystem::is_directory(file) && std::getline(in, text);
+         ++line) {
+        const std::string content = line == 1 ? without_byte_order_mark(text) : text;
+        if (trimmed(content).empty()) {
+            continue;
+        }
+        CsvRow row{line, {}};
+        for (const std::string &cell : split(content)) {
+            row.values.push_back(
+                number(file, line, "column " + std::to_string(row.values.size() + 1), cell));
+        }
+        rows.push_back(std::move(row));
+    }
+    if (rows.empty()) {
+        fail(file, 1, "cannot be read, or is empty; expected lines of numbers");
+    }
+    return rows;
+}
+
 } // namespace quiesce

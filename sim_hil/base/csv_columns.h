@@ -1,4 +1,4 @@
-/// Columns of numbers from a CSV file: one header line of names, then one line of numbers a row.
+/// Numbers from CSV files: columns below a header line of names, or all of a file without one.
 #ifndef QUIESCE_CSV_COLUMNS_H
 #define QUIESCE_CSV_COLUMNS_H
 
@@ -18,6 +18,10 @@ struct CsvRow {
 /// wrong.
 std::vector<CsvRow> read_csv_columns(const std::string &file,
                                      const std::vector<std::string> &names);
+
+/// Reads a file without a header, all lines of it, under the same rules. Throws InputError also
+/// where it has no number at all.
+std::vector<CsvRow> read_csv_numbers(const std::string &file);
 
 } // namespace quiesce
 

@@ -59,7 +59,7 @@ PlantModel load_plant(const std::string &file) {
     root.integer("version", 1, 1);
     PlantModel model{};
     model.name = root.text("name");
-    StructureSection section = read_structure(root.table("structure"), has_damper_ends(root));
+    StructureSection section = read_structure(root.table("structure"), file, has_damper_ends(root));
     model.structure = std::move(section.structure);
     model.places = read_places(root, model.structure, std::move(section.nodes));
     model.driver = read_driver(root.table("driver"));

@@ -3,6 +3,7 @@
 #ifndef QUIESCE_STRUCTURE_SECTION_H
 #define QUIESCE_STRUCTURE_SECTION_H
 
+#include <string>
 #include <vector>
 
 #include "place.h"
@@ -18,9 +19,9 @@ struct StructureSection {
     std::vector<Place> nodes; ///< of modes over nodes; else none
 };
 
-/// has_ends: the dampers say where they are, so the structure must not. Throws InputError naming
-/// the key that is wrong.
-StructureSection read_structure(TomlTable section, bool has_ends);
+/// plant_file: that files of matrices are beside. has_ends: the dampers say where they are, so the
+/// structure must not. Throws InputError naming the key, or the file and line, that is wrong.
+StructureSection read_structure(TomlTable section, const std::string &plant_file, bool has_ends);
 
 } // namespace quiesce
 

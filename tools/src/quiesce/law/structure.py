@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.errors import UsageError, one_line
+from quiesce.base.matrix_file import with_own_matrices
 from quiesce.base.paths import shown
 
 
@@ -32,7 +33,7 @@ class Structure:
 def load_structure(file: Path, bodies: Sequence[str], dampers: Sequence[str]) -> Structure:
     """UsageError, in one line, where it has no matrices, or no place or damper of a name."""
     data = _read(file)
-    section = data.get("structure", {})
+    section = with_own_matrices(data.get("structure", {}), file.parent)
     if section.get("kind") != "matrices":
         raise UsageError(
             f"{shown(file)}: its structure is given by modes; this law is made from matrices "

@@ -9,6 +9,7 @@ from typing import Any
 import tomli_w
 
 from quiesce.base.errors import UsageError, one_line
+from quiesce.base.matrix_file import with_own_matrices
 from quiesce.base.paths import shown
 from quiesce.plant.damper import require_one_damper, scale_force, with_own_damper
 
@@ -50,6 +51,8 @@ def read_plant_data(file: Path) -> dict[str, Any]:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UsageError(f"{shown(file)}: not a TOML file: {one_line(error)}")
     require_one_damper(data, file)
+    if isinstance(data.get("structure"), dict):
+        data["structure"] = with_own_matrices(data["structure"], file.parent)
     return with_own_damper(_with_whole_paths(data, file.parent), file.parent)
 
 
