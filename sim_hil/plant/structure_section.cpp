@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "csv_columns.h"
 #include "identifier.h"
@@ -139,19 +140,21 @@ std::vector<std::vector<double>> rows_of_file(TomlTable &section, const std::str
                                               const std::string &plant_file, std::size_t count) {
     const std::filesystem::path name = section.text(key);
     const std::string file = (std::filesystem::path(plant_file).parent_path() / name).string();
-    const std::string wanted = std::to_string(count);
     std::vector<std::vector<double>> rows;
     for (CsvRow &row : read_csv_numbers(file)) {
         if (row.values.size() != count) {
-            throw InputError(file + ":" + std::to_string(row.line) + ": expected " + wanted +
-                             " numbers, found " + std::to_string(row.values.size()));
+            std::ostringstream message;
+            message << file << ':' << row.line << ": expected " << count << " numbers, found "
+                    << row.values.size();
+            throw InputError(message.str());
         }
         rows.push_back(std::move(row.values));
     }
     if (rows.size() != count) {
-        section.fail(key, "expected " + wanted + " lines of " + wanted +
-                              " numbers, as many as force has; found " +
-                              std::to_string(rows.size()) + " lines");
+        std::ostringstream message;
+        message << "expected " << count << " lines of " << count
+                << " numbers, as many as force has; found " << rows.size() << " lines";
+        section.fail(key, message.str());
     }
     return rows;
 }
