@@ -161,15 +161,23 @@ static quiesce_table_verdict_t use_shipped(control_t *self) {
     return map != NULL ? control_drop(self, map->magic) : QUIESCE_TABLE_MAGIC;
 }
 
-// Whether it is good, and the board has what it needs.
+static bool is_of_this_rate(const control_t *self, const uint32_t *words) {
+    const law_table_kind_t *kind = self->law->kind;
+    return kind->rate_Hz == NULL ||
+           kind->rate_Hz(words) == (uint32_t)self->setup.params.tick_rate_Hz;
+}
+
+// Whether it is good, of this tick rate, and the board has what it needs.
 static quiesce_table_verdict_t check_law_table(const control_t *self, const uint32_t *words,
                                                uint32_t count) {
     const law_table_kind_t *kind = self->law->kind;
     const quiesce_table_verdict_t verdict =
         kind != NULL ? kind->check(words, count) : QUIESCE_TABLE_MAGIC;
-    const bool is_served = verdict != QUIESCE_TABLE_OK || kind->needs == NULL ||
-                           (kind->needs(words) & ~self->provided) == 0;
-    return is_served ? verdict : QUIESCE_TABLE_FIT;
+    if (verdict != QUIESCE_TABLE_OK) {
+        return verdict;
+    }
+    const bool is_served = kind->needs == NULL || (kind->needs(words) & ~self->provided) == 0;
+    return is_served && is_of_this_rate(self, words) ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
 }
 
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {

@@ -212,7 +212,8 @@ typedef enum {
     QUIESCE_TABLE_RULE = 6,   ///< a rule names what is not there
     QUIESCE_TABLE_OUTPUT = 7, ///< a term out of range
     QUIESCE_TABLE_FIT = 8,    ///< inputs, outputs or their units are not the law's; it needs a
-                              ///< signal or a damper that the board does not have
+                              ///< signal or a damper that the board does not have; it is made for
+                              ///< another tick rate
     QUIESCE_TABLE_POINT = 9,  ///< a frequency that does not rise, a floor above its level, a long
                               ///< ramp; an axis or a force of a map; a coefficient, limit, band,
                               ///< power or current of a law in form of a table

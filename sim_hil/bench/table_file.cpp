@@ -94,8 +94,10 @@ std::vector<std::uint32_t> text_words(const std::string &file, const TextTable &
 /// The controller's reason, in words of the laws that are tables.
 const char *reason_of_form(quiesce_table_verdict_t verdict) {
     if (verdict == QUIESCE_TABLE_FIT) {
-        return "it needs a signal or a damper that this board does not have (quiesce law show says "
-               "which it needs, quiesce board show what there is)";
+        return "it needs a signal or a damper that this board does not have, or is made for "
+               "another "
+               "tick_rate_Hz (quiesce law show says what it needs, quiesce board show what there "
+               "is)";
     }
     if (verdict == QUIESCE_TABLE_SHAPE) {
         return "its numbers of states, inputs, rows, sections, signs or terms are out of range";

@@ -1,7 +1,8 @@
 // Forces from measurements through a linear system: state feedback with its observer, filters,
 // skyhook and groundhook, a sliding surface within its boundary layer.
 //
-// Its table, after the head of all tables: states n, inputs m, rows q; m inputs (view_signal.h); n
+// Its table, after the head of all tables: ticks a second that it is made for, states n, inputs m,
+// rows q; m inputs (view_signal.h); n
 // states (state_space.h); q rows {damper, shift, limit in mN, n + m coefficients}. A row is limited
 // by itself; a damper's demand is the sum of its rows. `quiesce law make` writes them.
 #include <stddef.h>
@@ -14,10 +15,11 @@
 
 #define LINEAR_MAGIC UINT32_C(0x314E4C51)
 
-enum { HEADER_WORDS = 6, MOST_ROWS = 8, ROW_WORDS = 3, MOST_SHIFT = 62 };
+enum { HEADER_WORDS = 7, MOST_ROWS = 8, ROW_WORDS = 3, MOST_SHIFT = 62 };
 
 typedef struct {
     uint32_t head[TABLE_HEAD_WORDS];
+    uint32_t rate_Hz;
     uint32_t states;
     uint32_t inputs;
     uint32_t rows;
@@ -104,6 +106,10 @@ static uint64_t needs(const uint32_t *words) {
     return bits;
 }
 
+static uint32_t rate_Hz(const uint32_t *words) {
+    return as_table(words)->rate_Hz;
+}
+
 // To the nearest mN.
 static int32_t force_mN(const linear_row_t *row, const linear_table_t *table,
                         const state_space_t *system, const int32_t *u) {
@@ -149,7 +155,8 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
     word[1] = largest >> 20;
 }
 
-static const law_table_kind_t system = {.magic = LINEAR_MAGIC, .check = check, .needs = needs};
+static const law_table_kind_t system = {
+    .magic = LINEAR_MAGIC, .check = check, .needs = needs, .rate_Hz = rate_Hz};
 
 extern const law_t law_linear;
 const law_t law_linear = {

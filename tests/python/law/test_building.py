@@ -81,6 +81,22 @@ def test_clipped_optimal_is_better_than_both_currents(
     assert result["faults"] == 0
 
 
+def test_a_table_is_refused_at_another_rate(
+    build: Path, scenario: Path, quiesce, tmp_path: Path
+) -> None:
+    file = tmp_path / "half.words"
+    words = ["--board", BOARD, "--plant", PLANT, "--rate", "500", "-o", file]
+    assert quiesce("law", "make", "clipped_optimal", *words).returncode == 0
+    assert "made for 500 ticks" in quiesce("law", "show", file).stdout
+    bench = [build / "host/sim_hil/quiesce_bench", "run", "--scenario", scenario]
+    bench += ["--law", "linear", "--law-table", file, "--set", "tracker=compare"]
+    refused = subprocess.run(list(map(str, bench)), capture_output=True, text=True, check=False)
+    assert refused.returncode == 2
+    assert "made for another tick_rate_Hz" in refused.stderr
+    options = bench[4:] + ["--set", "tick_rate_Hz=500"]
+    assert run(build, scenario, *options)["faults"] == 0
+
+
 @pytest.mark.parametrize(
     ("recipe", "options"),
     [

@@ -85,6 +85,7 @@ static int32_t tick(const law_t *law) {
 // 100 mN a um/s of the damper, at most 5 N; nothing of the past.
 static void make_gain(void) {
     begin(0x314E4C51);
+    put(1000);
     put(0);
     put(1);
     put(1);
@@ -99,6 +100,7 @@ static void make_gain(void) {
 // One state that goes a 2^-shift of the way to its input in a tick.
 static void make_lag(int32_t shift) {
     begin(0x314E4C51);
+    put(1000);
     put(1);
     put(1);
     put(1);
@@ -171,6 +173,7 @@ static void make_polynomial(void) {
 static void test_linear_without_states_is_a_gain_with_a_limit(void) {
     make_gain();
     expect_needs(&law_linear, VIEW_STROKE_VELOCITY | VIEW_CURRENT);
+    TEST_ASSERT_EQUAL_UINT32(1000, law_linear.kind->rate_Hz(words));
     static const int32_t of[][2] = {{0, 0},     {7, 700},          {-7, -700},        {50, 5000},
                                     {51, 5000}, {-1000000, -5000}, {VIEW_LIMIT, 5000}};
     for (uint32_t i = 0; i < sizeof of / sizeof of[0]; i++) {
@@ -201,6 +204,7 @@ static void test_linear_slow_lag_arrives(void) {
 // coefficient in 2^-31. 1000 cycles later e^-6.28 of it is left, and it has not drifted.
 static void test_linear_lightly_damped_mode_rings(void) {
     begin(0x314E4C51);
+    put(1000);
     put(2);
     put(1);
     put(1);
@@ -244,6 +248,7 @@ static void test_linear_lightly_damped_mode_rings(void) {
 // An integrator that runs away: one tick without a demand, then from rest.
 static void test_linear_overflow_is_no_demand_and_starts_anew(void) {
     begin(0x314E4C51);
+    put(1000);
     put(1);
     put(1);
     put(1);
@@ -272,6 +277,7 @@ static void test_linear_overflow_is_no_demand_and_starts_anew(void) {
 // The largest numbers that the check lets in: no sum overflows (the sanitizers watch).
 static void test_linear_at_the_ends_of_its_ranges(void) {
     begin(0x314E4C51);
+    put(1000);
     put(12);
     put(12);
     put(2);

@@ -57,13 +57,13 @@ def compile_system(
     b, d, c = b / scale, 1e3 * d / scale, 1e3 * c
     largest = np.array([one.largest for one in inputs], dtype=float)
     if not len(a):
-        table = LinearTable(tuple(inputs), (), _rows(c, d, rows))
+        table = LinearTable(rate_Hz, tuple(inputs), (), _rows(c, d, rows))
         return Compiled(table, np.inf, 0.0, _gain_error(table, a, b, c, d))
     a, b, c = _modal(a, b, c)
     reach = l1_norms(a, b * largest)
     size = SHARE * STATE_LIMIT / np.maximum(reach, np.finfo(float).tiny)
     a, b, c = size[:, None] * a / size, size[:, None] * b, c / size
-    table = LinearTable(tuple(inputs), _states(a, b), _rows(c, d, rows))
+    table = LinearTable(rate_Hz, tuple(inputs), _states(a, b), _rows(c, d, rows))
     real_a, real_b, _, _ = table.matrices()
     headroom = STATE_LIMIT / l1_norms(real_a, real_b * largest).max()
     if headroom < 1.0:

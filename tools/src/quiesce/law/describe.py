@@ -13,10 +13,10 @@ from quiesce.law.signal import Input
 from quiesce.law.tables import Table
 
 
-def described(table: Table, rate_Hz: int) -> str:
+def described(table: Table) -> str:
     head = f"law {table.law}, demands {table.demands}; dampers {_dampers(table)}"
     if isinstance(table, LinearTable):
-        return "\n\n".join([head, *_linear(table, rate_Hz)])
+        return "\n\n".join([head, *_linear(table)])
     if isinstance(table, SignsTable):
         parts = [_signs(i, section) for i, section in enumerate(table.sections)]
     elif isinstance(table, FrictionTable):
@@ -35,7 +35,7 @@ def _limit(one: Input) -> str:
     return f"{one.limit / quantity.per_unit:.4g} {quantity.unit}"
 
 
-def _linear(table: LinearTable, rate_Hz: int) -> list[str]:
+def _linear(table: LinearTable) -> list[str]:
     a, b, c, d = table.matrices()
     scale = np.array([one.per_unit for one in table.inputs])
     direct = 1e-3 * d * scale
@@ -51,10 +51,10 @@ def _linear(table: LinearTable, rate_Hz: int) -> list[str]:
     ]
     limits = ["limit", "", *(x for row in table.rows for x in (f"{1e-3 * row.limit_mN:.4g} N", ""))]
     parts = [
-        "N for 1 in the signal's SI unit that lasts, and at once:\n"
-        + format_table(head, [*rows, limits], (0,))
+        f"made for {table.rate_Hz} ticks a second; N for 1 in the signal's SI unit that lasts, and "
+        "at once:\n" + format_table(head, [*rows, limits], (0,))
     ]
-    return parts + ([_poles(a, rate_Hz)] if len(a) else [])
+    return parts + ([_poles(a, table.rate_Hz)] if len(a) else [])
 
 
 def _pairs(constant: np.ndarray, direct: np.ndarray) -> list[str]:

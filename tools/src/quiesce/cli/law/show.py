@@ -23,13 +23,9 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="words, from `quiesce law make`")
-    parser.add_argument(
-        "--rate", type=int, default=1000, metavar="HZ",
-        help="control ticks a second, for poles (%(default)s)",
-    )  # fmt: skip
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    print(described(read_table(args.file), args.rate))
+    print(described(read_table(args.file)))
     return 0

@@ -38,6 +38,7 @@ class Row:
 
 @dataclass(frozen=True)
 class LinearTable:
+    rate_Hz: int  # ticks a second that it is made for
     inputs: tuple[Input, ...]
     states: tuple[State, ...]
     rows: tuple[Row, ...]
@@ -54,7 +55,7 @@ class LinearTable:
     def words(self) -> list[int]:
         """ValueError where there is too much of it."""
         _require_sizes(len(self.states), len(self.inputs), len(self.rows))
-        values = [len(self.states), len(self.inputs), len(self.rows)]
+        values = [self.rate_Hz, len(self.states), len(self.inputs), len(self.rows)]
         for one in self.inputs:
             values += one.words()
         for state in self.states:
@@ -101,7 +102,7 @@ def _require_sizes(states: int, inputs: int, rows: int) -> None:
 def read(words: Sequence[int]) -> LinearTable:
     """ValueError, in one line, where the firmware refuses them."""
     reader = Reader(opened(words))
-    n, m, q = reader.take(3)
+    rate_Hz, n, m, q = reader.take(4)
     _require_sizes(n, m, q)
     inputs = tuple(read_input(reader) for _ in range(m))
     states = tuple(
@@ -118,4 +119,4 @@ def read(words: Sequence[int]) -> LinearTable:
         for _ in range(q)
     )
     reader.end()
-    return LinearTable(inputs, states, rows)
+    return LinearTable(rate_Hz, inputs, states, rows)
