@@ -14,8 +14,9 @@ static uint64_t control_needs(const quiesce_params_t *params) {
 }
 
 uint64_t control_serves(const quiesce_params_t *params) {
-    const law_table_kind_t *kind = law_find(params->law)->kind;
-    return kind != NULL && kind->needs != NULL ? ~UINT64_C(0) : control_needs(params);
+    const law_t *law = law_find(params->law);
+    const bool is_open = law->kind != NULL && law->kind->needs != NULL;
+    return is_open || forces_take_table(law, params) ? ~UINT64_C(0) : control_needs(params);
 }
 
 static void start(control_t *self) {
@@ -109,7 +110,7 @@ static void find_needs(control_t *self) {
     const bool has_own = kind != NULL && kind->needs != NULL && self->setup.table != NULL;
     const bool wants_more = self->forces.track != NULL || lacks_table(self);
     self->needs = self->fixed_needs | (has_own ? kind->needs(self->setup.table) : 0) |
-                  (wants_more ? MORE : 0);
+                  forces_table_needs(&self->forces, self->forces.table) | (wants_more ? MORE : 0);
 }
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
@@ -137,10 +138,15 @@ static void use_law_table(control_t *self, const uint32_t *words) {
     }
 }
 
+static void use_map(control_t *self, const uint32_t *words) {
+    self->forces.table = words;
+    find_needs(self);
+}
+
 quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
     const track_table_kind_t *map = forces_kind(&self->forces);
     if (map != NULL && magic == map->magic) {
-        self->forces.table = NULL;
+        use_map(self, NULL);
         return QUIESCE_TABLE_OK;
     }
     const law_table_kind_t *kind = self->law->kind;
@@ -180,6 +186,15 @@ static quiesce_table_verdict_t check_law_table(const control_t *self, const uint
     return is_served && is_of_this_rate(self, words) ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
 }
 
+static quiesce_table_verdict_t check_map(const control_t *self, const uint32_t *words,
+                                         uint32_t count) {
+    const quiesce_table_verdict_t verdict = forces_kind(&self->forces)->check(words, count);
+    const bool is_good = verdict == QUIESCE_TABLE_OK;
+    const bool is_served =
+        is_good && (forces_table_needs(&self->forces, words) & ~self->provided) == 0;
+    return is_good && !is_served ? QUIESCE_TABLE_FIT : verdict;
+}
+
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
     if (words == NULL) {
         return use_shipped(self);
@@ -187,12 +202,12 @@ quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint
     const track_table_kind_t *map = forces_kind(&self->forces);
     const bool is_map = map != NULL && count > 0 && words[0] == map->magic;
     const quiesce_table_verdict_t verdict =
-        is_map ? map->check(words, count) : check_law_table(self, words, count);
+        is_map ? check_map(self, words, count) : check_law_table(self, words, count);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
     if (is_map) {
-        self->forces.table = words;
+        use_map(self, words);
     } else {
         use_law_table(self, words);
     }

@@ -11,9 +11,18 @@ uint64_t forces_need(const law_t *law, const quiesce_params_t *params) {
     return track != NULL ? track->needs : 0;
 }
 
+bool forces_take_table(const law_t *law, const quiesce_params_t *params) {
+    const track_t *track = tracker_of(law, params);
+    return track != NULL && track->kind != NULL;
+}
+
 void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *params,
                  uint32_t dampers) {
     *self = (forces_t){.track = tracker_of(law, params), .dampers = dampers};
+}
+
+uint64_t forces_table_needs(const forces_t *self, const uint32_t *words) {
+    return words != NULL ? self->track->kind->needs(words, self->dampers) : 0;
 }
 
 const track_table_kind_t *forces_kind(const forces_t *self) {
@@ -26,9 +35,10 @@ bool forces_are_ready(const forces_t *self) {
 
 void forces_step(forces_t *self, const quiesce_params_t *params, const view_t *view,
                  law_demand_t *demand) {
-    const track_setup_t setup = {params, self->table};
+    track_setup_t setup = {params, self->table, 0};
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         const int32_t demand_mN = demand->value[i];
+        setup.damper = i;
         demand->value[i] = i < self->dampers ? self->track->step(self->state[i], &setup,
                                                                  &view->damper[i], demand_mN)
                                              : 0;

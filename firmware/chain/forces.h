@@ -21,6 +21,12 @@ uint64_t forces_need(const law_t *law, const quiesce_params_t *params);
 void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *params,
                  uint32_t dampers);
 
+/// VIEW_ bits that a checked table of the tracker's kind needs; NULL: none.
+uint64_t forces_table_needs(const forces_t *self, const uint32_t *words);
+
+/// Whether the tracker of these parameters works with a table, which may need any bit.
+bool forces_take_table(const law_t *law, const quiesce_params_t *params);
+
 /// The kind of the tracker's table. NULL: no tracker, or it needs none.
 const track_table_kind_t *forces_kind(const forces_t *self);
 
