@@ -11,9 +11,9 @@ uint64_t forces_need(const law_t *law, const quiesce_params_t *params) {
     return track != NULL ? track->needs : 0;
 }
 
-bool forces_take_table(const law_t *law, const quiesce_params_t *params) {
+bool forces_may_need_more(const law_t *law, const quiesce_params_t *params) {
     const track_t *track = tracker_of(law, params);
-    return track != NULL && track->kind != NULL;
+    return track != NULL && track->kind != NULL && track->kind->needs != NULL;
 }
 
 void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *params,
@@ -21,12 +21,17 @@ void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *param
     *self = (forces_t){.track = tracker_of(law, params), .dampers = dampers};
 }
 
-uint64_t forces_table_needs(const forces_t *self, const uint32_t *words) {
-    return words != NULL ? self->track->kind->needs(words, self->dampers) : 0;
-}
-
 const track_table_kind_t *forces_kind(const forces_t *self) {
     return self->track != NULL ? self->track->kind : NULL;
+}
+
+void forces_use(forces_t *self, const uint32_t *table) {
+    *self = (forces_t){.track = self->track, .table = table, .dampers = self->dampers};
+}
+
+uint64_t forces_table_needs(const forces_t *self, const uint32_t *table) {
+    const track_table_kind_t *kind = forces_kind(self);
+    return table != NULL && kind->needs != NULL ? kind->needs(table) : 0;
 }
 
 bool forces_are_ready(const forces_t *self) {

@@ -118,12 +118,9 @@ const uint32_t *force_map_section(const uint32_t *words, uint32_t damper) {
     return section;
 }
 
-uint64_t force_map_needs(const uint32_t *words, uint32_t dampers) {
-    uint64_t bits = sections_count(words) > 1u ? sections_need(&kind, words) : 0;
-    for (uint32_t i = 0; sections_count(words) == 1u && i < dampers; i++) {
-        bits |= axis_needs(sections_first(words), i);
-    }
-    return bits;
+uint64_t force_map_needs(const uint32_t *words) {
+    return sections_count(words) > 1u ? sections_need(&kind, words)
+                                      : VIEW_EACH(axis_needs(sections_first(words), 0));
 }
 
 int32_t force_map_place(const uint32_t *section, const view_damper_t *damper) {

@@ -32,9 +32,8 @@
 /// Of good words: the section of this damper. NULL iff they have several and none for it.
 const uint32_t *force_map_section(const uint32_t *words, uint32_t damper);
 
-/// VIEW_ bits that good words need for so many dampers: their axes, and each damper of several
-/// sections.
-uint64_t force_map_needs(const uint32_t *words, uint32_t dampers);
+/// VIEW_ bits that good words need: their axes, and each damper of several sections.
+uint64_t force_map_needs(const uint32_t *words);
 
 /// Where the damper is on the section's axis.
 int32_t force_map_place(const uint32_t *section, const view_damper_t *damper);
