@@ -156,6 +156,18 @@ static bool take_map(law_trial_t *self, const uint32_t *map, uint32_t count) {
     return kind == NULL || (map != NULL && kind->check(map, count) == QUIESCE_TABLE_OK);
 }
 
+static void start_guards(law_trial_t *self, const quiesce_params_t *params) {
+    const guard_cfg_t cfg = {
+        .tick_rate_Hz = (uint32_t)params->tick_rate_Hz,
+        .max_mA = params->max_current_mA,
+        .safe_mA = params->safe_current_mA,
+        .slew_mA_s = params->slew_mA_s,
+    };
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        guard_init(&self->guard[i], &cfg);
+    }
+}
+
 bool law_trial_start(law_trial_t *self, const quiesce_params_t *params, const uint32_t *table,
                      uint32_t count, const uint32_t *map, uint32_t map_count, uint32_t seed) {
     *self = (law_trial_t){
@@ -165,6 +177,7 @@ bool law_trial_start(law_trial_t *self, const quiesce_params_t *params, const ui
         .seed = seed,
     };
     forces_init(&self->forces, self->law, params, QUIESCE_DAMPERS);
+    start_guards(self, params);
     if (!take_table(self, table, count) || !take_map(self, map, map_count)) {
         return false;
     }
@@ -183,6 +196,9 @@ void law_trial_step(law_trial_t *self) {
     if (self->has_demand && self->forces.track != NULL) {
         forces_step(&self->forces, &self->setup.params, &self->view, &self->current);
     }
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        self->command.value[i] = guard_step(&self->guard[i], self->current.value[i], true);
+    }
 }
 
 static bool agrees(int32_t demand_mN, int32_t way) {
@@ -197,13 +213,18 @@ static bool is_against(const track_t *track, const view_damper_t *damper, int32_
            !(sees_velocity && agrees(demand_mN, damper->velocity_um_s));
 }
 
+static bool is_beyond(int32_t current_mA, int32_t most_mA) {
+    return current_mA < 0 || current_mA > most_mA;
+}
+
 uint32_t law_trial_breaks(const law_trial_t *self) {
     const track_t *track = self->forces.track;
     uint32_t bits = 0;
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         const int32_t current_mA = self->current.value[i];
         const int32_t demand_mN = self->demand.value[i];
-        if (current_mA < 0 || current_mA > QUIESCE_HIGHEST_CURRENT_mA) {
+        if (is_beyond(self->command.value[i], self->setup.params.max_current_mA) ||
+            (track != NULL && is_beyond(current_mA, QUIESCE_HIGHEST_CURRENT_mA))) {
             bits |= LAW_TRIAL_BEYOND;
         }
         if (track != NULL && current_mA > 0 &&

@@ -5,6 +5,7 @@
 #define LAW_TRIAL_H
 
 #include "forces.h"
+#include "guard.h"
 #include "law.h"
 
 enum {
@@ -12,8 +13,8 @@ enum {
     LAW_TRIAL_STATE_WORDS = LAW_STATE_BYTES / sizeof(uint64_t),
 };
 
-// Bits: a demand against what the damper does got a current; a current is beyond what any driver
-// takes, or below 0.
+// Bits: a demand against what the damper does got a current; a current is beyond max_current_mA, or
+// below 0, behind the guard, or a tracker's beyond what any driver takes.
 enum { LAW_TRIAL_ENERGISED = 1, LAW_TRIAL_BEYOND = 2 };
 
 // How a signal goes on for a while.
@@ -31,6 +32,8 @@ typedef struct {
     view_t view;
     law_demand_t demand;  // of the law
     law_demand_t current; // of the tracker, of the law where that demands currents; mA
+    law_demand_t command; // behind the guard, mA
+    guard_t guard[QUIESCE_DAMPERS];
     bool has_demand;      // in this tick
     uint32_t seed;
     uint32_t tick;
