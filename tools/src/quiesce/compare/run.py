@@ -103,10 +103,10 @@ class Comparison:
     def references(self) -> list[ComparedLaw]:
         return [constant(0, OFF), constant(self.rig.all_mA, ALL)]
 
-    def trace(self, case: Case) -> Trace:
-        """Of one case, for plots."""
+    def trace(self, case: Case, further: Sequence[str] = ()) -> Trace:
+        """Of one case, for plots; with these columns of the bench beside the usual ones."""
         with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
-            return self._run(case, self._scenario(Path(name), case.record))
+            return self._run(case, self._scenario(Path(name), case.record), further)
 
     def _work(self, case: Case, files: dict[str, Path]) -> tuple[str, Callable[[], Figures]]:
         text = f"{case.law.label}, {case.record.name}, seed {case.seed}"
@@ -116,12 +116,13 @@ class Comparison:
         trace = self._run(case, file)
         return figures_of(trace, self.rig.board.bodies, self.rig.board.dampers, self._contacts)
 
-    def _run(self, case: Case, file: Path) -> Trace:
+    def _run(self, case: Case, file: Path, further: Sequence[str] = ()) -> Trace:
         board = self.rig.board
+        names = [*columns(board.bodies, board.dampers), *further]
         with tempfile.NamedTemporaryFile(prefix="quiesce-compare-", suffix=".trace") as trace:
             self._bench.json(
                 "run", "--scenario", str(file), "--law", case.law.law, "--seed", str(case.seed),
-                "--trace", trace.name, "--columns", ",".join(columns(board.bodies, board.dampers)),
+                "--trace", trace.name, "--columns", ",".join(names),
                 *case.law.options,
             )  # fmt: skip
             return read_trace(Path(trace.name))
