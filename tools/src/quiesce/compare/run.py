@@ -2,7 +2,8 @@
 the best constant current, which only hindsight knows."""
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -12,7 +13,7 @@ from quiesce.compare.laws import ComparedLaw, constant
 from quiesce.compare.records import ACCEL, TIME, Record
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import Board, load_board
-from quiesce.engine.pool import run_work
+from quiesce.engine.pool import WORKERS, run_work
 from quiesce.engine.scenarios import read_toml
 from quiesce.engine.trace import Trace, read_trace
 
@@ -89,16 +90,31 @@ class Comparison:
         none, all_current = self.references()
         wanted = [none, *steps, all_current, *laws]
         cases = [Case(law, r, seed) for r in records for seed in seeds for law in wanted]
-        with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
-            folder = Path(name)
-            files = {record.name: self._scenario(folder, record) for record in records}
-            found = run_work(self._bench, [self._work(one, files) for one in cases])
+        found = self.figures(cases)
         count = len(wanted)
         return [
             cell
             for first in range(0, len(cases), count)
             for cell in self._group(cases[first : first + count], found[first : first + count])
         ]
+
+    def figures(self, cases: Sequence[Case], workers: int = WORKERS) -> list[Figures]:
+        """Of these cases alone, in order; progress on stderr."""
+        records = {case.record.name: case.record for case in cases}
+        with self.ready(list(records.values())) as run:
+            pieces = [
+                (f"{one.law.label}, {one.record.name}, seed {one.seed}", partial(run, one))
+                for one in cases
+            ]
+            return run_work(self._bench, pieces, workers)
+
+    @contextmanager
+    def ready(self, records: Sequence[Record]) -> Iterator[Callable[[Case], Figures]]:
+        """What runs a case on one of these records, also from several threads at once."""
+        with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
+            folder = Path(name)
+            files = {record.name: self._scenario(folder, record) for record in records}
+            yield lambda case: self._figures(case, files[case.record.name])
 
     def references(self) -> list[ComparedLaw]:
         return [constant(0, OFF), constant(self.rig.all_mA, ALL)]
@@ -107,10 +123,6 @@ class Comparison:
         """Of one case, for plots."""
         with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
             return self._run(case, self._scenario(Path(name), case.record))
-
-    def _work(self, case: Case, files: dict[str, Path]) -> tuple[str, Callable[[], Figures]]:
-        text = f"{case.law.label}, {case.record.name}, seed {case.seed}"
-        return text, partial(self._figures, case, files[case.record.name])
 
     def _figures(self, case: Case, file: Path) -> Figures:
         trace = self._run(case, file)
