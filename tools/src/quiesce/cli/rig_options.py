@@ -2,13 +2,16 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from quiesce.base.command import real_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import measurements, root, shown
-from quiesce.compare.records import ACCEL, TIME, Record, read_record
-from quiesce.compare.roads import read_road
-from quiesce.compare.run import Shaking
+from quiesce.compare.names import ACCEL, TIME
+
+if TYPE_CHECKING:
+    from quiesce.compare.records import Record
+    from quiesce.compare.run import Shaking
 
 
 def add_rig(parser: argparse.ArgumentParser) -> None:
@@ -62,7 +65,11 @@ def rig_files(args: argparse.Namespace) -> tuple[Path, Path]:
     return data / f"plants/{args.rig}.toml", data / f"boards/{args.rig}.toml"
 
 
-def records_of(args: argparse.Namespace) -> list[Record]:
+def records_of(args: argparse.Namespace) -> "list[Record]":
+    # Imported late: numpy is slow, and options need none of it.
+    from quiesce.compare.records import read_record
+    from quiesce.compare.roads import read_road
+
     folder = measurements("earthquake")
     files = args.record or ([] if args.road else sorted(folder.glob("*.csv")))
     if not files and not args.road:
@@ -76,5 +83,26 @@ def records_of(args: argparse.Namespace) -> list[Record]:
     return found
 
 
-def shaking_of(args: argparse.Namespace) -> Shaking:
+def shaking_of(args: argparse.Namespace) -> "Shaking":
+    from quiesce.compare.run import Shaking
+
     return Shaking(args.time_scale, args.gain, args.scale_to)
+
+
+def words_of_motions(args: argparse.Namespace) -> list[str]:
+    """Structure and motions as they can be typed again."""
+    words = ["--rig", args.rig] if args.rig else []
+    words += [] if args.rig else ["--plant", shown(args.plant), "--board", shown(args.board)]
+    for name in ("record", "road"):
+        words += [word for value in getattr(args, name) for word in (f"--{name}", _told(value))]
+    defaults = {"time_column": TIME, "accel_column": ACCEL, "time_scale": 1.0, "gain": 1.0}
+    for name in ("time_column", "accel_column", "time_scale", "gain", "scale_to"):
+        if (value := getattr(args, name)) != defaults.get(name):
+            words += [f"--{name.replace('_', '-')}", _told(value)]
+    return words
+
+
+def _told(value: Path | str | float) -> str:
+    if isinstance(value, float):
+        return f"{value:g}"
+    return shown(value) if isinstance(value, Path) else value

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from quiesce.compare.figures import Contact, Figures, columns, figures_of, index
 from quiesce.compare.laws import ComparedLaw, constant
-from quiesce.compare.records import ACCEL, TIME, Record
+from quiesce.compare.names import ACCEL, TIME
+from quiesce.compare.records import Record
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import Board, load_board
 from quiesce.engine.pool import WORKERS, run_work
@@ -85,10 +86,7 @@ class Comparison:
         self, laws: Sequence[ComparedLaw], records: Sequence[Record], seeds: Sequence[int]
     ) -> list[Cell]:
         """Of the laws and the three references, record by record and seed by seed."""
-        all_mA = self.rig.all_mA
-        steps = [constant(round(all_mA * i / GRID), f"{i}") for i in range(1, GRID)]
-        none, all_current = self.references()
-        wanted = [none, *steps, all_current, *laws]
+        wanted = [*self.constants(), *laws]
         cases = [Case(law, r, seed) for r in records for seed in seeds for law in wanted]
         found = self.figures(cases)
         count = len(wanted)
@@ -118,6 +116,13 @@ class Comparison:
 
     def references(self) -> list[ComparedLaw]:
         return [constant(0, OFF), constant(self.rig.all_mA, ALL)]
+
+    def constants(self) -> list[ComparedLaw]:
+        """GRID + 1 constant currents, from none to all."""
+        none, all_current = self.references()
+        all_mA = self.rig.all_mA
+        steps = [constant(round(all_mA * i / GRID), f"{i}") for i in range(1, GRID)]
+        return [none, *steps, all_current]
 
     def trace(self, case: Case) -> Trace:
         """Of one case, for plots."""

@@ -26,6 +26,11 @@ RECIPE = Recipe(
     "on while (w x_a + v_a) v_r > 0",
     "review, eq 31; an absolute displacement drifts, so it is the high-passed one of the view",
     "",
-    (ON_A, OFF_A, BAND_m_s, Setting("natural_Hz", 1.0, 0.01, 100.0, "the body's frequency")),
+    (
+        ON_A,
+        OFF_A,
+        BAND_m_s,
+        Setting("natural_Hz", 1.0, 0.01, 100.0, "the body's frequency", (0.2, 30)),
+    ),
     make,
 )
