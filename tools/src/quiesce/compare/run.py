@@ -2,17 +2,19 @@
 the best constant current, which only hindsight knows."""
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from quiesce.compare.figures import Contact, Figures, columns, figures_of, index
 from quiesce.compare.laws import ComparedLaw, constant
-from quiesce.compare.records import ACCEL, TIME, Record
+from quiesce.compare.names import ACCEL, TIME
+from quiesce.compare.records import Record
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import Board, load_board
-from quiesce.engine.pool import run_work
+from quiesce.engine.pool import WORKERS, run_work
 from quiesce.engine.scenarios import read_toml
 from quiesce.engine.trace import Trace, read_trace
 
@@ -84,15 +86,9 @@ class Comparison:
         self, laws: Sequence[ComparedLaw], records: Sequence[Record], seeds: Sequence[int]
     ) -> list[Cell]:
         """Of the laws and the three references, record by record and seed by seed."""
-        all_mA = self.rig.all_mA
-        steps = [constant(round(all_mA * i / GRID), f"{i}") for i in range(1, GRID)]
-        none, all_current = self.references()
-        wanted = [none, *steps, all_current, *laws]
+        wanted = [*self.constants(), *laws]
         cases = [Case(law, r, seed) for r in records for seed in seeds for law in wanted]
-        with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
-            folder = Path(name)
-            files = {record.name: self._scenario(folder, record) for record in records}
-            found = run_work(self._bench, [self._work(one, files) for one in cases])
+        found = self.figures(cases)
         count = len(wanted)
         return [
             cell
@@ -100,17 +96,38 @@ class Comparison:
             for cell in self._group(cases[first : first + count], found[first : first + count])
         ]
 
+    def figures(self, cases: Sequence[Case], workers: int = WORKERS) -> list[Figures]:
+        """Of these cases alone, in order; progress on stderr."""
+        records = {case.record.name: case.record for case in cases}
+        with self.ready(list(records.values())) as run:
+            pieces = [
+                (f"{one.law.label}, {one.record.name}, seed {one.seed}", partial(run, one))
+                for one in cases
+            ]
+            return run_work(self._bench, pieces, workers)
+
+    @contextmanager
+    def ready(self, records: Sequence[Record]) -> Iterator[Callable[[Case], Figures]]:
+        """What runs a case on one of these records, also from several threads at once."""
+        with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
+            folder = Path(name)
+            files = {record.name: self._scenario(folder, record) for record in records}
+            yield lambda case: self._figures(case, files[case.record.name])
+
     def references(self) -> list[ComparedLaw]:
         return [constant(0, OFF), constant(self.rig.all_mA, ALL)]
+
+    def constants(self) -> list[ComparedLaw]:
+        """GRID + 1 constant currents, from none to all."""
+        none, all_current = self.references()
+        all_mA = self.rig.all_mA
+        steps = [constant(round(all_mA * i / GRID), f"{i}") for i in range(1, GRID)]
+        return [none, *steps, all_current]
 
     def trace(self, case: Case, further: Sequence[str] = ()) -> Trace:
         """Of one case, for plots; with these columns of the bench beside the usual ones."""
         with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
             return self._run(case, self._scenario(Path(name), case.record), further)
-
-    def _work(self, case: Case, files: dict[str, Path]) -> tuple[str, Callable[[], Figures]]:
-        text = f"{case.law.label}, {case.record.name}, seed {case.seed}"
-        return text, partial(self._figures, case, files[case.record.name])
 
     def _figures(self, case: Case, file: Path) -> Figures:
         trace = self._run(case, file)
