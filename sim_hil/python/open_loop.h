@@ -35,8 +35,8 @@ struct MotionColumns {
 
 class OpenLoop {
   public:
-    /// Throws InputError for a plant with a damper that samples. step_factor >= 1: of the longest
-    /// step of the model, which stays within what keeps the integration stable.
+    /// Throws InputError for a plant with a damper that samples. step_factor >= 1: times the
+    /// model's longest step; how far that is stable is for the caller to see.
     OpenLoop(const PlantModel &model, const Excitation &excitation, int tick_rate_Hz,
              std::size_t ticks, double step_factor);
 

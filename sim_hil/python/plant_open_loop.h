@@ -22,7 +22,7 @@ typedef struct {
     const double *accel_m_s2;
     double time_scale; ///< > 0
     double gain;
-    double step_factor; ///< >= 1, of the plant file's longest step, as far as that is stable
+    double step_factor; ///< >= 1, times the plant file's longest step
 } quiesce_shaking;
 
 /// [tick][place] or [tick][damper], in the order of the plant file.

@@ -1,17 +1,19 @@
-"""The clairvoyant optimum beside a comparison: for each record the best waveform of the currents that
-a search finds when it knows the whole record, without noise or delay. Not a proof of the best."""
+"""The clairvoyant optimum beside a comparison: for each record the best waveform of the currents
+that a search finds when it knows the whole record, without noise or delay. No proof of the best."""
 
 import hashlib
 import io
 import json
 import tomllib
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quiesce.base.errors import UsageError
 from quiesce.base.paths import build_folder
 from quiesce.base.progress import say
 from quiesce.compare.figures import Contact, Figures, figures_of
@@ -27,8 +29,11 @@ from quiesce.plant.open_loop import BaseMotion, Motion, OpenLoop
 Floats = NDArray[np.float64]
 CLAIRVOYANT = "clairvoyant"
 TICK_RATE_Hz = 1000
-STEP_FACTOR = 2.0  # of a search; what is found is simulated again at the plant file's own step
-SAID_EVERY = 20  # runs
+# Integration steps of a search, as multiples of the plant file's: the longest at which motions
+# without and with all current keep their values. What is found is simulated again at its own.
+STEP_FACTORS = (8.0, 4.0, 2.0)
+SAME = 1e-3
+SAID_EVERY = 10  # runs
 TO_UM = 1e6
 
 
@@ -62,6 +67,9 @@ class Stage:
             float(TICK_RATE_Hz),
         )
 
+    def constant_A(self, loop: OpenLoop, current_A: float) -> Floats:
+        return np.full((self.ticks, len(loop.dampers)), min(current_A, loop.max_current_A))
+
     def trace(self, loop: OpenLoop, motion: Motion, command_A: Floats) -> Trace:
         """As the bench writes it: what a comparison's figures read."""
         out: Trace = {"t_s": np.arange(self.ticks) / TICK_RATE_Hz}
@@ -81,8 +89,9 @@ class Stage:
         trace = self.trace(loop, motion, command_A)
         return figures_of(trace, self.board.bodies, self.board.dampers, self.contacts)
 
-    def commands_of(self, loop: OpenLoop, trace: Trace) -> Floats:
+    def commands_of(self, trace: Trace) -> Floats:
         """What a law commanded on the bench, [ticks dampers] in A: it acts one tick later."""
+        loop = self.loop()
         out = np.zeros((self.ticks, len(loop.dampers)))
         for name in self.board.dampers:
             own = 1e-3 * trace[f"{name}_current_cmd_mA"]
@@ -155,10 +164,9 @@ def replayed(stage: Stage, command_A: Floats) -> Found:
 def _searched(
     stage: Stage, goal: Goal, all_current: Figures, starts: Sequence[Floats], effort: Effort
 ) -> Waveform:
-    loop = stage.loop(STEP_FACTOR)
     ceiling_A = 1e-3 * stage.board.ceiling_mA
-    shape = (stage.ticks, len(loop.dampers))
-    constants = [np.full(shape, part * ceiling_A) for part in np.linspace(0.0, 1.0, 9)]
+    loop = _quick_loop(stage, ceiling_A)
+    constants = [stage.constant_A(loop, part * ceiling_A) for part in np.linspace(0.0, 1.0, 9)]
     runs = 0
 
     def told(best: float) -> None:
@@ -166,10 +174,30 @@ def _searched(
         runs += 1
         if runs % SAID_EVERY == 0:
             say(f"{CLAIRVOYANT}, {stage.record.name}: {goal.name} {best:.4f} after {runs} of "
-                f"{effort.runs} runs")  # fmt: skip
+                f"about {effort.runs} runs")  # fmt: skip
 
     judge = _Judge(stage, loop, goal, all_current)
     return best_waveform(loop, judge, ceiling_A, [*constants, *starts], effort, told)
+
+
+def _quick_loop(stage: Stage, ceiling_A: float) -> OpenLoop:
+    exact = _sizes(stage, stage.loop(), ceiling_A)
+    for factor in STEP_FACTORS:
+        loop = stage.loop(factor)
+        with suppress(UsageError):  # it diverges
+            if np.allclose(_sizes(stage, loop, ceiling_A), exact, rtol=SAME, atol=0.0):
+                return loop
+    return stage.loop()
+
+
+def _sizes(stage: Stage, loop: OpenLoop, ceiling_A: float) -> Floats:
+    motions = [loop.run(stage.constant_A(loop, one)) for one in (0.0, ceiling_A)]
+    return np.array([
+        measure(part)
+        for motion in motions
+        for part in (motion.disp_m, motion.accel_m_s2, motion.force_N)
+        for measure in (np.std, np.max)
+    ])  # fmt: skip
 
 
 def _key(stage: Stage, goal: Goal, starts: Sequence[Floats], effort: Effort) -> str:
@@ -183,7 +211,7 @@ def _key(stage: Stage, goal: Goal, starts: Sequence[Floats], effort: Effort) -> 
     settings = {
         "rate_Hz": stage.record.rate_Hz, "time_scale": stage.time_scale, "gain": stage.gain,
         "ticks": stage.ticks, "ceiling_mA": stage.board.ceiling_mA, "bodies": stage.board.bodies,
-        "goal": goal.weights, "effort": asdict(effort), "step_factor": STEP_FACTOR,
+        "goal": goal.weights, "effort": asdict(effort), "steps": STEP_FACTORS,
     }  # fmt: skip
     told.update(json.dumps(settings, sort_keys=True).encode())
     return told.hexdigest()[:32]

@@ -69,9 +69,7 @@ def best_waveform(
     if not np.isfinite(search.best):
         raise UsageError("no current that was tried keeps the dampers within their strokes")
     sharpness = effort.stages[0][0]
-    found = [
-        search.descend(start, sharpness, effort.first_runs) for start in parts[: effort.tried]
-    ]
+    found = [search.descend(start, sharpness, effort.first_runs) for start in parts[: effort.tried]]
     now = min(found, key=search.true_value)
     for sharpness, runs in effort.stages:
         search.descend(now, sharpness, runs)

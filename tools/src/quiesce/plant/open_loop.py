@@ -95,9 +95,9 @@ class OpenLoop:
         tick_rate_Hz: int = 1000,
         step_factor: float = 1.0,
     ) -> None:
-        """step_factor: longer steps of the integration than the plant file's, up to about twice
-        the safe one: for searches, that are quicker and not quite the same. UsageError for a plant
-        that is wrong, or whose damper samples."""
+        """step_factor: times the plant file's longest step, for searches, which are quicker then
+        and not quite the same; how far that is stable is for the caller to see. UsageError for a
+        plant that is wrong, or whose damper samples."""
         self._lib = _open_loop_library()
         accel = np.ascontiguousarray(base.accel_m_s2, dtype=float)
         time_s = np.arange(len(accel)) / base.rate_Hz
