@@ -1,14 +1,16 @@
-"""All laws on all records with all seeds, on the bench; beside them no current, all current, and
-the best constant current, which only hindsight knows."""
+"""All laws on all records with all seeds, on the bench; beside them no current, all current, the
+best constant current, which only hindsight knows, and where it is asked for the clairvoyant's."""
 
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from quiesce.compare.clairvoyant import CLAIRVOYANT, Found, Stage, clairvoyant
 from quiesce.compare.figures import Contact, Figures, columns, figures_of, index
+from quiesce.compare.goal import Goal, read_goal
 from quiesce.compare.laws import ComparedLaw, constant
 from quiesce.compare.names import ACCEL, TIME
 from quiesce.compare.records import Record
@@ -17,10 +19,14 @@ from quiesce.engine.board import Board, load_board
 from quiesce.engine.pool import WORKERS, run_work
 from quiesce.engine.scenarios import read_toml
 from quiesce.engine.trace import Trace, read_trace
+from quiesce.optimum.waveform import Effort
 
 OFF, ALL, BEST = "no current", "all current", "best constant"
 GRID = 8  # constant currents between none and all that hindsight looks at
 AFTER_s = 2.0  # that a record is followed by
+LAWS_AS_STARTS = 2  # of a search for the clairvoyant's waveform, the best ones on the record
+BY_INDEX = read_goal("index")
+EFFORT = Effort()
 
 
 @dataclass(frozen=True)
@@ -56,7 +62,8 @@ class Shaking:
 
 @dataclass(frozen=True)
 class Cell:
-    """index: against all current, same record and seed."""
+    """index: against all current, same record and seed. share: of what the clairvoyant gains over
+    the best constant current, where it is known."""
 
     law: str
     record: str
@@ -64,6 +71,7 @@ class Cell:
     figures: Figures
     index: float
     note: str = ""
+    share: float | None = None
 
 
 @dataclass(frozen=True)
@@ -83,9 +91,14 @@ class Comparison:
         self._shaking = shaking
 
     def cells(
-        self, laws: Sequence[ComparedLaw], records: Sequence[Record], seeds: Sequence[int]
+        self,
+        laws: Sequence[ComparedLaw],
+        records: Sequence[Record],
+        seeds: Sequence[int],
+        goal: Goal = BY_INDEX,
     ) -> list[Cell]:
-        """Of the laws and the three references, record by record and seed by seed."""
+        """Of the laws and the three references, record by record and seed by seed. goal: of the
+        best constant current."""
         wanted = [*self.constants(), *laws]
         cases = [Case(law, r, seed) for r in records for seed in seeds for law in wanted]
         found = self.figures(cases)
@@ -93,7 +106,9 @@ class Comparison:
         return [
             cell
             for first in range(0, len(cases), count)
-            for cell in self._group(cases[first : first + count], found[first : first + count])
+            for cell in self._group(
+                cases[first : first + count], found[first : first + count], goal
+            )
         ]
 
     def figures(self, cases: Sequence[Case], workers: int = WORKERS) -> list[Figures]:
@@ -113,6 +128,51 @@ class Comparison:
             folder = Path(name)
             files = {record.name: self._scenario(folder, record) for record in records}
             yield lambda case: self._figures(case, files[case.record.name])
+
+    def with_clairvoyant(
+        self,
+        cells: Sequence[Cell],
+        laws: Sequence[ComparedLaw],
+        records: Sequence[Record],
+        goal: Goal,
+        effort: Effort = EFFORT,
+    ) -> tuple[list[Cell], dict[str, Found]]:
+        """The cells, of these laws and records and this goal, with the best waveform that was found
+        beside each record's and seed's, and what was found for each record."""
+        work = [
+            (f"{CLAIRVOYANT}, {one.name}", partial(self._found, one, cells, laws, goal, effort))
+            for one in records
+        ]
+        of_records = run_work(self._bench, work)
+        found = {one.name: it for one, it in zip(records, of_records, strict=True)}
+        groups = dict.fromkeys((cell.record, cell.seed) for cell in cells)
+        out: list[Cell] = []
+        for record, seed in groups:
+            own = [cell for cell in cells if (cell.record, cell.seed) == (record, seed)]
+            out += beside(own, found[record].figures, goal)
+        return out, found
+
+    def stage(self, record: Record) -> Stage:
+        """What a run of a record simulates, without the controller."""
+        shaking = self._shaking
+        return Stage(
+            self.rig.plant, self.rig.board, tuple(self._contacts), record, shaking.time_scale,
+            shaking.gain_of(record), self._lasts_s(record),
+        )  # fmt: skip
+
+    def _found(
+        self, record: Record, cells: Sequence[Cell], laws: Sequence[ComparedLaw], goal: Goal,
+        effort: Effort,
+    ) -> Found:  # fmt: skip
+        """From the waveforms of the laws that are best on the record's first seed."""
+        seed = next(cell.seed for cell in cells if cell.record == record.name)
+        own = {c.law: c.figures for c in cells if (c.record, c.seed) == (record.name, seed)}
+        best = sorted(laws, key=lambda law: goal.value(own[law.label], own[ALL]))
+        stage = self.stage(record)
+        starts = [
+            stage.commands_of(self.trace(Case(law, record, seed))) for law in best[:LAWS_AS_STARTS]
+        ]
+        return clairvoyant(stage, goal, own[ALL], starts, effort)
 
     def references(self) -> list[ComparedLaw]:
         return [constant(0, OFF), constant(self.rig.all_mA, ALL)]
@@ -149,7 +209,7 @@ class Comparison:
         motion = folder / f"{record.name}.csv"
         motion.write_text(record.csv(), encoding="ascii")
         file = folder / f"{record.name}.toml"
-        lasts_s = record.duration_s / self._shaking.time_scale + AFTER_s
+        lasts_s = self._lasts_s(record)
         file.write_text(
             'schema = "quiesce-scenario"\nversion = 1\n'
             f'name = "compared"\nplant = "{self.rig.plant}"\n'
@@ -162,15 +222,38 @@ class Comparison:
         )
         return file
 
-    def _group(self, cases: Sequence[Case], found: Sequence[Figures]) -> list[Cell]:
+    def _lasts_s(self, record: Record) -> float:
+        return record.duration_s / self._shaking.time_scale + AFTER_s
+
+    def _group(self, cases: Sequence[Case], found: Sequence[Figures], goal: Goal) -> list[Cell]:
         """Of one record and seed: the grid of constants becomes its best one."""
         all_current = found[GRID]
         cells = [
             Cell(c.law.label, c.record.name, c.seed, figures, index(figures, all_current))
             for c, figures in zip(cases, found, strict=True)
         ]
-        best = min(range(GRID + 1), key=lambda i: cells[i].index)
+        best = min(range(GRID + 1), key=lambda i: goal.value(found[i], all_current))
         amperes = f"{1e-3 * self.rig.all_mA * best / GRID:.4g} A"
         one = cells[best]
         hindsight = Cell(BEST, one.record, one.seed, one.figures, one.index, amperes)
         return [cells[0], cells[GRID], hindsight, *cells[GRID + 1 :]]
+
+
+def beside(cells: Sequence[Cell], found: Figures, goal: Goal) -> list[Cell]:
+    """The cells of one record and seed with the clairvoyant's after the best constant's, and the
+    share of its gain that each has."""
+    figures = {cell.law: cell.figures for cell in cells}
+    all_current = figures[ALL]
+    constant_value = goal.value(figures[BEST], all_current)
+    gain = constant_value - goal.value(found, all_current)
+    first = cells[0]
+    note = f"the best waveform found for {goal.name}, not a proof"
+    index_ = index(found, all_current)
+    own = Cell(CLAIRVOYANT, first.record, first.seed, found, index_, note)
+    at = 1 + next(i for i, cell in enumerate(cells) if cell.law == BEST)
+    if gain <= 0.0:  # no waveform was found that is better than a constant current
+        return [*cells[:at], own, *cells[at:]]
+    return [
+        replace(cell, share=(constant_value - goal.value(cell.figures, all_current)) / gain)
+        for cell in [*cells[:at], own, *cells[at:]]
+    ]
