@@ -19,6 +19,7 @@ from quiesce.law.recipes import (
     quasi_bang_bang,
     sh_add,
     skyhook,
+    skyhook_elastomer,
     skyhook_on_off,
     sliding_mode,
 )
@@ -42,6 +43,7 @@ RECIPES: tuple[Recipe, ...] = (
     quasi_bang_bang.RECIPE,
     max_dissipation.RECIPE,
     polynomial.RECIPE,
+    skyhook_elastomer.RECIPE,
 )
 
 
