@@ -150,8 +150,7 @@ static int32_t value_of(const input_t *input, const view_t *view) {
     return input->is_magnitude != 0 ? abs_i32(value) : value;
 }
 
-static int32_t current_mA(const section_t *section, const fuzzy_table_t *rules,
-                          const int32_t *x) {
+static int32_t current_mA(const section_t *section, const fuzzy_table_t *rules, const int32_t *x) {
     int32_t out[FUZZY_MAX_OUTPUTS];
     (void)fuzzy_evaluate(rules, x, out);
     int64_t sum_q8 = out[0];
@@ -185,11 +184,14 @@ static const quiesce_word_t reports[QUIESCE_REPORT_WORDS] = {
     {"rules_fired_4", "bits"},
 };
 
-// A bit for each rule that fired, the first 32; before the first tick, of zeros.
+// A bit for each rule that fired, the first 32; before the first tick, of inputs of 0.
 static void report(const void *state, const law_setup_t *setup, int32_t word[]) {
     const seen_t *seen = state;
-    const section_t *section = sections_first(setup->table);
     const fuzzy_table_t *rules = NULL;
+    if (setup->table == NULL) {
+        return;
+    }
+    const section_t *section = sections_first(setup->table);
     for (uint32_t i = 0; i < sections_count(setup->table); i++) {
         uint64_t fired = 0;
         rules = rules_of(section, rules);

@@ -8,6 +8,8 @@ from quiesce.law.recipes import (
     bang_bang,
     clipped_linear,
     clipped_optimal,
+    fuzzy_drift,
+    fuzzy_skyhook,
     groundhook,
     groundhook_on_off,
     lyapunov,
@@ -21,6 +23,7 @@ from quiesce.law.recipes import (
     skyhook,
     skyhook_on_off,
     sliding_mode,
+    tsk,
 )
 
 RECIPES: tuple[Recipe, ...] = (
@@ -42,6 +45,9 @@ RECIPES: tuple[Recipe, ...] = (
     quasi_bang_bang.RECIPE,
     max_dissipation.RECIPE,
     polynomial.RECIPE,
+    fuzzy_skyhook.RECIPE,
+    fuzzy_drift.RECIPE,
+    tsk.RECIPE,
 )
 
 
