@@ -1,4 +1,4 @@
-"""A rule base as a table of law `fuzzy_signals`: its inputs are signals, its output is a current."""
+"""A rule base as a table of law `fuzzy_signals`: its inputs are signals, its output a current."""
 
 import re
 from collections.abc import Sequence
@@ -9,15 +9,15 @@ from quiesce.base.errors import UsageError
 from quiesce.law.forms.fuzzy_signals import (
     MOST_SHIFT,
     MOST_SLOPES,
-    ONE_mA_Q8,
     FuzzySection,
     FuzzySignalsTable,
     Meaning,
+    ONE_mA_Q8,
     Slope,
 )
 from quiesce.law.forms.rule_words import read_rules
 from quiesce.law.rig import LawRig
-from quiesce.law.signal import BY_NAME, QUANTITIES, Input
+from quiesce.law.signal import BY_NAME, Input
 from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase, Singleton
@@ -46,7 +46,7 @@ def read_source(rig: LawRig, text: str) -> Source:
         raise ValueError(f"expected [FACTOR] QUANTITY [of PLACE], perhaps |...|, found '{text}'")
     name, _, place = found["signal"].strip().partition(" of ")
     if name not in BY_NAME:
-        raise ValueError(f"no quantity '{name}'; there are: {', '.join(q.name for q in QUANTITIES)}")
+        raise ValueError(f"no quantity '{name}'; there are: {', '.join(BY_NAME)}")
     factor = _factor(found["factor"])
     at = _place(rig, name, place) if place else None
     return Source(name, at, factor, bool(found["bar"]))

@@ -16,15 +16,16 @@ from quiesce.rules.formats.files import MAX_SEGMENTS, read_rules
 from quiesce.rules.model import RuleBase
 
 EPILOG = """examples:
-  quiesce law rules my.fis --board my_board.toml --map "vel=velocity of third" -o build/laws/my.words
+  quiesce law rules my.fis --board my_board.toml --map "vel=velocity of third" -o build/my.words
   quiesce law rules my.fcl --board my_board.toml --map "drift=1000 |stroke|" --output-A 0.5 \\
-      -o build/laws/my.words
+      -o build/my.words
 
-FCL, FLL or FIS, one output: a current. A signal is a quantity of the board in SI units: acceleration,
-velocity, displacement (of a body), stroke, stroke velocity, force (of a damper) and so on. Without
-a place it is each damper's own, and of a body that at its end `from`. A number before it makes the
-file's units of SI units; between bars it is its magnitude. An input that no --map names is the
-signal of its own name, _ for a blank. Sugeno's lines of first order are taken as they are.
+FCL, FLL or FIS with one output, a current. A signal is a quantity of the board in SI units:
+acceleration, velocity, displacement (of a body), stroke, stroke velocity, force (of a damper) and
+so on. Without a place it is each damper's own, and of a body that at the damper's end `from`. A
+number before it makes the file's units of SI units; between bars it is its magnitude. An input
+that no --map names is the signal of its own name, with a blank for _. Sugeno's terms of first order
+are taken as they are.
 """
 
 

@@ -28,9 +28,8 @@ def make(rig: LawRig, values: dict[str, float]) -> FuzzySignalsTable:
 
 RECIPE = Recipe(
     "fuzzy_drift",
-    "5 x 5 rules of r and v_r: the current grows with both, another share where the stroke comes back",
-    "review, text on fuzzy controllers: displacement and velocity are their inputs, no rule base is "
-    "printed",
+    "5 x 5 fuzzy rules of the stroke and its velocity: the current grows with both",
+    "review, text on fuzzy controllers: displacement and velocity are their inputs",
     "",
     (
         ON_A,
@@ -39,4 +38,8 @@ RECIPE = Recipe(
         Setting("back_share", 0.5, 0.0, 1.0, "share of the current where it comes back to 0"),
     ),
     make,
+    equation="I = sum of w_i I_i over the rules, sum of w_i 1; I_i: on x (|i| + |j|) / 4 for sets "
+    "i of r and j of v_r, -2 .. 2, where r v_r > 0; x share where r v_r < 0, the mean of both else",
+    errata="The review names inputs and prints no rule base.",
+    when="Only the damper's own stroke is measured.",
 )

@@ -26,9 +26,8 @@ def make(rig: LawRig, values: dict[str, float]) -> FuzzySignalsTable:
 
 RECIPE = Recipe(
     "fuzzy_skyhook",
-    "5 x 3 rules of v_a and v_r: all current where both are large and alike, none where they differ",
-    "review, text on fuzzy controllers (Das and others): no rule base is printed; these rules are "
-    "those of skyhook",
+    "5 x 3 fuzzy rules of the body's velocity and the stroke's: on where both go one way",
+    "review, text on fuzzy controllers (Das and others); the rules are those of skyhook",
     "",
     (
         ON_A,
@@ -36,4 +35,8 @@ RECIPE = Recipe(
         Setting("stroke_m_s", 0.02, 1e-4, 10.0, "the stroke's velocity whose sign is certain"),
     ),
     make,
+    equation="I = sum of w_i I_i over the rules, w_i from min of memberships, sum of w_i 1; I_i: "
+    "on x (1, 1/2, 0, 1/2, 1) by v_a where v_r goes the same way, half where v_r is small, else 0",
+    errata="The review names inputs and prints no rule base.",
+    when="As skyhook_on_off, without its switching: no map and no force sensor.",
 )

@@ -39,9 +39,8 @@ def _line(part: str, where: str, q: float) -> tuple[Setting, ...]:
 
 RECIPE = Recipe(
     "tsk",
-    "I = sum of lambda_i (p_i r + q_i v_r + r_i) over four regions, alike both ways",
-    "review, by name (fuzzy neural networks): V = sum of lambda_i (p_i x + q_i v + r_i); a search "
-    "over p, q, r is their training",
+    "Takagi-Sugeno-Kang: straight lines of the stroke and its velocity in fuzzy regions",
+    "review, by name (fuzzy neural networks)",
     "",
     (
         *_line("outward", "grows", 10.0),
@@ -52,4 +51,9 @@ RECIPE = Recipe(
         Setting("layer_m_s", 0.01, 1e-5, 10.0, "likewise its velocity's"),
     ),
     make,
+    equation="I = sum of w_i (p_i |r| + q_i |v_r| + r_i), sum of w_i 1; i: the stroke grows, or "
+    "comes back, alike both ways",
+    errata="The review prints no equation, and p r + q v_r without regions of both signs would "
+    "treat the two ways of a symmetric structure differently.",
+    when="p, q and r from a search, or a rule base that was trained elsewhere (quiesce law rules).",
 )

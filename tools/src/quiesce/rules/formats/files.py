@@ -23,7 +23,8 @@ MAX_SEGMENTS = 128  # of a chain; at least 2
 
 
 def read_rules(path: Path, approximate: int | None = None, first_order: bool = False) -> RuleBase:
-    """approximate, first_order: see read_text. UsageError, `FILE:LINE:COLUMN: ...`, for what is no rule file."""
+    """approximate, first_order: see read_text. UsageError, `FILE:LINE:COLUMN: ...`, for what is no
+    rule file."""
     format, name = format_of(path), shown(path)
     return read_text(load(path, name), format, path.stem, approximate, name, first_order)
 
