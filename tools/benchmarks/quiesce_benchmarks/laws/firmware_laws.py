@@ -10,7 +10,7 @@ import numpy as np
 from quiesce.base.paths import root
 from quiesce.law.tables import Table
 
-LAWS = ("linear", "signs", "friction", "polynomial")
+LAWS = ("linear", "signs", "friction", "polynomial", "fuzzy_signals")
 DAMPERS = 4
 NO_DEMAND = 2**31 - 1
 
@@ -19,13 +19,20 @@ NO_DEMAND = 2**31 - 1
 def library() -> ctypes.CDLL:
     firmware = root() / "firmware"
     file = Path(mkdtemp(prefix="quiesce-laws-")) / "laws.so"
-    sources = [firmware / "base" / f"{one}.c" for one in ("sections", "state_space", "table", "view_signal")]
+    sources = [
+        firmware / "base" / f"{one}.c"
+        for one in ("sections", "state_space", "table", "view_signal")
+    ]
     sources += [firmware / "base/crc32.c", *sorted((firmware / "law/forms").glob("*.c"))]
+    sources += [
+        *sorted((firmware / "fuzzy").glob("*.c")),
+        firmware / "law/rules/law_fuzzy_signals.c",
+    ]
     sources.append(Path(__file__).with_name("law_steps.c"))
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-fno-strict-aliasing", "-shared", "-fPIC", "-o", file]
         + ["-DQUIESCE_SENSORS=8", "-DQUIESCE_BODIES=4", "-DQUIESCE_DAMPERS=4"]
-        + [f"-I{firmware / one}" for one in ("include", "base", "law")]
+        + [f"-I{firmware / one}" for one in ("include", "base", "fuzzy", "law")]
         + sources,
         check=True,
     )
