@@ -10,12 +10,13 @@
 #include "view.h"
 
 /// Bytes for the state of a tracker, for each damper.
-#define TRACK_STATE_BYTES 8u
+#define TRACK_STATE_BYTES 56u
 
 /// What a tracker works with.
 typedef struct {
     const quiesce_params_t *params; ///< checked
     const uint32_t *table;          ///< words that the kind's check accepts; NULL without a kind
+    uint32_t damper;                ///< which one, from 0
 } track_setup_t;
 
 /// A kind of table. None ships: a map is of one damper. Its words begin with the magic, CRC-32 and

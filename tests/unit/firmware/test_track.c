@@ -83,7 +83,7 @@ void tearDown(void) {}
 
 static int32_t track(int32_t tracker, void *state, int32_t velocity_um_s, int32_t force_mN,
                      int32_t demand_mN) {
-    const track_setup_t setup = {&params, map};
+    const track_setup_t setup = {&params, map, 0};
     const view_damper_t damper = {.velocity_um_s = velocity_um_s, .force_mN = force_mN};
     return track_find(tracker)->step(state, &setup, &damper, demand_mN);
 }
