@@ -5,16 +5,16 @@
 /// (sections.h), each a network.
 ///
 /// A layer of n units over k values: kind, n, then n units. A dense unit {shift, bias, k weights}
-/// is tanh, or the straight line limited to -1 .. 1, of (bias + sum of weights x values) x 2^-shift.
-/// A radial unit {k centres, k sharpnesses} is exp(-sum of ((value - centre) x sharpness)^2), a
-/// Gaussian of width 1 / (sharpness sqrt 2). Of a normalised layer each is divided by the sum of
-/// all; the nearest one counts as 1 before that, so that there always is a sum.
+/// is tanh, or the straight line limited to -1 .. 1, of (bias + sum of weights x values) x
+/// 2^-shift. A radial unit {k centres, k sharpnesses} is exp(-sum of ((value - centre) x
+/// sharpness)^2), a Gaussian of width 1 / (sharpness sqrt 2). Of a normalised layer each is divided
+/// by the sum of all; the nearest one counts as 1 before that, so that there always is a sum.
 ///
 /// The output of the last layer's n units: order, shift, bias, then n coefficients (order 0), or n
 /// times a coefficient and k more for the values that the layer sees (order 1: rules with
-/// conclusions of first order). The current is (bias + sum of unit x coefficient) x 2^-shift mA, or,
-/// with order 1, that of unit x (coefficient + sum of k coefficients x values), to the nearest mA,
-/// limited to 0 .. largest.
+/// conclusions of first order). The current is (bias + sum of unit x coefficient) x 2^-shift mA,
+/// or, with order 1, that of unit x (coefficient + sum of k coefficients x values), to the nearest
+/// mA, limited to 0 .. largest.
 ///
 /// Values are Q24 within -1 .. 1: an input is limited to low .. high and scaled to that, and what
 /// units give lies within it by their nature. With a delay each input is there twice, as it is and
@@ -34,7 +34,7 @@
 #define NETWORK_MOST_UNITS 32u ///< of a layer
 #define NETWORK_MOST_LAYERS 2u
 #define NETWORK_MOST_DELAY 8u
-#define NETWORK_PAST 12u ///< inputs x ticks of delay
+#define NETWORK_PAST 12u        ///< inputs x ticks of delay
 #define NETWORK_MOST_WORK 5000u ///< instructions of a table's networks, about
 
 typedef struct {

@@ -42,7 +42,8 @@ uint64_t view_inputs_need(const view_input_t *inputs, uint32_t count);
 /// Reads good ones, all of places that the build has. About 15 instructions each.
 void view_inputs_read(const view_input_t *inputs, uint32_t count, const view_t *view, int32_t *out);
 
-/// Whether this is a signal of the view, of at most QUIESCE_MAX_BODIES or QUIESCE_MAX_DAMPERS places.
+/// Whether this is a signal of the view, of at most QUIESCE_MAX_BODIES or QUIESCE_MAX_DAMPERS
+/// places.
 bool view_signal_is_good(uint32_t signal);
 
 /// The VIEW_ bit of a good signal.

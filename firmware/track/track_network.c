@@ -5,8 +5,8 @@
 // of the damper itself by the number of view_signal.h, or VIEW_SIGNAL_DEMAND; the demand is among
 // them, and the damper's force or the velocity of its stroke: the way that a demand has to go with,
 // the force where both are. The own number is a speed in um/s: slower than it the damper counts as
-// if it moved at it, the way of the demand. A demand against the way is 0 to the network and gets no
-// current, nor does a damper without a network. `quiesce identify inverse --method network,svr`
+// if it moved at it, the way of the demand. A demand against the way is 0 to the network and gets
+// no current, nor does a damper without a network. `quiesce identify inverse --method network,svr`
 // writes them.
 #include <stddef.h>
 
@@ -34,9 +34,9 @@ static bool is_of_damper(uint32_t signal) {
 
 static bool is_good(const uint32_t *section) {
     const network_t *network = network_of(section);
-    bool are_signals = sees(network, VIEW_SIGNAL_DEMAND) &&
-                       (sees(network, QUIESCE_SENSE_FORCE) ||
-                        sees(network, QUIESCE_SENSE_STROKE_VELOCITY));
+    bool are_signals =
+        sees(network, VIEW_SIGNAL_DEMAND) &&
+        (sees(network, QUIESCE_SENSE_FORCE) || sees(network, QUIESCE_SENSE_STROKE_VELOCITY));
     for (uint32_t i = 0; i < network->inputs; i++) {
         const uint32_t signal = network->input[i].signal;
         are_signals = are_signals && (signal == VIEW_SIGNAL_DEMAND || is_of_damper(signal));
@@ -54,8 +54,7 @@ static uint64_t section_needs(const uint32_t *section, uint32_t damper) {
     return bits;
 }
 
-static const sections_kind_t sections = {TRACK_NETWORK_MAGIC, network_size, is_good,
-                                         section_needs};
+static const sections_kind_t sections = {TRACK_NETWORK_MAGIC, network_size, is_good, section_needs};
 
 static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
     return network_table_check(&sections, words, count);

@@ -1,8 +1,8 @@
 // A current that a small network makes of measurements, for each damper by itself: what imitates
 // any controller, radial basis functions, rules with conclusions of first order.
 //
-// Its table: networks (network.h), one a damper from the first on, whose inputs' signals are those of
-// view_signal.h and whose own number is 0. `quiesce law fit` writes them.
+// Its table: networks (network.h), one a damper from the first on, whose inputs' signals are those
+// of view_signal.h and whose own number is 0. `quiesce law fit` writes them.
 #include "law.h"
 #include "network.h"
 #include "sections.h"
@@ -10,7 +10,8 @@
 
 #define NETWORK_MAGIC UINT32_C(0x314E4E51)
 
-_Static_assert(sizeof(network_past_t) * QUIESCE_DAMPERS <= LAW_STATE_BYTES, "the arena is too small");
+_Static_assert(sizeof(network_past_t) * QUIESCE_DAMPERS <= LAW_STATE_BYTES,
+               "the arena is too small");
 
 static bool is_good(const uint32_t *section) {
     const network_t *network = network_of(section);
