@@ -11,7 +11,7 @@ from quiesce.damper.data.split import Segment, whole
 from quiesce.damper.learned import feed_forward, hysteresis_network, recurrent
 from quiesce.damper.learned.elements import Elements
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.network import Network, fit
+from quiesce.network.dense import Network, fit
 from quiesce.damper.learned.sampled import default_lags, delayed
 from quiesce.damper.library import Scales
 from quiesce.damper.model_file import DamperModel

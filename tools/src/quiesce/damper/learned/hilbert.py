@@ -17,8 +17,8 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import MOST_ROWS, Box
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
-from quiesce.damper.learned.network import Network
-from quiesce.damper.learned.network import fitted as fitted_network
+from quiesce.network.dense import Network
+from quiesce.network.dense import fitted as fitted_network
 from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows
 from quiesce.damper.library import Scales
 
