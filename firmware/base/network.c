@@ -16,6 +16,7 @@ enum {
     DENSE_WORDS = 2,  ///< of a unit, beside its weights
     OUTPUT_WORDS = 3, ///< beside its coefficients
     MOST_SHIFT = 60,
+    MOST_OUTPUT_SHIFT = 36, ///< of mA; values have 24 more
     Q24 = 24,
     ONE = 1 << Q24,
     WEIGHT_LIMIT = 1 << 24,
@@ -186,7 +187,7 @@ static bool is_layer_good(place_t at) {
 
 static bool is_output_good(place_t last) {
     const output_t *output = after(last);
-    return output->shift <= MOST_SHIFT && abs_i32(output->bias) < WEIGHT_LIMIT &&
+    return output->shift <= MOST_OUTPUT_SHIFT && abs_i32(output->bias) < WEIGHT_LIMIT &&
            are_below(output->coefficient, coefficients_of(output, last), WEIGHT_LIMIT);
 }
 
@@ -335,7 +336,7 @@ static void pass(place_t at, const int32_t *x, int32_t *y) {
     }
 }
 
-// In units of 2^-shift.
+// In units of 2^-(24 + shift) mA.
 static int64_t conclude(place_t last, const int32_t *x, const int32_t *y) {
     const output_t *output = after(last);
     int64_t sum = (int64_t)output->bias * ONE;
@@ -361,8 +362,8 @@ int32_t network_current_mA(const network_t *self, network_past_t *past, const in
     const int32_t *seen = x[(self->layers - 1u) % 2u];
     int32_t *made = x[self->layers % 2u];
     pass(at, seen, made);
-    const uint32_t shift = ((const output_t *)after(at))->shift;
-    const int64_t half = shift == 0 ? 0 : INT64_C(1) << (shift - 1u);
+    const uint32_t shift = Q24 + ((const output_t *)after(at))->shift;
+    const int64_t half = INT64_C(1) << (shift - 1u);
     return (int32_t)clamp_i64((conclude(at, seen, made) + half) >> shift, 0,
                               (int64_t)self->largest_mA);
 }

@@ -7,7 +7,7 @@
 extern const law_t law_linear, law_signs, law_friction, law_polynomial, law_network;
 
 static const law_t *const laws[] = {&law_linear, &law_signs, &law_friction, &law_polynomial,
-                                     &law_network};
+                                    &law_network};
 
 static void put(view_t *view, uint32_t signal, int32_t value) {
     const view_quantity_t *quantity = &view_quantity[signal & 0xFFu];

@@ -1,5 +1,5 @@
 // Runs tracker network on columns of a damper's signals, for tests in Python.
-#include <string.h>
+#include <stddef.h>
 
 #include "track.h"
 #include "view_signal.h"

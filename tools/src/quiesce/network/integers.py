@@ -5,6 +5,7 @@ import numpy as np
 from quiesce.network.dense import Network
 from quiesce.network.layers import (
     CENTRE_LIMIT,
+    MOST_OUTPUT_SHIFT,
     MOST_SHIFT,
     ONE,
     SHARP_ONE,
@@ -16,14 +17,14 @@ from quiesce.network.layers import (
 )
 
 
-def with_shift(values: np.ndarray) -> tuple[int, tuple[int, ...]]:
+def with_shift(values: np.ndarray, most: int = MOST_SHIFT) -> tuple[int, tuple[int, ...]]:
     """The largest shift that keeps all below 2^24, and the integers. ValueError where none does."""
     largest = float(np.abs(values).max())
     if not largest < WEIGHT_LIMIT - 1:
         raise ValueError(f"a weight of {largest:.3g} is beyond 2^24")
-    shift = MOST_SHIFT
+    shift = most
     if largest > 0.0:
-        shift = min(MOST_SHIFT, int(np.floor(np.log2((WEIGHT_LIMIT - 1) / largest))))
+        shift = min(most, int(np.floor(np.log2((WEIGHT_LIMIT - 1) / largest))))
     return shift, tuple(int(value) for value in np.rint(np.ldexp(values, shift)))
 
 
@@ -49,7 +50,8 @@ def radial_layer(centres: np.ndarray, sharpnesses: np.ndarray, is_normalised: bo
 
 def output_of(bias_mA: float, coefficients_mA: np.ndarray) -> Output:
     """coefficients [units], or [units (1 + values)]."""
-    shift, integers = with_shift(np.concatenate([[bias_mA], coefficients_mA.ravel()]))
+    every = np.concatenate([[bias_mA], coefficients_mA.ravel()])
+    shift, integers = with_shift(every, MOST_OUTPUT_SHIFT)
     return Output(int(coefficients_mA.ndim > 1), shift, integers[0], integers[1:])
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 MOST_INPUTS, MOST_UNITS, MOST_LAYERS = 8, 32, 2
-MOST_SHIFT = 60
+MOST_SHIFT, MOST_OUTPUT_SHIFT = 60, 36
 WEIGHT_LIMIT = 2**24  # of a magnitude, itself excluded
 ONE = 2**24  # of values and centres
 CENTRE_LIMIT = 4 * ONE
@@ -144,7 +144,7 @@ def read_layers(take: Take, values: int, count: int) -> Layers:
     order, shift, bias = take(3)
     if order not in (0, 1):
         raise ValueError(f"order {order} of an output is not 0 or 1")
-    _require_shift(shift)
+    _require_shift(shift, MOST_OUTPUT_SHIFT)
     coefficients = take(values * (1 + order * seen))
     _require_below([bias, *coefficients], WEIGHT_LIMIT, "a coefficient")
     return Layers(tuple(layers), Output(order, shift, bias, tuple(coefficients)))
@@ -175,9 +175,9 @@ def _read_layer(take: Take, values: int) -> Layer:
     )
 
 
-def _require_shift(shift: int) -> None:
-    if not 0 <= shift <= MOST_SHIFT:
-        raise ValueError(f"shift {shift} is not in 0 .. {MOST_SHIFT}")
+def _require_shift(shift: int, most: int = MOST_SHIFT) -> None:
+    if not 0 <= shift <= most:
+        raise ValueError(f"shift {shift} is not in 0 .. {most}")
 
 
 def _require_below(values: Sequence[int], limit: int, what: str) -> None:
