@@ -98,8 +98,8 @@ static bool start_whole(whole_t *self, const law_order_t *order) {
     const uint32_t *table = law_order_table(order);
     const uint32_t *map = law_order_map(order);
     return quiesce_init_board(&self->controller, &order->board, &order->params) &&
-           (table == NULL || quiesce_table_use(&self->controller, table, order->law_words) ==
-                                 QUIESCE_TABLE_OK) &&
+           (table == NULL ||
+            quiesce_table_use(&self->controller, table, order->law_words) == QUIESCE_TABLE_OK) &&
            (map == NULL ||
             quiesce_table_use(&self->controller, map, order->map_words) == QUIESCE_TABLE_OK) &&
            quiesce_lacks_table(&self->controller) == NULL;
@@ -231,9 +231,8 @@ static bool run_spoilt(const law_order_t *order) {
             law_trial_spoil(spoilt.law, count, &seed);
         }
         found.tables++;
-        if (!law_trial_start(&trial, &order->params, table != NULL ? spoilt.law : NULL,
-                             count, map != NULL ? spoilt.map : NULL, order->map_words,
-                             seed)) {
+        if (!law_trial_start(&trial, &order->params, table != NULL ? spoilt.law : NULL, count,
+                             map != NULL ? spoilt.map : NULL, order->map_words, seed)) {
             continue;
         }
         found.accepted++;

@@ -180,9 +180,7 @@ def simulated_apart_pts(rows: Sequence[Row], reference: Reference) -> float:
         for row in rows
         for freq_Hz, one in zip(rig.FREQS_Hz, row.steady, strict=True)
         for theirs in [
-            reference.simulated_for(
-                f"sine_{freq_Hz:g}Hz", names.get(row.name, row.name), freq_Hz
-            )
+            reference.simulated_for(f"sine_{freq_Hz:g}Hz", names.get(row.name, row.name), freq_Hz)
         ]
         for key, ours in (
             ("amp_reduction_pct", one.amp_pct[0]),
