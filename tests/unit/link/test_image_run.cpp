@@ -83,8 +83,7 @@ TEST(image_run, words_may_come_from_a_file) {
         .write(reinterpret_cast<const char *>(words), sizeof words);
     EXPECT_EQ(run_image(options_for(kCountProbe), {}, path).counts.total,
               run_image(options_for(kCountProbe), {3, 10}).counts.total);
-    const std::string error =
-        error_of([&] { run_image(options_for(kCountProbe), {3, 10}, path); });
+    const std::string error = error_of([&] { run_image(options_for(kCountProbe), {3, 10}, path); });
     expect_contains(error, "give one of them");
     expect_contains(error_of([] { run_image(options_for(kCountProbe), {}, "/none.bin"); }),
                     "--data /none.bin: expected a file of 1 .. 16777216 bytes");

@@ -113,13 +113,13 @@ static void look_at_tone(law_trial_t *self, bool is_new) {
     if (is_new) {
         tone->step_turn = 400000u + random_below(&self->seed, 200000000);
         tone->freq_uHz = (int32_t)((uint64_t)tone->step_turn * RATE_Hz * 1000000u >> 32);
-        tone->rms_um_s2 = (int32_t)(random_word(&self->seed) >> random_below(&self->seed, 31)) &
-                          VIEW_LIMIT;
+        tone->rms_um_s2 =
+            (int32_t)(random_word(&self->seed) >> random_below(&self->seed, 31)) & VIEW_LIMIT;
         tone->body = random_below(&self->seed, QUIESCE_BODIES);
         self->view.is_at_rest = random_below(&self->seed, 8) == 0;
         self->view.is_output_on = random_below(&self->seed, 8) != 0;
-        self->view.valid = random_below(&self->seed, 4) == 0 ? ~(VIEW_LOCK | VIEW_TONE)
-                                                             : ~UINT64_C(0);
+        self->view.valid =
+            random_below(&self->seed, 4) == 0 ? ~(VIEW_LOCK | VIEW_TONE) : ~UINT64_C(0);
     }
     tone->phase_turn += tone->step_turn;
 }

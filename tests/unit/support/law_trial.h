@@ -34,7 +34,7 @@ typedef struct {
     law_demand_t current; // of the tracker, of the law where that demands currents; mA
     law_demand_t command; // behind the guard, mA
     guard_t guard[QUIESCE_DAMPERS];
-    bool has_demand;      // in this tick
+    bool has_demand; // in this tick
     uint32_t seed;
     uint32_t tick;
     uint32_t left_ticks; // before the signals change their ways

@@ -60,9 +60,7 @@ STEP = Scenario(
 
 
 def steady(freq_Hz: float) -> Scenario:
-    return Scenario(
-        f"{freq_Hz:g}_Hz", STEADY_s, (sine(freq_Hz),), ((STEADY_s - LAST_s, STEADY_s),)
-    )
+    return Scenario(f"{freq_Hz:g}_Hz", STEADY_s, (sine(freq_Hz),), ((STEADY_s - LAST_s, STEADY_s),))
 
 
 @dataclass(frozen=True)

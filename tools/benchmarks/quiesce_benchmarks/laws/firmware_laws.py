@@ -10,7 +10,8 @@ import numpy as np
 from quiesce.base.paths import root
 from quiesce.law.tables import Table
 
-LAWS = ("linear", "signs", "friction", "polynomial")
+# What laws are made of: any that is added there is found.
+BLOCKS = ("base", "fuzzy", "law/forms")
 DAMPERS = 4
 NO_DEMAND = 2**31 - 1
 
@@ -19,17 +20,21 @@ NO_DEMAND = 2**31 - 1
 def library() -> ctypes.CDLL:
     firmware = root() / "firmware"
     file = Path(mkdtemp(prefix="quiesce-laws-")) / "laws.so"
-    sources = [firmware / "base" / f"{one}.c" for one in ("state_space", "table", "view_signal")]
-    sources += [firmware / "base/crc32.c", *sorted((firmware / "law/forms").glob("*.c"))]
+    sources = [one for block in BLOCKS for one in sorted((firmware / block).glob("*.c"))]
     sources.append(Path(__file__).with_name("law_steps.c"))
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-fno-strict-aliasing", "-shared", "-fPIC", "-o", file]
         + ["-DQUIESCE_SENSORS=8", "-DQUIESCE_BODIES=4", "-DQUIESCE_DAMPERS=4"]
-        + [f"-I{firmware / one}" for one in ("include", "base", "law")]
+        + [f"-I{firmware / one}" for one in ("include", "law", *BLOCKS)]
         + sources,
         check=True,
     )
     return ctypes.CDLL(str(file))
+
+
+def _law(name: str) -> ctypes.c_void_p:
+    """Its law_t, which is called as the law is."""
+    return ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(library(), f"law_{name}")))
 
 
 def verdict(law: str, words: list[int]) -> int:
@@ -57,7 +62,7 @@ def _call(
         return one.ctypes.data_as(ctypes.c_void_p)
 
     said = library().law_steps(
-        LAWS.index(law), at(table), len(table), at(signals), len(signals), at(values),
+        _law(law), at(table), len(table), at(signals), len(signals), at(values),
         len(values), at(out),
     )  # fmt: skip
     return said, out
