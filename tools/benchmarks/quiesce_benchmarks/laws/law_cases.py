@@ -37,23 +37,18 @@ class LawCase:
         return f"{self.name}, {self.tracker}" if self.tracker else self.name
 
 
-def made_anywhere(recipe: Recipe, made_on: tuple[str, ...] = (rigs.BUILDING, rigs.CAR)) -> Made:
-    """On the first of the rigs that allows it. UsageError of the last one where none does."""
-    for rig in made_on[:-1]:
-        try:
-            return rigs.made(rig, recipe.name)
-        except UsageError:
-            continue
-    return rigs.made(made_on[-1], recipe.name)
-
-
 def rig_of(recipe: Recipe) -> str:
-    """Where `made_anywhere` makes it."""
+    """The building, but for laws of a damper between two bodies."""
     try:
         rigs.made(rigs.BUILDING, recipe.name)
     except UsageError:
         return rigs.CAR
     return rigs.BUILDING
+
+
+def made_anywhere(recipe: Recipe) -> Made:
+    """With its settings as they come. UsageError where neither rig allows it."""
+    return rigs.made(rig_of(recipe), recipe.name)
 
 
 def forms() -> list[str]:
