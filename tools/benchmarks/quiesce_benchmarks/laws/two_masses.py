@@ -24,8 +24,8 @@ CONTROLS = ("uncontrolled", "damper", "damper and elastomer")
 PUBLISHED_m_s2 = np.array([[10.13, 3.21, 2.67], [19.5, 6.94, 6.31], [29.6, 12.9, 9.26]])
 PUBLISHED_E = np.array([[5.34, 2.56, 1.69], [9.25, 4.32, 2.92], [10.25, 4.83, 3.58]])
 # Found by elastomer_fit.py, together with the rig's masses, spring, lever and tables' amplitudes.
-GAINS = {"sky_N_s_m": 6160.0, "limit_N": 1200.0}
-MOUNT_GAIN = {"mount_N_s_m": 5110.0}
+GAINS = {"sky_N_s_m": 24100.0, "limit_N": 552.0}
+MOUNT_GAIN = {"mount_N_s_m": 2140.0}
 DAMPER, DAMPER_A = "rd1005_kwok_tanh_smooth", 1.88
 MOUNT, MOUNT_A = "mre_2014", 1.78
 FROM_s = 2.0  # steady
