@@ -8,6 +8,8 @@ from quiesce.law.recipes import (
     bang_bang,
     clipped_linear,
     clipped_optimal,
+    fuzzy_drift,
+    fuzzy_skyhook,
     groundhook,
     groundhook_on_off,
     lyapunov,
@@ -22,6 +24,7 @@ from quiesce.law.recipes import (
     skyhook_elastomer,
     skyhook_on_off,
     sliding_mode,
+    tsk,
 )
 
 RECIPES: tuple[Recipe, ...] = (
@@ -44,6 +47,9 @@ RECIPES: tuple[Recipe, ...] = (
     max_dissipation.RECIPE,
     polynomial.RECIPE,
     skyhook_elastomer.RECIPE,
+    fuzzy_skyhook.RECIPE,
+    fuzzy_drift.RECIPE,
+    tsk.RECIPE,
 )
 
 
