@@ -40,7 +40,8 @@ RECIPE = Recipe(
     ),
     make,
     equation="I = sum of w_i I_i over the rules, sum of w_i 1; I_i: on x (|i| + |j|) / 4 for sets "
-    "i of r and j of v_r, -2 .. 2, where r v_r > 0; x outward_share where r v_r > 0, back_share where it is < 0, their mean else",
+    "i of r and j of v_r, -2 .. 2; x outward_share where r v_r > 0, x back_share where r v_r < 0, "
+    "their mean else",
     errata="The review names inputs and prints no rule base.",
     when="Only the damper's own stroke is measured.",
 )
