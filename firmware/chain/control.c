@@ -14,8 +14,10 @@ static uint64_t control_needs(const quiesce_params_t *params) {
 }
 
 uint64_t control_serves(const quiesce_params_t *params) {
-    const law_table_kind_t *kind = law_find(params->law)->kind;
-    return kind != NULL && kind->needs != NULL ? ~UINT64_C(0) : control_needs(params);
+    const law_t *law = law_find(params->law);
+    const bool may_need_more =
+        (law->kind != NULL && law->kind->needs != NULL) || forces_may_need_more(law, params);
+    return may_need_more ? ~UINT64_C(0) : control_needs(params);
 }
 
 static void start(control_t *self) {
@@ -109,7 +111,7 @@ static void find_needs(control_t *self) {
     const bool has_own = kind != NULL && kind->needs != NULL && self->setup.table != NULL;
     const bool wants_more = self->forces.track != NULL || lacks_table(self);
     self->needs = self->fixed_needs | (has_own ? kind->needs(self->setup.table) : 0) |
-                  (wants_more ? MORE : 0);
+                  forces_table_needs(&self->forces, self->forces.table) | (wants_more ? MORE : 0);
 }
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
@@ -127,6 +129,11 @@ void control_init(control_t *self, const places_t *places, const quiesce_params_
     start(self);
 }
 
+static void use_force_table(control_t *self, const uint32_t *words) {
+    forces_use(&self->forces, words);
+    find_needs(self);
+}
+
 static void use_law_table(control_t *self, const uint32_t *words) {
     self->setup.table = words;
     find_needs(self);
@@ -140,7 +147,7 @@ static void use_law_table(control_t *self, const uint32_t *words) {
 quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
     const track_table_kind_t *map = forces_kind(&self->forces);
     if (map != NULL && magic == map->magic) {
-        self->forces.table = NULL;
+        use_force_table(self, NULL);
         return QUIESCE_TABLE_OK;
     }
     const law_table_kind_t *kind = self->law->kind;
@@ -180,6 +187,16 @@ static quiesce_table_verdict_t check_law_table(const control_t *self, const uint
     return is_served && is_of_this_rate(self, words) ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
 }
 
+static quiesce_table_verdict_t check_force_table(const control_t *self, const uint32_t *words,
+                                                 uint32_t count) {
+    const quiesce_table_verdict_t verdict = forces_kind(&self->forces)->check(words, count);
+    if (verdict != QUIESCE_TABLE_OK) {
+        return verdict;
+    }
+    const bool is_served = (forces_table_needs(&self->forces, words) & ~self->provided) == 0;
+    return is_served ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
+}
+
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
     if (words == NULL) {
         return use_shipped(self);
@@ -187,12 +204,12 @@ quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint
     const track_table_kind_t *map = forces_kind(&self->forces);
     const bool is_map = map != NULL && count > 0 && words[0] == map->magic;
     const quiesce_table_verdict_t verdict =
-        is_map ? map->check(words, count) : check_law_table(self, words, count);
+        is_map ? check_force_table(self, words, count) : check_law_table(self, words, count);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
     if (is_map) {
-        self->forces.table = words;
+        use_force_table(self, words);
     } else {
         use_law_table(self, words);
     }

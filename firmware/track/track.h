@@ -23,6 +23,9 @@ typedef struct {
 typedef struct {
     uint32_t magic; ///< that no law's table has
     quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
+    /// VIEW_ bits that a checked table needs beside the tracker; one that the board cannot serve is
+    /// refused. NULL: none.
+    uint64_t (*needs)(const uint32_t *words);
 } track_table_kind_t;
 
 typedef struct {
@@ -30,7 +33,7 @@ typedef struct {
     uint64_t needs;                 ///< VIEW_ bits; while they are not all valid it is not stepped
     const track_table_kind_t *kind; ///< without a table of it it is not stepped; NULL: needs none
     /// One damper, one tick. Returns the current, mA, any value: what follows limits it. *state is
-    /// 0 from rest. demand_mN: any value, > 0 resists a stroke that grows.
+    /// 0 from rest and with another table. demand_mN: any value, > 0 resists a stroke that grows.
     int32_t (*step)(void *state, const track_setup_t *setup, const view_damper_t *damper,
                     int32_t demand_mN);
 } track_t;
