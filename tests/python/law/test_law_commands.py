@@ -18,6 +18,7 @@ def test_list_names_every_recipe_and_says_what_one_takes(quiesce) -> None:
     files = {one.stem for one in (ROOT / "tools/src/quiesce/law/recipes").glob("*.py")}
     assert set(all_of_them) == files - {"__init__", "common"}
     assert all(f"\n{name} " in text for name in all_of_them)
+    assert all(one["equation"] and one["source"] and one["when"] for one in all_of_them.values())
     one = quiesce("law", "list", "sh_add").stdout
     assert "cross_Hz" in one and "0.01 .. 100" in one and "source" in one
     assert "tracker" in quiesce("law", "list", "skyhook").stdout

@@ -19,7 +19,7 @@ NO_DEMAND = 2**31 - 1
 def library() -> ctypes.CDLL:
     firmware = root() / "firmware"
     file = Path(mkdtemp(prefix="quiesce-laws-")) / "laws.so"
-    sources = [firmware / "base" / f"{one}.c" for one in ("state_space", "table", "view_signal")]
+    sources = [firmware / "base" / f"{one}.c" for one in ("sections", "state_space", "table", "view_signal")]
     sources += [firmware / "base/crc32.c", *sorted((firmware / "law/forms").glob("*.c"))]
     sources.append(Path(__file__).with_name("law_steps.c"))
     subprocess.run(

@@ -24,10 +24,15 @@ class Setting:
 class Recipe:
     name: str
     summary: str
-    source: str
+    source: str  # "review": the survey among the five papers, "elastomer paper": the fourth
     tracker: str  # what makes currents of its forces well; "" where it demands currents
     settings: tuple[Setting, ...]
     make: Callable[[LawRig, dict[str, float]], Table | Compiled]
+    # x, v, a: absolute motion of a body; r, v_r: a damper's stroke and its velocity; F: its force,
+    # above 0 where it resists a stroke that grows; indices a, b: of the damper's ends.
+    equation: str = ""
+    errata: str = ""  # what is wrong in the source; "" where nothing is
+    when: str = ""  # to use it
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 RECIPE = Recipe(
     "backstepping",
     "F = m (1 + h1 h2) x + m (h1 + h2) v - k x - c v",
-    "review, eq 33 as a force: its division by the hysteretic state is the inverse tracker's",
+    "review, eq 33; Zapateiro and others 2009",
     "inverse",
     (
         Setting("mass_kg", 100.0, 1e-3, 1e6, "of the body"),
@@ -36,4 +36,9 @@ RECIPE = Recipe(
         LIMIT_N,
     ),
     make,
+    equation="F = m (1 + h1 h2) x + m (h1 + h2) v - k x - c v",
+    errata="The printed denominator lacks g, and g's sign is not that of the minus before it. As "
+    "a force there is no denominator: to divide by the hysteretic state is the inverse's "
+    "work, which tracker bank does with that state observed.",
+    when="One mass whose mount is known.",
 )

@@ -26,7 +26,7 @@ def make(rig: LawRig, values: dict[str, float]) -> FrictionTable:
 RECIPE = Recipe(
     "modulated_friction",
     "F = g |last peak of the stroke| sgn(v_r), gated by a least peak and by quadrants",
-    "Inaudi 1997; stroke and force are all that it needs",
+    "Inaudi 1997",
     "proportional",
     (
         Setting("gain_N_m", 50000.0, 0.0, 1e9, "force for 1 m of the last peak"),
@@ -37,4 +37,7 @@ RECIPE = Recipe(
         LIMIT_N,
     ),
     make,
+    equation="F = g |last peak of r| sgn(v_r)",
+    when="Stroke and force alone, no accelerometer; what a cycle takes grows with the square "
+    "of its amplitude, as in a linear damper.",
 )

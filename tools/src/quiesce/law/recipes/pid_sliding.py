@@ -29,8 +29,7 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 RECIPE = Recipe(
     "pid_sliding",
     "F = K sat(s / phi), s = kp x + ki int x + v",
-    "review, eqs 29 and 30 (A-PIDSMC); tracker proportional is their force tracker. The integral "
-    "leaks: nothing that is unbounded runs here",
+    "review, eqs 29 and 30 (A-PIDSMC)",
     "proportional",
     (
         Setting("proportional_1_s", 5.0, 0.0, 1e3, "kp over kd"),
@@ -40,4 +39,8 @@ RECIPE = Recipe(
         Setting("layer_m_s", 0.05, 1e-4, 100.0, "width of the boundary layer"),
     ),
     make,
+    equation="F = K sat(s / phi), s = kp x + ki int x dt + v, the integral leaking",
+    errata="Right as printed. Their force tracker is tracker proportional with H = 1; nothing "
+    "that is unbounded runs here, so the integral leaks.",
+    when="With a force sensor at the damper, against drifts that an integral takes away.",
 )

@@ -35,7 +35,7 @@ def _share(name: str, default: float, which: str) -> Setting:
 RECIPE = Recipe(
     "quasi_bang_bang",
     "a share of the current in each quadrant of displacement and velocity",
-    "review, eq 32, which is not its own mirror image; equal shares of opposite quadrants are",
+    "review, eq 32; Aly 2013",
     "",
     (
         ON_A,
@@ -47,4 +47,9 @@ RECIPE = Recipe(
         _share("up_in_share", 1.0, "coming back, x < 0"),
     ),
     make,
+    equation="I = on times a share for each quadrant of x_a and v_a",
+    errata="It names one quadrant twice and is not its own mirror image: equal shares of "
+    "opposite quadrants are. Its weights favour the inward quadrants; below resonance the "
+    "outward ones are what works.",
+    when="A single body whose displacement is known.",
 )

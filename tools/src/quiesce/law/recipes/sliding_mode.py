@@ -21,7 +21,7 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 RECIPE = Recipe(
     "sliding_mode",
     "F = c v + K sat(s / phi), s = lambda x + v",
-    "review, text on Lee's law; no equation is printed, this is the plain form",
+    "review, text on Lee's law",
     "inverse",
     (
         Setting("lambda_1_s", 5.0, 0.0, 1e3, "how fast it slides to rest"),
@@ -31,4 +31,7 @@ RECIPE = Recipe(
         LIMIT_N,
     ),
     make,
+    equation="F = c v + K sat(s / phi), s = lambda x + v",
+    errata="No equation is printed: this is the plain form. The review's 'synovial' is 'sliding'.",
+    when="A stiff force with a soft edge where the damper's strength is known and little else.",
 )
