@@ -51,10 +51,10 @@ static const struct {
 #define SIGNALS (sizeof signals / sizeof signals[0])
 
 // What a law needs where these bodies and dampers are: VIEW_EACH is each of them.
-static uint64_t needs_there(uint64_t needs, const places_t *places) {
+static uint64_t needs_there(uint64_t needs, uint32_t bodies, uint32_t dampers) {
     for (uint32_t i = 0; i < SIGNALS; i++) {
         const uint64_t each = VIEW_EACH(signals[i].quantity);
-        const uint32_t count = signals[i].owner == OF_BODIES ? places->bodies : places->dampers;
+        const uint32_t count = signals[i].owner == OF_BODIES ? bodies : dampers;
         const uint64_t present = signals[i].quantity * ((UINT64_C(1) << count) - 1u);
         if (signals[i].owner != OF_BOARD && (needs & each) == each) {
             needs &= ~each | present;
@@ -84,8 +84,9 @@ bool quiesce_missing(const quiesce_board_t *board, const quiesce_params_t *param
         return false;
     }
     places_init(&places, board);
-    return find_signal(needs_there(control_needs(params), &places) & ~places_provide(&places), 0,
-                       missing);
+    return find_signal(needs_there(control_needs(params), places.bodies, places.dampers) &
+                           ~places_provide(&places),
+                       0, missing);
 }
 
 bool quiesce_provided(const quiesce_board_t *board, uint32_t index, quiesce_signal_t *provided) {
@@ -106,18 +107,25 @@ const char *control_lacks_table(const control_t *self) {
     return forces_are_ready(&self->forces) ? NULL : self->forces.track->name;
 }
 
+// What words of the tracker's kind need, none of NULL, where these bodies and dampers are.
+static uint64_t force_table_needs(const control_t *self, const uint32_t *words) {
+    return needs_there(forces_table_needs(&self->forces, words), self->bodies,
+                       self->forces.dampers);
+}
+
 static void find_needs(control_t *self) {
     const law_table_kind_t *kind = self->law->kind;
     const bool has_own = kind != NULL && kind->needs != NULL && self->setup.table != NULL;
     const bool wants_more = self->forces.track != NULL || lacks_table(self);
     self->needs = self->fixed_needs | (has_own ? kind->needs(self->setup.table) : 0) |
-                  forces_table_needs(&self->forces, self->forces.table) | (wants_more ? MORE : 0);
+                  force_table_needs(self, self->forces.table) | (wants_more ? MORE : 0);
 }
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
     self->law = law_find(params->law);
     forces_init(&self->forces, self->law, params, places->dampers);
-    self->fixed_needs = needs_there(control_needs(params), places);
+    self->bodies = places->bodies;
+    self->fixed_needs = needs_there(control_needs(params), places->bodies, places->dampers);
     self->provided = places_provide(places);
     self->setup = (law_setup_t){
         .params = *params,
@@ -193,7 +201,7 @@ static quiesce_table_verdict_t check_force_table(const control_t *self, const ui
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
-    const bool is_served = (forces_table_needs(&self->forces, words) & ~self->provided) == 0;
+    const bool is_served = (force_table_needs(self, words) & ~self->provided) == 0;
     return is_served ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
 }
 

@@ -40,9 +40,10 @@ bool forces_are_ready(const forces_t *self) {
 
 void forces_step(forces_t *self, const quiesce_params_t *params, const view_t *view,
                  law_demand_t *demand) {
-    const track_setup_t setup = {params, self->table};
+    track_setup_t setup = {params, self->table, 0};
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         const int32_t demand_mN = demand->value[i];
+        setup.damper = i;
         demand->value[i] = i < self->dampers ? self->track->step(self->state[i], &setup,
                                                                  &view->damper[i], demand_mN)
                                              : 0;

@@ -16,15 +16,16 @@
 typedef struct {
     const quiesce_params_t *params; ///< checked
     const uint32_t *table;          ///< words that the kind's check accepts; NULL without a kind
+    uint32_t damper;                ///< its number
 } track_setup_t;
 
-/// A kind of table. None ships: a map is of one damper. Its words begin with the magic, CRC-32 and
-/// their number.
+/// A kind of table. None ships: a map is of dampers that a user has. Its words begin with the
+/// magic, CRC-32 and their number.
 typedef struct {
     uint32_t magic; ///< that no law's table has
     quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
-    /// VIEW_ bits that a checked table needs beside the tracker; one that the board cannot serve is
-    /// refused. NULL: none.
+    /// VIEW_ bits that a checked table needs beside the tracker, VIEW_EACH of each that there is;
+    /// one that the board cannot serve is refused. NULL: none.
     uint64_t (*needs)(const uint32_t *words);
 } track_table_kind_t;
 

@@ -163,6 +163,18 @@ void require_accepted_table(quiesce_t &controller, const std::string &file) {
     }
 }
 
+/// A map that is good in itself: of this board's dampers and strokes.
+void require_served_map(quiesce_t &controller, const std::string &file) {
+    const std::vector<std::uint32_t> words = load_force_map(file);
+    const quiesce_table_verdict_t verdict =
+        quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
+    if (verdict == QUIESCE_TABLE_FIT) {
+        throw InputError(file + ": the controller refuses the map: it is of more dampers than this "
+                                "board has, or over a stroke that no sensor tells (quiesce board "
+                                "show)");
+    }
+}
+
 } // namespace
 
 void require_tables(const quiesce_board_t *board, const quiesce_params_t &params,
@@ -184,6 +196,9 @@ void require_tables(const quiesce_board_t *board, const quiesce_params_t &params
     if (lacking != nullptr && force_map.empty()) {
         throw InputError("tracker " + std::string(lacking) +
                          " works with a damper's map: --force-map FILE (quiesce identify inverse)");
+    }
+    if (lacking != nullptr) {
+        require_served_map(*controller, force_map);
     }
 }
 

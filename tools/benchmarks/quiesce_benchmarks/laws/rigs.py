@@ -11,7 +11,7 @@ from quiesce.compare.laws import ComparedLaw
 from quiesce.compare.records import Record, read_record
 from quiesce.compare.run import Comparison, Shaking
 from quiesce.damper.force_map import map_words
-from quiesce.damper.inverse import default_velocities, monotone_range
+from quiesce.damper.inverse import monotone_range
 from quiesce.damper.simulate import simulator_of_file
 from quiesce.engine.bench import Bench
 from quiesce.law.recipe import Made, make, values_of
@@ -58,8 +58,7 @@ def made(rig: str, recipe: str, settings: dict[str, float] | None = None) -> Mad
 def map_of(folder: Path, damper: str, most_A: float) -> Path:
     """Map of a damper that ships, for tracker inverse."""
     model, simulate = simulator_of_file(root() / f"sim_hil/data/dampers/{damper}.toml")
-    velocities = default_velocities(model)
-    found = monotone_range(model, most_A, velocities, None if model.is_kernel else simulate)
+    found = monotone_range(model, most_A, simulate=None if model.is_kernel else simulate)
     file = folder / "map.words"
     file.write_text(file_text(map_words(found)), encoding="ascii")
     return file
