@@ -10,7 +10,7 @@
 #include "view.h"
 
 /// Bytes for the state of a tracker, for each damper.
-#define TRACK_STATE_BYTES 32u
+#define TRACK_STATE_BYTES 56u
 
 /// What a tracker works with.
 typedef struct {

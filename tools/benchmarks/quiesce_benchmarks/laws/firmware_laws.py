@@ -8,9 +8,10 @@ from tempfile import mkdtemp
 
 import numpy as np
 from quiesce.base.paths import root
+from quiesce.law.forms.network import NetworkTrackTable
 from quiesce.law.tables import Table
 
-LAWS = ("linear", "signs", "friction", "polynomial")
+FOLDERS = ("base", "fuzzy", "law", "param", "plants", "track")
 DAMPERS = 4
 NO_DEMAND = 2**31 - 1
 
@@ -19,13 +20,13 @@ NO_DEMAND = 2**31 - 1
 def library() -> ctypes.CDLL:
     firmware = root() / "firmware"
     file = Path(mkdtemp(prefix="quiesce-laws-")) / "laws.so"
-    sources = [firmware / "base" / f"{one}.c" for one in ("sections", "state_space", "table", "view_signal")]
-    sources += [firmware / "base/crc32.c", *sorted((firmware / "law/forms").glob("*.c"))]
-    sources.append(Path(__file__).with_name("law_steps.c"))
+    sources = [file for one in FOLDERS for file in sorted((firmware / one).rglob("*.c"))]
+    headers = {file.parent for one in FOLDERS for file in (firmware / one).rglob("*.h")}
+    sources += [Path(__file__).with_name(one) for one in ("law_steps.c", "track_steps.c")]
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-fno-strict-aliasing", "-shared", "-fPIC", "-o", file]
         + ["-DQUIESCE_SENSORS=8", "-DQUIESCE_BODIES=4", "-DQUIESCE_DAMPERS=4"]
-        + [f"-I{firmware / one}" for one in ("include", "base", "law")]
+        + [f"-I{one}" for one in (firmware / "include", *sorted(headers))]
         + sources,
         check=True,
     )
@@ -53,11 +54,44 @@ def _call(
     values = np.ascontiguousarray(values, np.int32)
     out = np.zeros((len(values), DAMPERS), np.int32)
 
-    def at(one: np.ndarray) -> ctypes.c_void_p:
-        return one.ctypes.data_as(ctypes.c_void_p)
-
     said = library().law_steps(
-        LAWS.index(law), at(table), len(table), at(signals), len(signals), at(values),
-        len(values), at(out),
+        law.encode(), _at(table), len(table), _at(signals), len(signals), _at(values),
+        len(values), _at(out),
     )  # fmt: skip
     return said, out
+
+
+def _at(one: np.ndarray) -> ctypes.c_void_p:
+    return one.ctypes.data_as(ctypes.c_void_p)
+
+
+class NetworkTracker:
+    """Tracker `network` of one damper, from rest."""
+
+    STATE_BYTES = 1024
+
+    def __init__(self, table: NetworkTrackTable, damper: int = 0) -> None:
+        self._words = np.array(table.words(), np.uint32)
+        self._damper = damper
+        signals = [one.signal for one in table.sections[damper].inputs]
+        self._units = np.array([one.quantity.per_unit for one in signals])
+        self._signals = np.array([one.quantity.code for one in signals], np.uint32)
+        self._state = np.zeros(self.STATE_BYTES, np.uint8)
+
+    def currents_A(self, values: np.ndarray) -> np.ndarray:
+        """[ticks] for its inputs [ticks, inputs] in SI units."""
+        units = np.ascontiguousarray(np.rint(values * self._units), np.int32)
+        out = np.zeros(len(values), np.int32)
+        said = library().track_steps(
+            _at(self._words), len(self._words), self._damper, _at(self._state),
+            _at(self._signals), len(self._signals), _at(units), len(units), _at(out),
+        )  # fmt: skip
+        assert said == 0, said
+        return 1e-3 * out
+
+
+def tracker_verdict(words: list[int]) -> int:
+    table, none = np.array(words, np.uint32), np.zeros(1, np.int32)
+    return library().track_steps(
+        _at(table), len(table), 0, _at(none), _at(none), 0, _at(none), 0, _at(none)
+    )

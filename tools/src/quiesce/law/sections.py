@@ -15,9 +15,14 @@ from quiesce.law.words import Reader, opened, sealed
 MOST_SECTIONS = 4
 
 
+class Named(Protocol):
+    @property
+    def signal(self) -> Signal: ...
+
+
 class Section(Protocol):
     @property
-    def inputs(self) -> tuple[Input, ...]: ...
+    def inputs(self) -> Sequence[Named]: ...
 
     def words(self) -> list[int]:
         """ValueError where there is too much of it."""
