@@ -2,7 +2,7 @@
 
 A method is a module with NAME, TITLE, HELP, TRACKER (what the controller can do with it) and
 make(source, seed, progress), and its place in METHODS; one whose file is TOML has read(keys,
-max_current_A, where), too. A map's file is the words that the controller loads.
+max_current_A, where), too. A map's and a bank's file is the words that the controller loads.
 """
 
 import json
@@ -18,16 +18,22 @@ import tomli_w
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
-from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, steps
+from quiesce.damper.bank.table import MAGIC as BANK_MAGIC
+from quiesce.damper.inverses import banked, feed_forward, fuzzy, mapped, recurrent, steps
+from quiesce.damper.inverses.banked import BankInverse
 from quiesce.damper.inverses.demand import Inverse
 from quiesce.damper.inverses.keys import number
-from quiesce.damper.inverses.mapped import MapInverse, read_words
+from quiesce.damper.inverses.mapped import MapInverse
+from quiesce.damper.words import words_of_file
 
 SCHEMA = "quiesce-inverse-damper"
 VERSION = 2
 METHODS: dict[str, ModuleType] = {
-    one.NAME: one for one in (mapped, steps, feed_forward, recurrent, fuzzy)
+    one.NAME: one for one in (mapped, banked, steps, feed_forward, recurrent, fuzzy)
 }
+# Of files that the controller loads as they are.
+SUFFIX = ".words"
+LOADED = (mapped.NAME, banked.NAME)
 
 
 def methods_of(text: str) -> list[str]:
@@ -40,7 +46,7 @@ def methods_of(text: str) -> list[str]:
 
 
 def file_name(method: str) -> str:
-    return f"{method}{mapped.SUFFIX}" if method == mapped.NAME else f"inverse_{method}.toml"
+    return f"{method}{SUFFIX}" if method in LOADED else f"inverse_{method}.toml"
 
 
 def check_word(table: Mapping[str, Any]) -> int:
@@ -50,7 +56,7 @@ def check_word(table: Mapping[str, Any]) -> int:
 
 
 def text_of(method: str, inverse: Inverse) -> str:
-    if isinstance(inverse, MapInverse):
+    if isinstance(inverse, MapInverse | BankInverse):
         return inverse.to_text()
     table: dict[str, Any] = {
         "schema": SCHEMA,
@@ -71,8 +77,9 @@ def write_inverse(file: Path, method: str, inverse: Inverse) -> None:
 
 def read_inverse(file: Path) -> tuple[str, Inverse]:
     """Method and inverse. UsageError with file and key where it is wrong."""
-    if file.suffix == mapped.SUFFIX:
-        return mapped.NAME, read_words(file)
+    if file.suffix == SUFFIX:
+        one = banked if words_of_file(file, BANK_MAGIC)[:1] == [BANK_MAGIC] else mapped
+        return one.NAME, one.read_words(file)
     where = shown(file)
     try:
         table = tomllib.loads(file.read_text(encoding="utf-8"))
