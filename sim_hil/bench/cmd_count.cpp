@@ -37,14 +37,15 @@ std::string profile_from(const Arguments &arguments) {
 } // namespace
 
 int cmd_count(const std::vector<std::string> &words) {
-    const Arguments arguments("count", words, {"image", "word", "profile", "plugin"});
+    const Arguments arguments("count", words, {"image", "word", "data", "profile", "plugin"});
     arguments.require_no_positional();
     QemuOptions options;
     options.image_path = arguments.required("image");
     options.plugin_path = arguments.text("plugin").value_or("");
     options.profile = profile_from(arguments);
     options.answer_time = kLongestRun;
-    const ImageRun run = run_image(options, words_from(arguments));
+    const ImageRun run =
+        run_image(options, words_from(arguments), arguments.text("data").value_or(""));
     Json out = {
         {"passes", run.counts.ticks},
         {"worst", run.counts.worst},

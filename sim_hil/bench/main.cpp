@@ -21,7 +21,7 @@ const Entry kCommands[] = {
      "[--can CHANNEL] [--telemetry-every N] [--wait-s X] [--plant FILE] [--set NAME=VALUE]... "
      "[--noise-mg X] [--dt-us N]",
      quiesce::cmd_compare},
-    {"count", "--image ELF [--word N]... [--profile off|all|PASS] [--plugin SO]",
+    {"count", "--image ELF [--word N]... [--data FILE] [--profile off|all|PASS] [--plugin SO]",
      quiesce::cmd_count},
     {"fuzzy-surface", "", quiesce::cmd_fuzzy_surface},
     {"params", "", quiesce::cmd_params},

@@ -1,5 +1,6 @@
 #include "image_run.h"
 
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 
@@ -12,9 +13,24 @@ namespace quiesce {
 
 namespace {
 
+void check_data(const std::string &path) {
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(path, error);
+    if (error || bytes == 0 || bytes > MAILBOX_BYTES) {
+        throw InputError("--data " + path + ": expected a file of 1 .. " +
+                         std::to_string(MAILBOX_BYTES) + " bytes");
+    }
+}
+
 std::vector<std::string> qemu_arguments(const InstructionCounter &counter,
-                                        const std::vector<std::uint32_t> &words) {
+                                        const std::vector<std::uint32_t> &words,
+                                        const std::string &data_path) {
     std::vector<std::string> arguments = {"-M", "mps2-an386", "-serial", "none"};
+    if (!data_path.empty()) {
+        arguments.insert(arguments.end(),
+                         {"-device", "loader,addr=" + std::to_string(MAILBOX_BASE) +
+                                         ",force-raw=on,file=" + escape_commas(data_path)});
+    }
     std::uint32_t address = MAILBOX_BASE;
     for (const std::uint32_t word : words) {
         arguments.insert(arguments.end(),
@@ -48,10 +64,17 @@ std::map<std::string, std::uint32_t> parse_printed(const std::string &text,
 
 } // namespace
 
-ImageRun run_image(const QemuOptions &options, const std::vector<std::uint32_t> &words) {
+ImageRun run_image(const QemuOptions &options, const std::vector<std::uint32_t> &words,
+                   const std::string &data_path) {
+    if (!data_path.empty()) {
+        check_data(data_path);
+        if (!words.empty()) {
+            throw InputError("--data and --word are for the same place: give one of them");
+        }
+    }
     const InstructionCounter counter(options);
     const std::string &image = options.image_path;
-    QemuProcess process(image, qemu_arguments(counter, words), counter.inherited());
+    QemuProcess process(image, qemu_arguments(counter, words, data_path), counter.inherited());
     if (!process.wait_for_end(options.answer_time)) {
         throw InputError("image " + image + ": has not ended after " +
                          std::to_string(options.answer_time.count()) + " ms");

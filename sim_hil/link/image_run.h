@@ -18,10 +18,12 @@ struct ImageRun {
     std::map<std::string, std::uint32_t> printed;   ///< lines "name 0xVALUE"
 };
 
-/// Runs the image with these words at MAILBOX_BASE. Throws InputError when it cannot run, prints
-/// anything else, ends with another exit code than 0, not within options.answer_time, or without a
-/// pass.
-ImageRun run_image(const QemuOptions &options, const std::vector<std::uint32_t> &words);
+/// Runs the image with these words at MAILBOX_BASE, or with the bytes of a file there. Throws
+/// InputError when there are both, when the file is none or too large, when the image cannot run,
+/// prints anything else, ends with another exit code than 0, not within options.answer_time, or
+/// without a pass.
+ImageRun run_image(const QemuOptions &options, const std::vector<std::uint32_t> &words,
+                   const std::string &data_path = "");
 
 } // namespace quiesce
 

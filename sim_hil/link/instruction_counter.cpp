@@ -25,15 +25,6 @@ std::uint32_t marker(const std::string &image_path, const std::string &name) {
     return found->second;
 }
 
-/// QEMU splits option values at commas; a doubled one stands for itself.
-std::string escape_commas(const std::string &path) {
-    std::string out;
-    for (const char c : path) {
-        out += c == ',' ? std::string(",,") : std::string(1, c);
-    }
-    return out;
-}
-
 } // namespace
 
 InstructionCounter::InstructionCounter(const QemuOptions &options) {

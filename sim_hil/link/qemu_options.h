@@ -20,6 +20,15 @@ struct QemuOptions {
     std::chrono::milliseconds answer_time = std::chrono::seconds(10);
 };
 
+/// QEMU splits option values at commas; a doubled one stands for itself.
+inline std::string escape_commas(const std::string &path) {
+    std::string out;
+    for (const char c : path) {
+        out += c == ',' ? std::string(",,") : std::string(1, c);
+    }
+    return out;
+}
+
 } // namespace quiesce
 
 #endif

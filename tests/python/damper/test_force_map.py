@@ -41,7 +41,7 @@ def test_limits_are_those_of_the_firmware() -> None:
     assert defined("track/force_map.h", "FORCE_MAP_MAGIC") == MAGIC
     assert defined("track/force_map.h", "FORCE_MAP_MAX_CURRENTS") == MAX_CURRENTS
     assert defined("track/force_map.h", "FORCE_MAP_MAX_PLACES") == MAX_PLACES
-    assert defined("include/quiesce_board.h", "QUIESCE_MAX_DAMPERS") == MAX_DAMPERS
+    assert defined("include/quiesce_size.h", "QUIESCE_MAX_DAMPERS") == MAX_DAMPERS
     assert defined("include/quiesce_board.h", "QUIESCE_HIGHEST_CURRENT_mA") == MAX_CURRENT_mA
     assert "VIEW_LIMIT ((1 << 30) - 1)" in (ROOT / "firmware/base/view.h").read_text("utf-8")
     assert LIMIT == (1 << 30) - 1

@@ -33,8 +33,10 @@ def two(build: Path) -> LawRig:
 
 
 def tables(rig: LawRig) -> dict[str, Table]:
-    """Of all recipes that the building takes: those for two moving ends need another rig."""
+    """Of all recipes that the building takes: those for two moving ends, or a mount beside the
+    damper, need another rig."""
     names = [one.name for one in RECIPES if "hook" not in one.name or "sky" in one.name]
+    names.remove("skyhook_elastomer")
     return {name: make(find(name), rig, values_of(find(name), [])).table for name in names}
 
 

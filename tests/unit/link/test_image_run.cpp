@@ -1,4 +1,8 @@
 /// Images that run by themselves: counts against known numbers of instructions.
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
 #include <nlohmann/json.hpp>
 
 #include "bench_call.h"
@@ -69,6 +73,21 @@ TEST(image_run, stack_of_the_counted_call_is_its_own) {
     const ImageRun run = run_image(options_for(kCountProbe), {3, 10});
     EXPECT_EQ(run.printed.at("stack_bytes"), 0u);
     EXPECT_EQ(run.printed.at("dug_stack_bytes"), 64u);
+}
+
+TEST(image_run, words_may_come_from_a_file) {
+    const std::string path =
+        std::filesystem::temp_directory_path() / ("count," + std::to_string(getpid()) + ".bin");
+    const std::uint32_t words[] = {3, 10};
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char *>(words), sizeof words);
+    EXPECT_EQ(run_image(options_for(kCountProbe), {}, path).counts.total,
+              run_image(options_for(kCountProbe), {3, 10}).counts.total);
+    const std::string error = error_of([&] { run_image(options_for(kCountProbe), {3, 10}, path); });
+    expect_contains(error, "give one of them");
+    expect_contains(error_of([] { run_image(options_for(kCountProbe), {}, "/none.bin"); }),
+                    "--data /none.bin: expected a file of 1 .. 16777216 bytes");
+    std::filesystem::remove(path);
 }
 
 TEST(image_run, image_that_fails_is_named_with_its_last_line) {

@@ -11,8 +11,7 @@ from quiesce.base.paths import root
 from quiesce.law.forms.network import NetworkTrackTable
 from quiesce.law.tables import Table
 
-LAWS = ("linear", "signs", "friction", "polynomial", "network")
-BASE = ("activation", "crc32", "fixq", "network", "sections", "state_space", "table", "view_signal")
+FOLDERS = ("base", "fuzzy", "law", "param", "plants", "track")
 DAMPERS = 4
 NO_DEMAND = 2**31 - 1
 
@@ -21,13 +20,13 @@ NO_DEMAND = 2**31 - 1
 def library() -> ctypes.CDLL:
     firmware = root() / "firmware"
     file = Path(mkdtemp(prefix="quiesce-laws-")) / "laws.so"
-    sources = [firmware / "base" / f"{one}.c" for one in BASE]
-    sources += [*sorted((firmware / "law/forms").glob("*.c")), firmware / "track/track_network.c"]
+    sources = [file for one in FOLDERS for file in sorted((firmware / one).rglob("*.c"))]
+    headers = {file.parent for one in FOLDERS for file in (firmware / one).rglob("*.h")}
     sources += [Path(__file__).with_name(one) for one in ("law_steps.c", "track_steps.c")]
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-fno-strict-aliasing", "-shared", "-fPIC", "-o", file]
         + ["-DQUIESCE_SENSORS=8", "-DQUIESCE_BODIES=4", "-DQUIESCE_DAMPERS=4"]
-        + [f"-I{firmware / one}" for one in ("include", "base", "law", "track")]
+        + [f"-I{one}" for one in (firmware / "include", *sorted(headers))]
         + sources,
         check=True,
     )
@@ -56,7 +55,7 @@ def _call(
     out = np.zeros((len(values), DAMPERS), np.int32)
 
     said = library().law_steps(
-        LAWS.index(law), _at(table), len(table), _at(signals), len(signals), _at(values),
+        law.encode(), _at(table), len(table), _at(signals), len(signals), _at(values),
         len(values), _at(out),
     )  # fmt: skip
     return said, out

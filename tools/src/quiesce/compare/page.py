@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.compare.clairvoyant import CLAIRVOYANT
 from quiesce.compare.figures import INDEXED
-from quiesce.compare.run import ALL, Cell
+from quiesce.compare.run import ALL, BEST, Cell
 from quiesce.compare.table import laws_of, means, rows
 from quiesce.engine.trace import Trace
 from quiesce.report.html import document, html_table, image, section
@@ -22,11 +23,12 @@ def page(
     title: str, cells: Sequence[Cell], traces: Mapping[str, Trace], body: str, damper: str
 ) -> str:
     """traces: of one record, by law; body and damper: whose motion and current are drawn."""
-    notes = [f"{cell.record}, seed {cell.seed}: {cell.note}" for cell in cells if cell.note]
+    notes = [f"{one.record}, seed {one.seed}: {one.note}" for one in cells if one.law == BEST]
     best = f"Best constant current in hindsight: {html.escape('; '.join(notes))}." if notes else ""
     lead = (
         "Means over records and seeds. The index is the mean of six ratios to all current: peak "
         f"and RMS of the last body's displacement, of drift, of acceleration. {best}"
+        f"{_of_clairvoyant(cells)}"
     )
     parts = [
         f"<h1>{html.escape(title)}</h1><p class='lead'>{lead}</p>",
@@ -40,6 +42,17 @@ def page(
         section("Motion and current", "One record, the first seed.", _motion(traces, body, damper)),
     ]
     return document(title, "\n".join(parts))
+
+
+def _of_clairvoyant(cells: Sequence[Cell]) -> str:
+    note = next((cell.note for cell in cells if cell.law == CLAIRVOYANT), None)
+    if note is None:
+        return ""
+    return (
+        f" Row {CLAIRVOYANT}: {html.escape(note)}. It knows the whole record beforehand, without "
+        "noise or delay; no controller can. A share is what a law has of its gain over the best "
+        "constant current."
+    )
 
 
 def _radar(cells: Sequence[Cell]) -> str:

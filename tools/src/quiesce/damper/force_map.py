@@ -40,7 +40,7 @@ def why_no_map(found: Monotone) -> str:
     if 1e3 * largest_N > LIMIT:
         return f"a force of {largest_N:.4g} N is more than {LIMIT / 1e3:.0f} N"
     if not _is_axis(_fine_places(forces)):
-        most = f"{int(LIMIT / axis.per_unit * 1e3) / 1e3:.4g} {axis.unit}"
+        most = f"{LIMIT // 10**6 / (1e-6 * axis.per_unit):g} {axis.unit}"
         return f"its places do not differ by whole {axis.fine_unit} both ways, or pass {most}"
     spread_mN = float(1e3 * np.ptp(_resampled_N(found), axis=1).max())
     if spread_mN < LEAST_RANGE_mN:

@@ -5,7 +5,9 @@ import math
 import numpy as np
 
 from quiesce.base.table import format_table
+from quiesce.law.describe_rules import described_rules
 from quiesce.law.forms.friction import BACK, OUTWARD, FrictionTable
+from quiesce.law.forms.fuzzy_signals import FuzzySignalsTable
 from quiesce.law.forms.linear import LinearTable
 from quiesce.law.forms.polynomial import PolynomialTable
 from quiesce.law.forms.signs import Combination, SignsSection, SignsTable
@@ -21,6 +23,8 @@ def described(table: Table) -> str:
         parts = [_signs(i, section) for i, section in enumerate(table.sections)]
     elif isinstance(table, FrictionTable):
         parts = [_friction(table)]
+    elif isinstance(table, FuzzySignalsTable):
+        parts = described_rules(table)
     else:
         parts = [_polynomial(table)]
     return "\n\n".join([head, *parts])

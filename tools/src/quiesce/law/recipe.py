@@ -11,13 +11,20 @@ from quiesce.law.tables import Table
 
 @dataclass(frozen=True)
 class Setting:
-    """A number that a recipe takes; low .. high bound it, and a search goes over them."""
+    """A number that a recipe takes, low .. high.
+
+    A search goes over `search` or, where that is None, over a range made from the rig
+    (quiesce.tune.gains.space); not at all where is_tuned is False: a fact about the rig.
+    """
 
     name: str  # with its unit
     default: float
     low: float
     high: float
     help: str
+    search: tuple[float, float] | None = None
+    is_tuned: bool = True
+    is_whole: bool = False  # a switch: a search tries whole numbers only
 
 
 @dataclass(frozen=True)

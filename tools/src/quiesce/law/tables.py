@@ -5,17 +5,20 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.law.forms import friction, linear, network, polynomial, signs
+from quiesce.law.forms import friction, fuzzy_signals, linear, network, polynomial, signs
 from quiesce.law.forms.friction import FrictionTable
+from quiesce.law.forms.fuzzy_signals import FuzzySignalsTable
 from quiesce.law.forms.linear import LinearTable
 from quiesce.law.forms.network import NetworkTable
 from quiesce.law.forms.polynomial import PolynomialTable
 from quiesce.law.forms.signs import SignsTable
 from quiesce.law.words import read_file
 
-Table = LinearTable | SignsTable | FrictionTable | PolynomialTable | NetworkTable
+Table = (
+    LinearTable | SignsTable | FrictionTable | PolynomialTable | FuzzySignalsTable | NetworkTable
+)
 
-FORMS = {form.MAGIC: form for form in (linear, signs, friction, polynomial, network)}
+FORMS = {form.MAGIC: form for form in (linear, signs, friction, polynomial, fuzzy_signals, network)}
 
 
 def table_of_words(words: Sequence[int]) -> Table:

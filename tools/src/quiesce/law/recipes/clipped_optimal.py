@@ -26,13 +26,38 @@ RECIPE = Recipe(
     "review, eq 27 and its LQG text; Dyke, Spencer, Sain and Carlson 1996",
     "compare",
     (
-        Setting("displacement_1_m2", 0.0, 0.0, 1e12, "weight of each body's squared displacement"),
-        Setting("drift_1_m2", 0.0, 0.0, 1e12, "weight of each damper's squared stroke"),
-        Setting("accel_s4_m2", 1.0, 0.0, 1e12, "weight of each body's squared acceleration"),
-        Setting("force_1_N2", 1e-7, 1e-18, 1e6, "weight of each damper's squared force"),
+        Setting(
+            "displacement_1_m2",
+            0.0,
+            0.0,
+            1e12,
+            "weight of each body's squared displacement",
+            (1, 1e8),
+        ),
+        Setting("drift_1_m2", 0.0, 0.0, 1e12, "weight of each damper's squared stroke", (1, 1e8)),
+        Setting(
+            "accel_s4_m2",
+            1.0,
+            0.0,
+            1e12,
+            "weight of each body's squared acceleration",
+            is_tuned=False,
+        ),
+        Setting(
+            "force_1_N2", 1e-7, 1e-18, 1e6, "weight of each damper's squared force", (1e-16, 1e-6)
+        ),
         Setting("last_share", 1.0, 0.0, 1.0, "0: all bodies weigh alike, 1: the last one only"),
-        Setting("ground_m_s2", 1.0, 1e-6, 1e6, "density of the ground's motion, over a root of Hz"),
-        Setting("accel_noise_m_s2", 0.141, 1e-6, 1e6, "of the accelerometers, likewise"),
+        Setting(
+            "ground_m_s2",
+            1.0,
+            1e-6,
+            1e6,
+            "density of the ground's motion, over a root of Hz",
+            is_tuned=False,
+        ),
+        Setting(
+            "accel_noise_m_s2", 0.141, 1e-6, 1e6, "of the accelerometers, likewise", (0.01, 10)
+        ),
         LIMIT_N,
     ),
     make,

@@ -31,8 +31,8 @@ RECIPE = Recipe(
     (
         Setting("gain_N_m", 50000.0, 0.0, 1e9, "force for 1 m of the last peak"),
         Setting("least_peak_m", 0.0, 0.0, 1.0, "below it there is no demand"),
-        Setting("outward", 1.0, 0.0, 1.0, "1: acts where the stroke grows"),
-        Setting("back", 1.0, 0.0, 1.0, "1: acts where it comes back"),
+        Setting("outward", 1.0, 0.0, 1.0, "1: acts where the stroke grows", (0, 1), is_whole=True),
+        Setting("back", 1.0, 0.0, 1.0, "1: acts where it comes back", (0, 1), is_whole=True),
         BAND_m_s,
         LIMIT_N,
     ),

@@ -32,8 +32,8 @@ RECIPE = Recipe(
     "review, eqs 29 and 30 (A-PIDSMC)",
     "proportional",
     (
-        Setting("proportional_1_s", 5.0, 0.0, 1e3, "kp over kd"),
-        Setting("integral_1_s2", 2.0, 0.0, 1e5, "ki over kd"),
+        Setting("proportional_1_s", 5.0, 0.0, 1e3, "kp over kd", (0.1, 100)),
+        Setting("integral_1_s2", 2.0, 0.0, 1e5, "ki over kd", (0.1, 1000)),
         Setting("leak_1_s", 0.5, 0.01, 100.0, "how fast the integral forgets"),
         Setting("switching_N", 200.0, 0.001, 1e6, "force beyond the layer"),
         Setting("layer_m_s", 0.05, 1e-4, 100.0, "width of the boundary layer"),

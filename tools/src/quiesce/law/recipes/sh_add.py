@@ -35,7 +35,7 @@ RECIPE = Recipe(
         OFF_A,
         BAND_m_s,
         Setting("band_m_s2", 0.05, 0.0, 100.0, "likewise of the sum"),
-        Setting("cross_Hz", 1.8, 0.01, 100.0, "frequency between the two"),
+        Setting("cross_Hz", 1.8, 0.01, 100.0, "frequency between the two", (0.2, 30)),
     ),
     make,
     equation="I = on while (a_a + w v_a) v_r > 0, else off",

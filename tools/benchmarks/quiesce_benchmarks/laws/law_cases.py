@@ -1,0 +1,102 @@
+"""Every law that can be run: each recipe with each tracker that it can have, and the laws that are
+no recipe's, all of them from the registries."""
+
+import tempfile
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from quiesce.base.errors import UsageError
+from quiesce.engine.laws import labels
+from quiesce.engine.params import parameters
+from quiesce.law.recipe import Made, Recipe
+from quiesce.law.recipes import RECIPES
+from quiesce.law.tables import FORMS
+from quiesce.law.words import read_file
+
+from quiesce_benchmarks.laws import rigs
+
+# A damper's map that fits no rig: what a tracker costs does not depend on that.
+MAP_DAMPER, MAP_MOST_A = "rd1005_kwok_tanh_smooth", 1.88
+NO_WORDS: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class LawCase:
+    """words: of the law's table; map_words: of its tracker's. Empty: none, or what ships."""
+
+    name: str  # of the recipe, or of the law
+    law: str
+    tracker: str  # "": the law demands currents
+    rig: str
+    words: tuple[int, ...]
+    map_words: tuple[int, ...]
+
+    @property
+    def label(self) -> str:
+        return f"{self.name}, {self.tracker}" if self.tracker else self.name
+
+
+def made_anywhere(recipe: Recipe, made_on: tuple[str, ...] = (rigs.BUILDING, rigs.CAR)) -> Made:
+    """On the first of the rigs that allows it. UsageError of the last one where none does."""
+    for rig in made_on[:-1]:
+        try:
+            return rigs.made(rig, recipe.name)
+        except UsageError:
+            continue
+    return rigs.made(made_on[-1], recipe.name)
+
+
+def rig_of(recipe: Recipe) -> str:
+    """Where `made_anywhere` makes it."""
+    try:
+        rigs.made(rigs.BUILDING, recipe.name)
+    except UsageError:
+        return rigs.CAR
+    return rigs.BUILDING
+
+
+def forms() -> list[str]:
+    """Laws that are a table of a recipe, by label."""
+    return [form.__name__.rpartition(".")[2] for form in FORMS.values()]
+
+
+def built_in() -> list[str]:
+    """Laws that no recipe makes."""
+    return [label for label in labels() if label not in forms()]
+
+
+def trackers() -> list[str]:
+    return next(list(one["labels"]) for one in parameters() if one["name"] == "tracker")
+
+
+@cache
+def map_words(tracker: str) -> tuple[int, ...]:
+    """Of the table that a tracker works with, made here; none of one that works without, or whose
+    table nobody has made yet: the run then says so."""
+    if tracker != "inverse":
+        return NO_WORDS
+    with tempfile.TemporaryDirectory(prefix="quiesce-laws-") as folder:
+        return tuple(read_file(rigs.map_of(Path(folder), MAP_DAMPER, MAP_MOST_A)))
+
+
+def of_recipe(recipe: Recipe) -> list[LawCase]:
+    """With its own tracker first, then with the others."""
+    table, rig = made_anywhere(recipe).table, rig_of(recipe)
+    words = tuple(table.words())
+    if table.demands != "force":
+        return [LawCase(recipe.name, table.law, "", rig, words, NO_WORDS)]
+    own = recipe.tracker or trackers()[0]
+    return [
+        LawCase(recipe.name, table.law, tracker, rig, words, map_words(tracker))
+        for tracker in (own, *(one for one in trackers() if one != own))
+    ]
+
+
+def of_label(label: str) -> LawCase:
+    return LawCase(label, label, "", rigs.BUILDING, NO_WORDS, NO_WORDS)
+
+
+def all_cases() -> list[list[LawCase]]:
+    """A list a law: its own tracker first."""
+    return [*([of_label(label)] for label in built_in()), *map(of_recipe, RECIPES)]
