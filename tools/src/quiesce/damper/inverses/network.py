@@ -1,5 +1,5 @@
-"""Feed-forward inverse network in the controller's integers: i = N(F, x, v at t and earlier), fitted
-as `ffn` is, in a size that a tick has time for.
+"""Feed-forward inverse network in the controller's integers: i = N(F, x, v at t and earlier).
+Fitted as `ffn` is, in a size that a tick has time for.
 
 Source: review of MR damper models, eq 38 (taps t and t-1); its text gives no sizes.
 """
