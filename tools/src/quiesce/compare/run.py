@@ -8,7 +8,15 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from quiesce.compare.figures import Contact, Figures, columns, figures_of, index
+from quiesce.compare.figures import (
+    ALL_FIGURES,
+    FIGURES,
+    Contact,
+    Figures,
+    columns,
+    figures_of,
+    index,
+)  # fmt: skip
 from quiesce.compare.laws import ComparedLaw, constant
 from quiesce.compare.names import ACCEL, TIME
 from quiesce.compare.records import Record
@@ -81,6 +89,11 @@ class Comparison:
         self.rig = Rig(plant.resolve(), load_board(bench, board))
         self._contacts = contacts_of(plant)
         self._shaking = shaking
+
+    @property
+    def figure_names(self) -> list[str]:
+        """What a run of this structure has figures of."""
+        return [name for name, _, _ in (ALL_FIGURES if self._contacts else FIGURES)]
 
     def cells(
         self, laws: Sequence[ComparedLaw], records: Sequence[Record], seeds: Sequence[int]
