@@ -85,7 +85,7 @@ def test_law_and_settings_of_a_record_are_chosen_on_the_others(tried: Tried) -> 
 
 def test_a_laws_row_is_of_what_it_was_not_tuned_on(tried: Tried) -> None:
     found = unseen.law_data("two", tried, RECORDS)
-    # Without b, .95 and 1.1 cost 1.05, .1 and 1.5 cost 1.03: b gets 1.5. Without c, .95 twice wins.
+    # Without b: .95 and 1.1 cost 1.05, .1 and 1.5 cost 1.03, so that b gets 1.5.
     assert found["index_tuned"] == pytest.approx(np.mean([0.95, 1.5, 1.1]))
     assert found["index_tuned_worst"] == 1.5
     assert found["index_untuned"] == pytest.approx(1.0)
