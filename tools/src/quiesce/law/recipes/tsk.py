@@ -43,8 +43,8 @@ RECIPE = Recipe(
     "review, by name (fuzzy neural networks)",
     "",
     (
-        *_line("outward", "grows", 0.0, 10.0),
-        *_line("back", "comes back", 500.0, 60.0),
+        *_line("outward", "grows", 0.0, 5.0),
+        *_line("back", "comes back", 1000.0, 40.0),
         Setting("stroke_m", 0.05, 1e-6, 1.0, "largest stroke that counts", is_tuned=False),
         Setting("stroke_m_s", 1.0, 1e-4, 10.0, "likewise its velocity", is_tuned=False),
         Setting("layer_m", 0.0005, 1e-7, 1.0, "where the stroke's sign is sure", is_tuned=False),
