@@ -1,5 +1,6 @@
-// The rig of damper and elastomer in floating point, for a search over its numbers: three motions of
-// the base, each uncontrolled, with the damper controlled, and with both. Lanes run side by side.
+// The rig of damper and elastomer in floating point, for a search over its numbers: three motions
+// of the base, each uncontrolled, with the damper controlled, and with both. Lanes run side by
+// side.
 //
 // Euler's method, the velocities' step implicit in all damping; the law at every `hold` steps, its
 // currents a tick late and through the coils' lags, as on the bench, but without noise and with the
@@ -36,7 +37,8 @@ static inline double clamp(double value, double low, double high) {
 static inline double fast_tanh(double x) {
     x = clamp(x, -4.97, 4.97);
     const double s = x * x;
-    return x * (135135 + s * (17325 + s * (378 + s))) / (135135 + s * (62370 + s * (3150 + 28 * s)));
+    return x * (135135 + s * (17325 + s * (378 + s))) /
+           (135135 + s * (62370 + s * (3150 + 28 * s)));
 }
 
 // The smaller root of a i^2 + b i = c, for b > 0.
@@ -50,15 +52,15 @@ static inline void control(lane_t *s, const rig_t *rig, const damper_t *d, const
     const double least_m_s = 0.006, least_m = 15e-6; // as the maps' first points
     s->wanted_damper_A = s->next_damper_A;
     s->wanted_mount_A = s->next_mount_A;
-    const double force = clamp(rig->sky_N_s_m * (s->lower_m_s + base_m_s), -rig->limit_N,
-                               rig->limit_N);
+    const double force =
+        clamp(rig->sky_N_s_m * (s->lower_m_s + base_m_s), -rig->limit_N, rig->limit_N);
     const double v = rig->ratio * s->lower_m_s;
     const double side = v > 0 ? 1 : -1;
     const double speed = fabs(v) > least_m_s ? fabs(v) : least_m_s;
     const double t = fast_tanh(d->beta * speed);
     const double missing = fabs(force) - d->c0 * speed - d->alpha0 * t - side * d->f0;
-    const double i = current_of(d->alpha2 * t, d->c1 * speed + d->alpha1 * t + side * d->f1, missing,
-                                d->most_A);
+    const double i =
+        current_of(d->alpha2 * t, d->c1 * speed + d->alpha1 * t + side * d->f1, missing, d->most_A);
     s->next_damper_A = force * v > 0 ? s->is_damper * i : 0;
     const double r = s->upper_m - s->lower_m;
     const double pull = rig->mount_N_s_m * (s->upper_m_s + base_m_s);
@@ -78,11 +80,12 @@ static inline void step(lane_t *s, const rig_t *rig, const damper_t *d, const mo
     const double x = ratio * s->lower_m, v = ratio * s->lower_m_s, c = d->c0 + d->c1 * i;
     const double alpha = d->alpha0 + d->alpha1 * i + d->alpha2 * i * i;
     const double t = fast_tanh(d->beta * v + (d->delta0 + d->delta1 * i) * fast_tanh(x / d->x_s));
-    const double force =
-        ratio * (c * v + (d->k0 + d->k1 * i) * x + alpha * t + d->f0 + d->f1 * i);
+    const double force = ratio * (c * v + (d->k0 + d->k1 * i) * x + alpha * t + d->f0 + d->f1 * i);
     const double upper = -pull / rig->upper_kg - base_m_s2;
-    const double lower = (-rig->spring_N_m * s->lower_m - rig->damping_N_s_m * s->lower_m_s - force +
-                          pull) / rig->lower_kg - base_m_s2;
+    const double lower =
+        (-rig->spring_N_m * s->lower_m - rig->damping_N_s_m * s->lower_m_s - force + pull) /
+            rig->lower_kg -
+        base_m_s2;
     const double resists =
         rig->damping_N_s_m + ratio * ratio * (c + alpha * d->beta * (1 - t * t)) + kd;
     const double a = 1 + dt * resists / rig->lower_kg, b = dt * kd / rig->lower_kg;
@@ -110,7 +113,8 @@ void two_masses_run(const rig_t *rig, const damper_t *damper, const mount_t *mou
         lanes[i].is_damper = i % CONTROLS > 0;
         lanes[i].is_mount = i % CONTROLS > 1;
     }
-    const double damper_part = 1 - exp(-dt / damper->lag_s), mount_part = 1 - exp(-dt / mount->lag_s);
+    const double damper_part = 1 - exp(-dt / damper->lag_s),
+                 mount_part = 1 - exp(-dt / mount->lag_s);
     for (long n = 0; n < steps; n++) {
         for (int i = 0; i < LANES; i++) {
             const long at = (i < USED ? i / CONTROLS : 0) * steps + n;
