@@ -176,10 +176,9 @@ static quiesce_table_verdict_t use_shipped(control_t *self) {
     return map != NULL ? control_drop(self, map->magic) : QUIESCE_TABLE_MAGIC;
 }
 
-static bool is_of_this_rate(const control_t *self, const uint32_t *words) {
-    const law_table_kind_t *kind = self->law->kind;
-    return kind->rate_Hz == NULL ||
-           kind->rate_Hz(words) == (uint32_t)self->setup.params.tick_rate_Hz;
+static bool is_of_this_rate(const control_t *self, uint32_t (*rate_Hz)(const uint32_t *words),
+                            const uint32_t *words) {
+    return rate_Hz == NULL || rate_Hz(words) == (uint32_t)self->setup.params.tick_rate_Hz;
 }
 
 // Whether it is good, of this tick rate, and the board has what it needs.
@@ -192,17 +191,20 @@ static quiesce_table_verdict_t check_law_table(const control_t *self, const uint
         return verdict;
     }
     const bool is_served = kind->needs == NULL || (kind->needs(words) & ~self->provided) == 0;
-    return is_served && is_of_this_rate(self, words) ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
+    return is_served && is_of_this_rate(self, kind->rate_Hz, words) ? QUIESCE_TABLE_OK
+                                                                    : QUIESCE_TABLE_FIT;
 }
 
 static quiesce_table_verdict_t check_force_table(const control_t *self, const uint32_t *words,
                                                  uint32_t count) {
-    const quiesce_table_verdict_t verdict = forces_kind(&self->forces)->check(words, count);
+    const track_table_kind_t *kind = forces_kind(&self->forces);
+    const quiesce_table_verdict_t verdict = kind->check(words, count);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
     const bool is_served = (force_table_needs(self, words) & ~self->provided) == 0;
-    return is_served ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
+    return is_served && is_of_this_rate(self, kind->rate_Hz, words) ? QUIESCE_TABLE_OK
+                                                                    : QUIESCE_TABLE_FIT;
 }
 
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {

@@ -16,7 +16,6 @@ from quiesce.damper.force_map import (
     LIMIT,
     MAGIC,
     MAX_CURRENTS,
-    MAX_DAMPERS,
     MAX_PLACES,
     MAX_CURRENT_mA,
     joined,
@@ -26,6 +25,7 @@ from quiesce.damper.force_map import (
 )
 from quiesce.damper.inverse import STROKE, VELOCITY, Axis, Monotone, SteadyForces, monotone_range
 from quiesce.damper.simulate import simulator_of_file
+from quiesce.damper.words import MAX_DAMPERS
 
 pytestmark = pytest.mark.usefixtures("build")
 

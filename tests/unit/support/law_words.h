@@ -69,10 +69,13 @@ static const uint32_t polynomial_words[] = {
     256000,     0x00000001, 512000,  0x00000102, (uint32_t)-128000,
     0x00000300,
 };
+// Of one section, over stroke velocity.
 static const uint32_t map_words[] = {
-    0x31464D51,
+    0x32464D51,
     0,
     0,
+    1,
+    4,
     4,
     3,
     (uint32_t)-200000,

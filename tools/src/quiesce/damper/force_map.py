@@ -3,20 +3,16 @@
 firmware/track/force_map.h describes the words; it checks them again.
 """
 
-import struct
-import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from quiesce.damper.inverse import AXES, Axis, Monotone, SteadyForces
+from quiesce.damper.words import sealed, sections_of
 
 MAGIC = 0x32464D51
-HEAD_WORDS = 4  # sections among them
 SECTION_WORDS = 3
-MOST_WORDS = 1024
-MAX_DAMPERS = 4
 MAX_CURRENTS = 16
 MAX_PLACES = 32
 MIN_POINTS = 2  # of either axis
@@ -61,13 +57,13 @@ def map_words(found: Monotone) -> list[int]:
     forces = np.sign(places)[:, None] * along  # > 0 resists a stroke that grows
     values = [found.forces.axis.word, len(places), len(currents)]
     values += [int(value) for part in (places, currents, forces.ravel()) for value in part]
-    return _sealed([values])
+    return sealed(MAGIC, [values], "map")
 
 
 def joined(tables: Sequence[Sequence[int]]) -> list[int]:
     """One table for several dampers: the sections of all, in this order. ValueError, in one line,
     where one is no map, or they are too many or too long for a controller."""
-    return _sealed([section for words in tables for section in _sections(words)])
+    return sealed(MAGIC, [one for words in tables for one in _sections(words)], "map")
 
 
 @dataclass(frozen=True)
@@ -87,36 +83,9 @@ def maps_of_words(words: Sequence[int]) -> tuple[Map, ...]:
     return tuple(_map_of(section) for section in _sections(words))
 
 
-def _sealed(sections: Sequence[Sequence[int]]) -> list[int]:
-    if not 1 <= len(sections) <= MAX_DAMPERS:
-        raise ValueError(f"{len(sections)} dampers; a map is of 1 .. {MAX_DAMPERS}")
-    values = [len(sections), *(value for section in sections for value in section)]
-    count = HEAD_WORDS - 1 + len(values)
-    if count > MOST_WORDS:
-        raise ValueError(f"{count} words; a controller takes {MOST_WORDS}")
-    after = [count, *(value & 0xFFFFFFFF for value in values)]
-    return [MAGIC, zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after]
-
-
 def _sections(words: Sequence[int]) -> Iterator[list[int]]:
     """Signed words of each. ValueError where head or sizes are not right."""
-    if len(words) <= HEAD_WORDS or not all(0 <= word <= 0xFFFFFFFF for word in words):
-        raise ValueError(f"expected more than {HEAD_WORDS} words of 32 bits")
-    if words[0] != MAGIC:
-        raise ValueError(f"it begins with 0x{words[0]:08x}, a map with 0x{MAGIC:08x}")
-    if words[2] != len(words):
-        raise ValueError(f"{len(words)} words where its header says {words[2]}")
-    if words[1] != zlib.crc32(struct.pack(f"<{len(words) - 2}I", *words[2:])):
-        raise ValueError("its CRC-32 is not that of its words")
-    if not 1 <= words[3] <= MAX_DAMPERS:
-        raise ValueError(f"{words[3]} dampers; a map is of 1 .. {MAX_DAMPERS}")
-    rest = [int(value) for value in np.array(words[HEAD_WORDS:], dtype=np.uint32).view(np.int32)]
-    for _ in range(words[3]):
-        size = _size(rest)
-        yield rest[:size]
-        rest = rest[size:]
-    if rest:
-        raise ValueError(f"{len(rest)} words after its last damper")
+    return sections_of(MAGIC, words, _size, "map")
 
 
 def _size(rest: Sequence[int]) -> int:

@@ -17,12 +17,12 @@ from quiesce.damper.inverse import VELOCITY, interpolated, monotone_range
 from quiesce.damper.inverses.demand import Source
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.simulate import simulator
+from quiesce.damper.words import words_of_file
 
 NAME = "map"
 TITLE = "force map of the controller"
 HELP = "the controller's table of forces, of a damper file"
 TRACKER = "tracker inverse reads it"
-SUFFIX = ".words"
 
 
 @dataclass(frozen=True)
@@ -65,16 +65,7 @@ class MapInverse:
 
 def read_map(file: Path) -> list[int]:
     """Words of one damper or several. UsageError where they are no map."""
-    try:
-        text = file.read_text(encoding="utf-8")
-        words = [int(word, 16) for word in text.split()]
-    except (OSError, ValueError) as error:
-        why = (
-            error.strerror
-            if isinstance(error, OSError)
-            else f"expected words such as 0x{MAGIC:08x}"
-        )
-        raise UsageError(f"{shown(file)}: {why}") from None
+    words = words_of_file(file, MAGIC)
     try:
         maps_of_words(words)
     except ValueError as error:
