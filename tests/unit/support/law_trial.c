@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "crc32.h"
+#include "force_map.h"
 #include "table.h"
 #include "test_signal.h"
 #include "view_signal.h"
@@ -205,8 +206,20 @@ static bool agrees(int32_t demand_mN, int32_t way) {
     return way == 0 || (demand_mN > 0) == (way > 0);
 }
 
+// A map of springs: it is the stroke alone that has to have the demand's sign.
+static bool is_spring(const forces_t *forces, uint32_t damper) {
+    return forces->track->kind != NULL && forces->track->kind->magic == FORCE_MAP_MAGIC &&
+           (force_map_needs(forces->table) & VIEW_STROKE << damper) != 0;
+}
+
 // Of all that the tracker looks at, force or velocity, nothing has the demand's sign.
-static bool is_against(const track_t *track, const view_damper_t *damper, int32_t demand_mN) {
+static bool is_against(const law_trial_t *self, uint32_t i) {
+    const track_t *track = self->forces.track;
+    const view_damper_t *damper = &self->view.damper[i];
+    const int32_t demand_mN = self->demand.value[i];
+    if (is_spring(&self->forces, i)) {
+        return !agrees(demand_mN, damper->stroke_nm);
+    }
     const bool sees_force = (track->needs & VIEW_FORCE) != 0;
     const bool sees_velocity = (track->needs & VIEW_STROKE_VELOCITY) != 0;
     return !(sees_force && agrees(demand_mN, damper->force_mN)) &&
@@ -227,8 +240,7 @@ uint32_t law_trial_breaks(const law_trial_t *self) {
             (track != NULL && is_beyond(current_mA, QUIESCE_HIGHEST_CURRENT_mA))) {
             bits |= LAW_TRIAL_BEYOND;
         }
-        if (track != NULL && current_mA > 0 &&
-            (demand_mN == 0 || is_against(track, &self->view.damper[i], demand_mN))) {
+        if (track != NULL && current_mA > 0 && (demand_mN == 0 || is_against(self, i))) {
             bits |= LAW_TRIAL_ENERGISED;
         }
     }

@@ -86,10 +86,13 @@ static const uint32_t fuzzy_signals_words[] = {
     0x83126F,   0x200,      0,          0xFFDF3B64, 0,          0x52,       0,          1,
     0,
 };
+// Of one section, over stroke velocity.
 static const uint32_t map_words[] = {
-    0x31464D51,
+    0x32464D51,
     0,
     0,
+    1,
+    4,
     4,
     3,
     (uint32_t)-200000,
