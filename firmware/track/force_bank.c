@@ -171,14 +171,21 @@ void force_bank_move(force_bank_t *self, const uint32_t *section, const view_dam
     }
 }
 
-static int64_t force_mN(const force_bank_t *self, const section_t *bank, const model_t *model,
+static int32_t force_mN(const force_bank_t *self, const section_t *bank, const model_t *model,
                         int32_t stroke_nm) {
     int64_t sum = (int64_t)model->spring * stroke_nm;
     for (uint32_t j = 0; j < bank->elements; j++) {
         sum += (int64_t)model->weight[j] * self->z[j];
     }
     const int64_t half = bank->shift == 0 ? 0 : INT64_C(1) << (bank->shift - 1u);
-    return clamp_i64(((sum + half) >> bank->shift) + model->offset_mN, -VIEW_LIMIT, VIEW_LIMIT);
+    return (int32_t)clamp_i64(((sum + half) >> bank->shift) + model->offset_mN, -VIEW_LIMIT,
+                              VIEW_LIMIT);
+}
+
+int32_t force_bank_force_mN(const force_bank_t *self, const uint32_t *section, uint32_t k,
+                            const view_damper_t *damper) {
+    const section_t *bank = as_section(section);
+    return force_mN(self, bank, model_of(bank, k), damper->stroke_nm);
 }
 
 // Forces in the direction of the demand: low_mN is below it, high_mN is not.
