@@ -23,12 +23,28 @@ from quiesce.damper.data.split import is_number, whole
 from quiesce.damper.example import EXAMPLE
 from quiesce.damper.force_map import MAGIC, maps_of_words
 from quiesce.damper.inverse import InverseByInterpolation, forces_at
-from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, steps, tracking
+from quiesce.damper.inverses import (
+    feed_forward,
+    fuzzy,
+    mapped,
+    network,
+    recurrent,
+    steps,
+    support_vector,
+    svr,
+    tracking,
+)
 from quiesce.damper.inverses.compiled import COMPILED, Steady, beginnings, compiled, steady_map
 from quiesce.damper.inverses.demand import Source, commanded, judged
 from quiesce.damper.inverses.excited import excited
 from quiesce.damper.inverses.made import check_names, from_file, to_compare
-from quiesce.damper.inverses.methods import METHODS, check_word, read_inverse, write_inverse
+from quiesce.damper.inverses.methods import (
+    METHODS,
+    check_word,
+    file_name,
+    read_inverse,
+    write_inverse,
+)
 from quiesce.damper.inverses.steps import SteppedInverse, stepped_current
 from quiesce.damper.inverses.taps import held, spread
 from quiesce.damper.inverses.tracking import compare, nearest, tasks_for
@@ -47,6 +63,8 @@ SMALL = {
         hidden=(8,), feedback=(1, 2), lags=(0, 1), epochs=6, free_steps=20, sample_time_s=0.01
     ),
     "anfis": learned_anfis.Settings(memberships=3, epochs=10),
+    "network": network.Settings(hidden=(12,), epochs=25, most_rows=3000),
+    "svr": support_vector.Settings(rows=600),
 }
 
 
@@ -129,7 +147,7 @@ def test_a_method_tracks_better_than_one_current(name: str) -> None:
 
 @pytest.mark.parametrize("name", list(METHODS))
 def test_a_file_read_back_answers_alike(name: str, tmp_path: Path) -> None:
-    file = tmp_path / ("map.words" if name == "map" else "inverse.toml")
+    file = tmp_path / file_name(name)
     write_inverse(file, name, made(name))
     method, again = read_inverse(file)
     assert method == name

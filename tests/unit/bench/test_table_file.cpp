@@ -342,6 +342,37 @@ TEST(LawTable, a_map_is_of_the_boards_dampers) {
                   "over a stroke that no sensor tells (quiesce board show)\n");
 }
 
+// Half of the demand and of the velocity of the stroke, by a straight line; least speed 1 mm/s.
+Words network_of_dampers(std::uint32_t count) {
+    Words words = {0x314E5451u, 0, 4u + 25u * count, count};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        words.insert(words.end(), {1000, 1500, 2, 0, 1});
+        for (const std::uint32_t signal : {64u, 4u}) {
+            words.insert(words.end(), {signal, 0xFFF00000u, 0x100000u, 16, 0});
+        }
+        words.insert(words.end(), {1, 1, 1, 0, 1, 1, 0, 0, 0, 1000});
+    }
+    return with_crc(words);
+}
+
+TEST(LawTable, a_network_is_of_its_tracker_and_of_the_boards_dampers) {
+    const TextFile table(hex(friction()));
+    const std::string with = " --law-table " + table.name() + " --force-map ";
+    const TextFile two(hex(network_of_dampers(2)));
+    const Outcome outcome = bench(kTwoStoreys + ("network" + with) + two.name());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_NE(refusal("inverse" + with + two.name()).find("it is not a table for this law"),
+              std::string::npos);
+    const TextFile three(hex(network_of_dampers(3)));
+    EXPECT_NE(refusal("network" + with + three.name()).find("a signal or a damper that"),
+              std::string::npos);
+    Words words = network_of_dampers(1);
+    words[5] = 20001; // mA
+    const TextFile current(hex(with_crc(words)));
+    EXPECT_NE(refusal("network" + with + current.name()).find("current is out of range"),
+              std::string::npos);
+}
+
 TEST(LawTable, is_refused_with_the_reason) {
     Words words = friction();
     words[8] = 0;

@@ -40,13 +40,13 @@ static inline const int32_t *law_order_counts(const law_order_t *order) {
     return (const int32_t *)(const void *)(order + 1) + order->law_words + order->map_words;
 }
 
+/// What the program or the image lends.
+typedef struct {
+    void (*say)(const char *name, uint32_t value);                 ///< one line
+    void (*count)(void (*function)(void *context), void *context); ///< calls it, counted
+} law_door_t;
+
 /// Runs it and says lines "name value". Returns false iff it was refused.
-bool law_runs(const law_order_t *order);
-
-/// Of the program or the image: says one line.
-void law_say(const char *name, uint32_t value);
-
-/// function(context), counted where there is a counter.
-void law_count(void (*function)(void *context), void *context);
+bool law_runs(const law_order_t *order, const law_door_t *door);
 
 #endif

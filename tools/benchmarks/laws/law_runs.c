@@ -24,18 +24,19 @@ static void digest_words(digest_t *self, const void *data, uint32_t bytes) {
 }
 
 // The name has room for 9999 blocks.
-static void say_block(const digest_t *self) {
+static void say_block(const digest_t *self, const law_door_t *door) {
     char name[] = "block0000";
     uint32_t number = self->block;
     for (uint32_t i = sizeof name - 2u; i > 4u; i--, number /= 10u) {
         name[i] = (char)('0' + number % 10u);
     }
-    law_say(name, ~self->crc);
+    door->say(name, ~self->crc);
 }
 
-static void digest_tick(digest_t *self, uint32_t block_ticks, bool is_last) {
+static void digest_tick(digest_t *self, const law_door_t *door, uint32_t block_ticks,
+                        bool is_last) {
     if (++self->ticks == block_ticks || is_last) {
-        say_block(self);
+        say_block(self, door);
         *self = (digest_t){.crc = WORD_CRC_START, .block = self->block + 1u};
     }
 }
@@ -105,7 +106,7 @@ static bool start_whole(whole_t *self, const law_order_t *order) {
            quiesce_lacks_table(&self->controller) == NULL;
 }
 
-static bool run_whole(const law_order_t *order) {
+static bool run_whole(const law_order_t *order, const law_door_t *door) {
     static whole_t whole;
     const uint32_t sensors = (uint32_t)order->board.sensors;
     digest_t digest = {.crc = WORD_CRC_START};
@@ -115,18 +116,18 @@ static bool run_whole(const law_order_t *order) {
     for (uint32_t tick = 0; tick < order->ticks; tick++) {
         int32_t report[QUIESCE_REPORT_WORDS];
         next_in(&whole.in, tick, &law_order_counts(order)[(size_t)tick * sensors], sensors);
-        law_count(step_whole, &whole);
+        door->count(step_whole, &whole);
         take_note(&whole, &order->board);
         quiesce_report(&whole.controller, report);
         digest_out(&digest, &whole.out);
         digest_words(&digest, report, sizeof report);
-        digest_tick(&digest, order->block_ticks, tick + 1u == order->ticks);
+        digest_tick(&digest, door, order->block_ticks, tick + 1u == order->ticks);
     }
-    law_say("words_a_tick", sizeof whole.out.telemetry / sizeof(uint32_t) + 2u * QUIESCE_DAMPERS +
-                                QUIESCE_REPORT_WORDS);
-    law_say("running_ticks", whole.running_ticks);
-    law_say("moving_ticks", whole.moving_ticks);
-    law_say("beyond_ticks", whole.beyond_ticks);
+    door->say("words_a_tick", sizeof whole.out.telemetry / sizeof(uint32_t) + 2u * QUIESCE_DAMPERS +
+                                  QUIESCE_REPORT_WORDS);
+    door->say("running_ticks", whole.running_ticks);
+    door->say("moving_ticks", whole.moving_ticks);
+    door->say("beyond_ticks", whole.beyond_ticks);
     return true;
 }
 
@@ -158,18 +159,18 @@ static void note(found_t *self, const law_trial_t *trial) {
     self->state_bytes = bytes > self->state_bytes ? bytes : self->state_bytes;
 }
 
-static void say_found(const found_t *found) {
-    law_say("trial_ticks", found->ticks);
-    law_say("energised_ticks", found->energised_ticks);
-    law_say("beyond_ticks", found->beyond_ticks);
-    law_say("demand_ticks", found->demand_ticks);
-    law_say("current_ticks", found->current_ticks);
-    law_say("state_bytes", found->state_bytes);
-    law_say("tables", found->tables);
-    law_say("accepted", found->accepted);
+static void say_found(const found_t *found, const law_door_t *door) {
+    door->say("trial_ticks", found->ticks);
+    door->say("energised_ticks", found->energised_ticks);
+    door->say("beyond_ticks", found->beyond_ticks);
+    door->say("demand_ticks", found->demand_ticks);
+    door->say("current_ticks", found->current_ticks);
+    door->say("state_bytes", found->state_bytes);
+    door->say("tables", found->tables);
+    door->say("accepted", found->accepted);
 }
 
-static bool run_alone(const law_order_t *order) {
+static bool run_alone(const law_order_t *order, const law_door_t *door) {
     static law_trial_t trial;
     digest_t digest = {.crc = WORD_CRC_START};
     found_t found = {0};
@@ -179,14 +180,14 @@ static bool run_alone(const law_order_t *order) {
     }
     for (uint32_t tick = 0; tick < order->ticks; tick++) {
         law_trial_look(&trial);
-        law_count(step_alone, &trial);
+        door->count(step_alone, &trial);
         note(&found, &trial);
         digest_words(&digest, &trial.demand, sizeof trial.demand);
         digest_words(&digest, &trial.current, sizeof trial.current);
-        digest_tick(&digest, order->block_ticks, tick + 1u == order->ticks);
+        digest_tick(&digest, door, order->block_ticks, tick + 1u == order->ticks);
     }
-    law_say("words_a_tick", 2u * QUIESCE_DAMPERS);
-    say_found(&found);
+    door->say("words_a_tick", 2u * QUIESCE_DAMPERS);
+    say_found(&found, door);
     return true;
 }
 
@@ -212,7 +213,7 @@ static const uint32_t *table_to_spoil(const law_order_t *order, uint32_t *count)
     return *count <= QUIESCE_TABLE_WORDS ? table : NULL;
 }
 
-static bool run_spoilt(const law_order_t *order) {
+static bool run_spoilt(const law_order_t *order, const law_door_t *door) {
     static law_trial_t trial;
     static spoilt_t spoilt;
     uint32_t count;
@@ -242,18 +243,18 @@ static bool run_spoilt(const law_order_t *order) {
             note(&found, &trial);
         }
     }
-    say_found(&found);
+    say_found(&found, door);
     return true;
 }
 
-bool law_runs(const law_order_t *order) {
+bool law_runs(const law_order_t *order, const law_door_t *door) {
     switch (order->mode) {
     case LAW_ORDER_WHOLE:
-        return run_whole(order);
+        return run_whole(order, door);
     case LAW_ORDER_ALONE:
-        return run_alone(order);
+        return run_alone(order, door);
     case LAW_ORDER_SPOIL:
-        return run_spoilt(order);
+        return run_spoilt(order, door);
     default:
         return false;
     }

@@ -4,11 +4,11 @@
 
 #include "law_order.h"
 
-void law_say(const char *name, uint32_t value) {
+static void say(const char *name, uint32_t value) {
     printf("%s 0x%08X\n", name, (unsigned)value);
 }
 
-void law_count(void (*function)(void *context), void *context) {
+static void call(void (*function)(void *context), void *context) {
     function(context);
 }
 
@@ -30,12 +30,13 @@ static law_order_t *read_order(const char *path) {
 }
 
 int main(int argc, char **argv) {
+    static const law_door_t door = {say, call};
     law_order_t *order = argc == 2 ? read_order(argv[1]) : NULL;
     if (order == NULL) {
         fprintf(stderr, "law_runs: expected a file with an order\n");
         return 2;
     }
-    const bool is_done = law_runs(order);
+    const bool is_done = law_runs(order, &door);
     free(order);
     if (!is_done) {
         fprintf(stderr, "law_runs: the order is refused\n");

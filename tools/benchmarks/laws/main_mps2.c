@@ -4,17 +4,18 @@
 #include "mailbox.h"
 #include "print.h"
 
-void law_say(const char *name, uint32_t value) {
+static void say(const char *name, uint32_t value) {
     print(name, value);
 }
 
-void law_count(void (*function)(void *context), void *context) {
+static void count_call(void (*function)(void *context), void *context) {
     counted_call((counted_function_t)function, (uintptr_t)context, 0, 0);
 }
 
 int main(void) {
+    static const law_door_t door = {say, count_call};
     counted_call_init();
-    if (!law_runs((const law_order_t *)MAILBOX_BASE)) {
+    if (!law_runs((const law_order_t *)MAILBOX_BASE, &door)) {
         print("refused", 1);
         return 1;
     }

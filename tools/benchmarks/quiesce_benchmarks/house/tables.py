@@ -15,6 +15,7 @@ from quiesce_benchmarks.house.signal_tables import (
     peer_table,
     step_table,
 )
+from quiesce_benchmarks.laws.page import law_table
 from quiesce_benchmarks.papers.page import paper_table
 
 # What a page's table shows of ./tools/hil, in this order.
@@ -143,4 +144,6 @@ def table(name: str, committed: Committed) -> str:
     kind, _, file = name.partition(" ")
     if kind == "paper":
         return paper_table(file, committed)
+    if kind == "law":
+        return law_table(file, committed)
     return TABLES[kind](committed.files[file])

@@ -18,6 +18,7 @@ from quiesce_benchmarks.laws import rigs
 
 # A damper's map that fits no rig: what a tracker costs does not depend on that.
 MAP_DAMPER, MAP_MOST_A = "rd1005_kwok_tanh_smooth", 1.88
+RIGS = (rigs.BUILDING, rigs.CAR, rigs.TWO_MASSES)
 NO_WORDS: tuple[int, ...] = ()
 
 
@@ -37,23 +38,20 @@ class LawCase:
         return f"{self.name}, {self.tracker}" if self.tracker else self.name
 
 
-def made_anywhere(recipe: Recipe, made_on: tuple[str, ...] = (rigs.BUILDING, rigs.CAR)) -> Made:
+def made_anywhere(recipe: Recipe) -> Made:
     """On the first of the rigs that allows it. UsageError of the last one where none does."""
-    for rig in made_on[:-1]:
-        try:
-            return rigs.made(rig, recipe.name)
-        except UsageError:
-            continue
-    return rigs.made(made_on[-1], recipe.name)
+    return rigs.made(rig_of(recipe), recipe.name)
 
 
 def rig_of(recipe: Recipe) -> str:
-    """Where `made_anywhere` makes it."""
-    try:
-        rigs.made(rigs.BUILDING, recipe.name)
-    except UsageError:
-        return rigs.CAR
-    return rigs.BUILDING
+    """The first of RIGS that allows it; the last where none does."""
+    for rig in RIGS[:-1]:
+        try:
+            rigs.made(rig, recipe.name)
+        except UsageError:
+            continue
+        return rig
+    return RIGS[-1]
 
 
 def forms() -> list[str]:

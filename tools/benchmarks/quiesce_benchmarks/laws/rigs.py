@@ -19,7 +19,7 @@ from quiesce.law.recipes import find
 from quiesce.law.rig import LawRig, load_rig
 from quiesce.law.words import file_text
 
-BUILDING, CAR = "three_storeys_1996", "quarter_car"
+BUILDING, CAR, TWO_MASSES = "three_storeys_1996", "quarter_car", "mrd_mre_2014"
 EL_CENTRO = "el_centro_1940_ns"
 FIVE_TIMES = 5.0
 

@@ -2,28 +2,41 @@
 
 import argparse
 import json
+import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
+from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
-from quiesce.cli.rig_options import add_motions, add_rig, records_of, rig_files, shaking_of
+from quiesce.cli.rig_options import add_motions, add_rig, records_of, several_rig_files, shaking_of
 from quiesce.compare.clairvoyant import CLAIRVOYANT, Found
 from quiesce.compare.goal import INDEX, read_goal
-from quiesce.compare.laws import ComparedLaw, read_laws
-from quiesce.compare.page import page
+from quiesce.compare.laws import ComparedLaw, read_law, require_labels
+from quiesce.compare.page import Shown, page
+from quiesce.compare.recipes import read_recipe
 from quiesce.compare.records import Record
 from quiesce.compare.run import BY_INDEX, Case, Cell, Comparison
 from quiesce.compare.table import as_csv, as_data, text
 from quiesce.engine.bench import Bench
+from quiesce.law.rig import load_rig
 
 MOST_SEEDS = 1000
 DRAWN = 6  # laws over time, or nothing can be told apart
+RATE_HZ = 1000  # ticks a second of recipes
 
 EPILOG = """a law is NAME[:key=value,...]; keys: table=FILE (quiesce law make), map=FILE (quiesce
 identify inverse), rules=FILE, pulses=FILE, as=LABEL, and any parameter of the controller
 
+a recipe is NAME[:key=value,...], one of `quiesce law list`; keys: its settings, map=FILE, as=LABEL,
+and any parameter of the controller (tracker, where it is not to be the recipe's own). With several
+structures a recipe is left out, with the reason, where one cannot serve it
+
 examples:
+  quiesce compare --rig three_storeys_1996 --time-scale 5 --scale-to 3.417 \\
+      --recipe skyhook_on_off --recipe clipped_optimal:force_1_N2=1e-10 --clairvoyant
+  quiesce compare --rig quarter_car --rig two_storeys --road C:72 --recipe sh_add --recipe add
   quiesce compare --rig three_storeys_1996 --record quake.csv --time-scale 5 \\
       --law signs:table=build/laws/sky.words,as=skyhook --out build/compare
   quiesce compare --plant my_plant.toml --board my_board.toml --record quake.at2 --scale-to 3 \\
@@ -40,14 +53,18 @@ chooses the best constant current.
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "compare",
-        description="Compare control laws on one structure, over recorded ground motions and seeds "
+        description="Compare control laws on structures, over recorded ground motions and seeds "
         "of the sensors' noise.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add_rig(parser)
+    add_rig(parser, several=True)
     add_motions(parser)
     parser.add_argument("--law", action="append", default=[], metavar="LAW", help="see below")
+    parser.add_argument(
+        "--recipe", action="append", default=[], metavar="RECIPE",
+        help="a published law, made for each structure; see below",
+    )  # fmt: skip
     parser.add_argument(
         "--seeds", type=whole_number(1, MOST_SEEDS), default=1, metavar="N",
         help="runs of each with other noise (%(default)s)",
@@ -61,42 +78,84 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.set_defaults(run=run)
 
 
-def written(
-    args: argparse.Namespace, comparison: Comparison, cells: list[Cell],
-    laws: list[ComparedLaw], record: Record, found: dict[str, Found],
-) -> str:  # fmt: skip
-    board = comparison.rig.board
-    shown_laws = [*comparison.references(), *laws][:DRAWN]
-    traces = {law.label: comparison.trace(Case(law, record, 1)) for law in shown_laws}
-    if found:
-        traces[CLAIRVOYANT] = found[record.name].trace
-    title = f"laws on {board.name}"
+@dataclass(frozen=True)
+class OfRig:
+    """What ran on one structure, and what was left out there, a line each."""
+
+    comparison: Comparison
+    laws: list[ComparedLaw]
+    cells: list[Cell]
+    found: dict[str, Found]
+    left_out: list[str]
+
+    def shown(self, record: Record) -> Shown:
+        board = self.comparison.rig.board
+        laws = [*self.comparison.references(), *self.laws][:DRAWN]
+        traces = {law.label: self.comparison.trace(Case(law, record, 1)) for law in laws}
+        if self.found:
+            traces[CLAIRVOYANT] = self.found[record.name].trace
+        return Shown(board.name, self.cells, traces, board.bodies[-1], board.dampers[0])
+
+
+def written(args: argparse.Namespace, rigs: list[OfRig], record: Record) -> str:
+    cells = [cell for one in rigs for cell in one.cells]
+    waveforms = {
+        "_".join([CLAIRVOYANT, *([one.comparison.rig.board.name] if len(rigs) > 1 else []), name])
+        + ".csv": found.csv()
+        for one in rigs
+        for name, found in one.found.items()
+    }
+    files = {
+        "compare.html": page([one.shown(record) for one in rigs]),
+        "compare.csv": as_csv(cells),
+        "compare.json": json.dumps(as_data(cells), indent=1) + "\n",
+        **waveforms,
+    }
     with output_files(args.out) as folder:
-        files = {
-            "compare.html": page(title, cells, traces, board.bodies[-1], board.dampers[0]),
-            "compare.csv": as_csv(cells),
-            "compare.json": json.dumps(as_data(cells), indent=1) + "\n",
-            **{f"{CLAIRVOYANT}_{name}.csv": one.csv() for name, one in found.items()},
-        }
         for name, content in files.items():
             (folder / name).write_text(content, encoding="utf-8")
-    more = f", {CLAIRVOYANT}_RECORD.csv" if found else ""
-    return f"written: {shown(args.out / 'compare.html')}, compare.csv, compare.json{more}"
+    names = ", ".join([shown(args.out / "compare.html"), *list(files)[1:]])
+    return f"written: {names}"
 
 
-def run(args: argparse.Namespace) -> int:
-    laws = read_laws(args.law)
+def on_rig(
+    args: argparse.Namespace, files: tuple[Path, Path], records: list[Record], folder: Path,
+    may_leave_out: bool,
+) -> OfRig:  # fmt: skip
+    """UsageError where the structure cannot serve a recipe, unless that one may be left out."""
+    plant, board = files
+    laws = [read_law(text) for text in args.law]
+    left_out: list[str] = []
+    recipes = [read_recipe(text) for text in args.recipe]
+    rig = load_rig(Bench(), board, plant, RATE_HZ) if recipes else None
+    for recipe in recipes:
+        try:
+            laws.append(recipe.law(rig, folder))
+        except UsageError as error:
+            if not may_leave_out:
+                raise
+            left_out.append(f"left out: {one_line(str(error))}")
+    require_labels([law.label for law in laws])
     goal = BY_INDEX if args.clairvoyant is None else read_goal(args.clairvoyant)
-    plant, board = rig_files(args)
-    records = records_of(args)
     comparison = Comparison(Bench(), plant, board, shaking_of(args))
     cells = comparison.cells(laws, records, range(1, args.seeds + 1), goal)
     found: dict[str, Found] = {}
     if args.clairvoyant is not None:
         cells, found = comparison.with_clairvoyant(cells, laws, records, goal)
-    told = written(args, comparison, cells, laws, records[0], found) if args.out else ""
+    return OfRig(comparison, laws, cells, found, left_out)
+
+
+def run(args: argparse.Namespace) -> int:
+    files = several_rig_files(args)
+    records = records_of(args)
+    with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
+        rigs = [on_rig(args, one, records, Path(name), len(files) > 1) for one in files]
+        told = written(args, rigs, records[0]) if args.out else ""
+    cells = [cell for one in rigs for cell in one.cells]
+    left_out = [line for one in rigs for line in one.left_out]
     if args.json:
-        print(json.dumps({"board": comparison.rig.board.name, "cells": as_data(cells)}, indent=1))
+        names = [one.comparison.rig.board.name for one in rigs]
+        print(json.dumps({"rigs": names, "left_out": left_out, "cells": as_data(cells)}, indent=1))
     else:
-        print("\n".join(filter(None, [text(cells), told])))
+        print("\n".join(filter(None, [text(cells), *left_out, told])))
     return 0

@@ -14,9 +14,13 @@ if TYPE_CHECKING:
     from quiesce.compare.run import Shaking
 
 
-def add_rig(parser: argparse.ArgumentParser) -> None:
+def add_rig(parser: argparse.ArgumentParser, several: bool = False) -> None:
     rig = parser.add_argument_group("structure")
-    rig.add_argument("--rig", metavar="NAME", help="a plant and a board that ship under one name")
+    text = "a plant and a board that ship under one name"
+    if several:
+        rig.add_argument("--rig", metavar="NAME", action="append", help=f"{text}; may be repeated")
+    else:
+        rig.add_argument("--rig", metavar="NAME", help=text)
     rig.add_argument("--plant", type=Path, metavar="FILE", help="plant, TOML")
     rig.add_argument("--board", type=Path, metavar="FILE", help="its board, TOML")
 
@@ -49,20 +53,37 @@ def add_motions(parser: argparse.ArgumentParser) -> None:
 
 
 def rig_files(args: argparse.Namespace) -> tuple[Path, Path]:
-    if args.rig is None and (args.plant is None or args.board is None):
+    """Plant and board. UsageError where they are not named, or twice."""
+    _require_one(args)
+    return _shipped(args.rig) if args.rig else (args.plant, args.board)
+
+
+def several_rig_files(args: argparse.Namespace) -> list[tuple[Path, Path]]:
+    """Likewise, of every structure that is named."""
+    _require_one(args)
+    rigs = args.rig or []
+    for name in rigs:
+        if rigs.count(name) > 1:
+            raise UsageError(f"--rig {name} is named twice")
+    return [_shipped(name) for name in rigs] or [(args.plant, args.board)]
+
+
+def _require_one(args: argparse.Namespace) -> None:
+    if not args.rig and (args.plant is None or args.board is None):
         raise UsageError("name the structure: --rig NAME, or --plant FILE and --board FILE")
-    if args.rig is not None and (args.plant or args.board):
+    if args.rig and (args.plant or args.board):
         raise UsageError("--rig stands for --plant and --board; give it or them")
-    if args.rig is None:
-        return args.plant, args.board
+
+
+def _shipped(name: str) -> tuple[Path, Path]:
     data = root() / "sim_hil/data"
     names = sorted(
         {one.stem for one in (data / "plants").glob("*.toml")}
         & {one.stem for one in (data / "boards").glob("*.toml")}
     )
-    if args.rig not in names:
-        raise UsageError(f"--rig {args.rig}: there are: {', '.join(names)}")
-    return data / f"plants/{args.rig}.toml", data / f"boards/{args.rig}.toml"
+    if name not in names:
+        raise UsageError(f"--rig {name}: there are: {', '.join(names)}")
+    return data / f"plants/{name}.toml", data / f"boards/{name}.toml"
 
 
 def records_of(args: argparse.Namespace) -> "list[Record]":

@@ -62,9 +62,10 @@ class Shaking:
 
 @dataclass(frozen=True)
 class Cell:
-    """index: against all current, same record and seed. share: of what the clairvoyant gains over
-    the best constant current, where it is known."""
+    """rig: its board's name. index: against all current, same record and seed. share: of what the
+    clairvoyant gains over the best constant current, where it is known."""
 
+    rig: str
     law: str
     record: str
     seed: int
@@ -228,14 +229,15 @@ class Comparison:
     def _group(self, cases: Sequence[Case], found: Sequence[Figures], goal: Goal) -> list[Cell]:
         """Of one record and seed: the grid of constants becomes its best one."""
         all_current = found[GRID]
+        rig = self.rig.board.name
         cells = [
-            Cell(c.law.label, c.record.name, c.seed, figures, index(figures, all_current))
+            Cell(rig, c.law.label, c.record.name, c.seed, figures, index(figures, all_current))
             for c, figures in zip(cases, found, strict=True)
         ]
         best = min(range(GRID + 1), key=lambda i: goal.value(found[i], all_current))
         amperes = f"{1e-3 * self.rig.all_mA * best / GRID:.4g} A"
         one = cells[best]
-        hindsight = Cell(BEST, one.record, one.seed, one.figures, one.index, amperes)
+        hindsight = Cell(rig, BEST, one.record, one.seed, one.figures, one.index, amperes)
         return [cells[0], cells[GRID], hindsight, *cells[GRID + 1 :]]
 
 
@@ -249,7 +251,7 @@ def beside(cells: Sequence[Cell], found: Figures, goal: Goal) -> list[Cell]:
     first = cells[0]
     note = f"the best waveform found for {goal.name}, not a proof"
     index_ = index(found, all_current)
-    own = Cell(CLAIRVOYANT, first.record, first.seed, found, index_, note)
+    own = Cell(first.rig, CLAIRVOYANT, first.record, first.seed, found, index_, note)
     at = 1 + next(i for i, cell in enumerate(cells) if cell.law == BEST)
     if gain <= 0.0:  # no waveform was found that is better than a constant current
         return [*cells[:at], own, *cells[at:]]

@@ -19,6 +19,10 @@ SHOWN = (
 )  # fmt: skip
 
 
+def rigs_of(cells: Sequence[Cell]) -> list[str]:
+    return list(dict.fromkeys(cell.rig for cell in cells))
+
+
 def laws_of(cells: Sequence[Cell]) -> list[str]:
     return list(dict.fromkeys(cell.law for cell in cells))
 
@@ -64,6 +68,15 @@ def _short(name: str) -> str:
 
 
 def text(cells: Sequence[Cell]) -> str:
+    """A table for each structure."""
+    rigs = rigs_of(cells)
+    own = {rig: _text([cell for cell in cells if cell.rig == rig]) for rig in rigs}
+    if len(rigs) == 1:
+        return own[rigs[0]]
+    return "\n".join(f"{rig}:\n{table}" for rig, table in own.items())
+
+
+def _text(cells: Sequence[Cell]) -> str:
     notes = [
         f"{c.record}, seed {c.seed}: {c.law} is {c.note}"
         for c in cells
@@ -81,11 +94,12 @@ def as_csv(cells: Sequence[Cell]) -> str:
     stream = io.StringIO()
     out = csv.writer(stream, lineterminator="\n")
     names = [name for name, _, _ in ALL_FIGURES]
-    out.writerow(["law", "record", "seed", "index", *names, "zone", "share"])
+    out.writerow(["rig", "law", "record", "seed", "index", *names, "zone", "share"])
     for cell in cells:
         known = cell.figures
         values = [f"{known[name]:.9g}" if name in known else "" for name, _, _ in ALL_FIGURES]
         row = [
+            cell.rig,
             cell.law,
             cell.record,
             cell.seed,

@@ -23,6 +23,7 @@ from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase, Singleton
 
 SLOPE_COUNTS = 2**22  # of the steepest slope
+LEAST = 1e-30  # counts
 MOST_SPAN_A = 60.0  # of an output: 2^24 counts
 PATTERN = re.compile(r"(?:(?P<factor>[-+.\deE]+)\s+)?(?P<bar>\|?)(?P<signal>[^|]+)(?P<end>\|?)")
 
@@ -178,7 +179,7 @@ def _output_lsbs(
     lsbs, shifts = [1.0 / (1e3 * ONE_mA_Q8 * per_output_A)], []
     for i, output in zip(of, base.outputs[1:], strict=True):
         scale = 1e3 * ONE_mA_Q8 * per_output_A * sources[i].factor / inputs[i].per_unit
-        steepest = max(abs(output.minimum), abs(output.maximum)) * scale
+        steepest = max(abs(output.minimum) * scale, abs(output.maximum) * scale, LEAST)
         shift = min(MOST_SHIFT, floor(log2(SLOPE_COUNTS / steepest)))
         if shift < 0:
             raise UsageError(f"a slope {output.name} of {steepest / scale:g} is too steep")

@@ -34,8 +34,13 @@ def table_of_words(words: Sequence[int]) -> Table:
 
 
 def read_table(file: Path) -> Table:
-    """UsageError, in one line, where it is not one."""
+    """Of a law, or of tracker network. UsageError, in one line, where it is not one."""
+    words = read_file(file)
     try:
-        return table_of_words(read_file(file))
+        return (
+            network.read_tracker(words)
+            if words[:1] == [network.TRACK_MAGIC]
+            else table_of_words(words)
+        )
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}")

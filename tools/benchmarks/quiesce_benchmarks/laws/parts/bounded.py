@@ -21,7 +21,7 @@ FIGURES = (
     ("law_fuzz_tables", "tables", None, "higher"),
     ("law_fuzz_tables_accepted", "tables", None, "higher"),
 )
-TICKS, QUICK_TICKS = 1_000_000, 100_000  # a law and tracker, in each of the two ways
+TICKS, QUICK_TICKS = 300_000, 30_000  # a law and tracker, in each of the two ways
 WHOLE_TICKS = 20_000
 
 

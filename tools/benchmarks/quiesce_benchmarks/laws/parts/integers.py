@@ -5,8 +5,8 @@ from quiesce.base.table import format_table
 from quiesce.law.recipes import RECIPES
 from quiesce.law.tables import Table
 
-from quiesce_benchmarks.laws import rigs
 from quiesce_benchmarks.laws.firmware_laws import demands
+from quiesce_benchmarks.laws.law_cases import made_anywhere
 from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "integers: every recipe beside float64"
@@ -15,7 +15,6 @@ FIGURES = (
     ("law_float_flips_worst_pct", "%", None, "lower"),
 )
 TICKS, QUICK_TICKS = 60000, 10000
-NEEDS_TWO_ENDS = ("groundhook", "groundhook_on_off", "mixed_hooks")
 # So that a law covers its output's range.
 LOUDNESS = {"acceleration": 10.0, "velocity": 0.3, "displacement": 0.02, "stroke": 0.02,
             "stroke velocity": 0.3, "force": 1000.0}  # fmt: skip
@@ -53,8 +52,7 @@ def measure(effort: Effort) -> Measured:
     rows, worst, flips = [], 0.0, 0.0
     ticks = QUICK_TICKS if effort.is_quick else TICKS
     for recipe in RECIPES:
-        rig = rigs.CAR if recipe.name in NEEDS_TWO_ENDS else rigs.BUILDING
-        table = rigs.made(rig, recipe.name).table
+        table = made_anywhere(recipe).table
         error, flipped = errors_pct(table, signals(table, ticks, effort.seed))
         worst, flips = max(worst, error), max(flips, flipped)
         rows.append([recipe.name, table.law, f"{error:.4f}", f"{flipped:.4f}"])

@@ -11,11 +11,11 @@ from quiesce.rules.model import Singleton
 
 def make(rig: LawRig, values: dict[str, float]) -> FuzzySignalsTable:
     on_A = within_ceiling_A(rig, values["on_A"])
-    back = values["back_share"]
+    outward, back = values["outward_share"], values["back_share"]
 
     def current(i: int, k: int) -> Singleton:
         x, v = i - 2, k - 2
-        way = 1.0 if x * v > 0 else back if x * v < 0 else 0.5 * (1.0 + back)
+        way = outward if x * v > 0 else back if x * v < 0 else 0.5 * (outward + back)
         return constant(on_A * way * (abs(x) + abs(v)) / 4.0)
 
     inputs = (
@@ -33,13 +33,15 @@ RECIPE = Recipe(
     "",
     (
         ON_A,
-        Setting("stroke_m", 0.005, 1e-6, 1.0, "the stroke from which on it is large"),
-        Setting("stroke_m_s", 0.2, 1e-4, 10.0, "likewise its velocity"),
-        Setting("back_share", 0.5, 0.0, 1.0, "share of the current where it comes back to 0"),
+        Setting("stroke_m", 0.001, 1e-6, 1.0, "the stroke from which on it is large"),
+        Setting("stroke_m_s", 0.05, 1e-4, 10.0, "likewise its velocity"),
+        Setting("outward_share", 0.3, 0.0, 1.0, "share of on_A where the stroke grows"),
+        Setting("back_share", 1.0, 0.0, 1.0, "share of on_A where it comes back"),
     ),
     make,
     equation="I = sum of w_i I_i over the rules, sum of w_i 1; I_i: on x (|i| + |j|) / 4 for sets "
-    "i of r and j of v_r, -2 .. 2, where r v_r > 0; x share where r v_r < 0, the mean of both else",
+    "i of r and j of v_r, -2 .. 2; x outward_share where r v_r > 0, x back_share where r v_r < 0, "
+    "their mean else",
     errata="The review names inputs and prints no rule base.",
     when="Only the damper's own stroke is measured.",
 )

@@ -96,11 +96,14 @@ def tune(order: Order) -> Tuned:
         constants, all_current = constant_runs(on, order.records, seeds, order.jobs)
         judge = Judge(run, order.records, seeds, all_current)
         asked = Asked(order, tunable, judge, store, bench)
+        first = tunable.space.point(tunable.space.start)
+        # Where the start is inside of its bounds, it is the first point, too.
+        is_inside = tunable.space.values(first) == tunable.space.start
+        left = order.trials if is_inside else order.trials - 1
         is_interrupted = False
         try:
             asked.start()
-            first = tunable.space.point(tunable.space.start)
-            search(asked, first, order.trials - 1, order.seed)
+            search(asked, first, left, order.seed)
         except KeyboardInterrupt:
             if not asked.trials():
                 raise
