@@ -143,6 +143,10 @@ const uint32_t *force_bank_section(const uint32_t *words, uint32_t damper) {
     return section;
 }
 
+uint32_t force_bank_currents(const uint32_t *section) {
+    return as_section(section)->currents;
+}
+
 uint32_t force_bank_rate_Hz(const uint32_t *words) {
     const int32_t rate_Hz = as_section(sections_first(words))->rate_Hz;
     for (uint32_t i = 1; i < sections_count(words); i++) {

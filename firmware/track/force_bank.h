@@ -56,6 +56,9 @@ const uint32_t *force_bank_section(const uint32_t *words, uint32_t damper);
 /// instructions an element.
 void force_bank_move(force_bank_t *self, const uint32_t *section, const view_damper_t *damper);
 
+/// Models of a section of checked words.
+uint32_t force_bank_currents(const uint32_t *section);
+
 /// Force of model k, rounded to the nearest mN, half up, and limited to VIEW_LIMIT.
 int32_t force_bank_force_mN(const force_bank_t *self, const uint32_t *section, uint32_t k,
                             const view_damper_t *damper);
