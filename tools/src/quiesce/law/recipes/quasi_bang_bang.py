@@ -1,31 +1,26 @@
 """A current for each quadrant of displacement and velocity: Aly 2013."""
 
-from quiesce.law.forms.signs import SignsTable
+from quiesce.law.forms.signs import SignsSection, SignsTable
 from quiesce.law.recipe import Recipe, Setting
 from quiesce.law.recipes.common import ON_A, BAND_m_s, Sign, section
-from quiesce.law.rig import LawRig
+from quiesce.law.rig import Damper, LawRig
 
 
 def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
-    on = values["on_A"]
+    return SignsTable(tuple(_section(rig, values, damper) for damper in rig.dampers))
+
+
+def _section(rig: LawRig, values: dict[str, float], damper: Damper) -> SignsSection:
+    """Shares are of what the damper may have, where on_A is more."""
+    on = min(values["on_A"], 1e-3 * damper.ceiling_mA)
     # By the bits x > 0 and v > 0: x < 0 and v < 0, x > 0 and v < 0, x < 0 and v > 0, both.
     currents = (values["down_share"] * on, values["down_in_share"] * on,
                 values["up_in_share"] * on, values["up_share"] * on)  # fmt: skip
-    return SignsTable(
-        tuple(
-            section(
-                rig,
-                damper,
-                (
-                    Sign({("displacement", damper.a): 1.0}, values["band_m"]),
-                    Sign({("velocity", damper.a): 1.0}, values["band_m_s"]),
-                ),
-                currents,
-                currents[0],
-            )
-            for damper in rig.dampers
-        )
+    signs = (
+        Sign({("displacement", damper.a): 1.0}, values["band_m"]),
+        Sign({("velocity", damper.a): 1.0}, values["band_m_s"]),
     )
+    return section(rig, damper, signs, currents, currents[0])
 
 
 def _share(name: str, default: float, which: str) -> Setting:
