@@ -143,6 +143,10 @@ const uint32_t *force_bank_section(const uint32_t *words, uint32_t damper) {
     return section;
 }
 
+uint32_t force_bank_currents(const uint32_t *section) {
+    return as_section(section)->currents;
+}
+
 uint32_t force_bank_rate_Hz(const uint32_t *words) {
     const int32_t rate_Hz = as_section(sections_first(words))->rate_Hz;
     for (uint32_t i = 1; i < sections_count(words); i++) {
@@ -171,14 +175,21 @@ void force_bank_move(force_bank_t *self, const uint32_t *section, const view_dam
     }
 }
 
-static int64_t force_mN(const force_bank_t *self, const section_t *bank, const model_t *model,
+static int32_t force_mN(const force_bank_t *self, const section_t *bank, const model_t *model,
                         int32_t stroke_nm) {
     int64_t sum = (int64_t)model->spring * stroke_nm;
     for (uint32_t j = 0; j < bank->elements; j++) {
         sum += (int64_t)model->weight[j] * self->z[j];
     }
     const int64_t half = bank->shift == 0 ? 0 : INT64_C(1) << (bank->shift - 1u);
-    return clamp_i64(((sum + half) >> bank->shift) + model->offset_mN, -VIEW_LIMIT, VIEW_LIMIT);
+    return (int32_t)clamp_i64(((sum + half) >> bank->shift) + model->offset_mN, -VIEW_LIMIT,
+                              VIEW_LIMIT);
+}
+
+int32_t force_bank_force_mN(const force_bank_t *self, const uint32_t *section, uint32_t k,
+                            const view_damper_t *damper) {
+    const section_t *bank = as_section(section);
+    return force_mN(self, bank, model_of(bank, k), damper->stroke_nm);
 }
 
 // Forces in the direction of the demand: low_mN is below it, high_mN is not.

@@ -56,11 +56,18 @@ const uint32_t *force_bank_section(const uint32_t *words, uint32_t damper);
 /// instructions an element.
 void force_bank_move(force_bank_t *self, const uint32_t *section, const view_damper_t *damper);
 
+/// Models of a section of checked words.
+uint32_t force_bank_currents(const uint32_t *section);
+
+/// Force of model k, rounded to the nearest mN, half up, and limited to VIEW_LIMIT.
+int32_t force_bank_force_mN(const force_bank_t *self, const uint32_t *section, uint32_t k,
+                            const view_damper_t *damper);
+
 /// The least current, mA, whose force, between those of two models, is the demand; 0 where the
 /// force without current is enough; else that of the model with the largest force in the demand's
-/// direction, the first of them, 0 where no model has a force in that direction. Forces are rounded
-/// to the nearest mN, half up, and limited to VIEW_LIMIT, currents to the nearest mA. A model costs
-/// some 6 instructions an element, at worst all of them are asked; one 64-bit division.
+/// direction, the first of them, 0 where no model has a force in that direction. To the nearest
+/// mA. A model costs some 6 instructions an element, at worst all of them are asked; one 64-bit
+/// division.
 int32_t force_bank_current_mA(const force_bank_t *self, const uint32_t *section,
                               const view_damper_t *damper, int32_t demand_mN);
 

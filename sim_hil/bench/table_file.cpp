@@ -159,7 +159,7 @@ std::vector<std::uint32_t> load_force_map(const std::string &file) {
         return words;
     }
     const quiesce_table_verdict_t verdict =
-        quiesce_force_map_check(words.data(), static_cast<std::uint32_t>(words.size()));
+        quiesce_tracker_table_check(words.data(), static_cast<std::uint32_t>(words.size()));
     if (verdict != QUIESCE_TABLE_OK) {
         throw InputError(file + ": " + kRefused + reason(verdict));
     }
@@ -181,7 +181,7 @@ void require_accepted_table(quiesce_t &controller, const std::string &file) {
     }
 }
 
-/// A map that is good in itself: of this board's dampers and strokes.
+/// A map or bank that is good in itself: of this board's dampers and strokes, of this tick rate.
 void require_served_map(quiesce_t &controller, const std::string &file) {
     const std::vector<std::uint32_t> words = load_force_map(file);
     const quiesce_table_verdict_t verdict =
@@ -189,7 +189,7 @@ void require_served_map(quiesce_t &controller, const std::string &file) {
     if (verdict == QUIESCE_TABLE_FIT && !is_of_other_tracker(words)) {
         throw InputError(file + ": the controller refuses the map: it is of more dampers than this "
                                 "board has, or over a stroke that no sensor tells (quiesce board "
-                                "show)");
+                                "show), or a bank for another tick_rate_Hz");
     }
     if (verdict != QUIESCE_TABLE_OK) {
         throw InputError(file + ": " + kRefused + reason_of_form(verdict));

@@ -31,7 +31,6 @@ from quiesce.damper.inverses import (
     recurrent,
     steps,
     support_vector,
-    svr,
     tracking,
 )
 from quiesce.damper.inverses.compiled import COMPILED, Steady, beginnings, compiled, steady_map

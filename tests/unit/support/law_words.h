@@ -86,12 +86,15 @@ static const uint32_t fuzzy_signals_words[] = {
     0x83126F,   0x200,      0,          0xFFDF3B64, 0,          0x52,       0,          1,
     0,
 };
+// Of one section, over stroke velocity.
 static const uint32_t map_words[] = {
-    0x31464D51,
+    0x32464D51,
     0,
     0,
+    1,
     4,
-    3,
+    4,
+    3, // sections, axis, places, currents
     (uint32_t)-200000,
     (uint32_t)-1000,
     1000,
@@ -113,11 +116,35 @@ static const uint32_t map_words[] = {
     700000,
 };
 
+// A stop, a saturation that leads, a dashpot; a spring.
+static const uint32_t bank_words[] = {
+    0x314B4251, 0,
+    0,          1,
+    3,          3,
+    1000,       4,    // sections, elements, currents, rate, shift
+    500000,     3000, // the lead
+    0,          0,
+    10000,      1,
+    1073741824, 50000,
+    0,          100000000,
+    1073741823, // leads, leak, limit
+    0,          (uint32_t)-900,
+    1,          16,
+    8,          0, // current, offset, spring, weights
+    700,        200,
+    2,          80,
+    8,          4,
+    1500,       0,
+    0,          160,
+    8,          8,
+};
+
 static const law_words_t law_words[] = {
     LAW_WORDS(linear_words),     LAW_WORDS(signs_words),         LAW_WORDS(friction_words),
     LAW_WORDS(polynomial_words), LAW_WORDS(fuzzy_signals_words),
 };
 static const law_words_t map_of_damper = LAW_WORDS(map_words);
+static const law_words_t bank_of_damper = LAW_WORDS(bank_words);
 
 // Of a kind, by its magic. words is NULL where there are none.
 static inline law_words_t law_words_of(uint32_t magic) {

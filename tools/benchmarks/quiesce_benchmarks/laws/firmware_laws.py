@@ -2,6 +2,7 @@
 
 import ctypes
 import subprocess
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -9,6 +10,7 @@ from tempfile import mkdtemp
 import numpy as np
 from quiesce.base.paths import root
 from quiesce.law.forms.network import NetworkTrackTable
+from quiesce.law.signal import Quantity
 from quiesce.law.tables import Table
 
 FOLDERS = ("base", "fuzzy", "law", "param", "plants", "track")
@@ -65,17 +67,17 @@ def _at(one: np.ndarray) -> ctypes.c_void_p:
     return one.ctypes.data_as(ctypes.c_void_p)
 
 
-class NetworkTracker:
-    """Tracker `network` of one damper, from rest."""
+class Tracker:
+    """The tracker that works with these words, for one damper, from rest; its inputs are these
+    quantities of the damper, the demand among them."""
 
     STATE_BYTES = 1024
 
-    def __init__(self, table: NetworkTrackTable, damper: int = 0) -> None:
-        self._words = np.array(table.words(), np.uint32)
+    def __init__(self, words: list[int], inputs: Sequence[Quantity], damper: int = 0) -> None:
+        self._words = np.array(words, np.uint32)
         self._damper = damper
-        signals = [one.signal for one in table.sections[damper].inputs]
-        self._units = np.array([one.quantity.per_unit for one in signals])
-        self._signals = np.array([one.quantity.code for one in signals], np.uint32)
+        self._units = np.array([one.per_unit for one in inputs])
+        self._signals = np.array([one.code for one in inputs], np.uint32)
         self._state = np.zeros(self.STATE_BYTES, np.uint8)
 
     def currents_A(self, values: np.ndarray) -> np.ndarray:
@@ -88,6 +90,12 @@ class NetworkTracker:
         )  # fmt: skip
         assert said == 0, said
         return 1e-3 * out
+
+
+class NetworkTracker(Tracker):
+    def __init__(self, table: NetworkTrackTable, damper: int = 0) -> None:
+        inputs = [one.signal.quantity for one in table.sections[damper].inputs]
+        super().__init__(table.words(), inputs, damper)
 
 
 def tracker_verdict(words: list[int]) -> int:

@@ -19,6 +19,8 @@ from quiesce_benchmarks.laws import rigs
 # A damper's map that fits no rig: what a tracker costs does not depend on that.
 MAP_DAMPER, MAP_MOST_A = "rd1005_kwok_tanh_smooth", 1.88
 RIGS = (rigs.BUILDING, rigs.CAR, rigs.TWO_MASSES)
+# The most elements and currents that there are.
+BANK_DAMPER, BANK_MOST_A = "spencer_prototype", 2.25
 NO_WORDS: tuple[int, ...] = ()
 
 
@@ -72,6 +74,8 @@ def trackers() -> list[str]:
 def map_words(tracker: str) -> tuple[int, ...]:
     """Of the table that a tracker works with, made here; none of one that works without, or whose
     table nobody has made yet: the run then says so."""
+    if tracker == "bank":
+        return tuple(rigs.bank_of(BANK_DAMPER, BANK_MOST_A))
     if tracker != "inverse":
         return NO_WORDS
     with tempfile.TemporaryDirectory(prefix="quiesce-laws-") as folder:

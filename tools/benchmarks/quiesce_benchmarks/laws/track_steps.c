@@ -1,10 +1,17 @@
-// Runs tracker network on columns of a damper's signals, for tests in Python.
+// Runs the tracker of a table on columns of a damper's signals, for tests in Python.
 #include <stddef.h>
 
 #include "track.h"
 #include "view_signal.h"
 
-extern const track_t track_network;
+// By the table's first word; NULL: of none.
+static const track_t *tracker_of(uint32_t magic) {
+    const track_t *track = track_find(0);
+    for (int32_t i = 1; track != NULL && (track->kind == NULL || track->kind->magic != magic); i++) {
+        track = track_find(i);
+    }
+    return track;
+}
 
 static int32_t *place_of(view_damper_t *damper, int32_t *demand_mN, uint32_t signal) {
     return signal == VIEW_SIGNAL_DEMAND
@@ -17,7 +24,9 @@ static int32_t *place_of(view_damper_t *damper, int32_t *demand_mN, uint32_t sig
 int32_t track_steps(const uint32_t *words, uint32_t count, uint32_t number, void *state,
                     const uint32_t *signals, uint32_t columns, const int32_t *values,
                     uint32_t ticks, int32_t *out) {
-    const int32_t verdict = (int32_t)track_network.kind->check(words, count);
+    const track_t *track = tracker_of(words[0]);
+    const int32_t verdict =
+        (int32_t)(track == NULL ? QUIESCE_TABLE_MAGIC : track->kind->check(words, count));
     const track_setup_t setup = {NULL, words, number};
     for (uint32_t tick = 0; verdict == 0 && tick < ticks; tick++) {
         view_damper_t damper = {0};
@@ -25,7 +34,7 @@ int32_t track_steps(const uint32_t *words, uint32_t count, uint32_t number, void
         for (uint32_t i = 0; i < columns; i++) {
             *place_of(&damper, &demand_mN, signals[i]) = values[tick * columns + i];
         }
-        out[tick] = track_network.step(state, &setup, &damper, demand_mN);
+        out[tick] = track->step(state, &setup, &damper, demand_mN);
     }
     return verdict;
 }
