@@ -30,7 +30,7 @@ static uint32_t place_of(uint32_t signal) {
     return signal >> 8;
 }
 
-static bool is_signal(uint32_t signal) {
+bool view_signal_is_good(uint32_t signal) {
     const uint32_t places = quantity_of(signal) == QUIESCE_SENSE_SUPPLY ? 1u : QUIESCE_MAX_DAMPERS;
     return quantity_of(signal) < VIEW_SIGNAL_QUANTITIES && place_of(signal) < places;
 }
@@ -38,7 +38,7 @@ static bool is_signal(uint32_t signal) {
 _Static_assert(QUIESCE_MAX_BODIES == QUIESCE_MAX_DAMPERS, "one limit for both");
 
 static bool is_good(const view_input_t *input) {
-    return is_signal(input->signal) && input->limit > 0 && input->limit <= VIEW_LIMIT &&
+    return view_signal_is_good(input->signal) && input->limit > 0 && input->limit <= VIEW_LIMIT &&
            input->shift < 30u && input->limit <= VIEW_LIMIT >> input->shift;
 }
 
@@ -50,15 +50,19 @@ bool view_inputs_are_good(const view_input_t *inputs, uint32_t count) {
     return are_good;
 }
 
+uint64_t view_signal_needs(uint32_t signal) {
+    return view_quantity[quantity_of(signal)].bit << place_of(signal);
+}
+
 uint64_t view_inputs_need(const view_input_t *inputs, uint32_t count) {
     uint64_t needs = 0;
     for (uint32_t i = 0; i < count; i++) {
-        needs |= view_quantity[quantity_of(inputs[i].signal)].bit << place_of(inputs[i].signal);
+        needs |= view_signal_needs(inputs[i].signal);
     }
     return needs;
 }
 
-static int32_t value_of(const view_t *view, uint32_t signal) {
+int32_t view_signal_value(const view_t *view, uint32_t signal) {
     const view_quantity_t *quantity = &view_quantity[quantity_of(signal)];
     const uint8_t *at =
         (const uint8_t *)view + quantity->offset + quantity->stride * (size_t)place_of(signal);
@@ -69,7 +73,7 @@ void view_inputs_read(const view_input_t *inputs, uint32_t count, const view_t *
                       int32_t *out) {
     for (uint32_t i = 0; i < count; i++) {
         const int32_t limit = inputs[i].limit;
-        const int32_t value = clamp_i32(value_of(view, inputs[i].signal), -limit, limit);
+        const int32_t value = clamp_i32(view_signal_value(view, inputs[i].signal), -limit, limit);
         out[i] = (int32_t)((uint32_t)value << inputs[i].shift);
     }
 }

@@ -10,6 +10,9 @@
 
 enum { VIEW_SIGNAL_CURRENT = QUIESCE_SENSES, VIEW_SIGNAL_QUANTITIES };
 
+/// Of tables of trackers only: the force that the law demands, in no view.
+#define VIEW_SIGNAL_DEMAND 64u
+
 /// Where a quantity is in view_t, of the first body or damper, and its first bit.
 typedef struct {
     uint16_t offset;
@@ -38,6 +41,16 @@ uint64_t view_inputs_need(const view_input_t *inputs, uint32_t count);
 
 /// Reads good ones, all of places that the build has. About 15 instructions each.
 void view_inputs_read(const view_input_t *inputs, uint32_t count, const view_t *view, int32_t *out);
+
+/// Whether this is a signal of the view, of at most QUIESCE_MAX_BODIES or QUIESCE_MAX_DAMPERS
+/// places.
+bool view_signal_is_good(uint32_t signal);
+
+/// The VIEW_ bit of a good signal.
+uint64_t view_signal_needs(uint32_t signal);
+
+/// The value of a good signal of a place that the build has.
+int32_t view_signal_value(const view_t *view, uint32_t signal);
 
 /// The bit that stands for damper i itself: its current, known wherever there is that damper.
 static inline uint64_t view_needs_damper(uint32_t i) {

@@ -14,8 +14,10 @@ static uint64_t control_needs(const quiesce_params_t *params) {
 }
 
 uint64_t control_serves(const quiesce_params_t *params) {
-    const law_table_kind_t *kind = law_find(params->law)->kind;
-    return kind != NULL && kind->needs != NULL ? ~UINT64_C(0) : control_needs(params);
+    const law_t *law = law_find(params->law);
+    const bool may_need_more =
+        (law->kind != NULL && law->kind->needs != NULL) || forces_may_need_more(law, params);
+    return may_need_more ? ~UINT64_C(0) : control_needs(params);
 }
 
 static void start(control_t *self) {
@@ -49,10 +51,10 @@ static const struct {
 #define SIGNALS (sizeof signals / sizeof signals[0])
 
 // What a law needs where these bodies and dampers are: VIEW_EACH is each of them.
-static uint64_t needs_there(uint64_t needs, const places_t *places) {
+static uint64_t needs_there(uint64_t needs, uint32_t bodies, uint32_t dampers) {
     for (uint32_t i = 0; i < SIGNALS; i++) {
         const uint64_t each = VIEW_EACH(signals[i].quantity);
-        const uint32_t count = signals[i].owner == OF_BODIES ? places->bodies : places->dampers;
+        const uint32_t count = signals[i].owner == OF_BODIES ? bodies : dampers;
         const uint64_t present = signals[i].quantity * ((UINT64_C(1) << count) - 1u);
         if (signals[i].owner != OF_BOARD && (needs & each) == each) {
             needs &= ~each | present;
@@ -82,8 +84,9 @@ bool quiesce_missing(const quiesce_board_t *board, const quiesce_params_t *param
         return false;
     }
     places_init(&places, board);
-    return find_signal(needs_there(control_needs(params), &places) & ~places_provide(&places), 0,
-                       missing);
+    return find_signal(needs_there(control_needs(params), places.bodies, places.dampers) &
+                           ~places_provide(&places),
+                       0, missing);
 }
 
 bool quiesce_provided(const quiesce_board_t *board, uint32_t index, quiesce_signal_t *provided) {
@@ -104,18 +107,25 @@ const char *control_lacks_table(const control_t *self) {
     return forces_are_ready(&self->forces) ? NULL : self->forces.track->name;
 }
 
+// What words of the tracker's kind need, none of NULL, where these bodies and dampers are.
+static uint64_t force_table_needs(const control_t *self, const uint32_t *words) {
+    return needs_there(forces_table_needs(&self->forces, words), self->bodies,
+                       self->forces.dampers);
+}
+
 static void find_needs(control_t *self) {
     const law_table_kind_t *kind = self->law->kind;
     const bool has_own = kind != NULL && kind->needs != NULL && self->setup.table != NULL;
     const bool wants_more = self->forces.track != NULL || lacks_table(self);
     self->needs = self->fixed_needs | (has_own ? kind->needs(self->setup.table) : 0) |
-                  (wants_more ? MORE : 0);
+                  force_table_needs(self, self->forces.table) | (wants_more ? MORE : 0);
 }
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
     self->law = law_find(params->law);
     forces_init(&self->forces, self->law, params, places->dampers);
-    self->fixed_needs = needs_there(control_needs(params), places);
+    self->bodies = places->bodies;
+    self->fixed_needs = needs_there(control_needs(params), places->bodies, places->dampers);
     self->provided = places_provide(places);
     self->setup = (law_setup_t){
         .params = *params,
@@ -125,6 +135,11 @@ void control_init(control_t *self, const places_t *places, const quiesce_params_
     self->blind_most_ticks = ticks_in_ms(CONTROL_BLIND_ms, params->tick_rate_Hz);
     find_needs(self);
     start(self);
+}
+
+static void use_force_table(control_t *self, const uint32_t *words) {
+    forces_use(&self->forces, words);
+    find_needs(self);
 }
 
 static void use_law_table(control_t *self, const uint32_t *words) {
@@ -140,7 +155,7 @@ static void use_law_table(control_t *self, const uint32_t *words) {
 quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
     const track_table_kind_t *map = forces_kind(&self->forces);
     if (map != NULL && magic == map->magic) {
-        self->forces.table = NULL;
+        use_force_table(self, NULL);
         return QUIESCE_TABLE_OK;
     }
     const law_table_kind_t *kind = self->law->kind;
@@ -161,10 +176,9 @@ static quiesce_table_verdict_t use_shipped(control_t *self) {
     return map != NULL ? control_drop(self, map->magic) : QUIESCE_TABLE_MAGIC;
 }
 
-static bool is_of_this_rate(const control_t *self, const uint32_t *words) {
-    const law_table_kind_t *kind = self->law->kind;
-    return kind->rate_Hz == NULL ||
-           kind->rate_Hz(words) == (uint32_t)self->setup.params.tick_rate_Hz;
+static bool is_of_this_rate(const control_t *self, uint32_t (*rate_Hz)(const uint32_t *words),
+                            const uint32_t *words) {
+    return rate_Hz == NULL || rate_Hz(words) == (uint32_t)self->setup.params.tick_rate_Hz;
 }
 
 // Whether it is good, of this tick rate, and the board has what it needs.
@@ -177,7 +191,20 @@ static quiesce_table_verdict_t check_law_table(const control_t *self, const uint
         return verdict;
     }
     const bool is_served = kind->needs == NULL || (kind->needs(words) & ~self->provided) == 0;
-    return is_served && is_of_this_rate(self, words) ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
+    return is_served && is_of_this_rate(self, kind->rate_Hz, words) ? QUIESCE_TABLE_OK
+                                                                    : QUIESCE_TABLE_FIT;
+}
+
+static quiesce_table_verdict_t check_force_table(const control_t *self, const uint32_t *words,
+                                                 uint32_t count) {
+    const track_table_kind_t *kind = forces_kind(&self->forces);
+    const quiesce_table_verdict_t verdict = kind->check(words, count);
+    if (verdict != QUIESCE_TABLE_OK) {
+        return verdict;
+    }
+    const bool is_served = (force_table_needs(self, words) & ~self->provided) == 0;
+    return is_served && is_of_this_rate(self, kind->rate_Hz, words) ? QUIESCE_TABLE_OK
+                                                                    : QUIESCE_TABLE_FIT;
 }
 
 quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
@@ -187,12 +214,12 @@ quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint
     const track_table_kind_t *map = forces_kind(&self->forces);
     const bool is_map = map != NULL && count > 0 && words[0] == map->magic;
     const quiesce_table_verdict_t verdict =
-        is_map ? map->check(words, count) : check_law_table(self, words, count);
+        is_map ? check_force_table(self, words, count) : check_law_table(self, words, count);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
     if (is_map) {
-        self->forces.table = words;
+        use_force_table(self, words);
     } else {
         use_law_table(self, words);
     }

@@ -15,6 +15,7 @@ typedef struct {
     uint64_t needs;       ///< of law, tracker and table, of those that there are
     uint64_t fixed_needs; ///< those of law and tracker
     uint64_t provided;    ///< what the board's sensors can
+    uint32_t bodies;      ///< of the board
     law_setup_t setup;
     uint32_t blind_ticks; ///< in a row, with the output on
     uint32_t blind_most_ticks;

@@ -11,6 +11,11 @@ uint64_t forces_need(const law_t *law, const quiesce_params_t *params) {
     return track != NULL ? track->needs : 0;
 }
 
+bool forces_may_need_more(const law_t *law, const quiesce_params_t *params) {
+    const track_t *track = tracker_of(law, params);
+    return track != NULL && track->kind != NULL && track->kind->needs != NULL;
+}
+
 void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *params,
                  uint32_t dampers) {
     *self = (forces_t){.track = tracker_of(law, params), .dampers = dampers};
@@ -20,15 +25,25 @@ const track_table_kind_t *forces_kind(const forces_t *self) {
     return self->track != NULL ? self->track->kind : NULL;
 }
 
+void forces_use(forces_t *self, const uint32_t *table) {
+    *self = (forces_t){.track = self->track, .table = table, .dampers = self->dampers};
+}
+
+uint64_t forces_table_needs(const forces_t *self, const uint32_t *table) {
+    const track_table_kind_t *kind = forces_kind(self);
+    return table != NULL && kind->needs != NULL ? kind->needs(table) : 0;
+}
+
 bool forces_are_ready(const forces_t *self) {
     return self->track == NULL || self->track->kind == NULL || self->table != NULL;
 }
 
 void forces_step(forces_t *self, const quiesce_params_t *params, const view_t *view,
                  law_demand_t *demand) {
-    const track_setup_t setup = {params, self->table};
+    track_setup_t setup = {params, self->table, 0};
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         const int32_t demand_mN = demand->value[i];
+        setup.damper = i;
         demand->value[i] = i < self->dampers ? self->track->step(self->state[i], &setup,
                                                                  &view->damper[i], demand_mN)
                                              : 0;

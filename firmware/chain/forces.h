@@ -17,12 +17,22 @@ typedef struct {
 /// checked.
 uint64_t forces_need(const law_t *law, const quiesce_params_t *params);
 
+/// Whether a table of the tracker may need more.
+bool forces_may_need_more(const law_t *law, const quiesce_params_t *params);
+
 /// The tracker of the parameters, if the law needs one, from rest and without a table.
 void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *params,
                  uint32_t dampers);
 
 /// The kind of the tracker's table. NULL: no tracker, or it needs none.
 const track_table_kind_t *forces_kind(const forces_t *self);
+
+/// Takes words of that kind, which have been checked; NULL: none from now on. The tracker starts
+/// from rest.
+void forces_use(forces_t *self, const uint32_t *table);
+
+/// VIEW_ bits that words of that kind need, which have been checked; none of NULL.
+uint64_t forces_table_needs(const forces_t *self, const uint32_t *table);
 
 /// Whether no table of a tracker is missing.
 bool forces_are_ready(const forces_t *self);

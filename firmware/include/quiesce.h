@@ -246,6 +246,10 @@ uint32_t quiesce_table_hash(const quiesce_t *self);
 /// Whether words are a damper's map.
 quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count);
 
+/// Whether words are a table of one of the trackers, which their first word says: a damper's map, a
+/// bank of models. QUIESCE_TABLE_MAGIC: of none.
+quiesce_table_verdict_t quiesce_tracker_table_check(const uint32_t *words, uint32_t count);
+
 /// Receives a table in parts beside the one in use: two slots of the caller's memory. A table is
 /// put to use whole and checked, or not at all; the one before it is kept. A store holds tables of
 /// one kind: a damper's map beside a law's table has a store of its own.

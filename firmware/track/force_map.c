@@ -2,39 +2,43 @@
 
 #include <stddef.h>
 
-#include "table.h"
-#include "view.h"
+#include "sections.h"
 
-enum { HEADER_WORDS = 5, HALF_Q30 = 1 << 29 };
+enum { SECTION_WORDS = 3, HALF_Q30 = 1 << 29 };
 
 typedef struct {
-    uint32_t head[TABLE_HEAD_WORDS];
-    uint32_t velocities;
+    uint32_t axis;
+    uint32_t places;
     uint32_t currents;
-    int32_t value[]; ///< velocities, currents, forces
-} force_map_t;
+    int32_t value[]; ///< places, currents, forces
+} section_t;
 
-_Static_assert(offsetof(force_map_t, value) == 4u * HEADER_WORDS, "words on the wire");
+_Static_assert(offsetof(section_t, value) == 4u * SECTION_WORDS, "words on the wire");
 
-static const force_map_t *as_map(const uint32_t *words) {
-    return (const force_map_t *)(const void *)words;
+static const section_t *as_section(const uint32_t *words) {
+    return (const section_t *)(const void *)words;
 }
 
-static const int32_t *currents_of(const force_map_t *map) {
-    return &map->value[map->velocities];
+static const int32_t *currents_of(const section_t *map) {
+    return &map->value[map->places];
 }
 
-// At all currents, at one velocity.
-static const int32_t *forces_of(const force_map_t *map, uint32_t velocity) {
-    return &map->value[map->velocities + map->currents + velocity * map->currents];
+// At all currents, at one place.
+static const int32_t *forces_of(const section_t *map, uint32_t place) {
+    return &map->value[map->places + map->currents + place * map->currents];
 }
 
-static bool has_shape(const force_map_t *map) {
-    const uint32_t n = map->velocities;
-    const uint32_t m = map->currents;
-    return n >= FORCE_MAP_MIN_POINTS && n <= FORCE_MAP_MAX_VELOCITIES &&
-           m >= FORCE_MAP_MIN_POINTS && m <= FORCE_MAP_MAX_CURRENTS &&
-           map->head[TABLE_WORDS] == HEADER_WORDS + n + m + n * m;
+static uint32_t words_in(const section_t *map) {
+    return SECTION_WORDS + map->places + map->currents + map->places * map->currents;
+}
+
+static uint32_t size(const uint32_t *words, uint32_t left) {
+    const section_t *map = as_section(words);
+    const bool is_good = left >= SECTION_WORDS && map->places >= FORCE_MAP_MIN_POINTS &&
+                         map->places <= FORCE_MAP_MAX_PLACES &&
+                         map->currents >= FORCE_MAP_MIN_POINTS &&
+                         map->currents <= FORCE_MAP_MAX_CURRENTS && left >= words_in(map);
+    return is_good ? words_in(map) : 0;
 }
 
 static bool is_rising(const int32_t *values, uint32_t count) {
@@ -46,20 +50,20 @@ static bool is_rising(const int32_t *values, uint32_t count) {
     return true;
 }
 
-static bool are_axes_good(const force_map_t *map) {
-    const int32_t *velocity_um_s = map->value;
+static bool are_axes_good(const section_t *map) {
+    const int32_t *place = map->value;
     const int32_t *current_mA = currents_of(map);
-    return is_rising(velocity_um_s, map->velocities) && is_rising(current_mA, map->currents) &&
-           velocity_um_s[0] >= -VIEW_LIMIT && velocity_um_s[0] < 0 &&
-           velocity_um_s[map->velocities - 1u] > 0 &&
-           velocity_um_s[map->velocities - 1u] <= VIEW_LIMIT && current_mA[0] == 0 &&
+    return (map->axis == QUIESCE_SENSE_STROKE_VELOCITY || map->axis == QUIESCE_SENSE_STROKE) &&
+           is_rising(place, map->places) && is_rising(current_mA, map->currents) &&
+           place[0] >= -VIEW_LIMIT && place[0] < 0 && place[map->places - 1u] > 0 &&
+           place[map->places - 1u] <= VIEW_LIMIT && current_mA[0] == 0 &&
            current_mA[map->currents - 1u] <= QUIESCE_HIGHEST_CURRENT_mA;
 }
 
-// With the current forces go the way of the velocity, or stay.
-static bool are_forces_good(const force_map_t *map, uint32_t velocity) {
-    const int32_t *force_mN = forces_of(map, velocity);
-    const int32_t way = map->value[velocity];
+// With the current forces go the way of the place, or stay.
+static bool are_forces_good(const section_t *map, uint32_t place) {
+    const int32_t *force_mN = forces_of(map, place);
+    const int32_t way = map->value[place];
     for (uint32_t i = 0; i < map->currents; i++) {
         if (force_mN[i] < -VIEW_LIMIT || force_mN[i] > VIEW_LIMIT) {
             return false;
@@ -73,8 +77,9 @@ static bool are_forces_good(const force_map_t *map, uint32_t velocity) {
     return true;
 }
 
-static bool are_points_good(const force_map_t *map) {
-    for (uint32_t i = 0; i < map->velocities; i++) {
+static bool is_good(const uint32_t *words) {
+    const section_t *map = as_section(words);
+    for (uint32_t i = 0; i < map->places; i++) {
         if (!are_forces_good(map, i)) {
             return false;
         }
@@ -82,20 +87,47 @@ static bool are_points_good(const force_map_t *map) {
     return are_axes_good(map);
 }
 
-quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count) {
-    const force_map_t *map = as_map(words);
-    const quiesce_table_verdict_t verdict =
-        table_check_head(words, count, FORCE_MAP_MAGIC, HEADER_WORDS - TABLE_HEAD_WORDS);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
-    if (!has_shape(map)) {
-        return QUIESCE_TABLE_SHAPE;
-    }
-    return are_points_good(map) ? QUIESCE_TABLE_OK : QUIESCE_TABLE_POINT;
+static bool is_over_stroke(const section_t *map) {
+    return map->axis == QUIESCE_SENSE_STROKE;
 }
 
-// Forces at the present velocity, in the direction of the demand.
+static uint64_t axis_needs(const uint32_t *words, uint32_t i) {
+    return (is_over_stroke(as_section(words)) ? VIEW_STROKE : VIEW_STROKE_VELOCITY) << i;
+}
+
+static const sections_kind_t kind = {
+    .magic = FORCE_MAP_MAGIC,
+    .size = size,
+    .is_good = is_good,
+    .needs = axis_needs,
+};
+
+quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count) {
+    return sections_check(&kind, words, count);
+}
+
+const uint32_t *force_map_section(const uint32_t *words, uint32_t damper) {
+    const uint32_t *section = sections_first(words);
+    const uint32_t count = sections_count(words);
+    if (count > 1u && damper >= count) {
+        return NULL;
+    }
+    for (uint32_t i = 0; count > 1u && i < damper; i++) {
+        section += words_in(as_section(section));
+    }
+    return section;
+}
+
+uint64_t force_map_needs(const uint32_t *words) {
+    return sections_count(words) > 1u ? sections_need(&kind, words)
+                                      : VIEW_EACH(axis_needs(sections_first(words), 0));
+}
+
+int32_t force_map_place(const uint32_t *section, const view_damper_t *damper) {
+    return is_over_stroke(as_section(section)) ? damper->stroke_nm : damper->velocity_um_s;
+}
+
+// Forces at the present place, in the direction of the demand.
 typedef struct {
     const int32_t *below;
     const int32_t *above;
@@ -103,13 +135,13 @@ typedef struct {
     int32_t side;     ///< -1 or 1
 } row_t;
 
-// The last velocity at or below this one, and not the last of all.
-static uint32_t place_of(const force_map_t *map, int32_t velocity_um_s) {
+// The last of the axis at or below this place, and not the last of all.
+static uint32_t index_of(const section_t *map, int32_t place) {
     uint32_t low = 0;
-    uint32_t high = map->velocities - 1u;
+    uint32_t high = map->places - 1u;
     while (high - low > 1u) {
         const uint32_t middle = (low + high) / 2u;
-        if (map->value[middle] <= velocity_um_s) {
+        if (map->value[middle] <= place) {
             low = middle;
         } else {
             high = middle;
@@ -118,12 +150,12 @@ static uint32_t place_of(const force_map_t *map, int32_t velocity_um_s) {
     return low;
 }
 
-static row_t row_at(const force_map_t *map, int32_t velocity_um_s, int32_t side) {
-    const uint32_t place = place_of(map, velocity_um_s);
-    const int64_t low = map->value[place];
-    const int64_t high = map->value[place + 1u];
-    const int64_t at = clamp_i64(velocity_um_s, low, high);
-    row_t row = {forces_of(map, place), forces_of(map, place + 1u), 0, side};
+static row_t row_at(const section_t *map, int32_t place, int32_t side) {
+    const uint32_t index = index_of(map, place);
+    const int64_t low = map->value[index];
+    const int64_t high = map->value[index + 1u];
+    const int64_t at = clamp_i64(place, low, high);
+    row_t row = {forces_of(map, index), forces_of(map, index + 1u), 0, side};
     if (low < 0 && high > 0) {
         // The direction changes here.
         row.below = row.above = side > 0 ? row.above : row.below;
@@ -161,10 +193,10 @@ static void narrow(bracket_t *self, const row_t *row, int64_t wanted_mN) {
     }
 }
 
-int32_t force_map_current_mA(const uint32_t *words, int32_t velocity_um_s, int32_t demand_mN) {
-    const force_map_t *map = as_map(words);
+int32_t force_map_current_mA(const uint32_t *section, int32_t place, int32_t demand_mN) {
+    const section_t *map = as_section(section);
     const int32_t *current_mA = currents_of(map);
-    const row_t row = row_at(map, velocity_um_s, demand_mN > 0 ? 1 : -1);
+    const row_t row = row_at(map, place, demand_mN > 0 ? 1 : -1);
     const int64_t wanted_mN = (int64_t)demand_mN * row.side;
     const uint32_t last = map->currents - 1u;
     bracket_t at = {0, last, force_at_mN(&row, 0), force_at_mN(&row, last)};

@@ -10,19 +10,25 @@
 #include "view.h"
 
 /// Bytes for the state of a tracker, for each damper.
-#define TRACK_STATE_BYTES 8u
+#define TRACK_STATE_BYTES 56u
 
 /// What a tracker works with.
 typedef struct {
     const quiesce_params_t *params; ///< checked
     const uint32_t *table;          ///< words that the kind's check accepts; NULL without a kind
+    uint32_t damper;                ///< its number
 } track_setup_t;
 
-/// A kind of table. None ships: a map is of one damper. Its words begin with the magic, CRC-32 and
-/// their number.
+/// A kind of table. None ships: a map is of dampers that a user has. Its words begin with the
+/// magic, CRC-32 and their number.
 typedef struct {
     uint32_t magic; ///< that no law's table has
     quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
+    /// VIEW_ bits that a checked table needs beside the tracker, VIEW_EACH of each that there is;
+    /// one that the board cannot serve is refused. NULL: none.
+    uint64_t (*needs)(const uint32_t *words);
+    /// Ticks a second that a checked table is made for; at another rate it is refused. NULL: any.
+    uint32_t (*rate_Hz)(const uint32_t *words);
 } track_table_kind_t;
 
 typedef struct {
@@ -30,7 +36,7 @@ typedef struct {
     uint64_t needs;                 ///< VIEW_ bits; while they are not all valid it is not stepped
     const track_table_kind_t *kind; ///< without a table of it it is not stepped; NULL: needs none
     /// One damper, one tick. Returns the current, mA, any value: what follows limits it. *state is
-    /// 0 from rest. demand_mN: any value, > 0 resists a stroke that grows.
+    /// 0 from rest and with another table. demand_mN: any value, > 0 resists a stroke that grows.
     int32_t (*step)(void *state, const track_setup_t *setup, const view_damper_t *damper,
                     int32_t demand_mN);
 } track_t;

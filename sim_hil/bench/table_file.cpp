@@ -1,5 +1,6 @@
 #include "table_file.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -100,7 +101,9 @@ const char *reason_of_form(quiesce_table_verdict_t verdict) {
                "is)";
     }
     if (verdict == QUIESCE_TABLE_SHAPE) {
-        return "its numbers of states, inputs, rows, sections, signs or terms are out of range";
+        return "its numbers of states, inputs, rows, sections, signs, terms, layers or units are "
+               "out of "
+               "range, or it takes too long for a tick";
     }
     return verdict == QUIESCE_TABLE_POINT
                ? "a coefficient, limit, band, power or current is out of range"
@@ -138,10 +141,25 @@ std::vector<std::uint32_t> load_rules(const std::string &file) {
     return words;
 }
 
+namespace {
+
+/// First words of trackers' tables that are no maps; require_tables asks the tracker itself.
+constexpr std::uint32_t kOtherTrackers[] = {0x314E5451}; // network
+
+bool is_of_other_tracker(const std::vector<std::uint32_t> &words) {
+    return std::find(std::begin(kOtherTrackers), std::end(kOtherTrackers), words[0]) !=
+           std::end(kOtherTrackers);
+}
+
+} // namespace
+
 std::vector<std::uint32_t> load_force_map(const std::string &file) {
     std::vector<std::uint32_t> words = text_words(file, {"force map", "quiesce identify inverse"});
+    if (is_of_other_tracker(words)) {
+        return words;
+    }
     const quiesce_table_verdict_t verdict =
-        quiesce_force_map_check(words.data(), static_cast<std::uint32_t>(words.size()));
+        quiesce_tracker_table_check(words.data(), static_cast<std::uint32_t>(words.size()));
     if (verdict != QUIESCE_TABLE_OK) {
         throw InputError(file + ": " + kRefused + reason(verdict));
     }
@@ -158,6 +176,21 @@ void require_accepted_table(quiesce_t &controller, const std::string &file) {
     const std::vector<std::uint32_t> words = load_law_table(file);
     const quiesce_table_verdict_t verdict =
         quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
+    if (verdict != QUIESCE_TABLE_OK) {
+        throw InputError(file + ": " + kRefused + reason_of_form(verdict));
+    }
+}
+
+/// A map or bank that is good in itself: of this board's dampers and strokes, of this tick rate.
+void require_served_map(quiesce_t &controller, const std::string &file) {
+    const std::vector<std::uint32_t> words = load_force_map(file);
+    const quiesce_table_verdict_t verdict =
+        quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
+    if (verdict == QUIESCE_TABLE_FIT && !is_of_other_tracker(words)) {
+        throw InputError(file + ": the controller refuses the map: it is of more dampers than this "
+                                "board has, or over a stroke that no sensor tells (quiesce board "
+                                "show), or a bank for another tick_rate_Hz");
+    }
     if (verdict != QUIESCE_TABLE_OK) {
         throw InputError(file + ": " + kRefused + reason_of_form(verdict));
     }
@@ -184,6 +217,9 @@ void require_tables(const quiesce_board_t *board, const quiesce_params_t &params
     if (lacking != nullptr && force_map.empty()) {
         throw InputError("tracker " + std::string(lacking) +
                          " works with a damper's map: --force-map FILE (quiesce identify inverse)");
+    }
+    if (lacking != nullptr) {
+        require_served_map(*controller, force_map);
     }
 }
 

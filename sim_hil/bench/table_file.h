@@ -17,6 +17,8 @@ namespace quiesce {
 std::vector<std::uint32_t> load_rules(const std::string &file);
 
 /// Likewise a damper's map; throws InputError also where no law of the build demands forces.
+/// Another tracker's table is taken by its first word: require_tables says whether the tracker
+/// takes it.
 std::vector<std::uint32_t> load_force_map(const std::string &file);
 
 /// Likewise any table of the law that runs; whether that law takes it is not looked at.

@@ -18,8 +18,11 @@ class Coil {
 
     /// The current step_s later, from current_A with the driver at target_A.
     double step(double current_A, double target_A) const {
-        const double left = target_A > current_A ? rise_left_ : fall_left_;
-        return target_A + (current_A - target_A) * left;
+        return target_A + (current_A - target_A) * left(current_A, target_A);
+    }
+    /// Part of their difference that is left then.
+    double left(double current_A, double target_A) const {
+        return target_A > current_A ? rise_left_ : fall_left_;
     }
 
   private:

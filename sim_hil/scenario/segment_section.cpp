@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base_tones_segment.h"
 #include "chirp_segment.h"
 #include "csv_columns.h"
 #include "impulse_segment.h"
@@ -57,24 +58,50 @@ SegmentSpec read_chirp(TomlTable &section, const Context & /*context*/) {
             }};
 }
 
-SegmentSpec read_tones(TomlTable &section, const Context &context) {
+/// key: of their amplitudes.
+std::vector<Tone> read_tone_tables(TomlTable &section, const std::string &key, const Range &range) {
     constexpr std::size_t kMostTones = 64;
     std::vector<Tone> tones;
-    std::string summary = "tones";
     for (TomlTable &table : section.tables("tone")) {
-        const Tone tone = {table.number("freq_Hz", kFrequency), table.number("drive_V", kDrive),
-                           table.number("phase_deg", {-360.0, 360.0, "degrees"}, 0.0)};
+        tones.push_back({table.number("freq_Hz", kFrequency), table.number(key, range),
+                         table.number("phase_deg", {-360.0, 360.0, "degrees"}, 0.0)});
         table.reject_unknown_keys();
-        summary += text(tones.empty() ? ", " : " + ", tone.freq_Hz, " Hz at ", tone.drive_V, " V");
-        tones.push_back(tone);
     }
     if (tones.empty() || tones.size() > kMostTones) {
         section.fail("tone",
                      "expected 1 .. " + std::to_string(kMostTones) + " tables [[segment.tone]]");
     }
-    return {summary, read_open_duration_s(section, context), false,
+    return tones;
+}
+
+/// "tones, 5 Hz at 0.1 V + 13 Hz at 0.2 V"
+std::string summary_of(const char *kind, const std::vector<Tone> &tones, const char *unit) {
+    std::string summary = kind;
+    const char *before = ", ";
+    for (const Tone &tone : tones) {
+        summary += text(before, tone.freq_Hz, " Hz at ", tone.size, " ", unit);
+        before = " + ";
+    }
+    return summary;
+}
+
+SegmentSpec read_tones(TomlTable &section, const Context &context) {
+    const std::vector<Tone> tones = read_tone_tables(section, "drive_V", kDrive);
+    return {summary_of("tones", tones, "V"), read_open_duration_s(section, context), false,
             [tones](const ShakerParams &shaker) {
                 return std::make_unique<TonesSegment>(shaker, tones);
+            }};
+}
+
+SegmentSpec read_base_tones(TomlTable &section, const Context &context) {
+    const std::vector<Tone> tones = read_tone_tables(section, "accel_m_s2", {0.0, 1e6, "m/s2"});
+    std::vector<ToneLine> lines;
+    for (const Tone &tone : tones) {
+        lines.push_back({tone.freq_Hz, tone.size, tone.phase_deg / 360.0});
+    }
+    return {summary_of("base tones", tones, "m/s2"), read_open_duration_s(section, context), true,
+            [lines](const ShakerParams & /*shaker*/) {
+                return std::make_unique<BaseTonesSegment>(lines);
             }};
 }
 
@@ -157,8 +184,13 @@ struct Kind {
 };
 
 const Kind kKinds[] = {
-    {"sine", read_sine},     {"chirp", read_chirp},     {"tones", read_tones},
-    {"random", read_random}, {"impulse", read_impulse}, {"record", read_record},
+    {"sine", read_sine},
+    {"chirp", read_chirp},
+    {"tones", read_tones},
+    {"random", read_random},
+    {"impulse", read_impulse},
+    {"record", read_record},
+    {"base_tones", read_base_tones},
 };
 
 } // namespace

@@ -8,12 +8,13 @@
 
 #include "segment.h"
 #include "shaker.h"
+#include "tone_sum.h"
 
 namespace quiesce {
 
 struct Tone {
     double freq_Hz;
-    double drive_V;   ///< amplitude of its part of the drive
+    double size;      ///< amplitude: of a force's tone its part of the drive in V
     double phase_deg; ///< of its sine when the segment begins
 };
 
@@ -24,13 +25,7 @@ class TonesSegment final : public Segment {
     ExcitationSample sample(double time_s, double start_cycles) const override;
 
   private:
-    struct Line {
-        double freq_Hz;
-        double amplitude_N;
-        double phase_cycles;
-    };
-
-    std::vector<Line> lines_;
+    std::vector<ToneLine> lines_; ///< amplitudes in N
 };
 
 } // namespace quiesce

@@ -9,12 +9,12 @@
 // where it comes back. `quiesce law make` writes them.
 #include "fixq.h"
 #include "law.h"
-#include "table.h"
+#include "sections.h"
 #include "view_signal.h"
 
 #define FRICTION_MAGIC UINT32_C(0x31524651)
 
-enum { HEADER_WORDS = 4, OUTWARD = 1, BACK = 2, um_PER_m = 1000000 };
+enum { OUTWARD = 1, BACK = 2, um_PER_m = 1000000 };
 
 typedef struct {
     int32_t gain_N_m;
@@ -36,48 +36,39 @@ typedef struct {
 
 _Static_assert(sizeof(peak_t) * QUIESCE_DAMPERS <= LAW_STATE_BYTES, "the arena is too small");
 
-static uint32_t sections_of(const uint32_t *words) {
-    return words[TABLE_HEAD_WORDS];
-}
-
 static const section_t *section_of(const uint32_t *words, uint32_t i) {
-    return (const section_t *)(const void *)&words[HEADER_WORDS] + i;
+    return (const section_t *)sections_first(words) + i;
 }
 
 static bool is_size(int32_t value) {
     return value >= 0 && value <= VIEW_LIMIT;
 }
 
-static bool is_good(const section_t *section) {
+static uint32_t size(const uint32_t *words, uint32_t left) {
+    (void)words;
+    return left >= SECTION_WORDS ? SECTION_WORDS : 0;
+}
+
+static bool is_good(const uint32_t *words) {
+    const section_t *section = (const section_t *)(const void *)words;
     return is_size(section->gain_N_m) && is_size(section->least_peak_nm) &&
            is_size(section->limit_mN) && is_size(section->band_um_s) && section->ways >= OUTWARD &&
            section->ways <= (OUTWARD | BACK);
 }
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    const quiesce_table_verdict_t verdict =
-        table_check_head(words, count, FRICTION_MAGIC, HEADER_WORDS - TABLE_HEAD_WORDS);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
-    if (sections_of(words) == 0 || sections_of(words) > QUIESCE_MAX_DAMPERS ||
-        count != HEADER_WORDS + SECTION_WORDS * sections_of(words)) {
-        return QUIESCE_TABLE_SHAPE;
-    }
-    for (uint32_t i = 0; i < sections_of(words); i++) {
-        if (!is_good(section_of(words, i))) {
-            return QUIESCE_TABLE_POINT;
-        }
-    }
-    return QUIESCE_TABLE_OK;
+static uint64_t needs(const uint32_t *words, uint32_t i) {
+    (void)words;
+    return (VIEW_STROKE | VIEW_STROKE_VELOCITY) << i;
 }
 
-static uint64_t needs(const uint32_t *words) {
-    uint64_t bits = 0;
-    for (uint32_t i = 0; i < sections_of(words); i++) {
-        bits |= view_needs_damper(i) | (VIEW_STROKE | VIEW_STROKE_VELOCITY) << i;
-    }
-    return bits;
+static const sections_kind_t sections = {FRICTION_MAGIC, size, is_good, needs};
+
+static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
+    return sections_check(&sections, words, count);
+}
+
+static uint64_t needs_of_table(const uint32_t *words) {
+    return sections_need(&sections, words);
 }
 
 static void follow(peak_t *self, const section_t *section, const view_damper_t *damper) {
@@ -107,7 +98,7 @@ static int32_t demand_mN(const peak_t *self, const section_t *section, int32_t s
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
     peak_t *self = state;
     law_demand_all(out, 0);
-    for (uint32_t i = 0; i < sections_of(setup->table); i++) {
+    for (uint32_t i = 0; i < sections_count(setup->table); i++) {
         const section_t *section = section_of(setup->table, i);
         const view_damper_t *damper = &view->damper[i];
         follow(&self[i], section, damper);
@@ -131,7 +122,8 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
     }
 }
 
-static const law_table_kind_t friction = {.magic = FRICTION_MAGIC, .check = check, .needs = needs};
+static const law_table_kind_t friction = {
+    .magic = FRICTION_MAGIC, .check = check, .needs = needs_of_table};
 
 extern const law_t law_friction;
 const law_t law_friction = {

@@ -7,12 +7,12 @@
 // last shift and is limited to 0 .. 20000 mA. `quiesce law make` writes them.
 #include "fixq.h"
 #include "law.h"
-#include "table.h"
+#include "sections.h"
 #include "view_signal.h"
 
 #define POLYNOMIAL_MAGIC UINT32_C(0x314C5051)
 
-enum { HEADER_WORDS = 4, MOST_INPUTS = 4, MOST_TERMS = 16, MOST_POWER = 3 };
+enum { MOST_INPUTS = 4, MOST_TERMS = 16, MOST_POWER = 3 };
 
 typedef struct {
     view_input_t read;
@@ -35,14 +35,6 @@ enum { SECTION_WORDS = 2, INPUT_WORDS = 4, TERM_WORDS = 2 };
 _Static_assert(sizeof(input_t) == 4u * INPUT_WORDS, "words on the wire");
 _Static_assert(sizeof(term_t) == 4u * TERM_WORDS, "words on the wire");
 
-static uint32_t sections_of(const uint32_t *words) {
-    return words[TABLE_HEAD_WORDS];
-}
-
-static const section_t *first_of(const uint32_t *words) {
-    return (const section_t *)(const void *)&words[HEADER_WORDS];
-}
-
 static uint32_t words_in(const section_t *section) {
     return SECTION_WORDS + INPUT_WORDS * section->inputs + TERM_WORDS * section->terms;
 }
@@ -55,9 +47,12 @@ static const section_t *after(const section_t *section) {
     return (const section_t *)(const void *)&terms_of(section)[section->terms];
 }
 
-static bool has_shape(const section_t *section, uint32_t words) {
-    return words >= SECTION_WORDS && section->inputs >= 1u && section->inputs <= MOST_INPUTS &&
-           section->terms >= 1u && section->terms <= MOST_TERMS && words >= words_in(section);
+static uint32_t size(const uint32_t *words, uint32_t left) {
+    const section_t *section = (const section_t *)(const void *)words;
+    const bool has_shape = left >= SECTION_WORDS && section->inputs >= 1u &&
+                           section->inputs <= MOST_INPUTS && section->terms >= 1u &&
+                           section->terms <= MOST_TERMS && left >= words_in(section);
+    return has_shape ? words_in(section) : 0;
 }
 
 static bool is_term_good(const term_t *term, uint32_t inputs) {
@@ -68,53 +63,37 @@ static bool is_term_good(const term_t *term, uint32_t inputs) {
     return is_good;
 }
 
-static bool is_section_good(const section_t *section) {
-    bool is_good = true;
+static bool is_good(const uint32_t *words) {
+    const section_t *section = (const section_t *)(const void *)words;
+    bool is_right = true;
     for (uint32_t i = 0; i < section->inputs; i++) {
-        is_good = is_good && view_inputs_are_good(&section->input[i].read, 1) &&
-                  section->input[i].is_magnitude <= 1u;
+        is_right = is_right && view_inputs_are_good(&section->input[i].read, 1) &&
+                   section->input[i].is_magnitude <= 1u;
     }
     for (uint32_t i = 0; i < section->terms; i++) {
-        is_good = is_good && is_term_good(&terms_of(section)[i], section->inputs);
+        is_right = is_right && is_term_good(&terms_of(section)[i], section->inputs);
     }
-    return is_good;
+    return is_right;
 }
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    const quiesce_table_verdict_t verdict =
-        table_check_head(words, count, POLYNOMIAL_MAGIC, HEADER_WORDS - TABLE_HEAD_WORDS);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
-    if (sections_of(words) == 0 || sections_of(words) > QUIESCE_MAX_DAMPERS) {
-        return QUIESCE_TABLE_SHAPE;
-    }
-    const section_t *section = first_of(words);
-    uint32_t left = count - HEADER_WORDS;
-    for (uint32_t i = 0; i < sections_of(words); i++) {
-        if (!has_shape(section, left)) {
-            return QUIESCE_TABLE_SHAPE;
-        }
-        if (!is_section_good(section)) {
-            return QUIESCE_TABLE_POINT;
-        }
-        left -= words_in(section);
-        section = after(section);
-    }
-    return left == 0 ? QUIESCE_TABLE_OK : QUIESCE_TABLE_SHAPE;
-}
-
-static uint64_t needs(const uint32_t *words) {
-    const section_t *section = first_of(words);
+static uint64_t needs(const uint32_t *words, uint32_t i) {
+    const section_t *section = (const section_t *)(const void *)words;
     uint64_t bits = 0;
-    for (uint32_t i = 0; i < sections_of(words); i++) {
-        bits |= view_needs_damper(i);
-        for (uint32_t k = 0; k < section->inputs; k++) {
-            bits |= view_inputs_need(&section->input[k].read, 1);
-        }
-        section = after(section);
+    (void)i;
+    for (uint32_t k = 0; k < section->inputs; k++) {
+        bits |= view_inputs_need(&section->input[k].read, 1);
     }
     return bits;
+}
+
+static const sections_kind_t sections = {POLYNOMIAL_MAGIC, size, is_good, needs};
+
+static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
+    return sections_check(&sections, words, count);
+}
+
+static uint64_t needs_of_table(const uint32_t *words) {
+    return sections_need(&sections, words);
 }
 
 static int32_t input_q30(const input_t *input, const view_t *view) {
@@ -147,17 +126,18 @@ static int32_t current_mA(const section_t *section, const view_t *view) {
 }
 
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
-    const section_t *section = first_of(setup->table);
+    const section_t *section = sections_first(setup->table);
     (void)state;
     law_demand_all(out, 0);
-    for (uint32_t i = 0; i < sections_of(setup->table); i++) {
+    for (uint32_t i = 0; i < sections_count(setup->table); i++) {
         out->value[i] = current_mA(section, view);
         section = after(section);
     }
     return true;
 }
 
-static const law_table_kind_t terms = {.magic = POLYNOMIAL_MAGIC, .check = check, .needs = needs};
+static const law_table_kind_t terms = {
+    .magic = POLYNOMIAL_MAGIC, .check = check, .needs = needs_of_table};
 
 extern const law_t law_polynomial;
 const law_t law_polynomial = {.name = "polynomial", .kind = &terms, .step = step};

@@ -9,13 +9,13 @@
 // rest, the idle one. Sums are below 2^58. `quiesce law make` writes them.
 #include "fixq.h"
 #include "law.h"
+#include "sections.h"
 #include "state_space.h"
-#include "table.h"
 #include "view_signal.h"
 
 #define SIGNS_MAGIC UINT32_C(0x31475351)
 
-enum { HEADER_WORDS = 4, MOST_INPUTS = 6, MOST_SIGNS = 4, MOST_SHIFT = 40 };
+enum { MOST_INPUTS = 6, MOST_SIGNS = 4, MOST_SHIFT = 40 };
 
 typedef struct {
     uint32_t inputs;
@@ -39,14 +39,6 @@ typedef struct {
     uint8_t on;
 } signs_t;
 
-static uint32_t sections_of(const uint32_t *words) {
-    return words[TABLE_HEAD_WORDS];
-}
-
-static const section_t *first_of(const uint32_t *words) {
-    return (const section_t *)(const void *)&words[HEADER_WORDS];
-}
-
 static uint32_t words_in(const section_t *section) {
     return SECTION_WORDS + VIEW_INPUT_WORDS * section->inputs +
            section->signs * (COMBINATION_WORDS + section->inputs) + (1u << section->signs);
@@ -66,9 +58,12 @@ static const uint32_t *currents_of(const section_t *section) {
     return (const uint32_t *)(const void *)combination_of(section, section->signs);
 }
 
-static bool has_shape(const section_t *section, uint32_t words) {
-    return words >= SECTION_WORDS && section->inputs >= 1u && section->inputs <= MOST_INPUTS &&
-           section->signs >= 1u && section->signs <= MOST_SIGNS && words >= words_in(section);
+static uint32_t size(const uint32_t *words, uint32_t left) {
+    const section_t *section = (const section_t *)(const void *)words;
+    const bool has_shape = left >= SECTION_WORDS && section->inputs >= 1u &&
+                           section->inputs <= MOST_INPUTS && section->signs >= 1u &&
+                           section->signs <= MOST_SIGNS && left >= words_in(section);
+    return has_shape ? words_in(section) : 0;
 }
 
 static bool is_combination_good(const combination_t *one, uint32_t inputs) {
@@ -76,50 +71,33 @@ static bool is_combination_good(const combination_t *one, uint32_t inputs) {
            one->shift <= MOST_SHIFT && state_space_are_coefficients_good(one->coefficient, inputs);
 }
 
-static bool is_section_good(const section_t *section) {
-    bool is_good = section->idle_mA <= QUIESCE_HIGHEST_CURRENT_mA &&
-                   view_inputs_are_good(section->input, section->inputs);
+static bool is_good(const uint32_t *words) {
+    const section_t *section = (const section_t *)(const void *)words;
+    bool is_right = section->idle_mA <= QUIESCE_HIGHEST_CURRENT_mA &&
+                    view_inputs_are_good(section->input, section->inputs);
     for (uint32_t i = 0; i < section->signs; i++) {
-        is_good = is_good && is_combination_good(combination_of(section, i), section->inputs);
+        is_right = is_right && is_combination_good(combination_of(section, i), section->inputs);
     }
     for (uint32_t i = 0; i < 1u << section->signs; i++) {
-        is_good = is_good && currents_of(section)[i] <= QUIESCE_HIGHEST_CURRENT_mA;
+        is_right = is_right && currents_of(section)[i] <= QUIESCE_HIGHEST_CURRENT_mA;
     }
-    return is_good;
+    return is_right;
 }
+
+static uint64_t needs(const uint32_t *words, uint32_t i) {
+    const section_t *section = (const section_t *)(const void *)words;
+    (void)i;
+    return view_inputs_need(section->input, section->inputs);
+}
+
+static const sections_kind_t sections = {SIGNS_MAGIC, size, is_good, needs};
 
 static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    const quiesce_table_verdict_t verdict =
-        table_check_head(words, count, SIGNS_MAGIC, HEADER_WORDS - TABLE_HEAD_WORDS);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
-    if (sections_of(words) == 0 || sections_of(words) > QUIESCE_MAX_DAMPERS) {
-        return QUIESCE_TABLE_SHAPE;
-    }
-    const section_t *section = first_of(words);
-    uint32_t left = count - HEADER_WORDS;
-    for (uint32_t i = 0; i < sections_of(words); i++) {
-        if (!has_shape(section, left)) {
-            return QUIESCE_TABLE_SHAPE;
-        }
-        if (!is_section_good(section)) {
-            return QUIESCE_TABLE_POINT;
-        }
-        left -= words_in(section);
-        section = after(section);
-    }
-    return left == 0 ? QUIESCE_TABLE_OK : QUIESCE_TABLE_SHAPE;
+    return sections_check(&sections, words, count);
 }
 
-static uint64_t needs(const uint32_t *words) {
-    const section_t *section = first_of(words);
-    uint64_t bits = 0;
-    for (uint32_t i = 0; i < sections_of(words); i++) {
-        bits |= view_inputs_need(section->input, section->inputs) | view_needs_damper(i);
-        section = after(section);
-    }
-    return bits;
+static uint64_t needs_of_table(const uint32_t *words) {
+    return sections_need(&sections, words);
 }
 
 static void decide(signs_t *self, uint32_t i, const combination_t *one, const int32_t *u,
@@ -148,9 +126,9 @@ static int32_t current_mA(signs_t *self, const section_t *section, const view_t 
 
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
     signs_t *self = state;
-    const section_t *section = first_of(setup->table);
+    const section_t *section = sections_first(setup->table);
     law_demand_all(out, 0);
-    for (uint32_t i = 0; i < sections_of(setup->table); i++) {
+    for (uint32_t i = 0; i < sections_count(setup->table); i++) {
         out->value[i] = current_mA(&self[i], section, view);
         section = after(section);
     }
@@ -172,7 +150,8 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
     }
 }
 
-static const law_table_kind_t patterns = {.magic = SIGNS_MAGIC, .check = check, .needs = needs};
+static const law_table_kind_t patterns = {
+    .magic = SIGNS_MAGIC, .check = check, .needs = needs_of_table};
 
 extern const law_t law_signs;
 const law_t law_signs = {

@@ -7,14 +7,34 @@ import numpy as np
 import pytest
 from conftest import require
 from quiesce.base.errors import UsageError
+from quiesce.compare.records import Record
 from quiesce.compare.roads import CLASSES_1e6_m3, RATE_Hz, bump, read_road, road
 from quiesce.engine.bench import Bench
 from quiesce.engine.laws import labels
 from quiesce.law.recipes import RECIPES, find
+from quiesce.tune.gains.defaults import INDEX
+from quiesce.tune.gains.trials import Trial
 from quiesce_benchmarks.house.committed import Committed
-from quiesce_benchmarks.laws import cantilever_rig, law_cases, law_runs, page, scaled_settings
+from quiesce_benchmarks.laws import (
+    cantilever_rig,
+    law_cases,
+    law_runs,
+    page,
+    rigs,
+    scaled_settings,
+    tuned,
+)
 from quiesce_benchmarks.laws.page import law_table
-from quiesce_benchmarks.laws.parts import bounded, building, cantilever, cost, integers, unseen
+from quiesce_benchmarks.laws.parts import (
+    bounded,
+    building,
+    cantilever,
+    cost,
+    integers,
+    unseen,
+    unseen_road,
+)
+from quiesce_benchmarks.laws.tuned import Tried
 from quiesce_benchmarks.part import Effort
 
 
@@ -33,17 +53,73 @@ def test_differences_are_of_what_was_published() -> None:
     )
 
 
-def test_the_law_of_a_record_is_chosen_on_the_others() -> None:
-    class One:
-        def __init__(self, law: str, record: str, index: float) -> None:
-            self.law, self.record, self.index = law, record, index
+def trial(number: int, **index: float) -> Trial:
+    """An index by record."""
+    return Trial({"x": float(number)}, {name: {INDEX: value} for name, value in index.items()})
 
-    good, bad = "skyhook on off", "friction"
-    cells = [One(law, r, 2.0) for law in unseen.CANDIDATES for r in "abc" if law not in (good, bad)]
-    cells += [One(good, r, x) for r, x in zip("abc", (0.1, 1.0, 1.0), strict=True)]
-    cells += [One(bad, r, x) for r, x in zip("abc", (1.9, 0.9, 0.9), strict=True)]
-    assert unseen.best_without(cells, "a") == bad  # what it does on a is not known
-    assert unseen.best_without(cells, "b") == good
+
+@pytest.fixture
+def tried() -> Tried:
+    """Law one is best where a is left out, but bad on a; settings 1 of two suit a alone."""
+    constants = [{name: {INDEX: value} for name in "abc"} for value in (2.0, 1.2, 1.0)]
+    return Tried(
+        {
+            "one": [trial(0, a=1.9, b=0.9, c=0.9), trial(1, a=2.0, b=1.0, c=1.0)],
+            "two": [trial(0, a=0.95, b=0.95, c=1.1), trial(1, a=0.1, b=1.5, c=1.5)],
+            "three": [Trial({"x": 0.0}, {}, "it does not fit"), Trial({"x": 1.0}, {}, "nor this")],
+            "four": [Trial({"x": 0.0}, {}, "too large"), trial(1, a=3.0, b=3.0, c=3.0)],
+        },
+        constants,
+    )
+
+
+RECORDS = [Record(name, 100.0, np.ones(2)) for name in "abc"]
+
+
+def test_law_and_settings_of_a_record_are_chosen_on_the_others(tried: Tried) -> None:
+    law, chosen = tuned.chosen_law(unseen.AIM, tried.run(), "a")
+    assert (law, chosen.values) == ("one", {"x": 0.0})  # what it does on a is not known
+    law, chosen = tuned.chosen_law(unseen.AIM, tried.run(), "b")
+    assert (law, chosen.values) == ("two", {"x": 1.0})
+    assert tried.refused() == {"three": "it does not fit"}
+
+
+def test_a_laws_row_is_of_what_it_was_not_tuned_on(tried: Tried) -> None:
+    found = unseen.law_data("two", tried, RECORDS)
+    # Without b: .95 and 1.1 cost 1.05, .1 and 1.5 cost 1.03, so that b gets 1.5.
+    assert found["index_tuned"] == pytest.approx(np.mean([0.95, 1.5, 1.1]))
+    assert found["index_tuned_worst"] == 1.5
+    assert found["index_untuned"] == pytest.approx(1.0)
+    assert found["index_passive_off"] == 2.0 and found["index_best_constant"] == 1.0
+    assert found["beats_passive_off"] is True and found["beats_best_constant"] is False
+    assert found["beats_hindsight_constant_of"] == 1  # a alone: .95 below 1
+    started_refused = unseen.law_data("four", tried, RECORDS)
+    assert started_refused["index_untuned"] is None
+    assert "refused" in unseen.laws_table({"four": started_refused})
+
+
+def test_a_road_is_judged_by_settings_of_the_others() -> None:
+    def runs(**figure: float) -> dict:
+        return {n: {"weighted_m_s2": x, "tyre_share": 2 - x} for n, x in figure.items()}
+
+    one = [Trial({"x": 0.0}, runs(u=1.0, v=1.0)), Trial({"x": 1.0}, runs(u=0.1, v=1.2))]
+    found = unseen_road.judged(Tried({"one": one}, [runs(u=1.5, v=1.5), runs(u=1.1, v=1.1)]), "u")
+    comfort, tyre = (found.reported["laws"]["one"][key] for key in ("comfort", "tyre"))
+    assert comfort["tuned"] == 1.0 and comfort["settings"] == {"x": 0.0}  # not the .1 of u itself
+    assert comfort["best_constant"] == 1.1 and comfort["passive_off"] == 1.5
+    assert comfort["beats_passive_off"] is True and comfort["beats_best_constant"] is True
+    assert tyre["settings"] == {"x": 1.0} and tyre["tuned"] == 1.9
+    assert tyre["beats_best_constant"] is False
+    assert found.values["unseen_road_comfort_m_s2"] == 1.0
+
+
+def test_every_recipe_gets_as_many_settings(build) -> None:
+    own = tuned.candidates(rigs.BUILDING, unseen.START, None)
+    assert {one.tunable.recipe.name for one in own} == {one.name for one in RECIPES}
+    assert all(one.tunable.tracker != "inverse" for one in own)  # it has no map
+    assert {len(one.settings(5, 1)) for one in own if one.tunable.space.searched} == {5}
+    start = next(one for one in own if one.label == "lyapunov").settings(5, 1)[0]
+    assert start["natural_Hz"] == 5.5
 
 
 @pytest.mark.parametrize("kind", CLASSES_1e6_m3)

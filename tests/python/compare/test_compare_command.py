@@ -125,3 +125,46 @@ def test_a_malformed_at2_is_one_line(quiesce, tmp_path: Path, text: str) -> None
     file.write_text(text)
     result = quiesce("compare", "--rig", "two_storeys", "--record", file)
     assert result.returncode == 2 and result.stderr.count("\n") == 1
+
+
+def test_recipes_on_several_structures(quiesce, quake: Path, tmp_path: Path) -> None:
+    """Each recipe's table is made for each of them; what one cannot serve is told."""
+    result = quiesce(
+        "compare", "--rig", "two_storeys", "--rig", "three_storeys_1996", *RIG[2:],
+        "--record", quake, "--recipe", "skyhook_on_off:on_A=1,as=sky", "--recipe", "bang_bang",
+        "--out", tmp_path / "out",
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    cells = json.loads((tmp_path / "out/compare.json").read_text())
+    rigs = list(dict.fromkeys(cell["rig"] for cell in cells))
+    assert len(rigs) == 2
+    assert [cell["law"] for cell in cells if cell["rig"] == rigs[1]][3:] == ["sky", "bang_bang"]
+    assert [cell["law"] for cell in cells if cell["rig"] == rigs[0]][3:] == ["sky"]
+    assert "left out: board two_storeys has no force of" in result.stdout
+    sky = [cell["figures"]["current_mean_A"] for cell in cells if cell["law"] == "sky"]
+    assert all(0.0 < one <= 1.0 for one in sky)
+    page = (tmp_path / "out/compare.html").read_text()
+    assert page.count("<img") == 6 and page.count("<h2>") >= 2
+
+
+@pytest.mark.parametrize(
+    ("recipe", "told"),
+    [
+        ("nonsense", "no recipe 'nonsense'"),
+        ("add:on_A", "expected key=value"),
+        ("add:sky=2", "no setting or parameter 'sky'"),
+        ("add:on_A=21", "expected a number in 0 .. 20"),
+        ("skyhook", "takes a damper's map: map=FILE"),
+        ("skyhook:map=/no/where", "there is no file"),
+        ("bang_bang", "no force of"),
+    ],
+)
+def test_a_recipe_that_cannot_be_is_refused(quiesce, quake: Path, recipe: str, told: str) -> None:
+    result = quiesce("compare", *RIG, "--record", quake, "--recipe", recipe)
+    assert result.returncode == 2
+    assert told in result.stderr and len(result.stderr.splitlines()) == 1
+
+
+def test_one_structure_named_twice_is_refused(quiesce, quake: Path) -> None:
+    result = quiesce("compare", *RIG, "--rig", "two_storeys", "--record", quake)
+    assert result.returncode == 2 and "is named twice" in result.stderr

@@ -8,7 +8,7 @@ from learned_data import RATE_Hz, backlash_N, error_of, random_motion, segments_
 from quiesce.damper.data.split import whole
 from quiesce.damper.learned import hilbert
 from quiesce.damper.learned.hilbert import Quadrature, Settings
-from quiesce.damper.learned.network import Network
+from quiesce.network.dense import Network
 
 pytestmark = pytest.mark.usefixtures("build")
 SMALL = Settings(hidden=(10,), lags=(0, 2), epochs=8)

@@ -11,10 +11,10 @@ from quiesce.damper.data.split import Segment, whole
 from quiesce.damper.learned import feed_forward, hysteresis_network, recurrent
 from quiesce.damper.learned.elements import Elements
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.network import Network, fit
 from quiesce.damper.learned.sampled import default_lags, delayed
 from quiesce.damper.library import Scales
 from quiesce.damper.model_file import DamperModel
+from quiesce.network.dense import Network, fit
 
 SMALL = hysteresis_network.Settings(
     hidden=(16,), members=2, epochs=25, decays=(0.1,), search_epochs=5

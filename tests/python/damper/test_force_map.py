@@ -3,20 +3,29 @@
 import re
 import struct
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import ROOT
 from damper_actions import dissipative_tanh, kwok_rd1005
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import root
+from quiesce.cli.main import main
 from quiesce.damper.force_map import (
     LIMIT,
     MAGIC,
     MAX_CURRENTS,
+    MAX_PLACES,
     MAX_CURRENT_mA,
+    joined,
     map_words,
+    maps_of_words,
     why_no_map,
 )
-from quiesce.damper.inverse import Monotone, SteadyForces, monotone_range
+from quiesce.damper.inverse import STROKE, VELOCITY, Axis, Monotone, SteadyForces, monotone_range
+from quiesce.damper.simulate import simulator_of_file
+from quiesce.damper.words import MAX_DAMPERS
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -31,24 +40,32 @@ def defined(header: str, name: str) -> int:
 def test_limits_are_those_of_the_firmware() -> None:
     assert defined("track/force_map.h", "FORCE_MAP_MAGIC") == MAGIC
     assert defined("track/force_map.h", "FORCE_MAP_MAX_CURRENTS") == MAX_CURRENTS
+    assert defined("track/force_map.h", "FORCE_MAP_MAX_PLACES") == MAX_PLACES
+    assert defined("include/quiesce_size.h", "QUIESCE_MAX_DAMPERS") == MAX_DAMPERS
     assert defined("include/quiesce_board.h", "QUIESCE_HIGHEST_CURRENT_mA") == MAX_CURRENT_mA
     assert "VIEW_LIMIT ((1 << 30) - 1)" in (ROOT / "firmware/base/view.h").read_text("utf-8")
     assert LIMIT == (1 << 30) - 1
 
 
 def unpacked(words: list[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Velocities, currents, forces, after what stands before them is as it should be."""
-    magic, crc, count, n, m = words[:5]
-    assert magic == MAGIC and count == len(words) == 5 + n + m + n * m
+    """Places, currents, forces, after what stands before them is as it should be."""
+    magic, crc, count, sections, axis, n, m = words[:7]
+    assert magic == MAGIC and count == len(words) == 7 + n + m + n * m
+    assert (sections, axis) == (1, 4)
     assert crc == zlib.crc32(struct.pack(f"<{count - 2}I", *words[2:]))
-    values = np.array(words[5:], dtype=np.uint32).view(np.int32)
+    values = np.array(words[7:], dtype=np.uint32).view(np.int32)
     return values[:n], values[n : n + m], values[n + m :].reshape(n, m)
 
 
-def made(velocities: list[float], currents: list[float], forces: list[list[float]]) -> Monotone:
+def made(
+    places: list[float],
+    currents: list[float],
+    forces: list[list[float]],
+    axis: Axis = VELOCITY,
+) -> Monotone:
     """A check's result: forces in the direction of the motion, rising where they do."""
-    steady = SteadyForces(np.array(velocities), np.array(currents), np.array(forces))
-    limits = np.full(len(velocities), currents[-1])
+    steady = SteadyForces(np.array(places), np.array(currents), np.array(forces), axis)
+    limits = np.full(len(places), currents[-1])
     return Monotone(currents[-1], limits, steady)
 
 
@@ -97,6 +114,8 @@ BOTH = [[1.0, 5.0], [1.0, 5.0]]
         (made([0.1, 0.2], [0.0, 1.0], BOTH), "both ways"),
         (made([-1e-7, 1e-7], [0.0, 1.0], BOTH), "whole um/s"),
         (made([-0.1, 1074.0], [0.0, 1.0], BOTH), "1073 m/s"),
+        (made([-1e-10, 1e-10], [0.0, 1.0], BOTH, STROKE), "whole nm"),
+        (made([-0.1, 1.08], [0.0, 1.0], BOTH, STROKE), "pass 1.073 m"),
         (made([-0.1, 0.1], [0.0, 1.0], [[1.0, 1.0], [1.0, 1.0999]]), "99.9 mN at most"),
         (
             Monotone(0.0, np.array([1.0, 0.0]), made([-0.1, 0.1], [0.0, 1.0], BOTH).forces),
@@ -109,3 +128,83 @@ def test_no_map_has_a_reason_of_one_line(found: Monotone, why: str) -> None:
     assert why in told and "\n" not in told
     with pytest.raises(ValueError, match="."):
         map_words(found)
+
+
+def elastomer() -> Monotone:
+    damper, simulate = simulator_of_file(root() / "sim_hil/data/dampers/mre_2014.toml")
+    return monotone_range(damper, 2.0, simulate=simulate, axis=STROKE)
+
+
+def test_map_of_a_spring_goes_over_its_stroke() -> None:
+    words = map_words(elastomer())
+    assert words[3:7] == [1, 3, 8, MAX_CURRENTS]
+    (one,) = maps_of_words(words)
+    assert one.axis == STROKE
+    assert one.places == pytest.approx([-5e-4, -1.5e-4, -5e-5, -1.5e-5, 1.5e-5, 5e-5, 1.5e-4, 5e-4])
+    i = one.currents_A[None, :]
+    stiffness_N_m = (1.080 + 0.7649 * i - 0.1391 * i**2) * 1e6 * 9.36e-4 / 0.003
+    # Between two currents of the check's 31 the force is a straight line.
+    assert one.forces_N == pytest.approx(stiffness_N_m * one.places[:, None], rel=5e-4, abs=1e-3)
+
+
+def test_over_velocity_the_spring_has_no_such_map() -> None:
+    damper, simulate = simulator_of_file(root() / "sim_hil/data/dampers/mre_2014.toml")
+    with pytest.raises(UsageError, match="no stroke or no speed"):
+        monotone_range(damper, 2.0, simulate=simulate)
+
+
+def test_maps_of_several_dampers_become_one() -> None:
+    first, second = map_words(monotone_range(dissipative_tanh(), 2.0)), map_words(elastomer())
+    both = joined([first, second])
+    assert both[3] == 2 and both[4:] == first[4:] + second[4:]
+    damped, sprung = maps_of_words(both)
+    assert (damped.axis, sprung.axis) == (VELOCITY, STROKE)
+    assert maps_of_words(joined([both, first]))[2].currents_A[-1] == 2.0
+    for tables, why in (
+        ([both, both, first], "5 dampers; a map is of 1 .. 4"),
+        ([first, [1, *first[1:]]], "a map with 0x32464d51"),
+    ):
+        with pytest.raises(ValueError, match=why):
+            joined(tables)
+
+
+def test_what_a_controller_cannot_hold_is_refused() -> None:
+    speeds = [float(v) for v in np.linspace(-0.31, 0.32, MAX_PLACES)]
+    currents = [float(i) for i in np.linspace(0.0, 1.0, MAX_CURRENTS)]
+    forces = [[10.0 + 10.0 * i for i in currents] for _ in speeds]
+    large = map_words(made(speeds, currents, forces))
+    with pytest.raises(ValueError, match="1130 words; a controller takes 1024"):
+        joined([large, large])
+
+
+def test_command_joins_maps(tmp_path: Path, capsys) -> None:
+    for name, damper, options in (
+        ("a", "rd1005_kwok_tanh_smooth", ["--max-current-A", "1.5"]),
+        ("b", "mre_2014", ["--over", "stroke"]),
+    ):
+        file = str(ROOT / f"sim_hil/data/dampers/{damper}.toml")
+        assert main(["identify", "inverse", file, *options, "--out", str(tmp_path / name)]) == 0
+    told = capsys.readouterr().out
+    assert "where the motion turns" in told and "at every stroke" in told
+    files = [str(tmp_path / f"{name}/map.words") for name in "ab"]
+    assert main(["identify", "inverse", *files, "--out", str(tmp_path / "both")]) == 0
+    told = capsys.readouterr().out
+    assert "damper 1: over velocity, 0 .. 1.5 A\ndamper 2: over stroke, 0 .. 2 A\n" in told
+    words = (tmp_path / "both/map.words").read_text(encoding="utf-8").split()
+    assert len(maps_of_words([int(word, 16) for word in words])) == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        ([], "made one with --out"),
+        (["--json", "--out", "x"], "no other option"),
+        (["--method", "ffn", "--out", "x"], "no other option"),
+        (["--out", "x"], "a.words: expected words such as 0x32464d51"),
+    ],
+)
+def test_command_joins_nothing_else(options: list[str], why: str, tmp_path: Path, capsys) -> None:
+    file = tmp_path / "a.words"
+    file.write_text("0xzz\n", encoding="utf-8")
+    assert main(["identify", "inverse", str(file), *options]) == 2
+    assert why in capsys.readouterr().err

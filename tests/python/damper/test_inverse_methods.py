@@ -21,14 +21,29 @@ from quiesce.cli.identify import inverse as cli_inverse
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import is_number, whole
 from quiesce.damper.example import EXAMPLE
-from quiesce.damper.force_map import map_of_words
+from quiesce.damper.force_map import MAGIC, maps_of_words
 from quiesce.damper.inverse import InverseByInterpolation, forces_at
-from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, steps, tracking
+from quiesce.damper.inverses import (
+    feed_forward,
+    fuzzy,
+    mapped,
+    network,
+    recurrent,
+    steps,
+    support_vector,
+    tracking,
+)
 from quiesce.damper.inverses.compiled import COMPILED, Steady, beginnings, compiled, steady_map
 from quiesce.damper.inverses.demand import Source, commanded, judged
 from quiesce.damper.inverses.excited import excited
 from quiesce.damper.inverses.made import check_names, from_file, to_compare
-from quiesce.damper.inverses.methods import METHODS, check_word, read_inverse, write_inverse
+from quiesce.damper.inverses.methods import (
+    METHODS,
+    check_word,
+    file_name,
+    read_inverse,
+    write_inverse,
+)
 from quiesce.damper.inverses.steps import SteppedInverse, stepped_current
 from quiesce.damper.inverses.taps import held, spread
 from quiesce.damper.inverses.tracking import compare, nearest, tasks_for
@@ -47,6 +62,8 @@ SMALL = {
         hidden=(8,), feedback=(1, 2), lags=(0, 1), epochs=6, free_steps=20, sample_time_s=0.01
     ),
     "anfis": learned_anfis.Settings(memberships=3, epochs=10),
+    "network": network.Settings(hidden=(12,), epochs=25, most_rows=3000),
+    "svr": support_vector.Settings(rows=600),
 }
 
 
@@ -129,7 +146,7 @@ def test_a_method_tracks_better_than_one_current(name: str) -> None:
 
 @pytest.mark.parametrize("name", list(METHODS))
 def test_a_file_read_back_answers_alike(name: str, tmp_path: Path) -> None:
-    file = tmp_path / ("map.words" if name == "map" else "inverse.toml")
+    file = tmp_path / file_name(name)
     write_inverse(file, name, made(name))
     method, again = read_inverse(file)
     assert method == name
@@ -215,7 +232,7 @@ def test_a_free_runs_error_is_within_its_limits() -> None:
 @pytest.fixture(scope="module")
 def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     library = tmp_path_factory.mktemp("force_map") / "force_map.so"
-    sources = ["track/force_map.c", "base/table.c", "base/crc32.c"]
+    sources = ["track/force_map.c", "base/sections.c", "base/table.c", "base/crc32.c"]
     folders = ["include", "base", "track"]
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-shared", "-fPIC", "-o", library]
@@ -223,7 +240,9 @@ def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
         + [ROOT / "firmware" / one for one in sources],
         check=True,
     )
-    return ctypes.CDLL(str(library))
+    found = ctypes.CDLL(str(library))
+    found.force_map_section.restype = ctypes.c_void_p
+    return found
 
 
 @pytest.mark.parametrize("name", ["map", "ffn", "anfis"])
@@ -236,8 +255,9 @@ def test_a_map_is_read_as_the_firmware_reads_it(name: str, firmware: ctypes.CDLL
     velocity_um_s = rng.integers(-400_000, 400_000, 800)
     force_mN = np.sign(velocity_um_s) * rng.integers(1, 2_000_000, 800)
     demand = replace(demand, velocity_m_s=1e-6 * velocity_um_s, force_N=1e-3 * force_mN)
+    section = ctypes.c_void_p(firmware.force_map_section(words, 0))
     expected_mA = [
-        firmware.force_map_current_mA(words, int(v), int(f))
+        firmware.force_map_current_mA(section, int(v), int(f))
         for v, f in zip(velocity_um_s, force_mN, strict=True)
     ]
     assert 1e3 * inverse.currents(demand) == pytest.approx(np.array(expected_mA), abs=1.0)
@@ -282,7 +302,7 @@ def test_a_compiled_map_takes_its_ranges_by_key() -> None:
 
     there, back = steady_map(one).forces, steady_map(Backwards()).forces
     np.testing.assert_array_equal(there.force_N, back.force_N)
-    np.testing.assert_array_equal(there.velocities_m_s, back.velocities_m_s)
+    np.testing.assert_array_equal(there.places, back.places)
 
 
 # Broken files
@@ -352,21 +372,21 @@ def test_integers_of_any_length_are_numbers_while_a_float_holds_them() -> None:
 
 def test_words_that_the_firmware_refuses_are_refused(firmware: ctypes.CDLL, tmp_path: Path) -> None:
     good = made("map").words
-    n = good[3]
+    n = good[5]
     rng = np.random.default_rng(1)
     broken = [good[:-1], good[:3], [0, *good[1:]]]
     broken += [
         [*good[:k], int(rng.integers(1 << 32)), *good[k + 1 :]]
-        for k in (1, 2, 3, 4, 5, 5 + n, 5 + n + 1, len(good) - 1)
+        for k in (1, 2, 3, 4, 5, 6, 7, 7 + n, 7 + n + 1, len(good) - 1)
     ]
     for words in broken:
         raw = (ctypes.c_uint32 * len(words))(*words)
         assert firmware.quiesce_force_map_check(raw, len(words)) != 0
         with pytest.raises(ValueError, match=".") as caught:
-            map_of_words(words)
+            maps_of_words(words)
         assert "\n" not in str(caught.value)
     file = tmp_path / "map.words"
-    for text in ("0xzz\n", "", "0x31464d51\n"):
+    for text in ("0xzz\n", "", f"0x{MAGIC:08x}\n"):
         file.write_text(text, encoding="utf-8")
         with pytest.raises(UsageError, match="map.words"):
             read_inverse(file)

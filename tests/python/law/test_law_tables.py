@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
+from quiesce.base.errors import UsageError
 from quiesce.engine.bench import Bench
 from quiesce.law.forms.friction import FrictionSection, FrictionTable
 from quiesce.law.recipe import make, values_of
@@ -32,15 +33,22 @@ def two(build: Path) -> LawRig:
     return load_rig(Bench(), DATA / "boards/two_storeys.toml", None, 1000)
 
 
+@pytest.fixture(scope="module")
+def mount(build: Path) -> LawRig:
+    return load_rig(Bench(), DATA / "boards/mrd_mre_2014.toml", None, 1000)
+
+
 def tables(rig: LawRig) -> dict[str, Table]:
-    """Of all recipes that the building takes: those for two moving ends need another rig."""
+    """Of all recipes that the building takes: those for two moving ends, or a mount beside the
+    damper, need another rig."""
     names = [one.name for one in RECIPES if "hook" not in one.name or "sky" in one.name]
+    names.remove("skyhook_elastomer")
     return {name: make(find(name), rig, values_of(find(name), [])).table for name in names}
 
 
 def test_every_recipe_makes_a_table_that_the_firmware_takes(rig: LawRig) -> None:
     made = tables(rig)
-    assert len(made) == 15
+    assert len(made) == 18
     for name, table in made.items():
         words = table.words()
         assert verdict(table.law, words) == 0, name
@@ -51,7 +59,8 @@ def test_every_recipe_makes_a_table_that_the_firmware_takes(rig: LawRig) -> None
 def test_magics_are_those_of_the_firmware() -> None:
     for magic, form in FORMS.items():
         name = form.__name__.rpartition(".")[2]
-        text = (ROOT / f"firmware/law/forms/law_{name}.c").read_text()
+        (file,) = (ROOT / "firmware/law").rglob(f"law_{name}.c")
+        text = file.read_text()
         assert f"MAGIC UINT32_C(0x{magic:08X})" in text
 
 
@@ -106,3 +115,20 @@ def test_a_signs_law_never_passes_the_ceiling(rig: LawRig) -> None:
     values = np.random.default_rng(1).normal(size=(500, len(table.signals())))
     currents = table.currents_A(values)
     assert set(np.unique(currents[:, 0])) == {0.0, 2.25}
+
+
+def test_shares_of_a_current_are_of_what_the_damper_takes(rig: LawRig) -> None:
+    table = make(find("quasi_bang_bang"), rig, values_of(find("quasi_bang_bang"), [])).table
+    assert table.sections[0].currents_mA == (450, 2250, 2250, 450)
+
+
+def test_skyhook_elastomer_is_for_two_dampers(rig: LawRig, mount: LawRig) -> None:
+    words = ["sky_N_s_m=3000", "mount_N_s_m=500", "limit_N=400"]
+    recipe = find("skyhook_elastomer")
+    table = make(recipe, mount, values_of(recipe, words)).table
+    assert verdict("linear", table.words()) == 0
+    assert [one.name for one in table.signals()] == ["velocity of body 1", "velocity of body 2"]
+    forces = table.forces_N(np.array([[0.1, 0.2], [-1.0, -2.0]]))
+    assert forces[:, :2] == pytest.approx(np.array([[300.0, 100.0], [-400.0, -1000.0]]), abs=0.01)
+    with pytest.raises(UsageError, match="three_storeys_1996 has 1 dampers; this law is for two"):
+        make(recipe, rig, values_of(recipe, []))

@@ -241,10 +241,15 @@ TEST(UseTable, refuses_with_the_reason_alone) {
     }
 }
 
-// Two velocities, two currents, four forces.
-Words force_map() {
-    return with_crc(
-        {0x31464D51u, 0, 13, 2, 2, 0xFFFFFC18u, 1000, 0, 2000, 0xFFFFFFFFu, 0xFFFFFC18u, 1, 1000});
+// Of each axis two places, two currents, four forces; 3: stroke, 4: its velocity.
+Words force_map(const std::vector<std::uint32_t> &axes = {4u}) {
+    const auto count = static_cast<std::uint32_t>(axes.size());
+    Words words = {0x32464D51u, 0, 4u + 11u * count, count};
+    for (const std::uint32_t axis : axes) {
+        words.insert(words.end(),
+                     {axis, 2, 2, 0xFFFFFC18u, 1000, 0, 2000, 0xFFFFFFFFu, 0xFFFFFC18u, 1, 1000});
+    }
+    return with_crc(words);
 }
 
 std::string map_message(const Words &words) {
@@ -259,7 +264,7 @@ std::string map_message(const Words &words) {
 
 TEST(ForceMapFile, is_read_or_refused_with_the_reason) {
     constexpr const char *kRefused = ": the controller refuses the table: ";
-    constexpr std::size_t kForce = 9;
+    constexpr std::size_t kForce = 11;
     Words words = force_map();
     EXPECT_EQ(map_message(words), "accepted");
     words[kForce] = 0xFFFFFC17u; // more than with current
@@ -271,6 +276,14 @@ TEST(ForceMapFile, is_read_or_refused_with_the_reason) {
     EXPECT_EQ(map_message(shipped()).rfind(std::string(kRefused) + "it is not a table", 0), 0u);
     const TextFile nothing("");
     EXPECT_THROW(quiesce::load_force_map(nothing.name()), InputError);
+}
+
+// The first version of a map: without sections.
+TEST(ForceMapFile, an_old_one_is_refused) {
+    const Words words = with_crc(
+        {0x31464D51u, 0, 13, 2, 2, 0xFFFFFC18u, 1000, 0, 2000, 0xFFFFFFFFu, 0xFFFFFC18u, 1, 1000});
+    EXPECT_NE(map_message(words).find("it is not a table for this law, or one of another version"),
+              std::string::npos);
 }
 
 TEST(ForceMapFile, only_the_host_takes_one) {
@@ -310,6 +323,54 @@ TEST(LawTable, runs_with_its_map_and_is_missed_without) {
     EXPECT_EQ(refusal("inverse --law-table " + table.name()),
               "quiesce_bench: tracker inverse works with a damper's map: --force-map FILE (quiesce "
               "identify inverse)\n");
+}
+
+// The board has two dampers; it knows a stroke of each.
+TEST(LawTable, a_map_is_of_the_boards_dampers) {
+    const TextFile table(hex(friction()));
+    for (const std::vector<std::uint32_t> &axes :
+         std::vector<std::vector<std::uint32_t>>{{3}, {4, 3}, {3, 4}}) {
+        const TextFile map(hex(force_map(axes)));
+        const Outcome outcome = bench(kTwoStoreys + ("inverse --law-table " + table.name()) +
+                                      " --force-map " + map.name());
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    }
+    const TextFile three(hex(force_map({4, 4, 4})));
+    EXPECT_EQ(refusal("inverse --law-table " + table.name() + " --force-map " + three.name()),
+              "quiesce_bench: " + three.name() +
+                  ": the controller refuses the map: it is of more dampers than this board has, or "
+                  "over a stroke that no sensor tells (quiesce board show)\n");
+}
+
+// Half of the demand and of the velocity of the stroke, by a straight line; least speed 1 mm/s.
+Words network_of_dampers(std::uint32_t count) {
+    Words words = {0x314E5451u, 0, 4u + 25u * count, count};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        words.insert(words.end(), {1000, 1500, 2, 0, 1});
+        for (const std::uint32_t signal : {64u, 4u}) {
+            words.insert(words.end(), {signal, 0xFFF00000u, 0x100000u, 16, 0});
+        }
+        words.insert(words.end(), {1, 1, 1, 0, 1, 1, 0, 0, 0, 1000});
+    }
+    return with_crc(words);
+}
+
+TEST(LawTable, a_network_is_of_its_tracker_and_of_the_boards_dampers) {
+    const TextFile table(hex(friction()));
+    const std::string with = " --law-table " + table.name() + " --force-map ";
+    const TextFile two(hex(network_of_dampers(2)));
+    const Outcome outcome = bench(kTwoStoreys + ("network" + with) + two.name());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_NE(refusal("inverse" + with + two.name()).find("it is not a table for this law"),
+              std::string::npos);
+    const TextFile three(hex(network_of_dampers(3)));
+    EXPECT_NE(refusal("network" + with + three.name()).find("a signal or a damper that"),
+              std::string::npos);
+    Words words = network_of_dampers(1);
+    words[5] = 20001; // mA
+    const TextFile current(hex(with_crc(words)));
+    EXPECT_NE(refusal("network" + with + current.name()).find("current is out of range"),
+              std::string::npos);
 }
 
 TEST(LawTable, is_refused_with_the_reason) {

@@ -15,6 +15,7 @@ static law_trial_t trial;
 static quiesce_params_t params;
 static uint32_t words[QUIESCE_TABLE_WORDS];
 static uint32_t map[QUIESCE_TABLE_WORDS];
+static uint32_t map_count;
 static uint32_t count;
 static uint32_t seed;
 
@@ -42,14 +43,17 @@ static bool make_table(const law_t *law) {
     return true;
 }
 
+// Of the tracker's kind.
 static void make_map(void) {
-    memcpy(map, map_of_damper.words, map_of_damper.count * sizeof map[0]);
-    law_trial_seal(map, map_of_damper.count);
+    const law_words_t from =
+        params.tracker == QUIESCE_TRACKER_BANK ? bank_of_damper : map_of_damper;
+    map_count = from.count;
+    memcpy(map, from.words, map_count * sizeof map[0]);
+    law_trial_seal(map, map_count);
 }
 
 static bool start(void) {
-    return law_trial_start(&trial, &params, count > 0 ? words : NULL, count, map,
-                           map_of_damper.count, seed);
+    return law_trial_start(&trial, &params, count > 0 ? words : NULL, count, map, map_count, seed);
 }
 
 static uint32_t breaks_in(uint32_t ticks) {
@@ -95,7 +99,7 @@ static void expect_bounds_when_spoilt(void) {
         const bool is_map = count == 0 || i % 2u == 0;
         (void)make_table(law_find(params.law));
         make_map();
-        law_trial_spoil(is_map ? map : words, is_map ? map_of_damper.count : count, &seed);
+        law_trial_spoil(is_map ? map : words, is_map ? map_count : count, &seed);
         if (start()) {
             accepted++;
             TEST_ASSERT_EQUAL_HEX32(0, breaks_in(SPOILT_TICKS));
@@ -129,6 +133,27 @@ static void test_what_breaks_the_rules_is_seen(void) {
     TEST_ASSERT_EQUAL_HEX32(LAW_TRIAL_BEYOND, law_trial_breaks(&trial));
 }
 
+// A spring is judged by its stroke, which may come back against its demand.
+static void test_a_spring_breaks_them_by_its_stroke(void) {
+    enum { AXIS = TABLE_HEAD_WORDS + 1 };
+    params.law = QUIESCE_LAW_LINEAR;
+    params.tracker = QUIESCE_TRACKER_INVERSE;
+    make_map();
+    map[AXIS] = QUIESCE_SENSE_STROKE;
+    law_trial_seal(map, map_of_damper.count);
+    TEST_ASSERT_TRUE(make_table(law_find(params.law)) && start());
+    TEST_ASSERT_EQUAL_HEX32(0, breaks_in(TICKS));
+    memset(&trial.current, 0, sizeof trial.current);
+    trial.demand.value[1] = 7;
+    trial.current.value[1] = 1;
+    trial.view.damper[1].stroke_nm = 5;
+    trial.view.damper[1].velocity_um_s = -5;
+    TEST_ASSERT_EQUAL_HEX32(0, law_trial_breaks(&trial));
+    trial.view.damper[1].stroke_nm = -5;
+    trial.view.damper[1].velocity_um_s = 5;
+    TEST_ASSERT_EQUAL_HEX32(LAW_TRIAL_ENERGISED, law_trial_breaks(&trial));
+}
+
 // Through its linear part a stroke's velocity of one sign gets a force of that sign and a current.
 static void test_a_trial_reaches_what_it_judges(void) {
     params.law = QUIESCE_LAW_FRICTION;
@@ -149,6 +174,7 @@ int main(void) {
     RUN_TEST(test_no_law_energises_whatever_it_sees);
     RUN_TEST(test_no_table_that_is_accepted_energises);
     RUN_TEST(test_what_breaks_the_rules_is_seen);
+    RUN_TEST(test_a_spring_breaks_them_by_its_stroke);
     RUN_TEST(test_a_trial_reaches_what_it_judges);
     return UNITY_END();
 }

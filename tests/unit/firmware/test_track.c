@@ -11,7 +11,7 @@
 #include "track.h"
 #include "unity.h"
 
-enum { HEADER = 5, RATE_Hz = 1000, UNLOCK_mA = 1100, SAFE_mA = 250 };
+enum { SECTION = 4, HEADER = 7, RATE_Hz = 1000, UNLOCK_mA = 1100, SAFE_mA = 250 };
 
 extern const law_t law_constant_force;
 
@@ -33,10 +33,13 @@ static void seal(uint32_t count) {
     map[1] = crc32_words(&map[2], count - 2u);
 }
 
+// One section, over stroke velocity.
 static uint32_t make_map(const int32_t *velocity, uint32_t n, const int32_t *current, uint32_t m,
                          const int32_t *force) {
-    map[3] = n;
-    map[4] = m;
+    map[3] = 1;
+    map[SECTION] = QUIESCE_SENSE_STROKE_VELOCITY;
+    map[SECTION + 1] = n;
+    map[SECTION + 2] = m;
     memcpy(&map[HEADER], velocity, n * sizeof *velocity);
     memcpy(&map[HEADER + n], current, m * sizeof *current);
     memcpy(&map[HEADER + n + m], force, (size_t)n * m * sizeof *force);
@@ -83,7 +86,7 @@ void tearDown(void) {}
 
 static int32_t track(int32_t tracker, void *state, int32_t velocity_um_s, int32_t force_mN,
                      int32_t demand_mN) {
-    const track_setup_t setup = {&params, map};
+    const track_setup_t setup = {&params, map, 0};
     const view_damper_t damper = {.velocity_um_s = velocity_um_s, .force_mN = force_mN};
     return track_find(tracker)->step(state, &setup, &damper, demand_mN);
 }
@@ -204,8 +207,8 @@ static int32_t value_of(uint32_t place) {
 // The map read as its header says it, in floating point and without any search: force at one of its
 // currents.
 static double forward_at(uint32_t j, int32_t velocity_um_s, int32_t side) {
-    const uint32_t n = map[3];
-    const uint32_t m = map[4];
+    const uint32_t n = map[SECTION + 1];
+    const uint32_t m = map[SECTION + 2];
     uint32_t i = 0;
     while (i + 2u < n && value_of(i + 1u) <= velocity_um_s) {
         i++;
@@ -227,8 +230,8 @@ static double between(double low, double high, double value) {
 // Half a milliampere of the steepest part beside it, and what two roundings of a force leave.
 static void assert_best(int32_t velocity_um_s, int32_t demand_mN, int32_t current_mA) {
     const int32_t side = demand_mN > 0 ? 1 : -1;
-    const uint32_t n = map[3];
-    const uint32_t last = map[4] - 1u;
+    const uint32_t n = map[SECTION + 1];
+    const uint32_t last = map[SECTION + 2] - 1u;
     double force = side * forward_at(last, velocity_um_s, side);
     const double most = force;
     double slope = 0.0;
@@ -260,7 +263,7 @@ static void test_track_inverse_gives_the_force_of_any_map(void) {
         make_random_map();
         for (uint32_t k = 0; k < 20u; k++) {
             const int32_t velocity = k == 0   ? 0
-                                     : k < 4u ? value_of(random_below(map[3]))
+                                     : k < 4u ? value_of(random_below(map[SECTION + 1]))
                                               : random_signed(VIEW_LIMIT);
             const int32_t demand =
                 random_below(8) == 0 ? random_signed(INT32_MAX) : random_signed(VIEW_LIMIT);
@@ -275,6 +278,91 @@ static void test_track_inverse_gives_the_force_of_any_map(void) {
             }
         }
     }
+}
+
+// Another section, of a spring: 1 N at 100 um without current, 2 N with 1 A, in proportion.
+static uint32_t add_spring(void) {
+    static const int32_t section[] = {QUIESCE_SENSE_STROKE,
+                                      4,
+                                      2,
+                                      -100000,
+                                      -10000,
+                                      10000,
+                                      100000,
+                                      0,
+                                      1000,
+                                      -1000,
+                                      -2000,
+                                      -100,
+                                      -200,
+                                      100,
+                                      200,
+                                      1000,
+                                      2000};
+    const uint32_t count = map[2];
+    memcpy(&map[count], section, sizeof section);
+    map[3]++;
+    seal(count + sizeof section / sizeof *section);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_force_map_check(map, map[2]));
+    return map[2];
+}
+
+static int32_t of_damper(uint32_t damper, const view_damper_t *seen, int32_t demand_mN) {
+    const track_setup_t setup = {&params, map, damper};
+    return track_find(QUIESCE_TRACKER_INVERSE)->step(NULL, &setup, seen, demand_mN);
+}
+
+// Each damper by its own section; one section stands for all.
+static void test_track_inverse_has_a_section_for_each_damper(void) {
+    const view_damper_t seen = {.velocity_um_s = 1000, .stroke_nm = -50000};
+    (void)make_plain_map();
+    for (uint32_t i = 0; i < 4u; i++) {
+        TEST_ASSERT_EQUAL_INT32(800, of_damper(i, &seen, 50000));
+    }
+    (void)add_spring();
+    TEST_ASSERT_EQUAL_INT32(800, of_damper(0, &seen, 50000));
+    TEST_ASSERT_EQUAL_INT32(0, of_damper(1, &seen, 750)); // its stroke is the other way
+    TEST_ASSERT_EQUAL_INT32(500, of_damper(1, &seen, -750));
+    TEST_ASSERT_EQUAL_INT32(0, of_damper(2, &seen, -750)); // none for it
+    TEST_ASSERT_EQUAL_INT32(0, of_damper(2, &seen, 750));
+}
+
+// A spring is judged by its stroke: it resists that also while it comes back.
+static void test_track_inverse_of_a_spring(void) {
+    (void)make_plain_map();
+    (void)add_spring();
+    static const struct {
+        int32_t stroke, demand, current;
+    } cases[] = {
+        {50000, 500, 0},     {50000, 501, 2},  {50000, 750, 500},       {50000, 1000, 1000},
+        {50000, 1001, 1000}, {50000, -750, 0}, {50000, 0, 0},           {5000, 150, 500},
+        {1, 150, 500},       {0, 150, 500},    {VIEW_LIMIT, 1500, 500}, {1, INT32_MAX, 1000},
+    };
+    for (uint32_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (int32_t way = -1; way <= 1; way++) {
+            const view_damper_t up = {.velocity_um_s = way * 1000, .stroke_nm = cases[i].stroke};
+            const view_damper_t down = {.velocity_um_s = way * 1000, .stroke_nm = -cases[i].stroke};
+            TEST_ASSERT_EQUAL_INT32(cases[i].current, of_damper(1, &up, cases[i].demand));
+            TEST_ASSERT_EQUAL_INT32(cases[i].current, of_damper(1, &down, -cases[i].demand));
+        }
+    }
+}
+
+static void test_track_a_map_that_is_cut_or_longer_is_refused(void) {
+    (void)make_plain_map();
+    const uint32_t first = map[2];
+    const uint32_t count = add_spring();
+    for (uint32_t words = first + 1u; words < count; words++) {
+        seal(words);
+        TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SHAPE, quiesce_force_map_check(map, words));
+    }
+    map[count] = 0;
+    seal(count + 1u);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SHAPE, quiesce_force_map_check(map, count + 1u));
+    seal(count);
+    map[first] = QUIESCE_SENSE_TEMPERATURE;
+    seal(count);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_POINT, quiesce_force_map_check(map, count));
 }
 
 static void assert_refused(quiesce_table_verdict_t verdict, uint32_t place, int32_t value) {
@@ -293,7 +381,13 @@ static void test_track_malformed_maps_are_refused(void) {
                           quiesce_force_map_check(map, QUIESCE_TABLE_WORDS + 1u));
     map[count - 1u] ^= 1u;
     TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_CRC, quiesce_force_map_check(map, count));
-    enum { VELOCITY = HEADER, CURRENT = HEADER + 4, FORCE = HEADER + 7 };
+    enum {
+        PLACES = SECTION + 1,
+        CURRENTS,
+        VELOCITY = HEADER,
+        CURRENT = HEADER + 4,
+        FORCE = HEADER + 7
+    };
     const quiesce_table_verdict_t shape = QUIESCE_TABLE_SHAPE;
     const quiesce_table_verdict_t point = QUIESCE_TABLE_POINT;
     const struct {
@@ -302,13 +396,20 @@ static void test_track_malformed_maps_are_refused(void) {
         int32_t value;
     } cases[] = {
         {QUIESCE_TABLE_MAGIC, 0, FORCE_MAP_MAGIC + 1},
-        {shape, 3, 1},
-        {shape, 3, 33},
+        {QUIESCE_TABLE_MAGIC, 0, 0x31464D51}, // a map of the first version
+        {shape, 3, 0},                        // sections
+        {shape, 3, 2},
         {shape, 3, 5},
-        {shape, 3, INT32_MIN},
-        {shape, 4, 1},
-        {shape, 4, 17},
-        {shape, 4, -1},
+        {shape, 3, -1},
+        {shape, PLACES, 1},
+        {shape, PLACES, 33},
+        {shape, PLACES, 5},
+        {shape, PLACES, INT32_MIN},
+        {shape, CURRENTS, 1},
+        {shape, CURRENTS, 17},
+        {shape, CURRENTS, -1},
+        {point, SECTION, QUIESCE_SENSE_FORCE}, // no axis
+        {point, SECTION, -1},
         {point, VELOCITY, -1000},              // does not rise
         {point, VELOCITY, -VIEW_LIMIT - 1},    // too fast
         {point, VELOCITY + 3, VIEW_LIMIT + 1}, // likewise
@@ -398,10 +499,10 @@ static void test_track_proportional_follows_what_is_missing(void) {
 
 static void test_track_no_other_tracker_is_known(void) {
     TEST_ASSERT_NULL(track_find(-1));
-    TEST_ASSERT_NULL(track_find(QUIESCE_TRACKER_PROPORTIONAL + 1));
+    TEST_ASSERT_NULL(track_find(QUIESCE_TRACKER_NETWORK + 1));
     const char *const *labels =
         quiesce_param_info(offsetof(quiesce_params_t, tracker) / sizeof(int32_t))->labels;
-    for (int32_t i = 0; i <= QUIESCE_TRACKER_PROPORTIONAL; i++) {
+    for (int32_t i = 0; i <= QUIESCE_TRACKER_NETWORK; i++) {
         TEST_ASSERT_EQUAL_STRING(labels[i], track_find(i)->name);
     }
 }
@@ -597,6 +698,26 @@ static void test_track_a_force_against_its_damper_is_a_fault(void) {
     TEST_ASSERT_FALSE(out.damper[0].driver_enable);
 }
 
+// A map of the sections that the board's dampers and strokes allow.
+static void test_track_a_map_is_of_the_boards_dampers(void) {
+    start();
+    (void)make_plain_map();
+    (void)add_spring(); // of a second damper
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, quiesce_table_use(&controller, map, map[2]));
+    (void)make_plain_map();
+    map[SECTION] = QUIESCE_SENSE_STROKE;
+    seal(map[2]);
+    // The damper stands on the ground: its stroke is the accelerometer's displacement.
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, map, map[2]));
+    // A damper of which only the velocity is known.
+    board.bodies = 2;
+    board.damper[0].end_a = 1;
+    board.damper[0].end_b = 0;
+    start();
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, quiesce_table_use(&controller, map, map[2]));
+    use_plain_map();
+}
+
 static void assert_missing(const char *name, int32_t at) {
     quiesce_signal_t missing = {NULL, 0};
     TEST_ASSERT_TRUE(quiesce_missing(&board, &params, &missing));
@@ -634,6 +755,10 @@ int main(void) {
     RUN_TEST(test_track_inverse_of_a_plain_map);
     RUN_TEST(test_track_inverse_takes_the_least_current_of_a_flat_map);
     RUN_TEST(test_track_inverse_gives_the_force_of_any_map);
+    RUN_TEST(test_track_inverse_has_a_section_for_each_damper);
+    RUN_TEST(test_track_inverse_of_a_spring);
+    RUN_TEST(test_track_a_map_that_is_cut_or_longer_is_refused);
+    RUN_TEST(test_track_a_map_is_of_the_boards_dampers);
     RUN_TEST(test_track_malformed_maps_are_refused);
     RUN_TEST(test_track_compare_is_on_while_the_force_falls_short);
     RUN_TEST(test_track_proportional_follows_what_is_missing);

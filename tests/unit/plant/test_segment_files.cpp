@@ -37,6 +37,15 @@ const char *const kTones = "[[segment]]\n"
                            "freq_Hz = 13\n"
                            "drive_V = 0.2\n"
                            "phase_deg = 90\n";
+const char *const kBaseTones = "[[segment]]\n"
+                               "kind = \"base_tones\"\n"
+                               "[[segment.tone]]\n"
+                               "freq_Hz = 10\n"
+                               "accel_m_s2 = 3\n"
+                               "[[segment.tone]]\n"
+                               "freq_Hz = 40\n"
+                               "accel_m_s2 = 0.5\n"
+                               "phase_deg = 90\n";
 const char *const kRandom = "[[segment]]\n"
                             "kind = \"random\"\n"
                             "low_Hz = 4\n"
@@ -66,11 +75,23 @@ TEST(SegmentFile, tones_random_and_impulse_are_what_it_says) {
     EXPECT_NEAR(excitation.at(22.0).force_N, 0.2, 1e-12) << "the second tone begins at its top";
 }
 
+TEST(SegmentFile, base_tones_move_the_base) {
+    const TemporaryFile file(scenario_text(kBaseTones));
+    const Scenario scenario = load_scenario(file.path());
+    EXPECT_EQ(scenario.segments[0].summary, "base tones, 10 Hz at 3 m/s2 + 40 Hz at 0.5 m/s2");
+    EXPECT_TRUE(moves_base(scenario));
+    const quiesce::Excitation excitation = make_excitation(scenario, kUnit);
+    EXPECT_NEAR(excitation.at(0.0).base_accel_m_s2, 0.5, 1e-12);
+    EXPECT_NEAR(excitation.at(0.025).base_accel_m_s2, 3.0 + 0.5, 1e-12);
+    EXPECT_EQ(excitation.at(0.025).force_N, 0.0);
+}
+
 class SegmentMistakes : public testing::TestWithParam<Mistake> {};
 
 TEST_P(SegmentMistakes, are_named) {
     const std::string name = GetParam().name;
     const char *const good = name.rfind("tone", 0) == 0     ? kTones
+                             : name.rfind("base", 0) == 0   ? kBaseTones
                              : name.rfind("random", 0) == 0 ? kRandom
                                                             : kImpulse;
     expect_message(scenario_text(spoilt(good, GetParam())), GetParam().words, load_scenario);
@@ -88,6 +109,8 @@ const Mistake kSegmentMistakes[] = {
     {"tones_drive", "drive_V = 0.2", "drive_V = -0.2", "segment[1].tone[2].drive_V: expected"},
     {"tones_phase", "phase_deg = 90", "phase_deg = 900", "segment[1].tone[2].phase_deg: expected"},
     {"tones_unknown", "phase_deg = 90", "phase = 90", "segment[1].tone[2].phase: unknown key"},
+    {"base_drive", "accel_m_s2 = 3", "drive_V = 3", "segment[1].tone[1].accel_m_s2: missing"},
+    {"base_accel", "accel_m_s2 = 3", "accel_m_s2 = -3", "segment[1].tone[1].accel_m_s2: expected"},
     {"random_low", "low_Hz = 4", "low_Hz = -4", "segment[1].low_Hz: expected a number in 0.001"},
     {"random_backwards", "high_Hz = 22", "high_Hz = 3",
      "segment[1].high_Hz: expected at least 1.001 times low_Hz"},

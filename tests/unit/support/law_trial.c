@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "crc32.h"
+#include "force_bank.h"
+#include "force_map.h"
 #include "table.h"
 #include "test_signal.h"
 #include "view_signal.h"
@@ -208,10 +210,38 @@ static bool agrees(int32_t demand_mN, int32_t way) {
     return way == 0 || (demand_mN > 0) == (way > 0);
 }
 
+// A map of springs: it is the stroke alone that has to have the demand's sign.
+static bool is_spring(const forces_t *forces, uint32_t damper) {
+    return forces->track->kind != NULL && forces->track->kind->magic == FORCE_MAP_MAGIC &&
+           (force_map_needs(forces->table) & VIEW_STROKE << damper) != 0;
+}
+
+// No model of the bank has a force of the demand's sign.
+static bool is_against_bank(const law_trial_t *self, uint32_t i, int32_t demand_mN) {
+    const uint32_t *section = force_bank_section(self->forces.table, i);
+    const force_bank_t *bank = (const force_bank_t *)(const void *)self->forces.state[i];
+    bool is_against = true;
+    for (uint32_t k = 0; section != NULL && k < force_bank_currents(section); k++) {
+        const int32_t force_mN = force_bank_force_mN(bank, section, k, &self->view.damper[i]);
+        is_against = is_against && (force_mN == 0 || !agrees(demand_mN, force_mN));
+    }
+    return is_against;
+}
+
 // Of all that the tracker looks at, force or velocity, nothing has the demand's sign.
-static bool is_against(const track_t *track, const view_damper_t *damper, int32_t demand_mN) {
-    const bool sees_force = (track->needs & VIEW_FORCE) != 0;
-    const bool sees_velocity = (track->needs & VIEW_STROKE_VELOCITY) != 0;
+static bool is_against(const law_trial_t *self, uint32_t i, int32_t demand_mN) {
+    const forces_t *forces = &self->forces;
+    if (forces_kind(forces) != NULL && forces_kind(forces)->magic == FORCE_BANK_MAGIC) {
+        return is_against_bank(self, i, demand_mN);
+    }
+    const view_damper_t *damper = &self->view.damper[i];
+    if (is_spring(forces, i)) {
+        return !agrees(demand_mN, damper->stroke_nm);
+    }
+    const uint32_t *table = forces_kind(forces) != NULL ? forces->table : NULL;
+    const uint64_t needs = (forces->track->needs | forces_table_needs(forces, table)) >> i;
+    const bool sees_force = (needs & VIEW_FORCE) != 0;
+    const bool sees_velocity = (needs & VIEW_STROKE_VELOCITY) != 0;
     return !(sees_force && agrees(demand_mN, damper->force_mN)) &&
            !(sees_velocity && agrees(demand_mN, damper->velocity_um_s));
 }
@@ -230,8 +260,7 @@ uint32_t law_trial_breaks(const law_trial_t *self) {
             (track != NULL && is_beyond(current_mA, QUIESCE_HIGHEST_CURRENT_mA))) {
             bits |= LAW_TRIAL_BEYOND;
         }
-        if (track != NULL && current_mA > 0 &&
-            (demand_mN == 0 || is_against(track, &self->view.damper[i], demand_mN))) {
+        if (track != NULL && current_mA > 0 && (demand_mN == 0 || is_against(self, i, demand_mN))) {
             bits |= LAW_TRIAL_ENERGISED;
         }
     }

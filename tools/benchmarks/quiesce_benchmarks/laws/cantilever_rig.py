@@ -22,7 +22,7 @@ from quiesce.damper.inverse import (
     Monotone,
     SteadyForces,
     at,
-    default_velocities,
+    default_places,
     rising_until,
     sine_at,
 )
@@ -152,7 +152,7 @@ def map_of_film(folder: Path) -> list[int]:
     file = folder / "film.toml"
     file.write_text(tomli_w.dumps(data), encoding="utf-8")
     model, simulate = simulator_of_file(file)
-    velocities = default_velocities(
+    velocities = default_places(
         replace(model, stroke_m=2.0 * MAP_AMPLITUDE_m, speed_m_s=MAP_SPEED_m_s)
     )
     currents = np.linspace(0.0, most_A(), MAP_CURRENTS)

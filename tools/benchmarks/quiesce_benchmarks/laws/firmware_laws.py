@@ -2,16 +2,18 @@
 
 import ctypes
 import subprocess
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
 import numpy as np
 from quiesce.base.paths import root
+from quiesce.law.forms.network import NetworkTrackTable
+from quiesce.law.signal import Quantity
 from quiesce.law.tables import Table
 
-# What laws are made of: any that is added there is found.
-BLOCKS = ("base", "fuzzy", "law/forms")
+FOLDERS = ("base", "fuzzy", "law", "param", "plants", "track")
 DAMPERS = 4
 NO_DEMAND = 2**31 - 1
 
@@ -20,21 +22,17 @@ NO_DEMAND = 2**31 - 1
 def library() -> ctypes.CDLL:
     firmware = root() / "firmware"
     file = Path(mkdtemp(prefix="quiesce-laws-")) / "laws.so"
-    sources = [one for block in BLOCKS for one in sorted((firmware / block).glob("*.c"))]
-    sources.append(Path(__file__).with_name("law_steps.c"))
+    sources = [file for one in FOLDERS for file in sorted((firmware / one).rglob("*.c"))]
+    headers = {file.parent for one in FOLDERS for file in (firmware / one).rglob("*.h")}
+    sources += [Path(__file__).with_name(one) for one in ("law_steps.c", "track_steps.c")]
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-fno-strict-aliasing", "-shared", "-fPIC", "-o", file]
         + ["-DQUIESCE_SENSORS=8", "-DQUIESCE_BODIES=4", "-DQUIESCE_DAMPERS=4"]
-        + [f"-I{firmware / one}" for one in ("include", "law", *BLOCKS)]
+        + [f"-I{one}" for one in (firmware / "include", *sorted(headers))]
         + sources,
         check=True,
     )
     return ctypes.CDLL(str(file))
-
-
-def _law(name: str) -> ctypes.c_void_p:
-    """Its law_t, which is called as the law is."""
-    return ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(library(), f"law_{name}")))
 
 
 def verdict(law: str, words: list[int]) -> int:
@@ -58,11 +56,50 @@ def _call(
     values = np.ascontiguousarray(values, np.int32)
     out = np.zeros((len(values), DAMPERS), np.int32)
 
-    def at(one: np.ndarray) -> ctypes.c_void_p:
-        return one.ctypes.data_as(ctypes.c_void_p)
-
     said = library().law_steps(
-        _law(law), at(table), len(table), at(signals), len(signals), at(values),
-        len(values), at(out),
+        law.encode(), _at(table), len(table), _at(signals), len(signals), _at(values),
+        len(values), _at(out),
     )  # fmt: skip
     return said, out
+
+
+def _at(one: np.ndarray) -> ctypes.c_void_p:
+    return one.ctypes.data_as(ctypes.c_void_p)
+
+
+class Tracker:
+    """The tracker that works with these words, for one damper, from rest; its inputs are these
+    quantities of the damper, the demand among them."""
+
+    STATE_BYTES = 1024
+
+    def __init__(self, words: list[int], inputs: Sequence[Quantity], damper: int = 0) -> None:
+        self._words = np.array(words, np.uint32)
+        self._damper = damper
+        self._units = np.array([one.per_unit for one in inputs])
+        self._signals = np.array([one.code for one in inputs], np.uint32)
+        self._state = np.zeros(self.STATE_BYTES, np.uint8)
+
+    def currents_A(self, values: np.ndarray) -> np.ndarray:
+        """[ticks] for its inputs [ticks, inputs] in SI units."""
+        units = np.ascontiguousarray(np.rint(values * self._units), np.int32)
+        out = np.zeros(len(values), np.int32)
+        said = library().track_steps(
+            _at(self._words), len(self._words), self._damper, _at(self._state),
+            _at(self._signals), len(self._signals), _at(units), len(units), _at(out),
+        )  # fmt: skip
+        assert said == 0, said
+        return 1e-3 * out
+
+
+class NetworkTracker(Tracker):
+    def __init__(self, table: NetworkTrackTable, damper: int = 0) -> None:
+        inputs = [one.signal.quantity for one in table.sections[damper].inputs]
+        super().__init__(table.words(), inputs, damper)
+
+
+def tracker_verdict(words: list[int]) -> int:
+    table, none = np.array(words, np.uint32), np.zeros(1, np.int32)
+    return library().track_steps(
+        _at(table), len(table), 0, _at(none), _at(none), 0, _at(none), 0, _at(none)
+    )

@@ -18,6 +18,9 @@ from quiesce_benchmarks.laws import rigs
 
 # A damper's map that fits no rig: what a tracker costs does not depend on that.
 MAP_DAMPER, MAP_MOST_A = "rd1005_kwok_tanh_smooth", 1.88
+RIGS = (rigs.BUILDING, rigs.CAR, rigs.TWO_MASSES)
+# The most elements and currents that there are.
+BANK_DAMPER, BANK_MOST_A = "spencer_prototype", 2.25
 NO_WORDS: tuple[int, ...] = ()
 
 
@@ -37,18 +40,20 @@ class LawCase:
         return f"{self.name}, {self.tracker}" if self.tracker else self.name
 
 
-def rig_of(recipe: Recipe) -> str:
-    """The building, but for laws of a damper between two bodies."""
-    try:
-        rigs.made(rigs.BUILDING, recipe.name)
-    except UsageError:
-        return rigs.CAR
-    return rigs.BUILDING
-
-
 def made_anywhere(recipe: Recipe) -> Made:
-    """With its settings as they come. UsageError where neither rig allows it."""
+    """On the first of the rigs that allows it. UsageError of the last one where none does."""
     return rigs.made(rig_of(recipe), recipe.name)
+
+
+def rig_of(recipe: Recipe) -> str:
+    """The first of RIGS that allows it; the last where none does."""
+    for rig in RIGS[:-1]:
+        try:
+            rigs.made(rig, recipe.name)
+        except UsageError:
+            continue
+        return rig
+    return RIGS[-1]
 
 
 def forms() -> list[str]:
@@ -69,6 +74,8 @@ def trackers() -> list[str]:
 def map_words(tracker: str) -> tuple[int, ...]:
     """Of the table that a tracker works with, made here; none of one that works without, or whose
     table nobody has made yet: the run then says so."""
+    if tracker == "bank":
+        return tuple(rigs.bank_of(BANK_DAMPER, BANK_MOST_A))
     if tracker != "inverse":
         return NO_WORDS
     with tempfile.TemporaryDirectory(prefix="quiesce-laws-") as folder:

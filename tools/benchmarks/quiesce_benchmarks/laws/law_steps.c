@@ -4,6 +4,13 @@
 #include "law.h"
 #include "view_signal.h"
 
+static const law_t *named(const char *name) {
+    const law_t *law;
+    for (int32_t i = 0; (law = law_find(i)) != NULL && strcmp(law->name, name) != 0; i++) {
+    }
+    return law;
+}
+
 static void put(view_t *view, uint32_t signal, int32_t value) {
     const view_quantity_t *quantity = &view_quantity[signal & 0xFFu];
     memcpy((char *)view + quantity->offset + quantity->stride * (signal >> 8), &value,
@@ -11,8 +18,9 @@ static void put(view_t *view, uint32_t signal, int32_t value) {
 }
 
 // What its check says; then out [ticks x QUIESCE_DAMPERS], 2^31 - 1 where it has no demand.
-int32_t law_steps(const law_t *law, const uint32_t *words, uint32_t count, const uint32_t *signals,
+int32_t law_steps(const char *name, const uint32_t *words, uint32_t count, const uint32_t *signals,
                   uint32_t columns, const int32_t *values, uint32_t ticks, int32_t *out) {
+    const law_t *law = named(name);
     const int32_t verdict = (int32_t)law->kind->check(words, count);
     static uint64_t state[LAW_STATE_BYTES / sizeof(uint64_t)];
     memset(state, 0, sizeof state);

@@ -10,8 +10,11 @@ from quiesce.base.paths import measurements, root, shown
 from quiesce.compare.laws import ComparedLaw
 from quiesce.compare.records import Record, read_record
 from quiesce.compare.run import Comparison, Shaking
+from quiesce.damper.bank.fit import fit_bank
+from quiesce.damper.bank.table import bank_words
 from quiesce.damper.force_map import map_words
-from quiesce.damper.inverse import default_velocities, monotone_range
+from quiesce.damper.inverse import forces_by, monotone_range
+from quiesce.damper.learned.model import silent
 from quiesce.damper.simulate import simulator_of_file
 from quiesce.engine.bench import Bench
 from quiesce.law.recipe import Made, make, values_of
@@ -19,7 +22,7 @@ from quiesce.law.recipes import find
 from quiesce.law.rig import LawRig, load_rig
 from quiesce.law.words import file_text
 
-BUILDING, CAR = "three_storeys_1996", "quarter_car"
+BUILDING, CAR, TWO_MASSES = "three_storeys_1996", "quarter_car", "mrd_mre_2014"
 EL_CENTRO = "el_centro_1940_ns"
 FIVE_TIMES = 5.0
 
@@ -58,11 +61,18 @@ def made(rig: str, recipe: str, settings: dict[str, float] | None = None) -> Mad
 def map_of(folder: Path, damper: str, most_A: float) -> Path:
     """Map of a damper that ships, for tracker inverse."""
     model, simulate = simulator_of_file(root() / f"sim_hil/data/dampers/{damper}.toml")
-    velocities = default_velocities(model)
-    found = monotone_range(model, most_A, velocities, None if model.is_kernel else simulate)
+    found = monotone_range(model, most_A, simulate=None if model.is_kernel else simulate)
     file = folder / "map.words"
     file.write_text(file_text(map_words(found)), encoding="ascii")
     return file
+
+
+@cache
+def bank_of(damper: str, most_A: float, seed: int = 1) -> list[int]:
+    """Words of a bank of a damper that ships, for tracker bank."""
+    model, simulate = simulator_of_file(root() / f"sim_hil/data/dampers/{damper}.toml")
+    forces = forces_by(model, None if model.is_kernel else simulate)
+    return bank_words([fit_bank(model, forces, most_A, 1000, seed, silent).bank])
 
 
 def compared(

@@ -19,6 +19,11 @@ class Progress:
         self._start_s = time.monotonic()
         self._lock = threading.Lock()
 
+    def skip(self, count: int) -> None:
+        """So many pieces need no work."""
+        with self._lock:
+            self._total -= count
+
     def done(self, text: str) -> None:
         with self._lock:
             self._done += 1

@@ -2,143 +2,160 @@
 
 import argparse
 import json
+import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
-from quiesce.base.command import real_number, whole_number
-from quiesce.base.errors import UsageError
-from quiesce.base.paths import measurements, root, shown
-from quiesce.compare.laws import ComparedLaw, read_laws
-from quiesce.compare.page import page
-from quiesce.compare.records import ACCEL, TIME, Record, read_record
-from quiesce.compare.roads import read_road
-from quiesce.compare.run import Case, Cell, Comparison, Shaking
+from quiesce.base.command import whole_number
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.paths import shown
+from quiesce.cli.rig_options import add_motions, add_rig, records_of, several_rig_files, shaking_of
+from quiesce.compare.clairvoyant import CLAIRVOYANT, Found
+from quiesce.compare.goal import INDEX, read_goal
+from quiesce.compare.laws import ComparedLaw, read_law, require_labels
+from quiesce.compare.page import Shown, page
+from quiesce.compare.recipes import read_recipe
+from quiesce.compare.records import Record
+from quiesce.compare.run import BY_INDEX, Case, Cell, Comparison
 from quiesce.compare.table import as_csv, as_data, text
 from quiesce.engine.bench import Bench
+from quiesce.law.rig import load_rig
 
 MOST_SEEDS = 1000
 DRAWN = 6  # laws over time, or nothing can be told apart
+RATE_HZ = 1000  # ticks a second of recipes
 
 EPILOG = """a law is NAME[:key=value,...]; keys: table=FILE (quiesce law make), map=FILE (quiesce
 identify inverse), rules=FILE, pulses=FILE, as=LABEL, and any parameter of the controller
 
+a recipe is NAME[:key=value,...], one of `quiesce law list`; keys: its settings, map=FILE, as=LABEL,
+and any parameter of the controller (tracker, where it is not to be the recipe's own). With several
+structures a recipe is left out, with the reason, where one cannot serve it
+
 examples:
+  quiesce compare --rig three_storeys_1996 --time-scale 5 --scale-to 3.417 \\
+      --recipe skyhook_on_off --recipe clipped_optimal:force_1_N2=1e-10 --clairvoyant
+  quiesce compare --rig quarter_car --rig two_storeys --road C:72 --recipe sh_add --recipe add
   quiesce compare --rig three_storeys_1996 --record quake.csv --time-scale 5 \\
       --law signs:table=build/laws/sky.words,as=skyhook --out build/compare
   quiesce compare --plant my_plant.toml --board my_board.toml --record quake.at2 --scale-to 3 \\
       --law linear:table=optimal.words,tracker=compare --law fuzzy --seeds 5
 
 Beside the laws stand no current, all current, and the best of nine constant currents, which only
-hindsight knows. Written to --out: compare.html, compare.csv, compare.json.
+hindsight knows. Written to --out: compare.html, compare.csv, compare.json, and with --clairvoyant
+clairvoyant_RECORD.csv, the current over time. GOAL of --clairvoyant is index (the default), a
+figure such as weighted_m_s2, or several with weights: weighted_m_s2:0.7,tyre_share:0.3; it also
+chooses the best constant current.
 """
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "compare",
-        description="Compare control laws on one structure, over recorded ground motions and seeds "
+        description="Compare control laws on structures, over recorded ground motions and seeds "
         "of the sensors' noise.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    rig = parser.add_argument_group("structure")
-    rig.add_argument("--rig", metavar="NAME", help="a plant and a board that ship under one name")
-    rig.add_argument("--plant", type=Path, metavar="FILE", help="plant, TOML")
-    rig.add_argument("--board", type=Path, metavar="FILE", help="its board, TOML")
-    shake = parser.add_argument_group("ground motions")
-    shake.add_argument(
-        "--record", type=Path, action="append", default=[], metavar="FILE",
-        help="CSV or AT2; may be repeated (all that lie beside the project)",
-    )  # fmt: skip
-    shake.add_argument(
-        "--road", action="append", default=[], metavar="ROAD",
-        help="CLASS:KM_H of ISO 8608, as in C:72, or bump:HEIGHT_M:LENGTH_M:KM_H; may be repeated",
-    )  # fmt: skip
-    shake.add_argument("--time-column", default=TIME, metavar="NAME", help="of CSV (%(default)s)")
-    shake.add_argument(
-        "--accel-column", default=ACCEL, metavar="NAME",
-        help="of CSV; its end is its unit, _m_s2, _mm_s2 or _g (%(default)s)",
-    )  # fmt: skip
-    shake.add_argument(
-        "--time-scale", type=real_number(0.01, 100.0), default=1.0, metavar="X",
-        help="play so many times as fast (%(default)s)",
-    )  # fmt: skip
-    shake.add_argument(
-        "--gain", type=real_number(1e-6, 1e6), default=1.0, metavar="X", help="(%(default)s)"
-    )
-    shake.add_argument(
-        "--scale-to", type=real_number(1e-6, 1e4), metavar="M_S2", help="peak of each record"
-    )
+    add_rig(parser, several=True)
+    add_motions(parser)
     parser.add_argument("--law", action="append", default=[], metavar="LAW", help="see below")
+    parser.add_argument(
+        "--recipe", action="append", default=[], metavar="RECIPE",
+        help="a published law, made for each structure; see below",
+    )  # fmt: skip
     parser.add_argument(
         "--seeds", type=whole_number(1, MOST_SEEDS), default=1, metavar="N",
         help="runs of each with other noise (%(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--clairvoyant", nargs="?", const=INDEX, metavar="GOAL",
+        help="beside each record the best waveform that a search finds, about a minute each",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="page, CSV and JSON")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=run)
 
 
-def rig_files(args: argparse.Namespace) -> tuple[Path, Path]:
-    if args.rig is None and (args.plant is None or args.board is None):
-        raise UsageError("name the structure: --rig NAME, or --plant FILE and --board FILE")
-    if args.rig is not None and (args.plant or args.board):
-        raise UsageError("--rig stands for --plant and --board; give it or them")
-    if args.rig is None:
-        return args.plant, args.board
-    data = root() / "sim_hil/data"
-    names = sorted(
-        {one.stem for one in (data / "plants").glob("*.toml")}
-        & {one.stem for one in (data / "boards").glob("*.toml")}
-    )
-    if args.rig not in names:
-        raise UsageError(f"--rig {args.rig}: there are: {', '.join(names)}")
-    return data / f"plants/{args.rig}.toml", data / f"boards/{args.rig}.toml"
+@dataclass(frozen=True)
+class OfRig:
+    """What ran on one structure, and what was left out there, a line each."""
+
+    comparison: Comparison
+    laws: list[ComparedLaw]
+    cells: list[Cell]
+    found: dict[str, Found]
+    left_out: list[str]
+
+    def shown(self, record: Record) -> Shown:
+        board = self.comparison.rig.board
+        laws = [*self.comparison.references(), *self.laws][:DRAWN]
+        traces = {law.label: self.comparison.trace(Case(law, record, 1)) for law in laws}
+        if self.found:
+            traces[CLAIRVOYANT] = self.found[record.name].trace
+        return Shown(board.name, self.cells, traces, board.bodies[-1], board.dampers[0])
 
 
-def records_of(args: argparse.Namespace) -> list[Record]:
-    folder = measurements("earthquake")
-    files = args.record or ([] if args.road else sorted(folder.glob("*.csv")))
-    if not files and not args.road:
-        raise UsageError(f"no records beside the project ({shown(folder)}); name some: --record")
-    found = [read_record(file, args.time_column, args.accel_column) for file in files]
-    found += [read_road(text) for text in args.road]
-    names = [record.name for record in found]
-    for name in names:
-        if names.count(name) > 1:
-            raise UsageError(f"--record: two are called {name}")
-    return found
-
-
-def written(
-    args: argparse.Namespace, comparison: Comparison, cells: list[Cell],
-    laws: list[ComparedLaw], record: Record,
-) -> str:  # fmt: skip
-    board = comparison.rig.board
-    shown_laws = [*comparison.references(), *laws][:DRAWN]
-    traces = {law.label: comparison.trace(Case(law, record, 1)) for law in shown_laws}
-    title = f"laws on {board.name}"
+def written(args: argparse.Namespace, rigs: list[OfRig], record: Record) -> str:
+    cells = [cell for one in rigs for cell in one.cells]
+    waveforms = {
+        "_".join([CLAIRVOYANT, *([one.comparison.rig.board.name] if len(rigs) > 1 else []), name])
+        + ".csv": found.csv()
+        for one in rigs
+        for name, found in one.found.items()
+    }
+    files = {
+        "compare.html": page([one.shown(record) for one in rigs]),
+        "compare.csv": as_csv(cells),
+        "compare.json": json.dumps(as_data(cells), indent=1) + "\n",
+        **waveforms,
+    }
     with output_files(args.out) as folder:
-        files = {
-            "compare.html": page(title, cells, traces, board.bodies[-1], board.dampers[0]),
-            "compare.csv": as_csv(cells),
-            "compare.json": json.dumps(as_data(cells), indent=1) + "\n",
-        }
         for name, content in files.items():
             (folder / name).write_text(content, encoding="utf-8")
-    return f"written: {shown(args.out / 'compare.html')}, compare.csv, compare.json"
+    names = ", ".join([shown(args.out / "compare.html"), *list(files)[1:]])
+    return f"written: {names}"
+
+
+def on_rig(
+    args: argparse.Namespace, files: tuple[Path, Path], records: list[Record], folder: Path,
+    may_leave_out: bool,
+) -> OfRig:  # fmt: skip
+    """UsageError where the structure cannot serve a recipe, unless that one may be left out."""
+    plant, board = files
+    laws = [read_law(text) for text in args.law]
+    left_out: list[str] = []
+    recipes = [read_recipe(text) for text in args.recipe]
+    rig = load_rig(Bench(), board, plant, RATE_HZ) if recipes else None
+    for recipe in recipes:
+        try:
+            laws.append(recipe.law(rig, folder))
+        except UsageError as error:
+            if not may_leave_out:
+                raise
+            left_out.append(f"left out: {one_line(str(error))}")
+    require_labels([law.label for law in laws])
+    goal = BY_INDEX if args.clairvoyant is None else read_goal(args.clairvoyant)
+    comparison = Comparison(Bench(), plant, board, shaking_of(args))
+    cells = comparison.cells(laws, records, range(1, args.seeds + 1), goal)
+    found: dict[str, Found] = {}
+    if args.clairvoyant is not None:
+        cells, found = comparison.with_clairvoyant(cells, laws, records, goal)
+    return OfRig(comparison, laws, cells, found, left_out)
 
 
 def run(args: argparse.Namespace) -> int:
-    laws = read_laws(args.law)
-    plant, board = rig_files(args)
+    files = several_rig_files(args)
     records = records_of(args)
-    shaking = Shaking(args.time_scale, args.gain, args.scale_to)
-    comparison = Comparison(Bench(), plant, board, shaking)
-    cells = comparison.cells(laws, records, range(1, args.seeds + 1))
-    told = written(args, comparison, cells, laws, records[0]) if args.out else ""
+    with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:
+        rigs = [on_rig(args, one, records, Path(name), len(files) > 1) for one in files]
+        told = written(args, rigs, records[0]) if args.out else ""
+    cells = [cell for one in rigs for cell in one.cells]
+    left_out = [line for one in rigs for line in one.left_out]
     if args.json:
-        print(json.dumps({"board": comparison.rig.board.name, "cells": as_data(cells)}, indent=1))
+        names = [one.comparison.rig.board.name for one in rigs]
+        print(json.dumps({"rigs": names, "left_out": left_out, "cells": as_data(cells)}, indent=1))
     else:
-        print("\n".join(filter(None, [text(cells), told])))
+        print("\n".join(filter(None, [text(cells), *left_out, told])))
     return 0

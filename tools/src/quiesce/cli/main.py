@@ -28,7 +28,11 @@ COMMANDS = (
         "identify.command",
         "damper models from a test rig's recordings; plan, compare, inverse, export",
     ),
-    ("tune", "tune", "the phase law's pulses for a plant, by optimal control, with report"),
+    (
+        "tune",
+        "tune.command",
+        "the phase law's pulses for a plant, by optimal control; gains of laws",
+    ),
     ("can", "can.command", "CAN bus: monitor, record, decode, parameters, emergency stop"),
 )
 

@@ -58,13 +58,10 @@ def _with(law: ComparedLaw, text: str, key: str, value: str) -> ComparedLaw:
     return replace(law, options=(*law.options, "--set", f"{key}={value}"))
 
 
-def read_laws(texts: list[str]) -> list[ComparedLaw]:
-    """UsageError also where two have the same label."""
-    laws = [read_law(text) for text in texts]
-    names = [law.label for law in laws]
-    for name in names:
-        if names.count(name) > 1:
+def require_labels(labels: list[str]) -> None:
+    """UsageError where two are the same."""
+    for name in labels:
+        if labels.count(name) > 1:
             raise UsageError(
-                f"--law: two are called '{name}'; give one another name, :{LABEL}=NAME"
+                f"--law, --recipe: two are called '{name}'; give one another name, :{LABEL}=NAME"
             )
-    return laws

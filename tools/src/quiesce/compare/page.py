@@ -2,12 +2,14 @@
 
 import html
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from quiesce.compare.clairvoyant import CLAIRVOYANT
 from quiesce.compare.figures import INDEXED
-from quiesce.compare.run import ALL, Cell
+from quiesce.compare.run import ALL, BEST, Cell
 from quiesce.compare.table import laws_of, means, rows
 from quiesce.engine.trace import Trace
 from quiesce.report.html import document, html_table, image, section
@@ -18,18 +20,37 @@ CYCLE = [COLORS[name] for name in ("open_loop", "reference", "constant_best", "m
                                    "bound")]  # fmt: skip
 
 
-def page(
-    title: str, cells: Sequence[Cell], traces: Mapping[str, Trace], body: str, damper: str
-) -> str:
-    """traces: of one record, by law; body and damper: whose motion and current are drawn."""
-    notes = [f"{cell.record}, seed {cell.seed}: {cell.note}" for cell in cells if cell.note]
-    best = f"Best constant current in hindsight: {html.escape('; '.join(notes))}." if notes else ""
+@dataclass(frozen=True)
+class Shown:
+    """Of one structure. traces: of one record, by law; body and damper: whose motion and current
+    are drawn."""
+
+    rig: str
+    cells: Sequence[Cell]
+    traces: Mapping[str, Trace]
+    body: str
+    damper: str
+
+
+def page(shown: Sequence[Shown]) -> str:
+    title = f"laws on {', '.join(one.rig for one in shown)}"
     lead = (
         "Means over records and seeds. The index is the mean of six ratios to all current: peak "
-        f"and RMS of the last body's displacement, of drift, of acceleration. {best}"
+        "and RMS of the last body's displacement, of drift, of acceleration."
     )
-    parts = [
-        f"<h1>{html.escape(title)}</h1><p class='lead'>{lead}</p>",
+    parts = [f"<h1>{html.escape(title)}</h1><p class='lead'>{lead}</p>"]
+    for one in shown:
+        parts += [f"<h2>{html.escape(one.rig)}</h2>"] if len(shown) > 1 else []
+        parts += _sections(one)
+    return document(title, "\n".join(parts))
+
+
+def _sections(shown: Shown) -> list[str]:
+    cells = shown.cells
+    notes = [f"{one.record}, seed {one.seed}: {one.note}" for one in cells if one.law == BEST]
+    best = f"Best constant current in hindsight: {html.escape('; '.join(notes))}." if notes else ""
+    return [
+        f"<p>{best}{_of_clairvoyant(cells)}</p>",
         f'<div class="wide">{html_table(rows(cells))}</div>',
         section("Ratios to all current", "Inside the ring is better.", _radar(cells)),
         section(
@@ -37,9 +58,23 @@ def page(
             "Each point is a law on a record; nearer to the corner is better.",
             _fronts(cells),
         ),
-        section("Motion and current", "One record, the first seed.", _motion(traces, body, damper)),
+        section(
+            "Motion and current",
+            "One record, the first seed.",
+            _motion(shown.traces, shown.body, shown.damper),
+        ),
     ]
-    return document(title, "\n".join(parts))
+
+
+def _of_clairvoyant(cells: Sequence[Cell]) -> str:
+    note = next((cell.note for cell in cells if cell.law == CLAIRVOYANT), None)
+    if note is None:
+        return ""
+    return (
+        f" Row {CLAIRVOYANT}: {html.escape(note)}. It knows the whole record beforehand, without "
+        "noise or delay; no controller can. A share is what a law has of its gain over the best "
+        "constant current."
+    )
 
 
 def _radar(cells: Sequence[Cell]) -> str:

@@ -8,9 +8,9 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.compare.names import ACCEL, TIME
 from quiesce.signal.recording import M_S2_PER_UNIT, read_recording
 
-TIME, ACCEL = "t_s", "acc_m_s2"
 AT2_HEAD_LINES = 4
 MOST_ROWS = 5_000_000
 MOST_m_s2 = 1e4

@@ -1,23 +1,23 @@
-"""A damper's map as the controller takes it: words of integers, for tracker `inverse`.
+"""Dampers' maps as the controller takes them: words of integers, for tracker `inverse`.
 
 firmware/track/force_map.h describes the words; it checks them again.
 """
 
-import struct
-import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.damper.inverse import Monotone, SteadyForces
+from quiesce.damper.inverse import AXES, Axis, Monotone, SteadyForces
+from quiesce.damper.words import sealed, sections_of
 
-MAGIC = 0x31464D51
+MAGIC = 0x32464D51
+SECTION_WORDS = 3
 MAX_CURRENTS = 16
-MAX_VELOCITIES = 32
+MAX_PLACES = 32
 MIN_POINTS = 2  # of either axis
 MAX_CURRENT_mA = 20000
-LIMIT = 2**30 - 1  # of a force in mN and of a velocity in um/s
+LIMIT = 2**30 - 1  # of a force in mN and of a place in um/s or nm
 # Forces are whole mN: less than this between no current and the largest one is told too coarsely.
 LEAST_RANGE_mN = 100
 
@@ -25,18 +25,19 @@ LEAST_RANGE_mN = 100
 def why_no_map(found: Monotone) -> str:
     """One line; empty where there is a map."""
     forces = found.forces
-    slowest = int(np.argmin(found.per_velocity_A))
+    axis, lowest = forces.axis, int(np.argmin(found.per_place_A))
     most_mA = top_mA(found)
     largest_N = float(np.abs(forces.force_N).max())
     if most_mA < 1:
-        speed = forces.velocities_m_s[slowest]
-        return f"at {speed:.4g} m/s the force falls with the current from 0 A on"
+        place = f"{forces.places[lowest]:.4g} {axis.unit}"
+        return f"at {place} the force falls with the current from 0 A on"
     if most_mA > MAX_CURRENT_mA:
         return f"{most_mA / 1e3:g} A is more than {MAX_CURRENT_mA / 1e3:g} A; --max-current-A"
     if 1e3 * largest_N > LIMIT:
         return f"a force of {largest_N:.4g} N is more than {LIMIT / 1e3:.0f} N"
-    if not _is_axis(_velocities_um_s(forces)):
-        return "its velocities do not differ by whole um/s both ways, or pass 1073 m/s"
+    if not _is_axis(_fine_places(forces)):
+        most = f"{LIMIT // 10**6 / (1e-6 * axis.per_unit):g} {axis.unit}"
+        return f"its places do not differ by whole {axis.fine_unit} both ways, or pass {most}"
     spread_mN = float(1e3 * np.ptp(_resampled_N(found), axis=1).max())
     if spread_mN < LEAST_RANGE_mN:
         return (
@@ -46,55 +47,74 @@ def why_no_map(found: Monotone) -> str:
 
 
 def map_words(found: Monotone) -> list[int]:
-    """What the firmware loads, up to the current where some force stops rising. ValueError where
-    `why_no_map` says something."""
+    """What the firmware loads, one section, up to the current where some force stops rising.
+    ValueError where `why_no_map` says something."""
     if why := why_no_map(found):
         raise ValueError(why)
-    velocities, currents = _velocities_um_s(found.forces), _currents_mA(found)
+    places, currents = _fine_places(found.forces), _currents_mA(found)
     # What integration and rounding leave of a fall is less than a part in a million: levelled.
     along = np.maximum.accumulate(np.rint(1e3 * _resampled_N(found)).astype(int), axis=1)
-    forces = np.sign(velocities)[:, None] * along  # > 0 resists a stroke that grows
-    values = [int(value) for part in (velocities, currents, forces.ravel()) for value in part]
-    after = [5 + len(values), len(velocities), len(currents)]
-    after += [value & 0xFFFFFFFF for value in values]
-    return [MAGIC, zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after]
+    forces = np.sign(places)[:, None] * along  # > 0 resists a stroke that grows
+    values = [found.forces.axis.word, len(places), len(currents)]
+    values += [int(value) for part in (places, currents, forces.ravel()) for value in part]
+    return sealed(MAGIC, [values], "map")
+
+
+def joined(tables: Sequence[Sequence[int]]) -> list[int]:
+    """One table for several dampers: the sections of all, in this order. ValueError, in one line,
+    where one is no map, or they are too many or too long for a controller."""
+    return sealed(MAGIC, [one for words in tables for one in _sections(words)], "map")
 
 
 @dataclass(frozen=True)
 class Map:
-    """velocities and currents rising, forces_N [velocities, currents], > 0 resists a stroke that
-    grows."""
+    """Of one damper: places and currents rising, forces_N [places, currents], > 0 resists a stroke
+    that grows."""
 
-    velocities_m_s: np.ndarray
+    axis: Axis
+    places: np.ndarray
     currents_A: np.ndarray
     forces_N: np.ndarray
 
 
-def map_of_words(words: Sequence[int]) -> Map:
-    """ValueError, in one line, for words that the firmware refuses (quiesce_force_map_check)."""
-    if len(words) < 5 or not all(0 <= word <= 0xFFFFFFFF for word in words):
-        raise ValueError("expected 5 words of 32 bits or more")
-    if words[0] != MAGIC:
-        raise ValueError(f"it begins with 0x{words[0]:08x}, a map with 0x{MAGIC:08x}")
-    n, m = words[3], words[4]
-    if words[2] != len(words):
-        raise ValueError(f"{len(words)} words where its header says {words[2]}")
-    if words[1] != zlib.crc32(struct.pack(f"<{len(words) - 2}I", *words[2:])):
-        raise ValueError("its CRC-32 is not that of its words")
-    is_shape = MIN_POINTS <= n <= MAX_VELOCITIES and MIN_POINTS <= m <= MAX_CURRENTS
-    if not is_shape or len(words) != 5 + n + m + n * m:
-        raise ValueError(f"{n} velocities and {m} currents are not the shape of a map")
-    values = np.array(words[5:], dtype=np.uint32).view(np.int32).astype(int)
-    velocities, currents, forces = values[:n], values[n : n + m], values[n + m :].reshape(n, m)
-    along = np.sign(velocities)[:, None] * forces
+def maps_of_words(words: Sequence[int]) -> tuple[Map, ...]:
+    """A section each. ValueError, in one line, for words that the firmware refuses
+    (quiesce_force_map_check)."""
+    return tuple(_map_of(section) for section in _sections(words))
+
+
+def _sections(words: Sequence[int]) -> Iterator[list[int]]:
+    """Signed words of each. ValueError where head or sizes are not right."""
+    return sections_of(MAGIC, words, _size, "map")
+
+
+def _size(rest: Sequence[int]) -> int:
+    if len(rest) < SECTION_WORDS:
+        raise ValueError("it ends before all of its dampers")
+    n, m = rest[1:SECTION_WORDS]
+    size = SECTION_WORDS + n + m + n * m
+    is_shape = MIN_POINTS <= n <= MAX_PLACES and MIN_POINTS <= m <= MAX_CURRENTS
+    if not is_shape or size > len(rest):
+        raise ValueError(f"{n} places and {m} currents are not the shape of a map")
+    return size
+
+
+def _map_of(section: Sequence[int]) -> Map:
+    word, n, m = section[:SECTION_WORDS]
+    axis = next((one for one in AXES.values() if one.word == word), None)
+    if axis is None:
+        raise ValueError(f"{word} is no axis of a map")
+    values = np.array(section[SECTION_WORDS:])
+    places, currents, forces = values[:n], values[n : n + m], values[n + m :].reshape(n, m)
+    along = np.sign(places)[:, None] * forces
     is_current = (np.diff(currents) > 0).all() and currents[0] == 0
-    if not (_is_axis(velocities) and is_current and currents[-1] <= MAX_CURRENT_mA):
-        raise ValueError("its velocities or currents do not rise within their limits")
+    if not (_is_axis(places) and is_current and currents[-1] <= MAX_CURRENT_mA):
+        raise ValueError("its places or currents do not rise within their limits")
     if np.abs(forces).max() > LIMIT or not (np.diff(along, axis=1) >= 0).all():
         raise ValueError("a force goes the wrong way with the current, or is too large")
-    if np.diff(forces[velocities == 0], axis=1).any():
+    if np.diff(forces[places == 0], axis=1).any():
         raise ValueError("a force follows the current at rest")
-    return Map(1e-6 * velocities, 1e-3 * currents, 1e-3 * forces)
+    return Map(axis, places / axis.per_unit, 1e-3 * currents, 1e-3 * forces)
 
 
 def top_mA(found: Monotone) -> int:
@@ -102,15 +122,12 @@ def top_mA(found: Monotone) -> int:
     return int(1e3 * found.limit_A * (1.0 + 1e-12))
 
 
-def _velocities_um_s(forces: SteadyForces) -> np.ndarray:
-    return np.rint(1e6 * forces.velocities_m_s).astype(int)
+def _fine_places(forces: SteadyForces) -> np.ndarray:
+    return np.rint(forces.axis.per_unit * forces.places).astype(int)
 
 
-def _is_axis(velocities_um_s: np.ndarray) -> bool:
-    return bool(
-        (np.diff(velocities_um_s) > 0).all()
-        and -LIMIT <= velocities_um_s[0] < 0 < velocities_um_s[-1] <= LIMIT
-    )
+def _is_axis(fine: np.ndarray) -> bool:
+    return bool((np.diff(fine) > 0).all() and -LIMIT <= fine[0] < 0 < fine[-1] <= LIMIT)
 
 
 def _currents_mA(found: Monotone) -> np.ndarray:
@@ -118,7 +135,7 @@ def _currents_mA(found: Monotone) -> np.ndarray:
 
 
 def _resampled_N(found: Monotone) -> np.ndarray:
-    """In the direction of the motion, at the map's currents."""
+    """In the direction of the axis, at the map's currents."""
     currents_A = 1e-3 * _currents_mA(found)
     forces = found.forces
     return np.stack([np.interp(currents_A, forces.currents_A, row) for row in forces.force_N])

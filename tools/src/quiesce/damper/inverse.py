@@ -202,32 +202,54 @@ def check_finite(damper: DamperModel, force_N: np.ndarray) -> None:
 
 
 @dataclass(frozen=True)
-class SteadyForces:
-    """Forces in mid-stroke of a loop that has closed: [velocities, currents] in N, in the direction
-    of the motion (> 0 resists)."""
+class Axis:
+    """What a damper's force has the sign of, and goes over in a map."""
 
-    velocities_m_s: np.ndarray
+    name: str
+    unit: str  # SI
+    word: int  # quiesce_sense_t
+    fine_unit: str  # the firmware's
+    per_unit: float
+
+
+VELOCITY = Axis("velocity", "m/s", 4, "um/s", 1e6)
+STROKE = Axis("stroke", "m", 3, "nm", 1e9)  # of springs that the current stiffens
+AXES = {axis.name: axis for axis in (VELOCITY, STROKE)}
+
+
+@dataclass(frozen=True)
+class SteadyForces:
+    """Forces of a loop that has closed: [places, currents] in N, in the direction of the place on
+    the axis (> 0 resists): over velocity in mid-stroke, over stroke where the motion turns."""
+
+    places: np.ndarray  # in the axis' unit
     currents_A: np.ndarray
     force_N: np.ndarray
+    axis: Axis = VELOCITY
 
 
 def steady_forces(
     damper: DamperModel,
-    velocities_m_s: Sequence[float],
+    places: Sequence[float],
     currents_A: Sequence[float],
     amplitude_m: float | None = None,
     simulate: Simulate | None = None,
+    axis: Axis = VELOCITY,
 ) -> SteadyForces:
-    """Mid-stroke forces over velocity and current, from sines of `amplitude_m` (half the stroke
-    unless given) whose largest speed is the velocity; a negative one is met on the way back."""
+    """Over velocity: from sines of `amplitude_m` (half the stroke unless given) whose largest speed
+    is the velocity; a negative one is met on the way back. Over stroke: from sines of 1 Hz that
+    turn there."""
     amplitude = amplitude_m or 0.5 * damper.stroke_m
     forces = forces_by(damper, simulate)
     currents = np.asarray(currents_A, dtype=float)
     rows = []
-    for velocity_m_s in velocities_m_s:
-        record, place = sine_at(abs(velocity_m_s), amplitude, velocity_m_s < 0.0)
-        rows.append(np.sign(velocity_m_s) * forces(record, currents)[:, place])
-    return SteadyForces(np.asarray(velocities_m_s, dtype=float), currents, np.array(rows))
+    for one in places:
+        if axis == VELOCITY:
+            record, row = sine_at(abs(one), amplitude, one < 0.0)
+        else:
+            record, row = sine_turning_at(abs(one), one < 0.0)
+        rows.append(np.sign(one) * forces(record, currents)[:, row])
+    return SteadyForces(np.asarray(places, dtype=float), currents, np.array(rows), axis)
 
 
 def sine_at(speed_m_s: float, amplitude_m: float, is_back: bool) -> tuple[Record, int]:
@@ -247,12 +269,27 @@ def sine_at(speed_m_s: float, amplitude_m: float, is_back: bool) -> tuple[Record
     return record, place
 
 
+def sine_turning_at(stroke_m: float, is_below: bool) -> tuple[Record, int]:
+    """A sine of 1 Hz and this amplitude, and the row of its last turn on the wanted side."""
+    rate_Hz = float(_SAMPLES_A_CYCLE)
+    turn = 2.0 * np.pi * np.arange(_CYCLES * _SAMPLES_A_CYCLE + 1) / rate_Hz
+    row = len(turn) - 1 - _SAMPLES_A_CYCLE * (1 if is_below else 3) // 4
+    w, zero = 2.0 * np.pi, np.zeros(len(turn))
+    velocity_m_s = stroke_m * w * np.cos(turn)
+    velocity_m_s[row] = 0.0
+    record = Record(
+        "sine", rate_Hz, turn / w, stroke_m * np.sin(turn), velocity_m_s,
+        -stroke_m * w**2 * np.sin(turn), zero, zero, "A",
+    )  # fmt: skip
+    return record, row
+
+
 @dataclass(frozen=True)
 class Monotone:
-    """Up to which current the force rises with it: everywhere, and at each velocity."""
+    """Up to which current the force rises with it: everywhere, and at each place of the axis."""
 
     limit_A: float
-    per_velocity_A: np.ndarray
+    per_place_A: np.ndarray
     forces: SteadyForces
 
     @property
@@ -263,31 +300,34 @@ class Monotone:
 def monotone_range(
     damper: DamperModel,
     max_current_A: float,
-    velocities_m_s: Sequence[float] | None = None,
+    places: Sequence[float] | None = None,
     simulate: Simulate | None = None,
+    axis: Axis = VELOCITY,
 ) -> Monotone:
-    """Velocities: 3 % to all of the model's speed, both ways, unless given. Beyond limit_A two
-    currents give one force, so that the inverse ends there. UsageError where a force is not
+    """Places: 3 % to all of the model's speed, or stroke, both ways, unless given. Beyond limit_A
+    two currents give one force, so that the inverse ends there. UsageError where a force is not
     finite."""
     check_current(max_current_A)
-    if velocities_m_s is None:
-        velocities_m_s = default_velocities(damper)
+    if places is None:
+        places = default_places(damper, axis)
     is_static = damper.is_kernel and damper.kernel_row()[0].states == 0
     currents = np.linspace(0.0, max_current_A, _FINE if is_static else _COARSE)
-    found = steady_forces(damper, velocities_m_s, currents, simulate=simulate)
+    found = steady_forces(damper, places, currents, simulate=simulate, axis=axis)
     check_finite(damper, found.force_N)
     limits = np.array([rising_until(currents, row) for row in found.force_N])
     return Monotone(float(limits.min()), limits, found)
 
 
-def default_velocities(damper: DamperModel) -> np.ndarray:
-    if not (damper.speed_m_s > 0.0 and damper.stroke_m > 0.0):
+def default_places(damper: DamperModel, axis: Axis = VELOCITY) -> np.ndarray:
+    """UsageError where the file does not say how far or how fast it moves."""
+    if not (damper.speed_m_s > 0.0 or axis == STROKE) or not damper.stroke_m > 0.0:
         raise UsageError(
             f"{damper.name}: the file states no stroke or no speed; --amplitude-mm and "
             "--max-speed-m-s do"
         )
-    speeds = damper.speed_m_s * np.array([0.03, 0.1, 0.3, 1.0])
-    return np.concatenate([-speeds[::-1], speeds])
+    largest = damper.speed_m_s if axis == VELOCITY else damper.stroke_m
+    places = largest * np.array([0.03, 0.1, 0.3, 1.0])
+    return np.concatenate([-places[::-1], places])
 
 
 def rising_until(currents_A: np.ndarray, force_N: np.ndarray) -> float:
@@ -309,7 +349,7 @@ def rising_until(currents_A: np.ndarray, force_N: np.ndarray) -> float:
 def inverse_map(
     found: SteadyForces, forces_N: Sequence[float]
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Currents in A for forces in N (in the direction of the motion) at each velocity, [velocities,
+    """Currents in A for forces in N (in the direction of the motion) at each place, [places,
     forces], and whether each is feasible. Monotone rows only: cut currents at the limit first."""
     wanted = np.asarray(forces_N, dtype=float)
     currents = np.stack(

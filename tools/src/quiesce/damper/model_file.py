@@ -143,7 +143,8 @@ def read_model(file: Path) -> DamperModel:
     return DamperModel(
         table["name"],
         table["model"],
-        float(table.get("stroke_m", 0.0)),
+        # Springs have it among their parameters.
+        float(table.get("stroke_m", keys.get("stroke_m", 0.0))),
         float(table.get("speed_m_s", 0.0)),
         keys,
         rig,

@@ -12,9 +12,11 @@ Work = tuple[str, Callable[[], Any]]  # what to say when it is done, what to do
 Done = TypeVar("Done")
 
 
-def run_all(bench: Bench, tasks: Sequence[Callable[[], Done]]) -> list[Done]:
+def run_all(
+    bench: Bench, tasks: Sequence[Callable[[], Done]], workers: int = WORKERS
+) -> list[Done]:
     """Results in order. Where one fails, those under way are ended and the others left out."""
-    pool = ThreadPoolExecutor(WORKERS)
+    pool = ThreadPoolExecutor(workers)
     try:
         return [future.result() for future in [pool.submit(task) for task in tasks]]
     except BaseException:
@@ -25,7 +27,7 @@ def run_all(bench: Bench, tasks: Sequence[Callable[[], Done]]) -> list[Done]:
         pool.shutdown()
 
 
-def run_work(bench: Bench, pieces: Sequence[Work]) -> list[Any]:
+def run_work(bench: Bench, pieces: Sequence[Work], workers: int = WORKERS) -> list[Any]:
     """Results in order, progress on stderr."""
     progress = Progress(len(pieces))
 
@@ -37,4 +39,4 @@ def run_work(bench: Bench, pieces: Sequence[Work]) -> list[Any]:
 
         return run
 
-    return run_all(bench, [told(*piece) for piece in pieces])
+    return run_all(bench, [told(*piece) for piece in pieces], workers)

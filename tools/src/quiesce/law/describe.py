@@ -5,8 +5,12 @@ import math
 import numpy as np
 
 from quiesce.base.table import format_table
+from quiesce.law.describe_network import described_networks
+from quiesce.law.describe_rules import described_rules
 from quiesce.law.forms.friction import BACK, OUTWARD, FrictionTable
+from quiesce.law.forms.fuzzy_signals import FuzzySignalsTable
 from quiesce.law.forms.linear import LinearTable
+from quiesce.law.forms.network import NetworkTable, NetworkTrackTable
 from quiesce.law.forms.polynomial import PolynomialTable
 from quiesce.law.forms.signs import Combination, SignsSection, SignsTable
 from quiesce.law.signal import Input
@@ -14,6 +18,9 @@ from quiesce.law.tables import Table
 
 
 def described(table: Table) -> str:
+    if isinstance(table, NetworkTrackTable):
+        head = f"tracker {table.law}; dampers {_dampers(table)}"
+        return "\n\n".join([head, *described_networks(table)])
     head = f"law {table.law}, demands {table.demands}; dampers {_dampers(table)}"
     if isinstance(table, LinearTable):
         return "\n\n".join([head, *_linear(table)])
@@ -21,6 +28,10 @@ def described(table: Table) -> str:
         parts = [_signs(i, section) for i, section in enumerate(table.sections)]
     elif isinstance(table, FrictionTable):
         parts = [_friction(table)]
+    elif isinstance(table, FuzzySignalsTable):
+        parts = described_rules(table)
+    elif isinstance(table, NetworkTable):
+        parts = described_networks(table)
     else:
         parts = [_polynomial(table)]
     return "\n\n".join([head, *parts])

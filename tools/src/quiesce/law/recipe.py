@@ -11,23 +11,35 @@ from quiesce.law.tables import Table
 
 @dataclass(frozen=True)
 class Setting:
-    """A number that a recipe takes; low .. high bound it, and a search goes over them."""
+    """A number that a recipe takes, low .. high.
+
+    A search goes over `search` or, where that is None, over a range made from the rig
+    (quiesce.tune.gains.space); not at all where is_tuned is False: a fact about the rig.
+    """
 
     name: str  # with its unit
     default: float
     low: float
     high: float
     help: str
+    search: tuple[float, float] | None = None
+    is_tuned: bool = True
+    is_whole: bool = False  # a switch: a search tries whole numbers only
 
 
 @dataclass(frozen=True)
 class Recipe:
     name: str
     summary: str
-    source: str
+    source: str  # "review": the survey among the five papers, "elastomer paper": the fourth
     tracker: str  # what makes currents of its forces well; "" where it demands currents
     settings: tuple[Setting, ...]
     make: Callable[[LawRig, dict[str, float]], Table | Compiled]
+    # x, v, a: absolute motion of a body; r, v_r: a damper's stroke and its velocity; F: its force,
+    # above 0 where it resists a stroke that grows; indices a, b: of the damper's ends.
+    equation: str = ""
+    errata: str = ""  # what is wrong in the source; "" where nothing is
+    when: str = ""  # to use it
 
 
 @dataclass(frozen=True)

@@ -85,16 +85,22 @@ class Input:
         return [self.signal.word, self.limit, self.shift]
 
 
-def read_input(reader: Reader) -> Input:
+def signal_of(word: int) -> Signal:
     """ValueError, in one line, where the firmware refuses it."""
-    word, limit, shift = reader.take(3)
     code, at = word & 0xFF, word >> 8
     quantity = next((one for one in QUANTITIES if one.code == code), None)
     if quantity is None or not 0 <= at < (1 if quantity.of == "board" else MOST_PLACES):
         raise ValueError(f"0x{word & 0xFFFFFFFF:x} is no signal")
+    return Signal(quantity, at)
+
+
+def read_input(reader: Reader) -> Input:
+    """ValueError, in one line, where the firmware refuses it."""
+    word, limit, shift = reader.take(3)
+    found = signal_of(word)
     if not (1 <= limit <= LIMIT and 0 <= shift <= MOST_SHIFT and limit << shift <= LIMIT):
         raise ValueError(f"a limit of {limit} x 2^{shift} is not in 1 .. 2^30 - 1")
-    return Input(Signal(quantity, at), limit, shift)
+    return Input(found, limit, shift)
 
 
 def read_coefficients(reader: Reader, count: int) -> tuple[int, ...]:

@@ -5,16 +5,20 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.law.forms import friction, linear, polynomial, signs
+from quiesce.law.forms import friction, fuzzy_signals, linear, network, polynomial, signs
 from quiesce.law.forms.friction import FrictionTable
+from quiesce.law.forms.fuzzy_signals import FuzzySignalsTable
 from quiesce.law.forms.linear import LinearTable
+from quiesce.law.forms.network import NetworkTable
 from quiesce.law.forms.polynomial import PolynomialTable
 from quiesce.law.forms.signs import SignsTable
 from quiesce.law.words import read_file
 
-Table = LinearTable | SignsTable | FrictionTable | PolynomialTable
+Table = (
+    LinearTable | SignsTable | FrictionTable | PolynomialTable | FuzzySignalsTable | NetworkTable
+)
 
-FORMS = {form.MAGIC: form for form in (linear, signs, friction, polynomial)}
+FORMS = {form.MAGIC: form for form in (linear, signs, friction, polynomial, fuzzy_signals, network)}
 
 
 def table_of_words(words: Sequence[int]) -> Table:
@@ -30,8 +34,13 @@ def table_of_words(words: Sequence[int]) -> Table:
 
 
 def read_table(file: Path) -> Table:
-    """UsageError, in one line, where it is not one."""
+    """Of a law, or of tracker network. UsageError, in one line, where it is not one."""
+    words = read_file(file)
     try:
-        return table_of_words(read_file(file))
+        return (
+            network.read_tracker(words)
+            if words[:1] == [network.TRACK_MAGIC]
+            else table_of_words(words)
+        )
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}")

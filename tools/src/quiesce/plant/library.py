@@ -45,11 +45,15 @@ class Mode:
     at_sensor: float
 
 
+def library_file() -> Path:
+    path = build_folder() / "host/sim_hil/python/libquiesce_plant.so"
+    return require_file(path.resolve(), "the plant library")
+
+
 @cache
 def library() -> ctypes.CDLL:
     """The library, with the types of its plant functions declared."""
-    path = build_folder() / "host/sim_hil/python/libquiesce_plant.so"
-    lib = ctypes.CDLL(str(require_file(path.resolve(), "the plant library")))
+    lib = ctypes.CDLL(str(library_file()))
     lib.quiesce_plant_load.argtypes = [c_char_p, c_char_p, c_size_t]
     lib.quiesce_plant_load.restype = c_void_p
     lib.quiesce_plant_free.argtypes = [c_void_p]

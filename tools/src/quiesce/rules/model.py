@@ -63,10 +63,12 @@ class FuzzySet:
 
 @dataclass(frozen=True)
 class Singleton:
-    """A named constant of an output."""
+    """A named constant of an output; of first order, where that was asked for, a straight line:
+    value + sum of slopes x inputs."""
 
     name: str
     value: float
+    slopes: tuple[float, ...] = ()  # one an input; (): all are 0
 
 
 @dataclass(frozen=True)

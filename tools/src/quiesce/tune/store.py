@@ -44,7 +44,7 @@ class TuneStore:
         The folder is this store's alone as long as it is open. UsageError where it is another's.
         """
         self.file = folder / FILE_NAME
-        self._folder = _locked(folder)
+        self._folder = locked(folder)
         inputs = {**inputs, "method": bound_method()}
         head = {"schema": SCHEMA, "version": VERSION, "inputs": inputs}
         # As JSON tells it: infinities and tuples read back as they were written.
@@ -105,7 +105,7 @@ class TuneStore:
         staging.replace(self.file)
 
 
-def _locked(folder: Path) -> int:
+def locked(folder: Path) -> int:
     """The folder, made where there is none, as a file descriptor that holds its lock."""
     folder.mkdir(parents=True, exist_ok=True)
     descriptor = os.open(folder, os.O_RDONLY)

@@ -19,7 +19,11 @@ gives the current. That needs a force that rises with the current: the check say
 current it does, at several velocities in mid-stroke of a sine that has settled. --out writes
 inverse.csv (velocity, force, current, feasible), forces.csv, inverse.svg and, unless the last line
 of the check says why not, map.words: the map that tracker inverse of a controller takes
-(quiesce_bench run --force-map). Currents saturate where the force is not feasible.
+(quiesce_bench run --force-map). Currents saturate where the force is not feasible. Of a spring that
+the current stiffens, such as an elastomer, --over stroke makes the map.
+
+A map of one damper stands for every damper of a controller. With files of words (map.words), one
+map is made of all of them, the first for the controller's first damper; --out takes it.
 
 With --method, inverses are made and follow wanted forces (sines, a sweep, band noise) on the
 damper, beside the best constant current and the ideal inverse. Some methods need a damper file,
@@ -30,6 +34,8 @@ can have as a map, and inverse.html.
 EXAMPLES = """
 examples:
   quiesce identify inverse damper.toml --max-current-A 2 --out build/inverse
+  quiesce identify inverse mount.toml --over stroke --max-current-A 1.78 --out build/mount
+  quiesce identify inverse build/inverse/map.words build/mount/map.words --out build/both
   quiesce identify inverse damper.toml --method all --out build/inverse
   quiesce identify inverse rig.csv --method ffn,rnn --on damper.toml --out build/inverse
   quiesce identify inverse damper.toml --read build/inverse/inverse_rnn.toml
@@ -39,7 +45,11 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     fill(parser, EPILOG + inverse_methods.help_lines() + EXAMPLES)
     parser.add_argument(
-        "files", type=Path, nargs="+", metavar="FILE", help="damper file, or recordings (CSV)"
+        "files",
+        type=Path,
+        nargs="+",
+        metavar="FILE",
+        help="damper file, recordings (CSV), or maps to be one (words)",
     )
     parser.add_argument(
         "--max-current-A", type=real_number(1e-6, 1e3, "a current in A"), metavar="A",
@@ -53,6 +63,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--amplitude-mm", type=real_number(1e-3, 1e4, "a length in mm"), metavar="mm",
         help="of the sines (half the file's stroke)",
     )  # fmt: skip
+    parser.add_argument(
+        "--over", choices=("velocity", "stroke"), default="velocity",
+        help="what the check's forces go over and have the sign of (%(default)s)",
+    )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write map and plot there")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     inverse_methods.add_options(parser)
@@ -62,6 +76,8 @@ def run(args: argparse.Namespace) -> int:
     from quiesce.damper.inverse import check_amperes
     from quiesce.damper.simulate import simulator_of_file
 
+    if any(file.suffix == ".words" for file in args.files):
+        return join(args)
     is_recording = inverse_methods.is_recording(args.files)
     inverse_methods.check_options(args, is_recording)
     if is_recording:
@@ -74,16 +90,36 @@ def run(args: argparse.Namespace) -> int:
         damper = replace(damper, stroke_m=2e-3 * args.amplitude_mm)
     most_A = args.max_current_A or stated_current(damper)
     if args.method or args.read:
+        if args.over != "velocity":
+            raise UsageError("--over stroke is for the check; leave --method and --read out")
         return inverse_methods.run(args, damper, simulate, most_A)
     return check(args, damper, simulate, most_A)
 
 
+def join(args: argparse.Namespace) -> int:
+    from quiesce.damper.force_map import joined, maps_of_words
+    from quiesce.damper.inverses.mapped import read_map
+    from quiesce.damper.report.inverse_text import write_joined
+
+    if args.method or args.read or args.json or args.out is None:
+        raise UsageError("maps (words) are made one with --out FOLDER and no other option")
+    try:
+        words = joined([read_map(file) for file in args.files])
+    except ValueError as error:
+        raise UsageError(f"{', '.join(shown(file) for file in args.files)}: {error}") from None
+    write_joined(args.out, words)
+    for number, one in enumerate(maps_of_words(words), 1):
+        print(f"damper {number}: over {one.axis.name}, 0 .. {one.currents_A[-1]:g} A")
+    print(f"written: {shown(args.out)}/map.words, {4 * len(words)} bytes")
+    return 0
+
+
 def check(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -> int:
-    from quiesce.damper.inverse import default_velocities, monotone_range
+    from quiesce.damper.inverse import AXES, monotone_range
     from quiesce.damper.report.inverse_text import numbers_of, text_of, write_map
 
-    velocities = default_velocities(damper)
-    found = monotone_range(damper, most_A, velocities, None if damper.is_kernel else simulate)
+    others = None if damper.is_kernel else simulate
+    found = monotone_range(damper, most_A, simulate=others, axis=AXES[args.over])
     if args.out:
         write_map(args.out, damper, found)
     print(json.dumps(numbers_of(damper, found), indent=1) if args.json else text_of(damper, found))

@@ -2,10 +2,10 @@
 
 import argparse
 
-from quiesce.cli.law import list, make, show
+from quiesce.cli.law import fit, list, make, rules, show
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
-SUBCOMMANDS = (list, show, make)
+SUBCOMMANDS = (list, show, make, rules, fit)
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:

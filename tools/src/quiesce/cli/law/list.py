@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from textwrap import fill
 
 from quiesce.base.table import format_table
 from quiesce.law.recipe import Recipe
@@ -9,7 +10,7 @@ from quiesce.law.recipes import RECIPES, find
 
 EPILOG = """examples:
   quiesce law list                     one line a recipe
-  quiesce law list clipped_optimal     its source and settings
+  quiesce law list clipped_optimal     law, source, settings
 """
 
 
@@ -32,14 +33,30 @@ def described(recipe: Recipe) -> str:
         for one in recipe.settings
     ]
     table = format_table(["setting", "default", "range", ""], rows, (0, 3))
-    tracker = f"\ntracker   {recipe.tracker} or another" if recipe.tracker else ""
-    return f"{recipe.name}: {recipe.summary}\nsource    {recipe.source}{tracker}\n\n{table}"
+    tracker = f"{recipe.tracker} or another" if recipe.tracker else ""
+    facts = {
+        "law": recipe.equation,
+        "source": recipe.source,
+        "errata": recipe.errata,
+        "when": recipe.when,
+        "tracker": tracker,
+    }
+    lines = [f"{recipe.name}: {recipe.summary}"]
+    lines += [
+        fill(text, initial_indent=f"{key:10s}", subsequent_indent=" " * 10, width=100)
+        for key, text in facts.items()
+        if text
+    ]
+    return "\n".join([*lines, "", table])
 
 
 def as_data(recipe: Recipe) -> dict:
     return {
         "summary": recipe.summary,
+        "equation": recipe.equation,
         "source": recipe.source,
+        "errata": recipe.errata or None,
+        "when": recipe.when,
         "tracker": recipe.tracker or None,
         "settings": {
             one.name: {"default": one.default, "low": one.low, "high": one.high}

@@ -23,8 +23,8 @@ from quiesce.damper.inverses.taps import (
 )
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.model import Report, silent
-from quiesce.damper.learned.network import Network, fitted
 from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows, series_of
+from quiesce.network.dense import Network, fitted
 
 NAME = "ffn"
 TITLE = "feed-forward inverse network (eq 38)"

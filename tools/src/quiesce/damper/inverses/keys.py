@@ -8,7 +8,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.damper.data.split import is_number
 from quiesce.damper.learned.inputs import Box
-from quiesce.damper.learned.network import Network
+from quiesce.network.dense import Network
 
 MOST_UNITS = 1024
 _MOST_LAG = 10_000

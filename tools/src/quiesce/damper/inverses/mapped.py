@@ -12,17 +12,17 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.damper.data.record import Record
-from quiesce.damper.force_map import Map, map_of_words, map_words, why_no_map
-from quiesce.damper.inverse import default_velocities, interpolated, monotone_range
+from quiesce.damper.force_map import MAGIC, Map, map_words, maps_of_words, why_no_map
+from quiesce.damper.inverse import VELOCITY, interpolated, monotone_range
 from quiesce.damper.inverses.demand import Source
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.simulate import simulator
+from quiesce.damper.words import words_of_file
 
 NAME = "map"
 TITLE = "force map of the controller"
 HELP = "the controller's table of forces, of a damper file"
 TRACKER = "tracker inverse reads it"
-SUFFIX = ".words"
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class MapInverse:
 
     @property
     def table(self) -> Map:
-        return map_of_words(self.words)
+        return maps_of_words(self.words)[0]
 
     @property
     def max_current_A(self) -> float:
@@ -39,19 +39,18 @@ class MapInverse:
 
     def currents(self, demand: Record) -> np.ndarray:
         table = self.table
-        # Where the motion turns the direction is the demand's.
-        way = np.where(
-            demand.velocity_m_s == 0.0, np.sign(demand.force_N), np.sign(demand.velocity_m_s)
-        )
+        motion = demand.velocity_m_s if table.axis == VELOCITY else demand.disp_m
+        # Where it is 0 the direction is the demand's.
+        way = np.where(motion == 0.0, np.sign(demand.force_N), np.sign(motion))
         out = np.zeros(len(demand))
         for side in (-1.0, 1.0):
             rows = way == side
-            at = table.velocities_m_s * side > 0.0
-            # Beyond its first and last velocity those stand.
-            velocities = np.abs(table.velocities_m_s[at])[:: int(side)]
+            at = table.places * side > 0.0
+            # Beyond its first and last place those stand.
+            places = np.abs(table.places[at])[:: int(side)]
             forces = np.abs(table.forces_N[at])[:: int(side)]
-            speed = np.abs(demand.velocity_m_s[rows])
-            columns = np.stack([np.interp(speed, velocities, one) for one in forces.T])
+            size = np.abs(motion[rows])
+            columns = np.stack([np.interp(size, places, one) for one in forces.T])
             wanted_N = np.abs(demand.force_N[rows])
             found_A = interpolated(table.currents_A, columns, wanted_N)
             out[rows] = np.where(wanted_N > columns[-1], self.max_current_A, found_A)
@@ -64,18 +63,21 @@ class MapInverse:
         return "".join(f"0x{word:08x}\n" for word in self.words)
 
 
-def read_words(file: Path) -> MapInverse:
-    """UsageError where they are no map."""
+def read_map(file: Path) -> list[int]:
+    """Words of one damper or several. UsageError where they are no map."""
+    words = words_of_file(file, MAGIC)
     try:
-        text = file.read_text(encoding="utf-8")
-        words = [int(word, 16) for word in text.split()]
-    except (OSError, ValueError) as error:
-        why = error.strerror if isinstance(error, OSError) else "expected words such as 0x31464d51"
-        raise UsageError(f"{shown(file)}: {why}") from None
-    try:
-        map_of_words(words)
+        maps_of_words(words)
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}") from None
+    return words
+
+
+def read_words(file: Path) -> MapInverse:
+    """UsageError where they are no map of one damper."""
+    words = read_map(file)
+    if (count := len(maps_of_words(words))) > 1:
+        raise UsageError(f"{shown(file)}: a map of {count} dampers; an inverse is of one")
     return MapInverse(words)
 
 
@@ -84,7 +86,7 @@ def make(source: Source, seed: int = 0, progress: Report = silent) -> MapInverse
     is no map."""
     damper = source.model_for(NAME)
     simulate = None if damper.is_kernel else simulator(damper)
-    found = monotone_range(damper, source.max_current_A, default_velocities(damper), simulate)
+    found = monotone_range(damper, source.max_current_A, simulate=simulate)
     if why := why_no_map(found):
         raise UsageError(f"{damper.name}: no map: {why}")
     inverse = MapInverse(map_words(found))

@@ -2,7 +2,8 @@
 
 A method is a module with NAME, TITLE, HELP, TRACKER (what the controller can do with it) and
 make(source, seed, progress), and its place in METHODS; one whose file is TOML has read(keys,
-max_current_A, where), too. A map's file is the words that the controller loads.
+max_current_A, where), too. The file of the others, a map's and a bank's among them, is the words
+that the controller loads: to_text of the inverse.
 """
 
 import json
@@ -18,16 +19,33 @@ import tomli_w
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
-from quiesce.damper.inverses import feed_forward, fuzzy, mapped, recurrent, steps
+from quiesce.damper.bank.table import MAGIC as BANK_MAGIC
+from quiesce.damper.inverses import (
+    banked,
+    feed_forward,
+    fuzzy,
+    mapped,
+    network,
+    networks,
+    recurrent,
+    steps,
+    svr,
+)
+from quiesce.damper.inverses.banked import BankInverse
 from quiesce.damper.inverses.demand import Inverse
 from quiesce.damper.inverses.keys import number
-from quiesce.damper.inverses.mapped import MapInverse, read_words
+from quiesce.damper.inverses.mapped import MapInverse
+from quiesce.damper.inverses.networks import NetworkInverse
+from quiesce.law.forms.network import TRACK_MAGIC
+from quiesce.law.words import read_file
 
 SCHEMA = "quiesce-inverse-damper"
 VERSION = 2
 METHODS: dict[str, ModuleType] = {
-    one.NAME: one for one in (mapped, steps, feed_forward, recurrent, fuzzy)
+    one.NAME: one for one in (mapped, banked, steps, feed_forward, recurrent, fuzzy, network, svr)
 }
+# Of files that the controller loads as they are.
+SUFFIX = ".words"
 
 
 def methods_of(text: str) -> list[str]:
@@ -39,8 +57,13 @@ def methods_of(text: str) -> list[str]:
     return names
 
 
+def is_words(method: str) -> bool:
+    """Whether its file is what the controller loads."""
+    return not hasattr(METHODS[method], "read")
+
+
 def file_name(method: str) -> str:
-    return f"{method}{mapped.SUFFIX}" if method == mapped.NAME else f"inverse_{method}.toml"
+    return f"{method}{SUFFIX}" if is_words(method) else f"inverse_{method}.toml"
 
 
 def check_word(table: Mapping[str, Any]) -> int:
@@ -50,7 +73,7 @@ def check_word(table: Mapping[str, Any]) -> int:
 
 
 def text_of(method: str, inverse: Inverse) -> str:
-    if isinstance(inverse, MapInverse):
+    if isinstance(inverse, MapInverse | BankInverse | NetworkInverse):
         return inverse.to_text()
     table: dict[str, Any] = {
         "schema": SCHEMA,
@@ -69,10 +92,20 @@ def write_inverse(file: Path, method: str, inverse: Inverse) -> None:
         (staging / file.name).write_text(text_of(method, inverse), encoding="utf-8")
 
 
+def _read_words(file: Path) -> tuple[str, Inverse]:
+    magic = read_file(file)[:1]
+    if magic == [TRACK_MAGIC]:
+        # Its words do not say how it was fitted.
+        method = svr.NAME if file.stem == svr.NAME else network.NAME
+        return method, networks.read_words(file)
+    one = banked if magic == [BANK_MAGIC] else mapped
+    return one.NAME, one.read_words(file)
+
+
 def read_inverse(file: Path) -> tuple[str, Inverse]:
     """Method and inverse. UsageError with file and key where it is wrong."""
-    if file.suffix == mapped.SUFFIX:
-        return mapped.NAME, read_words(file)
+    if file.suffix == SUFFIX:
+        return _read_words(file)
     where = shown(file)
     try:
         table = tomllib.loads(file.read_text(encoding="utf-8"))

@@ -21,8 +21,8 @@ from quiesce.damper.inverses.taps import INPUTS, spread
 from quiesce.damper.learned import recurrent
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.model import Report, named, silent
-from quiesce.damper.learned.network import Network
 from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows, series_of
+from quiesce.network.dense import Network
 
 NAME = "rnn"
 TITLE = "recurrent inverse network (eq 37)"

@@ -8,9 +8,9 @@ import numpy as np
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import Box, input_keys, stacked
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
-from quiesce.damper.learned.network import fitted
 from quiesce.damper.learned.sampled import default_lags, sample_time_s, series_of
 from quiesce.damper.library import Scales
+from quiesce.network.dense import fitted
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,10 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import MOST_ROWS, Box
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
-from quiesce.damper.learned.network import Network
-from quiesce.damper.learned.network import fitted as fitted_network
 from quiesce.damper.learned.sampled import delayed, sample_time_s, sampled_rows
 from quiesce.damper.library import Scales
+from quiesce.network.dense import Network
+from quiesce.network.dense import fitted as fitted_network
 
 FEATURES = 4  # envelope, frequency, cos p, sin p
 _REST = 1e-3  # of the largest envelope: less is rest

@@ -20,9 +20,9 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, is_switched, levels_of, records_in
 from quiesce.damper.learned.elements import Elements, states_of
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
-from quiesce.damper.learned.network import Adam, Network, falling_rate
 from quiesce.damper.library import DamperFile, Scales
 from quiesce.damper.model_file import DamperModel
+from quiesce.network.dense import Adam, Network, falling_rate
 
 # Rows in which the elements forget that they started at rest are not learned from, at most.
 _SETTLING_S = 0.1

@@ -12,9 +12,9 @@ import numpy as np
 from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, named, silent
-from quiesce.damper.learned.network import Adam, Network, falling_rate, fit
 from quiesce.damper.learned.sampled import Series, default_lags, sample_time_s, series_of
 from quiesce.damper.library import Scales
+from quiesce.network.dense import Adam, Network, falling_rate, fit
 
 Limits = tuple[float, float]  # of what is fed back, in parts of the largest
 FREE: Limits = (-np.inf, np.inf)

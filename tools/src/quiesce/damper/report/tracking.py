@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from quiesce.base.table import format_table
+from quiesce.damper.inverses.banked import BankInverse
 from quiesce.damper.inverses.made import Made
 from quiesce.damper.inverses.methods import METHODS
 from quiesce.damper.inverses.tracking import CONSTANT, IDEAL, Compared, Run, error_pct
@@ -53,8 +54,19 @@ def peer_lines(found: Compared) -> list[str]:
     ]
 
 
+def notes_of(inverses: Sequence[Made]) -> list[str]:
+    return [
+        line
+        for one in inverses
+        if isinstance(one.inverse, BankInverse)
+        for line in one.inverse.notes()
+    ]
+
+
 def text_of(inverses: Sequence[Made], found: Compared | None) -> str:
     parts = [format_table(*method_table(inverses), left=(0, 1, 4))]
+    if notes := notes_of(inverses):
+        parts += ["", *notes]
     if found is not None:
         parts += ["", format_table(*error_table(found), left=(0,)), "", *peer_lines(found)]
     return "\n".join(parts)
@@ -70,6 +82,7 @@ def numbers_of(inverses: Sequence[Made], found: Compared | None) -> dict[str, An
                 "made_in_s": one.seconds,
                 "controller": one.tracker,
                 "has_map": one.own_map is not None or one.method == "map",
+                "fit_error_pct": list(getattr(one.inverse, "fit_error_pct", ())),
             }
             for one in inverses
         ]
@@ -122,7 +135,7 @@ def page_of(
         f"inverses of {title}",
         f"""<h1>Inverses of {html.escape(title)}</h1>
 <p class="lead">The current for a wanted force, by several methods.</p>{ranking}
-<h2>Methods</h2>{html_table(method_table(inverses), (1, 4))}{drawn}
+<h2>Methods</h2>{html_table(method_table(inverses), (1, 4))}{items(notes_of(inverses))}{drawn}
 <h2>Files</h2>{items(files)}
 <h2>Run it again</h2><pre>{html.escape(command)}</pre>""",
     )

@@ -8,11 +8,11 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
+from quiesce.law.sections import read_sections
 from quiesce.law.signal import Signal, signal
-from quiesce.law.words import Reader, opened, sealed
+from quiesce.law.words import Reader, sealed
 
 MAGIC = 0x31524651
-MOST_SECTIONS = 4
 LIMIT = 2**30 - 1
 OUTWARD, BACK = 1, 2
 
@@ -79,14 +79,11 @@ def _forces_N(section: FrictionSection, stroke_m: np.ndarray, speed_m_s: np.ndar
 
 def read(words: Sequence[int]) -> FrictionTable:
     """ValueError, in one line, where the firmware refuses them."""
-    reader = Reader(opened(words))
-    count = reader.one(1, MOST_SECTIONS, "number of dampers")
-    sections = tuple(
-        FrictionSection(
-            *(reader.one(0, LIMIT, what) for what in ("gain", "least peak", "limit", "band")),
-            reader.one(OUTWARD, OUTWARD | BACK, "ways"),
-        )
-        for _ in range(count)
+    return FrictionTable(read_sections(words, _read_section))
+
+
+def _read_section(reader: Reader) -> FrictionSection:
+    return FrictionSection(
+        *(reader.one(0, LIMIT, what) for what in ("gain", "least peak", "limit", "band")),
+        reader.one(OUTWARD, OUTWARD | BACK, "ways"),
     )
-    reader.end()
-    return FrictionTable(sections)

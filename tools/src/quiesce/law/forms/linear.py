@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quiesce.law.sections import limited
 from quiesce.law.signal import Input, Signal, read_coefficients, read_input
 from quiesce.law.words import Reader, opened, sealed
 
@@ -77,9 +78,7 @@ class LinearTable:
     def forces_N(self, values: np.ndarray) -> np.ndarray:
         """Of each damper [ticks 4] for signals [ticks m] in SI units, in float64."""
         a, b, c, d = self.matrices()
-        scale = np.array([one.per_unit for one in self.inputs])
-        largest = np.array([one.largest for one in self.inputs])
-        u = np.clip(values * scale, -largest, largest)
+        u = limited(self.inputs, values)
         x = np.zeros(len(self.states))
         out = np.zeros((len(values), 4))
         limits = np.array([row.limit_mN for row in self.rows])

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.law.signal import Input, Signal, read_input
-from quiesce.law.words import Reader, opened, sealed
+from quiesce.law.sections import CurrentSections, limited, read_sections
+from quiesce.law.signal import Input, read_input
+from quiesce.law.words import Reader
 
 MAGIC = 0x314C5051
-MOST_SECTIONS, MOST_INPUTS, MOST_TERMS, MOST_POWER = 4, 4, 16, 3
+MOST_INPUTS, MOST_TERMS, MOST_POWER = 4, 16, 3
 MOST_COEFFICIENT = 2**30 - 1
 MOST_A = 20.0
 ONE_Q30 = 2.0**30
@@ -35,62 +36,31 @@ class PolynomialSection:
     is_magnitude: tuple[bool, ...]
     terms: tuple[Term, ...]
 
-
-@dataclass(frozen=True)
-class PolynomialTable:
-    sections: tuple[PolynomialSection, ...]
-
-    law = "polynomial"
-    demands = "current"
-
-    def signals(self) -> list[Signal]:
-        return [one.signal for section in self.sections for one in section.inputs]
-
-    def dampers(self) -> set[int]:
-        return set(range(len(self.sections)))
-
     def words(self) -> list[int]:
-        """ValueError where there is too much of it."""
-        values = [len(self.sections)]
-        for section in self.sections:
-            values += _section_words(section)
-        return sealed(MAGIC, values)
+        m, t = len(self.inputs), len(self.terms)
+        if not (1 <= m <= MOST_INPUTS and 1 <= t <= MOST_TERMS):
+            raise ValueError(f"{m} inputs and {t} terms of a damper")
+        values = [m, t]
+        for one, is_magnitude in zip(self.inputs, self.is_magnitude, strict=True):
+            values += [*one.words(), int(is_magnitude)]
+        for term in self.terms:
+            packed = sum(power << 8 * i for i, power in enumerate(term.powers))
+            values += [term.coefficient, packed]
+        return values
 
     def currents_A(self, values: np.ndarray) -> np.ndarray:
-        """Of each damper [ticks 4] for signals [ticks, as signals() lists them] in SI units, in
-        float64."""
-        out = np.zeros((len(values), 4))
-        first = 0
-        for i, section in enumerate(self.sections):
-            last = first + len(section.inputs)
-            out[:, i] = _currents_A(section, values[:, first:last])
-            first = last
-        return out
+        u = limited(self.inputs, values) / ONE_Q30
+        u = np.where(self.is_magnitude, np.abs(u), u)
+        total = sum(
+            term.coefficient / ONE_mA_Q8 * np.prod(u ** np.array(term.powers), axis=1)
+            for term in self.terms
+        )
+        return np.clip(1e-3 * total, 0.0, MOST_A)
 
 
-def _section_words(section: PolynomialSection) -> list[int]:
-    m, t = len(section.inputs), len(section.terms)
-    if not (1 <= m <= MOST_INPUTS and 1 <= t <= MOST_TERMS):
-        raise ValueError(f"{m} inputs and {t} terms of a damper")
-    values = [m, t]
-    for one, is_magnitude in zip(section.inputs, section.is_magnitude, strict=True):
-        values += [*one.words(), int(is_magnitude)]
-    for term in section.terms:
-        packed = sum(power << 8 * i for i, power in enumerate(term.powers))
-        values += [term.coefficient, packed]
-    return values
-
-
-def _currents_A(section: PolynomialSection, values: np.ndarray) -> np.ndarray:
-    scale = np.array([one.per_unit for one in section.inputs])
-    largest = np.array([one.largest for one in section.inputs])
-    u = np.clip(values * scale, -largest, largest) / ONE_Q30
-    u = np.where(section.is_magnitude, np.abs(u), u)
-    total = sum(
-        term.coefficient / ONE_mA_Q8 * np.prod(u ** np.array(term.powers), axis=1)
-        for term in section.terms
-    )
-    return np.clip(1e-3 * total, 0.0, MOST_A)
+class PolynomialTable(CurrentSections[PolynomialSection]):
+    magic = MAGIC
+    law = "polynomial"
 
 
 def term(inputs: Sequence[Input], powers: Sequence[int], factor_A: float) -> Term:
@@ -107,11 +77,7 @@ def term(inputs: Sequence[Input], powers: Sequence[int], factor_A: float) -> Ter
 
 def read(words: Sequence[int]) -> PolynomialTable:
     """ValueError, in one line, where the firmware refuses them."""
-    reader = Reader(opened(words))
-    count = reader.one(1, MOST_SECTIONS, "number of dampers")
-    sections = tuple(_read_section(reader) for _ in range(count))
-    reader.end()
-    return PolynomialTable(sections)
+    return PolynomialTable(read_sections(words, _read_section))
 
 
 def _read_section(reader: Reader) -> PolynomialSection:

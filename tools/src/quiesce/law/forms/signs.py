@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.law.signal import COEFFICIENT_LIMIT, Input, Signal, read_coefficients, read_input
-from quiesce.law.words import Reader, opened, sealed
+from quiesce.law.sections import CurrentSections, limited, read_sections
+from quiesce.law.signal import COEFFICIENT_LIMIT, Input, read_coefficients, read_input
+from quiesce.law.words import Reader
 
 MAGIC = 0x31475351
-MOST_SECTIONS, MOST_INPUTS, MOST_SIGNS, MOST_SHIFT = 4, 6, 4, 40
+MOST_INPUTS, MOST_SIGNS, MOST_SHIFT = 6, 4, 40
 MOST_mA = 20000
 
 
@@ -34,66 +35,35 @@ class SignsSection:
     idle_mA: int
     currents_mA: tuple[int, ...]
 
-
-@dataclass(frozen=True)
-class SignsTable:
-    sections: tuple[SignsSection, ...]
-
-    law = "signs"
-    demands = "current"
-
-    def signals(self) -> list[Signal]:
-        return [one.signal for section in self.sections for one in section.inputs]
-
-    def dampers(self) -> set[int]:
-        return set(range(len(self.sections)))
-
     def words(self) -> list[int]:
-        """ValueError where there is too much of it."""
-        values = [len(self.sections)]
-        for section in self.sections:
-            values += _section_words(section)
-        return sealed(MAGIC, values)
+        signs = len(self.combinations)
+        if not (1 <= len(self.inputs) <= MOST_INPUTS and 1 <= signs <= MOST_SIGNS):
+            raise ValueError(f"{len(self.inputs)} inputs and {signs} signs of a damper")
+        values = [len(self.inputs), signs, self.idle_mA]
+        for one in self.inputs:
+            values += one.words()
+        for combination in self.combinations:
+            values += [combination.band, combination.shift, *combination.coefficients]
+        return [*values, *self.currents_mA]
 
     def currents_A(self, values: np.ndarray) -> np.ndarray:
-        """Of each damper [ticks 4] for signals [ticks, as signals() lists them] in SI units, in
-        float64."""
-        out = np.zeros((len(values), 4))
-        first = 0
-        for i, section in enumerate(self.sections):
-            last = first + len(section.inputs)
-            out[:, i] = _currents_A(section, values[:, first:last])
-            first = last
-        return out
+        u = limited(self.inputs, values)
+        known = np.ones(len(values), dtype=bool)
+        number = np.zeros(len(values), dtype=int)
+        for j, one in enumerate(self.combinations):
+            total = u @ np.array(one.coefficients, dtype=float)
+            band = one.band * 2.0**one.shift
+            said = np.where(total > band, 1, np.where(total < -band, 0, -1))
+            last = np.maximum.accumulate(np.where(said >= 0, np.arange(len(said)), -1))
+            known &= last >= 0
+            number |= np.where(last >= 0, said[last], 0) << j
+        currents = np.array(self.currents_mA)[number]
+        return 1e-3 * np.where(known, currents, self.idle_mA)
 
 
-def _section_words(section: SignsSection) -> list[int]:
-    signs = len(section.combinations)
-    if not (1 <= len(section.inputs) <= MOST_INPUTS and 1 <= signs <= MOST_SIGNS):
-        raise ValueError(f"{len(section.inputs)} inputs and {signs} signs of a damper")
-    values = [len(section.inputs), signs, section.idle_mA]
-    for one in section.inputs:
-        values += one.words()
-    for combination in section.combinations:
-        values += [combination.band, combination.shift, *combination.coefficients]
-    return [*values, *section.currents_mA]
-
-
-def _currents_A(section: SignsSection, values: np.ndarray) -> np.ndarray:
-    scale = np.array([one.per_unit for one in section.inputs])
-    largest = np.array([one.largest for one in section.inputs])
-    u = np.clip(values * scale, -largest, largest)
-    known = np.ones(len(values), dtype=bool)
-    number = np.zeros(len(values), dtype=int)
-    for j, one in enumerate(section.combinations):
-        total = u @ np.array(one.coefficients, dtype=float)
-        band = one.band * 2.0**one.shift
-        said = np.where(total > band, 1, np.where(total < -band, 0, -1))
-        last = np.maximum.accumulate(np.where(said >= 0, np.arange(len(said)), -1))
-        known &= last >= 0
-        number |= np.where(last >= 0, said[last], 0) << j
-    currents = np.array(section.currents_mA)[number]
-    return 1e-3 * np.where(known, currents, section.idle_mA)
+class SignsTable(CurrentSections[SignsSection]):
+    magic = MAGIC
+    law = "signs"
 
 
 def combination(inputs: Sequence[Input], factors: Sequence[float], band: float) -> Combination:
@@ -111,11 +81,7 @@ def combination(inputs: Sequence[Input], factors: Sequence[float], band: float) 
 
 def read(words: Sequence[int]) -> SignsTable:
     """ValueError, in one line, where the firmware refuses them."""
-    reader = Reader(opened(words))
-    count = reader.one(1, MOST_SECTIONS, "number of dampers")
-    sections = tuple(_read_section(reader) for _ in range(count))
-    reader.end()
-    return SignsTable(sections)
+    return SignsTable(read_sections(words, _read_section))
 
 
 def _read_section(reader: Reader) -> SignsSection:

@@ -8,6 +8,8 @@ from quiesce.law.recipes import (
     bang_bang,
     clipped_linear,
     clipped_optimal,
+    fuzzy_drift,
+    fuzzy_skyhook,
     groundhook,
     groundhook_on_off,
     lyapunov,
@@ -19,8 +21,10 @@ from quiesce.law.recipes import (
     quasi_bang_bang,
     sh_add,
     skyhook,
+    skyhook_elastomer,
     skyhook_on_off,
     sliding_mode,
+    tsk,
 )
 
 RECIPES: tuple[Recipe, ...] = (
@@ -42,6 +46,10 @@ RECIPES: tuple[Recipe, ...] = (
     quasi_bang_bang.RECIPE,
     max_dissipation.RECIPE,
     polynomial.RECIPE,
+    skyhook_elastomer.RECIPE,
+    fuzzy_skyhook.RECIPE,
+    fuzzy_drift.RECIPE,
+    tsk.RECIPE,
 )
 
 

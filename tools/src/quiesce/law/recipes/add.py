@@ -20,7 +20,7 @@ def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
 RECIPE = Recipe(
     "add",
     "on while a_a v_r > 0",
-    "optimal for the next moment's acceleration alone; good above resonance, worse than off at it",
+    "Savaresi, Silani and Bittanti 2005",
     "",
     (
         ON_A,
@@ -29,4 +29,7 @@ RECIPE = Recipe(
         Setting("band_m_s2", 0.05, 0.0, 100.0, "likewise of the acceleration"),
     ),
     make,
+    equation="I = on while a_a v_r > 0, else off",
+    when="Above resonance: it is the best for the next moment's acceleration alone. At "
+    "resonance it is worse than nothing.",
 )

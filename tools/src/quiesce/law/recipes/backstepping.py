@@ -24,16 +24,28 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 RECIPE = Recipe(
     "backstepping",
     "F = m (1 + h1 h2) x + m (h1 + h2) v - k x - c v",
-    "review, eq 33 as a force: its division by the hysteretic state is the inverse tracker's",
+    "review, eq 33; Zapateiro and others 2009",
     "inverse",
     (
-        Setting("mass_kg", 100.0, 1e-3, 1e6, "of the body"),
-        Setting("stiffness_N_m", 1e4, 0.0, 1e9, "of what holds it"),
-        Setting("damping_N_s_m", 100.0, 0.0, 1e7, "likewise"),
-        Setting("h1_1_s", 5.0, 0.0, 1e3, "how fast the first error fades"),
-        Setting("h2_1_s", 5.0, 0.0, 1e3, "how fast the second one does"),
-        Setting("coupling_1_s2", 1.0, 0.0, 1e4, "the 1 of the published form, where time is in s"),
+        Setting("mass_kg", 100.0, 1e-3, 1e6, "of the body", is_tuned=False),
+        Setting("stiffness_N_m", 1e4, 0.0, 1e9, "of what holds it", is_tuned=False),
+        Setting("damping_N_s_m", 100.0, 0.0, 1e7, "likewise", is_tuned=False),
+        Setting("h1_1_s", 5.0, 0.0, 1e3, "how fast the first error fades", (0.1, 100)),
+        Setting("h2_1_s", 5.0, 0.0, 1e3, "how fast the second one does", (0.1, 100)),
+        Setting(
+            "coupling_1_s2",
+            1.0,
+            0.0,
+            1e4,
+            "the 1 of the published form, where time is in s",
+            is_tuned=False,
+        ),
         LIMIT_N,
     ),
     make,
+    equation="F = m (1 + h1 h2) x + m (h1 + h2) v - k x - c v",
+    errata="The printed denominator lacks g, and g's sign is not that of the minus before it. As "
+    "a force there is no denominator: to divide by the hysteretic state is the inverse's "
+    "work, which tracker bank does with that state observed.",
+    when="One mass whose mount is known.",
 )

@@ -20,8 +20,11 @@ def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
 RECIPE = Recipe(
     "bang_bang",
     "on while v_a F > 0",
-    "review, text; the energy of the body's own mode falls fastest",
+    "review, text; McClamroch and Gavin 1995",
     "",
     (ON_A, OFF_A, BAND_m_s, Setting("band_N", 3.0, 0.0, 1e5, "likewise of the force")),
     make,
+    equation="I = on while v_a F > 0, else off",
+    errata="The review prints no formula for the original.",
+    when="A force sensor at the damper and none of its stroke.",
 )

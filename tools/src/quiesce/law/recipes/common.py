@@ -80,3 +80,8 @@ def both_ends(rig: LawRig) -> None:
     for damper in rig.dampers:
         if damper.b is None:
             raise ValueError(f"damper {damper.name} stands on the ground; it has no lower body")
+
+
+def within_ceiling_A(rig: LawRig, current_A: float) -> float:
+    """Not above what any of its dampers may take; rules are for all dampers alike."""
+    return min(current_A, 1e-3 * max(damper.ceiling_mA for damper in rig.dampers))

@@ -18,8 +18,10 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 RECIPE = Recipe(
     "groundhook",
     "force against the lower body's own velocity: F = -c v_b",
-    "the mirror image of skyhook; Valasek and others 1997",
+    "Valasek and others 1997",
     "inverse",
     (Setting("ground_N_s_m", 2000.0, 0.0, 1e6, "damping of the lower body to the ground"), LIMIT_N),
     make,
+    equation="F = -c v_b",
+    when="A wheel to be kept on the road; the body pays for it.",
 )

@@ -26,4 +26,6 @@ RECIPE = Recipe(
     "",
     (ON_A, OFF_A, BAND_m_s),
     make,
+    equation="I = on while -v_b v_r > 0, else off",
+    when="A wheel to be kept on the road, without a map.",
 )

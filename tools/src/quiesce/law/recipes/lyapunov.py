@@ -24,8 +24,17 @@ def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
 RECIPE = Recipe(
     "lyapunov",
     "on while (w x_a + v_a) v_r > 0",
-    "review, eq 31; an absolute displacement drifts, so it is the high-passed one of the view",
+    "review, eq 31 (Nagarajaiah)",
     "",
-    (ON_A, OFF_A, BAND_m_s, Setting("natural_Hz", 1.0, 0.01, 100.0, "the body's frequency")),
+    (
+        ON_A,
+        OFF_A,
+        BAND_m_s,
+        Setting("natural_Hz", 1.0, 0.01, 100.0, "the body's frequency", (0.2, 30)),
+    ),
     make,
+    equation="I = on while (w x_a + v_a) v_r > 0, else off",
+    errata="Right as printed; an absolute displacement drifts, so x_a is the view's high-passed "
+    "one.",
+    when="An isolated base, w the isolation's frequency.",
 )

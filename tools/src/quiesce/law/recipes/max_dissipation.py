@@ -20,8 +20,10 @@ def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
 RECIPE = Recipe(
     "max_dissipation",
     "on while F v_r > 0: the damper's spring takes nothing back",
-    "decentralised; all that it needs is at the damper",
+    "Jansen and Dyke 2000",
     "",
     (ON_A, OFF_A, BAND_m_s, Setting("band_N", 3.0, 0.0, 1e5, "likewise of the force")),
     make,
+    equation="I = on while F v_r > 0, else off",
+    when="A damper with much hysteresis, all sensors at the damper itself.",
 )

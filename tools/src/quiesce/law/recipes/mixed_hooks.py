@@ -26,7 +26,7 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 RECIPE = Recipe(
     "mixed_hooks",
     "F = c_s v_a - c_g v_b + c (v_a - v_b): comfort and road holding in shares",
-    "skyhook and groundhook added, Ahmadian 1997",
+    "Ahmadian 1997",
     "inverse",
     (
         Setting("sky_N_s_m", 2000.0, 0.0, 1e6, "damping of the upper body to the sky"),
@@ -35,4 +35,6 @@ RECIPE = Recipe(
         LIMIT_N,
     ),
     make,
+    equation="F = c_s v_a - c_g v_b + c v_r",
+    when="Comfort and road holding in shares that a search can set.",
 )

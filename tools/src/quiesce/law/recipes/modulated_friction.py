@@ -26,15 +26,18 @@ def make(rig: LawRig, values: dict[str, float]) -> FrictionTable:
 RECIPE = Recipe(
     "modulated_friction",
     "F = g |last peak of the stroke| sgn(v_r), gated by a least peak and by quadrants",
-    "Inaudi 1997; stroke and force are all that it needs",
+    "Inaudi 1997",
     "proportional",
     (
         Setting("gain_N_m", 50000.0, 0.0, 1e9, "force for 1 m of the last peak"),
         Setting("least_peak_m", 0.0, 0.0, 1.0, "below it there is no demand"),
-        Setting("outward", 1.0, 0.0, 1.0, "1: acts where the stroke grows"),
-        Setting("back", 1.0, 0.0, 1.0, "1: acts where it comes back"),
+        Setting("outward", 1.0, 0.0, 1.0, "1: acts where the stroke grows", (0, 1), is_whole=True),
+        Setting("back", 1.0, 0.0, 1.0, "1: acts where it comes back", (0, 1), is_whole=True),
         BAND_m_s,
         LIMIT_N,
     ),
     make,
+    equation="F = g |last peak of r| sgn(v_r)",
+    when="Stroke and force alone, no accelerometer; what a cycle takes grows with the square "
+    "of its amplitude, as in a linear damper.",
 )

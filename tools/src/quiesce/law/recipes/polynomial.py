@@ -26,8 +26,7 @@ def _section(rig: LawRig, values: dict[str, float], i: int) -> PolynomialSection
 RECIPE = Recipe(
     "polynomial",
     "I = d1 + d2 |x| + d3 x^2 + d4 |x|^3 + e2 |v| + e3 v^2 + e4 |v|^3 of the stroke",
-    "review, eq 28: d4 for the second d3, velocity for displacement in its e group; magnitudes, or "
-    "odd terms would treat the two ways differently; e1 is d1",
+    "review, eq 28; Cha and others 2013",
     "",
     (
         Setting("d1_A", 0.0, -20.0, 20.0, "constant"),
@@ -39,4 +38,9 @@ RECIPE = Recipe(
         Setting("e4_A_s3_m3", 0.0, -1e5, 1e5, "of that cubed"),
     ),
     make,
+    equation="I = d1 + d2 |r| + d3 r^2 + d4 |r|^3 + e2 |v_r| + e3 v_r^2 + e4 |v_r|^3, 0 .. 20 A",
+    errata="Prints d3 and e3 twice and the displacement in the group of e, where the text has "
+    "the velocity; odd powers without magnitudes would treat the two ways of a symmetric "
+    "structure differently. e1 is d1.",
+    when="Nothing but the stroke is known, and a search is at hand.",
 )

@@ -1,31 +1,25 @@
 """A current for each quadrant of displacement and velocity: Aly 2013."""
 
-from quiesce.law.forms.signs import SignsTable
+from quiesce.law.forms.signs import SignsSection, SignsTable
 from quiesce.law.recipe import Recipe, Setting
 from quiesce.law.recipes.common import ON_A, BAND_m_s, Sign, section
-from quiesce.law.rig import LawRig
+from quiesce.law.rig import Damper, LawRig
 
 
 def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
-    on = values["on_A"]
+    return SignsTable(tuple(_section(rig, damper, values) for damper in rig.dampers))
+
+
+def _section(rig: LawRig, damper: Damper, values: dict[str, float]) -> SignsSection:
+    on = min(values["on_A"], 1e-3 * damper.ceiling_mA)  # a share is one of what there is
     # By the bits x > 0 and v > 0: x < 0 and v < 0, x > 0 and v < 0, x < 0 and v > 0, both.
     currents = (values["down_share"] * on, values["down_in_share"] * on,
                 values["up_in_share"] * on, values["up_share"] * on)  # fmt: skip
-    return SignsTable(
-        tuple(
-            section(
-                rig,
-                damper,
-                (
-                    Sign({("displacement", damper.a): 1.0}, values["band_m"]),
-                    Sign({("velocity", damper.a): 1.0}, values["band_m_s"]),
-                ),
-                currents,
-                currents[0],
-            )
-            for damper in rig.dampers
-        )
+    signs = (
+        Sign({("displacement", damper.a): 1.0}, values["band_m"]),
+        Sign({("velocity", damper.a): 1.0}, values["band_m_s"]),
     )
+    return section(rig, damper, signs, currents, currents[0])
 
 
 def _share(name: str, default: float, which: str) -> Setting:
@@ -35,7 +29,7 @@ def _share(name: str, default: float, which: str) -> Setting:
 RECIPE = Recipe(
     "quasi_bang_bang",
     "a share of the current in each quadrant of displacement and velocity",
-    "review, eq 32, which is not its own mirror image; equal shares of opposite quadrants are",
+    "review, eq 32; Aly 2013",
     "",
     (
         ON_A,
@@ -47,4 +41,9 @@ RECIPE = Recipe(
         _share("up_in_share", 1.0, "coming back, x < 0"),
     ),
     make,
+    equation="I = on times a share for each quadrant of x_a and v_a",
+    errata="It names one quadrant twice and is not its own mirror image: equal shares of "
+    "opposite quadrants are. Its weights favour the inward quadrants; below resonance the "
+    "outward ones are what works.",
+    when="A single body whose displacement is known.",
 )

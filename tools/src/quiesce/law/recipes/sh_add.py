@@ -28,14 +28,17 @@ def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
 RECIPE = Recipe(
     "sh_add",
     "on while (a_a + w v_a) v_r > 0: skyhook below w, acceleration-driven above",
-    "the published case distinction is the sign of this one sum",
+    "Savaresi and Spelta 2007",
     "",
     (
         ON_A,
         OFF_A,
         BAND_m_s,
         Setting("band_m_s2", 0.05, 0.0, 100.0, "likewise of the sum"),
-        Setting("cross_Hz", 1.8, 0.01, 100.0, "frequency between the two"),
+        Setting("cross_Hz", 1.8, 0.01, 100.0, "frequency between the two", (0.2, 30)),
     ),
     make,
+    equation="I = on while (a_a + w v_a) v_r > 0, else off",
+    errata="Their two cases, told by the sign of a^2 - w^2 v^2, are the sign of this one sum.",
+    when="A body with both: skyhook below w, acceleration-driven above.",
 )

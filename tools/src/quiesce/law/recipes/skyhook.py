@@ -18,8 +18,12 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 RECIPE = Recipe(
     "skyhook",
     "force against the body's own velocity: F = sgn(v_a) min(limit, c |v_a|)",
-    "elastomer paper, eq 34 with magnitudes; where the damper cannot, the tracker demands nothing",
+    "elastomer paper, eq 34; Karnopp and others 1974",
     "inverse",
     (Setting("sky_N_s_m", 2000.0, 0.0, 1e6, "damping to the sky"), LIMIT_N),
     make,
+    equation="F = sgn(v_a) min(limit, c |v_a|)",
+    errata="Compares signed numbers, so that below 0 it never clips; magnitudes here. The 0 of "
+    "its other case is the damper's force without current.",
+    when="A body to be kept quiet, at its own resonance and above.",
 )

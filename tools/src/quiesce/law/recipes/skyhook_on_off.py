@@ -18,8 +18,10 @@ def make(rig: LawRig, values: dict[str, float]) -> SignsTable:
 RECIPE = Recipe(
     "skyhook_on_off",
     "on while v_a v_r > 0",
-    "two states of skyhook; no force is measured and no map needed",
+    "Karnopp and others 1974, Krasnicki 1980",
     "",
     (ON_A, OFF_A, BAND_m_s),
     make,
+    equation="I = on while v_a v_r > 0, else off",
+    when="No map and no force sensor; the first one to try.",
 )

@@ -38,12 +38,22 @@ class Smooth:
 
 
 @dataclass(frozen=True)
-class Term:
-    """What a file says of a term: points, a singleton's value, or a smooth curve."""
+class Line:
+    """A term of first order: constant + sum of slopes x inputs."""
 
+    slopes: tuple[float, ...]
+    constant: float
+
+
+# What a file says of a term: points, a singleton's value, a smooth curve, or a straight line.
+Content = tuple[Point, ...] | float | Smooth | Line
+
+
+@dataclass(frozen=True)
+class Term:
     name: Token
     at: Token  # where its shape begins
-    content: tuple[Point, ...] | float | Smooth
+    content: Content
 
 
 @dataclass
@@ -71,9 +81,11 @@ class Variable:
 
 @dataclass(frozen=True)
 class Options:
-    """approximate: straight segments that may stand for a smooth shape, None: none may."""
+    """approximate: straight segments that may stand for a smooth shape, None: none may.
+    first_order: singletons may have slopes."""
 
     approximate: int | None = None
+    first_order: bool = False
 
 
 class Builder:
@@ -101,7 +113,7 @@ class Builder:
     def add_term(self, variable: Variable, term: Term) -> None:
         self.check_name(term.name, [t.name for t in variable.terms], "term")
         variable.terms.append(term)
-        is_set = variable.is_input or not isinstance(term.content, float)
+        is_set = variable.is_input or not isinstance(term.content, (float, Line))
         most = MAX_SETS if is_set else MAX_SINGLETONS
         if len(variable.terms) > most:
             raise self.source.error(
@@ -165,14 +177,16 @@ class Builder:
             return Smooth(at.text, made, height)
         return tuple((x, height * mu) for x, mu in made)
 
-    def linear(self, at: Token, values: Sequence[float]) -> float:
-        """A first-order term whose slopes are all 0 is a constant: its last number."""
+    def linear(self, at: Token, values: Sequence[float]) -> float | Line:
+        """A first-order term: one whose slopes are all 0 is a constant, its last number."""
         count = len(self.of_kind(is_input=True)) + 1
         if len(values) != count:
             raise self.source.error(at, f"{len(values)} numbers of {at.text}", f"{count}")
-        if any(values[:-1]):
+        if not any(values[:-1]):
+            return values[-1]
+        if not self.options.first_order:
             raise self.source.error(at, f"{at.text} of {numbers(values)}", "slopes of 0")
-        return values[-1]
+        return Line(tuple(values[:-1]), values[-1])
 
     def finish(
         self, name: str, at: Token, make_rules: Callable[[Sequence[Output]], list[Rule]]
@@ -229,7 +243,7 @@ class Builder:
 
     def set(self, variable: Variable, term: Term, low: float, high: float) -> FuzzySet:
         content = term.content
-        if isinstance(content, float):
+        if isinstance(content, (float, Line)):
             raise self.source.error(
                 term.at, f"{variable.shown()} has a singleton", "a set: a method with points"
             )
@@ -266,16 +280,22 @@ class Builder:
         return tuple((x, smooth.height * mu) for x, mu in points)
 
     def singletons(self, variable: Variable, low: float, high: float) -> tuple[Singleton, ...]:
-        for term in variable.terms:
-            if not isinstance(term.content, float):
-                raise self.source.error(
-                    term.at, f"{variable.shown()} has a set", "a singleton: a weighted average"
-                )
-            if not low <= term.content <= high:
-                raise self.source.error(
-                    term.at, f"singleton {term.content:g}", f"one within {low:g} .. {high:g}"
-                )
-        return tuple(Singleton(term.name.text, float(term.content)) for term in variable.terms)
+        return tuple(self.singleton(variable, term, low, high) for term in variable.terms)
+
+    def singleton(self, variable: Variable, term: Term, low: float, high: float) -> Singleton:
+        """A straight line's values are bounded by nothing that a file says."""
+        content = term.content
+        if isinstance(content, Line):
+            return Singleton(term.name.text, content.constant, content.slopes)
+        if not isinstance(content, float):
+            raise self.source.error(
+                term.at, f"{variable.shown()} has a set", "a singleton: a weighted average"
+            )
+        if not low <= content <= high:
+            raise self.source.error(
+                term.at, f"singleton {content:g}", f"one within {low:g} .. {high:g}"
+            )
+        return Singleton(term.name.text, content)
 
 
 def numbers(values: Sequence[float]) -> str:

@@ -22,26 +22,33 @@ MAX_BYTES = 1 << 20
 MAX_SEGMENTS = 128  # of a chain; at least 2
 
 
-def read_rules(path: Path, approximate: int | None = None) -> RuleBase:
-    """approximate: see read_text. UsageError, `FILE:LINE:COLUMN: ...`, for what is no rule file."""
+def read_rules(path: Path, approximate: int | None = None, first_order: bool = False) -> RuleBase:
+    """approximate, first_order: see read_text. UsageError, `FILE:LINE:COLUMN: ...`, for what is no
+    rule file."""
     format, name = format_of(path), shown(path)
-    return read_text(load(path, name), format, path.stem, approximate, name)
+    return read_text(load(path, name), format, path.stem, approximate, name, first_order)
 
 
 def read_text(
-    text: str, format: str, name: str, approximate: int | None = None, file: str | None = None
+    text: str,
+    format: str,
+    name: str,
+    approximate: int | None = None,
+    file: str | None = None,
+    first_order: bool = False,
 ) -> RuleBase:
     """name: of the base where the text gives it none; file: what errors call the text.
 
     approximate: segments of the chain that stands for a smooth membership function, which is an
-    error without.
+    error without. first_order: terms may be straight lines (Singleton.slopes), which is an error
+    without.
     """
     if approximate is not None and not 2 <= approximate <= MAX_SEGMENTS:
         raise UsageError(f"--approximate {approximate}; 2 to {MAX_SEGMENTS} segments")
     source = Source(file or f"{name}.{format}", text)
     if not text.strip():
         raise source.error(0, "the file is empty", "a rule base")
-    return READERS[format](source, name, Options(approximate))
+    return READERS[format](source, name, Options(approximate, first_order))
 
 
 def format_of(path: Path) -> str:

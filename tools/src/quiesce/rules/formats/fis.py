@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from quiesce.rules.formats.build import Builder, Options, Smooth, Term, Variable
+from quiesce.rules.formats.build import Builder, Content, Options, Term, Variable
 from quiesce.rules.formats.logic import Draft, Join, checked_weight, plain_rules, uses
 from quiesce.rules.formats.scan import (
     END,
@@ -30,7 +30,6 @@ from quiesce.rules.model import (
     WEIGHTED_SUM,
     Condition,
     Output,
-    Point,
     Rule,
     RuleBase,
 )
@@ -218,9 +217,7 @@ class FisReader:
         stream.expect(",")
         self.builder.add_term(variable, Term(name, at, self.content(variable, at, stream)))
 
-    def content(
-        self, variable: Variable, at: Token, stream: Stream
-    ) -> tuple[Point, ...] | float | Smooth:
+    def content(self, variable: Variable, at: Token, stream: Stream) -> Content:
         if at.text == "constant" and not variable.is_input:
             return self.vector(stream, 1)[0]
         if at.text == "linear" and not variable.is_input:

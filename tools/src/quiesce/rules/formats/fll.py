@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from quiesce.rules.formats.build import Builder, Options, Smooth, Term, Variable
+from quiesce.rules.formats.build import Builder, Content, Options, Term, Variable
 from quiesce.rules.formats.fll_lines import (
     BLOCK,
     ENGINE,
@@ -167,7 +167,7 @@ class FllReader:
         at = stream.token
         self.builder.add_term(variable, Term(name, at, self.content(stream)))
 
-    def content(self, stream: Stream) -> tuple[Point, ...] | float | Smooth:
+    def content(self, stream: Stream) -> Content:
         if not stream.sees(*FLL_SHAPES, *OTHER_TERMS):
             raise stream.unexpected(f"one of {', '.join((*OTHER_TERMS, *FLL_SHAPES))}")
         at = stream.take()

@@ -5,13 +5,22 @@ import json
 import os
 import shlex
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import shown
+from quiesce.cli.tune import law
 
-EPILOG = """examples:
+NAME = "tune"
+LAW = f"{NAME}-{law.NAME}"
+
+EPILOG = """also:
+  quiesce tune law RECIPE                       settings of a published law, on recorded motions
+  ('quiesce tune law --help' has its options)
+
+examples:
   quiesce tune my_plant.toml --quick            a first look, under a minute
   quiesce tune my_plant.toml --out my_law       all of it: minutes, can be interrupted
   quiesce tune --from-sweep recording.csv       identify the plant first, then tune for it
@@ -29,9 +38,16 @@ and weight times mean current (over full current). Own weights have no limits bu
 """
 
 
+def words_of(arguments: Sequence[str]) -> list[str]:
+    """`tune law ...` as the one word that the parser knows."""
+    words = list(arguments)
+    return [LAW, *words[2:]] if words[:2] == [NAME, law.NAME] else words
+
+
 def add_parser(commands: argparse._SubParsersAction) -> None:
+    add_law(commands)
     parser = commands.add_parser(
-        "tune",
+        NAME,
         description="Compute the phase law's pulses for a plant, and what they are worth.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -50,6 +66,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     add_aims(parser.add_argument_group("what to tune for"))
     add_sources(parser.add_argument_group("the plant from a recording"))
     parser.set_defaults(run=run)
+
+
+def add_law(commands: argparse._SubParsersAction) -> None:
+    parser = commands.add_parser(LAW, prog="quiesce tune law", description=law.DESCRIPTION)
+    law.add_options(parser)
+    parser.set_defaults(run=law.run)
 
 
 def add_aims(group: argparse._ArgumentGroup) -> None:

@@ -1,0 +1,37 @@
+#include "sections.h"
+
+#include "view_signal.h"
+
+quiesce_table_verdict_t sections_check(const sections_kind_t *kind, const uint32_t *words,
+                                       uint32_t count) {
+    const quiesce_table_verdict_t verdict =
+        table_check_head(words, count, kind->magic, SECTIONS_FIRST - TABLE_HEAD_WORDS);
+    if (verdict != QUIESCE_TABLE_OK) {
+        return verdict;
+    }
+    if (sections_count(words) == 0 || sections_count(words) > QUIESCE_MAX_DAMPERS) {
+        return QUIESCE_TABLE_SHAPE;
+    }
+    uint32_t at = SECTIONS_FIRST;
+    for (uint32_t i = 0; i < sections_count(words); i++) {
+        const uint32_t size = kind->size(&words[at], count - at);
+        if (size == 0) {
+            return QUIESCE_TABLE_SHAPE;
+        }
+        if (!kind->is_good(&words[at])) {
+            return QUIESCE_TABLE_POINT;
+        }
+        at += size;
+    }
+    return at == count ? QUIESCE_TABLE_OK : QUIESCE_TABLE_SHAPE;
+}
+
+uint64_t sections_need(const sections_kind_t *kind, const uint32_t *words) {
+    uint32_t at = SECTIONS_FIRST;
+    uint64_t bits = 0;
+    for (uint32_t i = 0; i < sections_count(words); i++) {
+        bits |= view_needs_damper(i) | kind->needs(&words[at], i);
+        at += kind->size(&words[at], words[TABLE_WORDS] - at);
+    }
+    return bits;
+}

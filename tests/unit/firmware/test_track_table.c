@@ -1,0 +1,167 @@
+// What a tracker's table needs: a tracker of the test's own takes the place of the others. Its
+// table of one word of its own says which bits.
+#include <string.h>
+
+#include "crc32.h"
+#include "law.h"
+#include "quiesce.h"
+#include "test_signal.h"
+#include "track.h"
+#include "unity.h"
+
+enum { RATE_Hz = 1000, ASKED_mA = 900, UNLOCK_mA = 1100, MAGIC = 0x54534554, WORDS = 5 };
+
+static quiesce_t controller;
+static quiesce_board_t board;
+static quiesce_params_t params;
+static quiesce_in_t in;
+static quiesce_out_t out;
+static uint32_t seed;
+
+static bool step_law(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *to) {
+    (void)state;
+    (void)setup;
+    (void)view;
+    law_demand_all(to, 1000);
+    return true;
+}
+
+static const law_t test_law = {.name = "test", .demands = LAW_DEMANDS_FORCE, .step = step_law};
+
+const law_t *law_find(int32_t index) {
+    return index >= 0 && index <= QUIESCE_LAW_PHASE ? &test_law : NULL;
+}
+
+static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
+    return count == WORDS && words[2] == WORDS ? QUIESCE_TABLE_OK : QUIESCE_TABLE_SIZE;
+}
+
+static uint64_t needs(const uint32_t *words) {
+    return words[3] | (uint64_t)words[4] << 32;
+}
+
+// One more for each tick since it began.
+static int32_t step_track(void *state, const track_setup_t *setup, const view_damper_t *damper,
+                          int32_t demand_mN) {
+    (void)setup;
+    (void)damper;
+    (void)demand_mN;
+    return ASKED_mA + (int32_t)(*(uint32_t *)state)++;
+}
+
+static const track_table_kind_t kind = {.magic = MAGIC, .check = check, .needs = needs};
+static const track_t test_track = {.name = "test", .kind = &kind, .step = step_track};
+
+const track_t *track_find(int32_t index) {
+    return index >= 0 ? &test_track : NULL;
+}
+
+static const uint32_t *table_of(uint64_t bits) {
+    static uint32_t tables[2][WORDS];
+    static uint32_t turn;
+    uint32_t *words = tables[turn++ % 2u];
+    words[0] = MAGIC;
+    words[2] = WORDS;
+    words[3] = (uint32_t)bits;
+    words[4] = (uint32_t)(bits >> 32);
+    words[1] = crc32_words(&words[2], WORDS - 2);
+    return words;
+}
+
+static quiesce_table_verdict_t use(uint64_t bits) {
+    return quiesce_table_use(&controller, table_of(bits), WORDS);
+}
+
+// An accelerometer and a force sensor.
+void setUp(void) {
+    seed = 1;
+    quiesce_params_default(&params);
+    params.tick_rate_Hz = RATE_Hz;
+    params.unlock_current_mA = UNLOCK_mA;
+    params.slew_mA_s = 100000000;
+    quiesce_board_default(&board);
+    quiesce_board_sensor_t *sensor = &board.sensor[board.sensors++];
+    *sensor = board.sensor[0];
+    sensor->sense = QUIESCE_SENSE_FORCE;
+    sensor->scale = 1000;
+    sensor->full_scale_counts = 5000000;
+    sensor->stuck_us = 0;
+    TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
+    memset(&in, 0, sizeof in);
+}
+void tearDown(void) {}
+
+static void run(uint32_t ticks, bool has_force) {
+    for (; ticks > 0; ticks--) {
+        in.tick++;
+        in.enable = in.tick > 1; // its edge arms
+        in.sensor[0] = (quiesce_sample_t){.counts = signal_sine(17316, 5000, in.tick, RATE_Hz) +
+                                                    signal_noise(&seed, 20),
+                                          .is_fresh = true};
+        in.sensor[1] = (quiesce_sample_t){.counts = 30000, .is_fresh = has_force};
+        quiesce_step(&controller, &in, &out);
+    }
+}
+
+static void test_a_table_that_the_board_cannot_serve_is_refused(void) {
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, use(VIEW_TEMPERATURE));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, use(VIEW_FORCE << 1));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, use(VIEW_CURRENT << 1)); // no second damper
+    TEST_ASSERT_EQUAL_STRING("test", quiesce_lacks_table(&controller));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK,
+                          use(VIEW_FORCE | VIEW_STROKE | VIEW_STROKE_VELOCITY | VIEW_CURRENT));
+    TEST_ASSERT_NULL(quiesce_lacks_table(&controller));
+    const uint32_t hash = quiesce_table_hash(&controller);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, use(VIEW_TEMPERATURE));
+    TEST_ASSERT_EQUAL_HEX32(hash, quiesce_table_hash(&controller));
+}
+
+// Without the force the tracker is not stepped; with a table that does not ask for it it is.
+static void test_a_tracker_waits_for_what_its_table_needs(void) {
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(VIEW_FORCE));
+    run(1000, true);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
+    TEST_ASSERT_GREATER_OR_EQUAL_INT32(ASKED_mA, out.telemetry.current_law_mA);
+    run(300, false);
+    TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, out.telemetry.current_law_mA);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_LAW_BLIND, out.telemetry.fault);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(0));
+    run(1, false);
+    TEST_ASSERT_EQUAL_INT32(ASKED_mA, out.telemetry.current_law_mA);
+    // Nothing is left of what the last one needed.
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(VIEW_FORCE));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_drop(&controller, MAGIC));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(0));
+    run(1, false);
+    TEST_ASSERT_EQUAL_INT32(ASKED_mA, out.telemetry.current_law_mA);
+}
+
+// Strokes, that nobody else asks for, are made for the table.
+static void test_what_a_table_needs_is_served(void) {
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(VIEW_STROKE | VIEW_STROKE_VELOCITY));
+    run(10000, true);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_STATE_RUN, out.telemetry.state);
+    TEST_ASSERT_GREATER_THAN_INT32(ASKED_mA + 5000, out.telemetry.current_law_mA);
+}
+
+static void test_another_table_starts_from_rest(void) {
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(0));
+    run(1000, true);
+    TEST_ASSERT_EQUAL_INT32(ASKED_mA + 999, out.telemetry.current_law_mA);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(VIEW_CURRENT));
+    run(1, true);
+    TEST_ASSERT_EQUAL_INT32(ASKED_mA, out.telemetry.current_law_mA);
+    // One that is refused takes nothing away.
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, use(VIEW_TEMPERATURE));
+    run(1, true);
+    TEST_ASSERT_EQUAL_INT32(ASKED_mA + 1, out.telemetry.current_law_mA);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_a_table_that_the_board_cannot_serve_is_refused);
+    RUN_TEST(test_a_tracker_waits_for_what_its_table_needs);
+    RUN_TEST(test_what_a_table_needs_is_served);
+    RUN_TEST(test_another_table_starts_from_rest);
+    return UNITY_END();
+}

@@ -1,0 +1,1 @@
+"""`quiesce tune`: pulses for a plant, and laws with gains (`tune law`)."""

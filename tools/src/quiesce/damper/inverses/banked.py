@@ -1,0 +1,93 @@
+"""A bank of models at constant currents as an inverse: what tracker `bank` of the controller reads,
+read back.
+
+firmware/track/force_bank.h says what the words are and how a current is found between models.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.damper.bank.fit import fit_bank
+from quiesce.damper.bank.table import MAGIC, Bank, bank_words, banks_of_words
+from quiesce.damper.data.record import Record
+from quiesce.damper.inverse import forces_by, interpolated
+from quiesce.damper.inverses.demand import Source
+from quiesce.damper.learned.model import Report, silent
+from quiesce.damper.simulate import simulator
+from quiesce.damper.words import words_of_file
+
+NAME = "bank"
+TITLE = "models at constant currents, with memory"
+HELP = "stops, saturations and dashpots that weigh at each current what the damper file says"
+TRACKER = "tracker bank reads it"
+RATE_Hz = 1000
+
+
+@dataclass(frozen=True)
+class BankInverse:
+    """fit_error_pct: of each model's force, on motions that it was not fitted to; empty where it is
+    read from a file."""
+
+    words: list[int]
+    fit_error_pct: tuple[float, ...] = ()
+
+    @property
+    def bank(self) -> Bank:
+        return banks_of_words(self.words)[0]
+
+    @property
+    def max_current_A(self) -> float:
+        return float(self.bank.currents_A[-1])
+
+    def currents(self, demand: Record) -> np.ndarray:
+        """UsageError where the demand is not of the bank's rate."""
+        bank = self.bank
+        if round(demand.rate_Hz) != bank.rate_Hz:
+            raise UsageError(f"a bank for {bank.rate_Hz} Hz, a motion of {demand.rate_Hz:g} Hz")
+        forces_N = bank.forces_N(demand.disp_m, demand.velocity_m_s)
+        return interpolated(bank.currents_A, forces_N, demand.force_N)
+
+    def parameters(self) -> dict[str, Any]:
+        return {"words": self.words}
+
+    def to_text(self) -> str:
+        return "".join(f"0x{word:08x}\n" for word in self.words)
+
+    def notes(self) -> list[str]:
+        """What a user has to know of it."""
+        if not self.fit_error_pct:
+            return []
+        pairs = zip(self.bank.currents_A, self.fit_error_pct, strict=True)
+        errors = ", ".join(f"{error:.1f} at {current:.3g} A" for current, error in pairs)
+        signals = "stroke and stroke velocity" if self.bank.needs_stroke else "stroke velocity"
+        return [
+            f"bank: error of its force, % of the model's, on motions not fitted to: {errors}",
+            f"bank: needs {signals}; for ticks at {self.bank.rate_Hz} Hz",
+        ]
+
+
+def read_words(file: Path) -> BankInverse:
+    """UsageError where they are no bank of one damper."""
+    words = words_of_file(file, MAGIC)
+    try:
+        banks = banks_of_words(words)
+    except ValueError as error:
+        raise UsageError(f"{shown(file)}: {error}") from None
+    if len(banks) > 1:
+        raise UsageError(f"{shown(file)}: a bank of {len(banks)} dampers; an inverse is of one")
+    return BankInverse(words)
+
+
+def make(source: Source, seed: int = 0, progress: Report = silent) -> BankInverse:
+    """UsageError where there is no bank."""
+    damper = source.model_for(NAME)
+    forces = forces_by(damper, None if damper.is_kernel else simulator(damper))
+    found = fit_bank(damper, forces, source.max_current_A, RATE_Hz, seed, progress)
+    inverse = BankInverse(bank_words([found.bank]), tuple(found.error_pct.tolist()))
+    progress(f"bank: {4 * len(inverse.words)} bytes, up to {inverse.max_current_A:g} A")
+    return inverse

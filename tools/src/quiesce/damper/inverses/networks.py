@@ -1,0 +1,89 @@
+"""Inverses that tracker `network` of the controller works off: a table of one damper, read back.
+
+firmware/track/track_network.c says what the tracker makes of it.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.damper.data.record import Record
+from quiesce.damper.learned.inputs import Box, column
+from quiesce.law.forms.network import (
+    DEMAND,
+    STROKE_VELOCITY,
+    NetworkSection,
+    NetworkTrackTable,
+    Span,
+    read_tracker,
+)
+from quiesce.law.signal import BY_NAME, Signal
+from quiesce.law.words import file_text, read_file
+from quiesce.network.layers import Layers
+
+READ_BY = "tracker network reads it"
+TICK_RATE_HZ = 1000.0  # that delays count in
+_SEEN = {
+    "force_N": DEMAND,
+    "displacement_m": BY_NAME["stroke"],
+    "velocity_m_s": STROKE_VELOCITY,
+    "temperature_C": BY_NAME["temperature"],
+}
+_KEYS = {quantity.name: key for key, quantity in _SEEN.items()}
+
+
+@dataclass(frozen=True)
+class NetworkInverse:
+    table: NetworkTrackTable
+
+    @property
+    def max_current_A(self) -> float:
+        return 1e-3 * self.table.sections[0].largest_mA
+
+    def currents(self, demand: Record) -> np.ndarray:
+        """Of the controller's integers, in float64. UsageError where the demand has no temperature
+        and the network wants one, or where its rate is not that of the delays."""
+        section = self.table.sections[0]
+        if section.delay_ticks and demand.rate_Hz != TICK_RATE_HZ:
+            raise UsageError(f"{demand.name}: {demand.rate_Hz:g} Hz; delays count in 1 kHz")
+        values = [column(demand, _KEYS[one.signal.quantity.name]) for one in section.inputs]
+        return self.table.currents_A(np.stack(values, axis=1))[:, 0]
+
+    def parameters(self) -> dict[str, Any]:
+        return {"words": self.table.words()}
+
+    def to_text(self) -> str:
+        return file_text(self.table.words())
+
+
+def inverse_of(
+    box: Box, layers: Layers, max_current_A: float, least_m_s: float, delay_ticks: int = 0
+) -> NetworkInverse:
+    """UsageError where the controller would refuse it."""
+    inputs = tuple(
+        Span.of(Signal(_SEEN[key], 0), float(low), float(high))
+        for key, low, high in zip(box.keys, box.low, box.high, strict=True)
+    )
+    least_um_s = round(STROKE_VELOCITY.per_unit * least_m_s)
+    section = NetworkSection(inputs, delay_ticks, round(1e3 * max_current_A), layers, least_um_s)
+    inverse = NetworkInverse(NetworkTrackTable((section,)))
+    try:
+        inverse.table.words()
+    except ValueError as error:
+        raise UsageError(f"no network for a controller: {error}") from None
+    return inverse
+
+
+def read_words(file: Path) -> NetworkInverse:
+    """UsageError where they are no network of a tracker."""
+    try:
+        table = read_tracker(read_file(file))
+    except ValueError as error:
+        raise UsageError(f"{shown(file)}: {error}") from None
+    if any(one.signal.quantity.name not in _KEYS for one in table.sections[0].inputs):
+        raise UsageError(f"{shown(file)}: it sees more than force, motion and temperature")
+    return NetworkInverse(table)
