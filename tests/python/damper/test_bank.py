@@ -52,8 +52,8 @@ def small_bank() -> Bank:
 def demand_of(seed: int, ticks: int = 4000) -> Record:
     rng = np.random.default_rng(seed)
     t = np.arange(ticks) / 1000.0
-    disp = sum(a * np.sin(2 * np.pi * f * t + p) for a, f, p in
-               zip((3e-3, 1e-3, 4e-4), rng.uniform(0.5, 9, 3), rng.uniform(0, 6, 3), strict=True))  # fmt: skip
+    tones = zip((3e-3, 1e-3, 4e-4), rng.uniform(0.5, 9, 3), rng.uniform(0, 6, 3), strict=True)
+    disp = sum(a * np.sin(2 * np.pi * f * t + p) for a, f, p in tones)
     force = 400.0 * np.sin(2 * np.pi * 1.7 * t) + 30.0 * rng.standard_normal(ticks)
     velocity = np.gradient(disp, 1e-3)
     return Record(
