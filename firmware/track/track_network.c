@@ -44,7 +44,7 @@ static bool is_good(const uint32_t *section) {
     return network->own <= VIEW_LIMIT && are_signals && network_is_good(network);
 }
 
-static uint64_t section_needs(const uint32_t *section, uint32_t damper) {
+static uint64_t needs(const uint32_t *section, uint32_t damper) {
     const network_t *network = network_of(section);
     uint64_t bits = 0;
     for (uint32_t i = 0; i < network->inputs; i++) {
@@ -54,13 +54,13 @@ static uint64_t section_needs(const uint32_t *section, uint32_t damper) {
     return bits;
 }
 
-static const sections_kind_t sections = {TRACK_NETWORK_MAGIC, network_size, is_good, section_needs};
+static const sections_kind_t sections = {TRACK_NETWORK_MAGIC, network_size, is_good, needs};
 
 static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
     return network_table_check(&sections, words, count);
 }
 
-static uint64_t needs(const uint32_t *words) {
+static uint64_t needs_of_table(const uint32_t *words) {
     return sections_need(&sections, words);
 }
 
@@ -106,7 +106,7 @@ static int32_t step(void *state, const track_setup_t *setup, const view_damper_t
 }
 
 static const track_table_kind_t networks = {
-    .magic = TRACK_NETWORK_MAGIC, .check = check, .needs = needs};
+    .magic = TRACK_NETWORK_MAGIC, .check = check, .needs = needs_of_table};
 
 extern const track_t track_network;
 const track_t track_network = {.name = "network", .kind = &networks, .step = step};

@@ -22,7 +22,7 @@ static bool is_good(const uint32_t *section) {
     return network->own == 0 && are_signals && network_is_good(network);
 }
 
-static uint64_t section_needs(const uint32_t *section, uint32_t damper) {
+static uint64_t needs(const uint32_t *section, uint32_t damper) {
     const network_t *network = network_of(section);
     uint64_t bits = 0;
     (void)damper;
@@ -32,13 +32,13 @@ static uint64_t section_needs(const uint32_t *section, uint32_t damper) {
     return bits;
 }
 
-static const sections_kind_t sections = {NETWORK_MAGIC, network_size, is_good, section_needs};
+static const sections_kind_t sections = {NETWORK_MAGIC, network_size, is_good, needs};
 
 static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
     return network_table_check(&sections, words, count);
 }
 
-static uint64_t needs(const uint32_t *words) {
+static uint64_t needs_of_table(const uint32_t *words) {
     return sections_need(&sections, words);
 }
 
@@ -57,7 +57,8 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
     return true;
 }
 
-static const law_table_kind_t networks = {.magic = NETWORK_MAGIC, .check = check, .needs = needs};
+static const law_table_kind_t networks = {
+    .magic = NETWORK_MAGIC, .check = check, .needs = needs_of_table};
 
 extern const law_t law_network;
 const law_t law_network = {.name = "network", .kind = &networks, .step = step};

@@ -103,7 +103,7 @@ static bool is_good(const uint32_t *words) {
     return is_right;
 }
 
-static uint64_t section_needs(const uint32_t *words, uint32_t i) {
+static uint64_t needs(const uint32_t *words, uint32_t i) {
     const section_t *section = as_section(words);
     uint64_t bits = 0;
     (void)i;
@@ -113,7 +113,7 @@ static uint64_t section_needs(const uint32_t *words, uint32_t i) {
     return bits;
 }
 
-static const sections_kind_t sections = {FUZZY_SIGNALS_MAGIC, size, is_good, section_needs};
+static const sections_kind_t sections = {FUZZY_SIGNALS_MAGIC, size, is_good, needs};
 
 // Whether each section of a checked table has rules, and they are of its shape.
 static bool do_rules_fit(const uint32_t *words) {
@@ -138,7 +138,7 @@ static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
     return do_rules_fit(words) ? QUIESCE_TABLE_OK : QUIESCE_TABLE_SHAPE;
 }
 
-static uint64_t needs(const uint32_t *words) {
+static uint64_t needs_of_table(const uint32_t *words) {
     return sections_need(&sections, words);
 }
 
@@ -202,7 +202,7 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
 }
 
 static const law_table_kind_t rules_over_signals = {
-    .magic = FUZZY_SIGNALS_MAGIC, .check = check, .needs = needs};
+    .magic = FUZZY_SIGNALS_MAGIC, .check = check, .needs = needs_of_table};
 
 extern const law_t law_fuzzy_signals;
 const law_t law_fuzzy_signals = {

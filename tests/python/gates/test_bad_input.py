@@ -186,6 +186,7 @@ def test_other_command_is_refused(refused, arguments, words) -> None:
         ["rules", "convert"],
         ["law"],
         ["law", "make"],
+        ["law", "rules"],
     ],
 )
 def test_help_is_on_stdout(quiesce, command) -> None:

@@ -34,8 +34,8 @@ def test_list_names_every_recipe_and_says_what_one_takes(quiesce) -> None:
         ("skyhook_on_off", ["sign 1: +1 velocity of body 1; band 0.001", "++ 2.25 A"]),
         ("modulated_friction", ["50000 N/m", "both"]),
         ("polynomial", ["2 A |stroke velocity of damper 1|^1"]),
-        ("fuzzy_skyhook", ["1: velocity of body 1 1 -0.02 m/s", "1 is 5 0 A 1.125 A 2.25 A"]),
-        ("tsk", ["0 A +500 A per m of 1 -60 A per m/s of 2"]),
+        ("fuzzy_skyhook", ["1: velocity of body 1 1 -0.1 m/s", "1 is 5 0 A 1.125 A 2.25 A"]),
+        ("tsk", ["0 A -10 A per m/s of 2 0 A +10 A per m/s of 2"]),
     ],
 )
 def test_what_is_made_is_shown(quiesce, tmp_path: Path, recipe: str, parts: list[str]) -> None:

@@ -1,9 +1,17 @@
 """Networks: integers beside float64, of law and tracker; words both ways; fits."""
 
 import random
+from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT
+from quiesce.base.errors import UsageError
+from quiesce.cli.main import main
+from quiesce.engine.bench import Bench
+from quiesce.law.describe import described
+from quiesce.law.fit import KINDS as KINDS_OF_FIT
+from quiesce.law.fit import fit
 from quiesce.law.forms.network import (
     DEMAND,
     MAGIC,
@@ -15,8 +23,10 @@ from quiesce.law.forms.network import (
     read,
     read_tracker,
 )
+from quiesce.law.rig import LawRig, load_rig
 from quiesce.law.signal import BY_NAME, Signal, signal
-from quiesce.law.words import opened, sealed
+from quiesce.law.tables import read_table
+from quiesce.law.words import file_text, opened, read_file, sealed
 from quiesce.network.dense import Network
 from quiesce.network.integers import dense_layer, of_dense, output_of, radial_layer
 from quiesce.network.layers import Dense, Layers
@@ -30,6 +40,7 @@ from quiesce_benchmarks.laws.firmware_laws import (
 )
 
 TICKS = 5000
+STROKES = ("stroke of brace", "stroke velocity of brace")
 SPANS = (
     Span.of(signal("stroke", 0), -0.03, 0.03),
     Span.of(signal("stroke velocity", 0), -0.4, 0.4),
@@ -213,3 +224,74 @@ def test_centres_are_chosen_by_what_they_add() -> None:
     fit = with_centres(x, target, candidates, 3.0, 3)
     assert fit.bias == pytest.approx(0.3, abs=1e-3)
     assert sorted(fit.coefficients) == pytest.approx([-0.4, 0.5, 0.7], abs=1e-3)
+
+
+# The command
+
+
+BOARD = "sim_hil/data/boards/three_storeys_1996.toml"
+
+
+@pytest.fixture(scope="module")
+def rig(build: Path) -> LawRig:
+    return load_rig(Bench(), ROOT / BOARD, None, 1000)
+
+
+@pytest.mark.parametrize("kind", list(KINDS_OF_FIT))
+def test_a_law_is_imitated(rig: LawRig, kind: str) -> None:
+    """A skyhook's current, from stroke and its velocity, in the firmware's integers."""
+    x, part = samples(2500)
+    values = x * (0.004, 0.2)
+    signals = [told for told in STROKES if told in rig.signals]
+    made_fit = fit(rig, signals, values, 2.0 * part[:, None], kind, 12, 1)
+    assert made_fit.error_A[0] < 0.25 * made_fit.spread_A[0]
+    found = demands(made_fit.table, values)[:, 0]
+    assert np.sqrt(np.mean((found - 2.0 * part) ** 2)) < 1.2 * made_fit.error_A[0] + 0.01
+    text = described(made_fit.table)
+    assert "law network, demands current; dampers 1" in text
+    assert {"tanh": "12 tanh units", "radial": "12 Gaussians", "rules": "12 normalised"}[
+        kind
+    ] in text
+
+
+def test_what_cannot_be_fitted_is_told(rig: LawRig) -> None:
+    x, part = samples(50)
+    for signals, currents, units, message in (
+        (("stroke of nothing", STROKES[1]), part[:, None], 5, "has no 'stroke of nothing'; it has"),
+        (STROKES, np.column_stack([part, part]), 5, "2 outputs; board .* has 1 damper"),
+        (STROKES, 0.0 * part[:, None], 5, "is the same throughout"),
+        (STROKES, part[:, None], 32, "instructions a tick; 5000 are allowed"),
+    ):
+        kind = "rules" if units == 32 else "tanh"
+        with pytest.raises(UsageError, match=message):
+            fit(rig, signals, x, currents, kind, units, 1)
+    with pytest.raises(UsageError, match="stroke of damper 1 is the same throughout"):
+        fit(rig, STROKES, 0.0 * x, part[:, None], "tanh", 5, 1)
+
+
+def test_the_command_writes_what_the_firmware_takes(
+    build: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    x, part = samples(400)
+    rows = np.column_stack([x * (0.004, 0.2), 2.0 * part])
+    file, out = tmp_path / "samples.csv", tmp_path / "net.words"
+    np.savetxt(file, rows, delimiter=",", header="x_m,v_m_s,i_A", comments="")
+    inputs = ",".join(
+        f"{told}={name}" for told, name in zip(STROKES, ("x_m", "v_m_s"), strict=True)
+    )
+    words = ["law", "fit", str(file), "--board", str(ROOT / BOARD), "--inputs", inputs]
+    assert main([*words, "--output", "i_A", "--kind", "radial", "-o", str(out)]) == 0
+    assert "radial: " in capsys.readouterr().out
+    assert verdict("network", read_file(out)) == 0
+    assert main(["law", "show", str(out)]) == 0
+    assert "stroke of damper 1" in capsys.readouterr().out
+    assert main([*words, "--output", "j_A", "-o", str(out)]) == 2
+    assert "no column 'j_A'; there are: x_m, v_m_s, i_A" in capsys.readouterr().err
+
+
+def test_a_trackers_network_is_shown(tmp_path: Path) -> None:
+    file = tmp_path / "network.words"
+    file.write_text(file_text(NetworkTrackTable((track_section(),)).words()))
+    text = described(read_table(file))
+    assert text.startswith("tracker network; dampers 1")
+    assert "demand of damper 1" in text and "slower than 20 mm/s it counts as that fast" in text

@@ -132,6 +132,27 @@ static void test_what_breaks_the_rules_is_seen(void) {
     TEST_ASSERT_EQUAL_HEX32(LAW_TRIAL_BEYOND, law_trial_breaks(&trial));
 }
 
+// A spring is judged by its stroke, which may come back against its demand.
+static void test_a_spring_breaks_them_by_its_stroke(void) {
+    enum { AXIS = TABLE_HEAD_WORDS + 1 };
+    params.law = QUIESCE_LAW_LINEAR;
+    params.tracker = QUIESCE_TRACKER_INVERSE;
+    make_map();
+    map[AXIS] = QUIESCE_SENSE_STROKE;
+    law_trial_seal(map, map_of_damper.count);
+    TEST_ASSERT_TRUE(make_table(law_find(params.law)) && start());
+    TEST_ASSERT_EQUAL_HEX32(0, breaks_in(TICKS));
+    memset(&trial.current, 0, sizeof trial.current);
+    trial.demand.value[1] = 7;
+    trial.current.value[1] = 1;
+    trial.view.damper[1].stroke_nm = 5;
+    trial.view.damper[1].velocity_um_s = -5;
+    TEST_ASSERT_EQUAL_HEX32(0, law_trial_breaks(&trial));
+    trial.view.damper[1].stroke_nm = -5;
+    trial.view.damper[1].velocity_um_s = 5;
+    TEST_ASSERT_EQUAL_HEX32(LAW_TRIAL_ENERGISED, law_trial_breaks(&trial));
+}
+
 // Through its linear part a stroke's velocity of one sign gets a force of that sign and a current.
 static void test_a_trial_reaches_what_it_judges(void) {
     params.law = QUIESCE_LAW_FRICTION;
@@ -152,6 +173,7 @@ int main(void) {
     RUN_TEST(test_no_law_energises_whatever_it_sees);
     RUN_TEST(test_no_table_that_is_accepted_energises);
     RUN_TEST(test_what_breaks_the_rules_is_seen);
+    RUN_TEST(test_a_spring_breaks_them_by_its_stroke);
     RUN_TEST(test_a_trial_reaches_what_it_judges);
     return UNITY_END();
 }

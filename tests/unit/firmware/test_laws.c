@@ -49,7 +49,7 @@ static void test_every_label_has_its_law(void) {
     for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
         const quiesce_param_info_t *info = quiesce_param_info(i);
         if (strcmp(info->name, "law") == 0) {
-            TEST_ASSERT_EQUAL_INT32(QUIESCE_LAW_POLYNOMIAL, info->max);
+            TEST_ASSERT_EQUAL_INT32(QUIESCE_LAW_NETWORK, info->max);
             for (int32_t value = 0; value <= info->max; value++) {
                 TEST_ASSERT_NOT_NULL(law_find(value));
                 TEST_ASSERT_EQUAL_STRING(info->labels[value], law_find(value)->name);
@@ -57,7 +57,7 @@ static void test_every_label_has_its_law(void) {
         }
     }
     TEST_ASSERT_NULL(law_find(-1));
-    TEST_ASSERT_NULL(law_find(QUIESCE_LAW_POLYNOMIAL + 1));
+    TEST_ASSERT_NULL(law_find(QUIESCE_LAW_NETWORK + 1));
 }
 
 static void test_plain_laws(void) {

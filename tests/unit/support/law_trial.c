@@ -5,6 +5,7 @@
 
 #include "crc32.h"
 #include "force_bank.h"
+#include "force_map.h"
 #include "table.h"
 #include "test_signal.h"
 #include "view_signal.h"
@@ -206,6 +207,12 @@ static bool agrees(int32_t demand_mN, int32_t way) {
     return way == 0 || (demand_mN > 0) == (way > 0);
 }
 
+// A map of springs: it is the stroke alone that has to have the demand's sign.
+static bool is_spring(const forces_t *forces, uint32_t damper) {
+    return forces->track->kind != NULL && forces->track->kind->magic == FORCE_MAP_MAGIC &&
+           (force_map_needs(forces->table) & VIEW_STROKE << damper) != 0;
+}
+
 // No model of the bank has a force of the demand's sign.
 static bool is_against_bank(const law_trial_t *self, uint32_t i, int32_t demand_mN) {
     const uint32_t *section = force_bank_section(self->forces.table, i);
@@ -218,22 +225,22 @@ static bool is_against_bank(const law_trial_t *self, uint32_t i, int32_t demand_
     return is_against;
 }
 
-// Of all that the tracker looks at, force or velocity, else the stroke, nothing has the demand's
-// sign.
+// Of all that the tracker looks at, force or velocity, nothing has the demand's sign.
 static bool is_against(const law_trial_t *self, uint32_t i, int32_t demand_mN) {
     const forces_t *forces = &self->forces;
     if (forces_kind(forces) != NULL && forces_kind(forces)->magic == FORCE_BANK_MAGIC) {
         return is_against_bank(self, i, demand_mN);
     }
     const view_damper_t *damper = &self->view.damper[i];
+    if (is_spring(forces, i)) {
+        return !agrees(demand_mN, damper->stroke_nm);
+    }
     const uint32_t *table = forces_kind(forces) != NULL ? forces->table : NULL;
     const uint64_t needs = (forces->track->needs | forces_table_needs(forces, table)) >> i;
     const bool sees_force = (needs & VIEW_FORCE) != 0;
     const bool sees_velocity = (needs & VIEW_STROKE_VELOCITY) != 0;
-    const bool sees_stroke = !sees_force && !sees_velocity && (needs & VIEW_STROKE) != 0;
     return !(sees_force && agrees(demand_mN, damper->force_mN)) &&
-           !(sees_velocity && agrees(demand_mN, damper->velocity_um_s)) &&
-           !(sees_stroke && agrees(demand_mN, damper->stroke_nm));
+           !(sees_velocity && agrees(demand_mN, damper->velocity_um_s));
 }
 
 static bool is_beyond(int32_t current_mA, int32_t most_mA) {

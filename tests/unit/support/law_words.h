@@ -69,6 +69,24 @@ static const uint32_t polynomial_words[] = {
     256000,     0x00000001, 512000,  0x00000102, (uint32_t)-128000,
     0x00000300,
 };
+// Two rules of a stroke's velocity, a straight line each (sealed, too, within).
+static const uint32_t fuzzy_signals_words[] = {
+    0x31534651, 0,          0,          1,          1,          1,          0x5C,       4,
+    0xF4240,    0xA,        0,          0,          0x21,       0x31545A46, 0x895D3772, 0x5C,
+    0x1C0201,   0xC040010,  0,          0,          0,          0x20040,    0x4A,       0x54,
+    0,          0,          0x10000000, 0x1F400,    0,          0xF9E57FFF, 0x80000000, 0,
+    1,          0x80000000, 0x10000000, 0,          0,          0,          0,          0,
+    0,          0xFFFFFFFF, 0xF9E58000, 4,          2,          0x8573FFFE, 0x10000000, 0xEB074A77,
+    0,          0x7A8C0001, 0,          0x14F8B589, 1,          0x61A7FFF,  0,          4,
+    2,          0x8573FFFE, 0x8000000,  0xEB074A77, 0,          0x7A8C0001, 0x8000000,  0x14F8B589,
+    1,          0x7FFFFFFF, 0x61A8000,  0,          1,          0x80000000, 0x10000000, 0,
+    1,          0,          0,          0,          0,          0x1080000,  0,          0,
+    0xFFFF0000, 0x1080000,  1,          0,          0xFFFF0101, 0,          0x3E800,    0x200,
+    0,          0x1F400,    0,          0x48,       0,          0,          0,          1,
+    0x83126F,   0x200,      0,          0xFFDF3B64, 0,          0x52,       0,          1,
+    0,
+};
+// Of one section, over stroke velocity.
 static const uint32_t map_words[] = {
     0x32464D51,
     0,
@@ -122,10 +140,8 @@ static const uint32_t bank_words[] = {
 };
 
 static const law_words_t law_words[] = {
-    LAW_WORDS(linear_words),
-    LAW_WORDS(signs_words),
-    LAW_WORDS(friction_words),
-    LAW_WORDS(polynomial_words),
+    LAW_WORDS(linear_words),     LAW_WORDS(signs_words),         LAW_WORDS(friction_words),
+    LAW_WORDS(polynomial_words), LAW_WORDS(fuzzy_signals_words),
 };
 static const law_words_t map_of_damper = LAW_WORDS(map_words);
 static const law_words_t bank_of_damper = LAW_WORDS(bank_words);

@@ -1,8 +1,8 @@
 """A search for what the publication of the two masses does not print: masses, spring, lever, gains,
 and how the table shakes.
 
-`python -m quiesce_benchmarks.laws.two_masses_fit SEED [SECONDS]`, in tools/benchmarks, prints what it
-finds beside the published ratios; the bench has the last word (two_masses.py)."""
+`python -m quiesce_benchmarks.laws.two_masses_fit SEED [SECONDS]`, in tools/benchmarks, prints what
+it finds beside the published ratios; the bench has the last word (two_masses.py)."""
 
 import ctypes
 import subprocess

@@ -9,7 +9,6 @@ from quiesce.compare.smooth import SMOOTH, Layout, slopes_of
 from quiesce.plant.open_loop import Motion
 
 INDEX = "index"
-OF_CONTACTS_ONLY = ("tyre_share",)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,15 @@ from functools import partial
 from pathlib import Path
 
 from quiesce.compare.clairvoyant import CLAIRVOYANT, Found, Stage, clairvoyant
-from quiesce.compare.figures import Contact, Figures, columns, figures_of, index
+from quiesce.compare.figures import (
+    ALL_FIGURES,
+    FIGURES,
+    Contact,
+    Figures,
+    columns,
+    figures_of,
+    index,
+)
 from quiesce.compare.goal import Goal, read_goal
 from quiesce.compare.laws import ComparedLaw, constant
 from quiesce.compare.names import ACCEL, TIME
@@ -90,6 +98,11 @@ class Comparison:
         self.rig = Rig(plant.resolve(), load_board(bench, board))
         self._contacts = contacts_of(plant)
         self._shaking = shaking
+
+    @property
+    def figure_names(self) -> list[str]:
+        """What a run of this structure has figures of."""
+        return [name for name, _, _ in (ALL_FIGURES if self._contacts else FIGURES)]
 
     def cells(
         self,

@@ -32,11 +32,15 @@ def measure(effort: Effort) -> Measured:
 
 
 def reported(found: Found) -> dict[str, dict[str, list[float]]]:
-    """By motion of the table, as CONTROLS."""
+    """By motion of the table: of every control, then of both beside uncontrolled."""
+    values = {
+        "peak_m_s2": found.peak_m_s2,
+        "peak_ratios": ratios(found.peak_m_s2),
+        "E_ratios": ratios(found.rms_m_s2),
+    }
     return {
-        "peak_m_s2": dict(zip(SCENARIOS, np.round(found.peak_m_s2, 3).tolist(), strict=True)),
-        "peak_ratios": dict(zip(SCENARIOS, np.round(found.peak_ratios, 4).tolist(), strict=True)),
-        "E_ratios": dict(zip(SCENARIOS, np.round(ratios(found.rms_m_s2), 4).tolist(), strict=True)),
+        key: dict(zip(SCENARIOS, np.round(rows, 4).tolist(), strict=True))
+        for key, rows in values.items()
     }
 
 

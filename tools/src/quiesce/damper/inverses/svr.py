@@ -28,7 +28,7 @@ NAME = "svr"
 TITLE = "support-vector inverse in integers, of few vectors"
 HELP = "kernel machine on some of a support-vector machine's vectors, with temperature if measured"
 TRACKER = READ_BY
-UNITS = {3: 26, 4: 21}  # what a tick has time for, by the number of inputs
+UNITS = {3: 25, 4: 21}  # what a tick has time for, by the number of inputs
 
 
 def make(

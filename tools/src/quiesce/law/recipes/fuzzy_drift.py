@@ -33,9 +33,9 @@ RECIPE = Recipe(
     "",
     (
         ON_A,
-        Setting("stroke_m", 0.001, 1e-6, 1.0, "the stroke from which on it is large"),
-        Setting("stroke_m_s", 0.05, 1e-4, 10.0, "likewise its velocity"),
-        Setting("outward_share", 0.3, 0.0, 1.0, "share of on_A where the stroke grows"),
+        Setting("stroke_m", 0.005, 1e-6, 1.0, "the stroke from which on it is large"),
+        Setting("stroke_m_s", 0.2, 1e-4, 10.0, "likewise its velocity"),
+        Setting("outward_share", 1.0, 0.0, 1.0, "share of on_A where the stroke grows"),
         Setting("back_share", 1.0, 0.0, 1.0, "share of on_A where it comes back"),
     ),
     make,

@@ -31,8 +31,8 @@ RECIPE = Recipe(
     "",
     (
         ON_A,
-        Setting("body_m_s", 0.02, 1e-4, 10.0, "the body's velocity from which on it is large"),
-        Setting("stroke_m_s", 0.005, 1e-4, 10.0, "the stroke's velocity whose sign is certain"),
+        Setting("body_m_s", 0.1, 1e-4, 10.0, "the body's velocity from which on it is large"),
+        Setting("stroke_m_s", 0.02, 1e-4, 10.0, "the stroke's velocity whose sign is certain"),
     ),
     make,
     equation="I = sum of w_i I_i over the rules, w_i from min of memberships, sum of w_i 1; I_i: "

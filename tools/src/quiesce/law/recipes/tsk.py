@@ -29,10 +29,10 @@ def _sides(values: dict[str, float], name: str) -> Input:
     return variable(name, reach, [-layer, layer])
 
 
-def _line(part: str, where: str, p: float, q: float) -> tuple[Setting, ...]:
+def _line(part: str, where: str) -> tuple[Setting, ...]:
     return (
-        Setting(f"p_{part}_A_m", p, -1e4, 1e4, f"of |r| where the stroke {where}"),
-        Setting(f"q_{part}_A_s_m", q, -1e3, 1e3, "likewise of |v_r|"),
+        Setting(f"p_{part}_A_m", 0.0, -1e4, 1e4, f"of |r| where the stroke {where}"),
+        Setting(f"q_{part}_A_s_m", 10.0, -1e3, 1e3, "likewise of |v_r|"),
         Setting(f"r_{part}_A", 0.0, -20.0, 20.0, "likewise a constant"),
     )
 
@@ -43,8 +43,8 @@ RECIPE = Recipe(
     "review, by name (fuzzy neural networks)",
     "",
     (
-        *_line("outward", "grows", 0.0, 10.0),
-        *_line("back", "comes back", 500.0, 60.0),
+        *_line("outward", "grows"),
+        *_line("back", "comes back"),
         Setting("stroke_m", 0.05, 1e-6, 1.0, "largest stroke that counts", is_tuned=False),
         Setting("stroke_m_s", 1.0, 1e-4, 10.0, "likewise its velocity", is_tuned=False),
         Setting("layer_m", 0.0005, 1e-7, 1.0, "where the stroke's sign is sure", is_tuned=False),

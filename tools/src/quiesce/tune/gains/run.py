@@ -20,6 +20,7 @@ from quiesce.engine.pool import run_all
 from quiesce.law.recipe import Recipe
 from quiesce.law.rig import load_rig
 from quiesce.tune.gains.aim import Aim, Runs
+from quiesce.tune.gains.defaults import INDEX
 from quiesce.tune.gains.judge import Judge, Tunable, constant_runs
 from quiesce.tune.gains.search import search
 from quiesce.tune.gains.space import space_of
@@ -84,6 +85,12 @@ def tune(order: Order) -> Tuned:
     """UsageError for what cannot be tuned; nothing is written then, but finished trials."""
     bench = Bench()
     on = Comparison(bench, order.plant, order.board, order.shaking)
+    known = [INDEX, *on.figure_names]
+    if order.aim.figure not in known:
+        raise UsageError(
+            f"--figure {order.aim.figure}: this structure has {', '.join(known)}; a contact's are "
+            "of plants with one"
+        )
     tunable = tunable_of(order, bench)
     tunable.words(tunable.space.start)
     seeds = range(1, order.seeds + 1)
