@@ -7,7 +7,8 @@
 // By the table's first word; NULL: of none.
 static const track_t *tracker_of(uint32_t magic) {
     const track_t *track = track_find(0);
-    for (int32_t i = 1; track != NULL && (track->kind == NULL || track->kind->magic != magic); i++) {
+    for (int32_t i = 1; track != NULL && (track->kind == NULL || track->kind->magic != magic);
+         i++) {
         track = track_find(i);
     }
     return track;
