@@ -54,6 +54,11 @@ def map_words(found: Monotone) -> list[int]:
     # What integration and rounding leave of a fall is less than a part in a million: levelled.
     along = np.maximum.accumulate(np.rint(1e3 * _resampled_N(found)).astype(int), axis=1)
     forces = np.sign(velocities)[:, None] * along  # > 0 resists a stroke that grows
+    return _sealed(velocities, currents, forces)
+
+
+def _sealed(velocities: np.ndarray, currents: np.ndarray, forces: np.ndarray) -> list[int]:
+    """Of um/s, mA and mN."""
     values = [int(value) for part in (velocities, currents, forces.ravel()) for value in part]
     after = [5 + len(values), len(velocities), len(currents)]
     after += [value & 0xFFFFFFFF for value in values]
@@ -68,6 +73,18 @@ class Map:
     velocities_m_s: np.ndarray
     currents_A: np.ndarray
     forces_N: np.ndarray
+
+
+def words_of_map(wanted: Map) -> list[int]:
+    """ValueError, in one line, for a map that the firmware refuses."""
+    words = _sealed(*(
+        np.rint(unit * values).astype(int)
+        for unit, values in (
+            (1e6, wanted.velocities_m_s), (1e3, wanted.currents_A), (1e3, wanted.forces_N)
+        )
+    ))  # fmt: skip
+    map_of_words(words)
+    return words
 
 
 def map_of_words(words: Sequence[int]) -> Map:
