@@ -54,29 +54,20 @@ def map_words(found: Monotone) -> list[int]:
     places, currents = _fine_places(found.forces), _currents_mA(found)
     # What integration and rounding leave of a fall is less than a part in a million: levelled.
     along = np.maximum.accumulate(np.rint(1e3 * _resampled_N(found)).astype(int), axis=1)
-<<<<<<< HEAD
     forces = np.sign(places)[:, None] * along  # > 0 resists a stroke that grows
-    values = [found.forces.axis.word, len(places), len(currents)]
-    values += [int(value) for part in (places, currents, forces.ravel()) for value in part]
-    return sealed(MAGIC, [values], "map")
+    return sealed(MAGIC, [_section(found.forces.axis, places, currents, forces)], "map")
+
+
+def _section(axis: Axis, places: np.ndarray, currents: np.ndarray, forces: np.ndarray) -> list[int]:
+    """Of the axis' units, mA and mN."""
+    values = [axis.word, len(places), len(currents)]
+    return values + [int(value) for part in (places, currents, forces.ravel()) for value in part]
 
 
 def joined(tables: Sequence[Sequence[int]]) -> list[int]:
     """One table for several dampers: the sections of all, in this order. ValueError, in one line,
     where one is no map, or they are too many or too long for a controller."""
     return sealed(MAGIC, [one for words in tables for one in _sections(words)], "map")
-=======
-    forces = np.sign(velocities)[:, None] * along  # > 0 resists a stroke that grows
-    return _sealed(velocities, currents, forces)
-
-
-def _sealed(velocities: np.ndarray, currents: np.ndarray, forces: np.ndarray) -> list[int]:
-    """Of um/s, mA and mN."""
-    values = [int(value) for part in (velocities, currents, forces.ravel()) for value in part]
-    after = [5 + len(values), len(velocities), len(currents)]
-    after += [value & 0xFFFFFFFF for value in values]
-    return [MAGIC, zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after]
->>>>>>> clairvoyant
 
 
 @dataclass(frozen=True)
@@ -90,7 +81,19 @@ class Map:
     forces_N: np.ndarray
 
 
-<<<<<<< HEAD
+def words_of_map(wanted: Map) -> list[int]:
+    """ValueError, in one line, for a map that the firmware refuses."""
+    parts = (
+        np.rint(unit * values).astype(int)
+        for unit, values in (
+            (wanted.axis.per_unit, wanted.places), (1e3, wanted.currents_A), (1e3, wanted.forces_N)
+        )
+    )  # fmt: skip
+    words = sealed(MAGIC, [_section(wanted.axis, *parts)], "map")
+    maps_of_words(words)
+    return words
+
+
 def maps_of_words(words: Sequence[int]) -> tuple[Map, ...]:
     """A section each. ValueError, in one line, for words that the firmware refuses
     (quiesce_force_map_check)."""
@@ -121,37 +124,6 @@ def _map_of(section: Sequence[int]) -> Map:
     values = np.array(section[SECTION_WORDS:])
     places, currents, forces = values[:n], values[n : n + m], values[n + m :].reshape(n, m)
     along = np.sign(places)[:, None] * forces
-=======
-def words_of_map(wanted: Map) -> list[int]:
-    """ValueError, in one line, for a map that the firmware refuses."""
-    words = _sealed(*(
-        np.rint(unit * values).astype(int)
-        for unit, values in (
-            (1e6, wanted.velocities_m_s), (1e3, wanted.currents_A), (1e3, wanted.forces_N)
-        )
-    ))  # fmt: skip
-    map_of_words(words)
-    return words
-
-
-def map_of_words(words: Sequence[int]) -> Map:
-    """ValueError, in one line, for words that the firmware refuses (quiesce_force_map_check)."""
-    if len(words) < 5 or not all(0 <= word <= 0xFFFFFFFF for word in words):
-        raise ValueError("expected 5 words of 32 bits or more")
-    if words[0] != MAGIC:
-        raise ValueError(f"it begins with 0x{words[0]:08x}, a map with 0x{MAGIC:08x}")
-    n, m = words[3], words[4]
-    if words[2] != len(words):
-        raise ValueError(f"{len(words)} words where its header says {words[2]}")
-    if words[1] != zlib.crc32(struct.pack(f"<{len(words) - 2}I", *words[2:])):
-        raise ValueError("its CRC-32 is not that of its words")
-    is_shape = MIN_POINTS <= n <= MAX_VELOCITIES and MIN_POINTS <= m <= MAX_CURRENTS
-    if not is_shape or len(words) != 5 + n + m + n * m:
-        raise ValueError(f"{n} velocities and {m} currents are not the shape of a map")
-    values = np.array(words[5:], dtype=np.uint32).view(np.int32).astype(int)
-    velocities, currents, forces = values[:n], values[n : n + m], values[n + m :].reshape(n, m)
-    along = np.sign(velocities)[:, None] * forces
->>>>>>> clairvoyant
     is_current = (np.diff(currents) > 0).all() and currents[0] == 0
     if not (_is_axis(places) and is_current and currents[-1] <= MAX_CURRENT_mA):
         raise ValueError("its places or currents do not rise within their limits")

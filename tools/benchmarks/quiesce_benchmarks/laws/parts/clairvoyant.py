@@ -15,6 +15,7 @@ from quiesce.compare.roads import road
 from quiesce.compare.run import ALL, BEST, BY_INDEX, OFF, Cell, Shaking
 from quiesce.compare.table import laws_of, means
 from quiesce.damper.force_map import Map, words_of_map
+from quiesce.damper.inverse import VELOCITY
 from quiesce.law.words import file_text
 from quiesce.optimum.waveform import Effort as Search
 
@@ -137,7 +138,10 @@ def late_map() -> Map:
     currents = np.linspace(0.0, MOST_A, 16)
     along = (LATE_N + LATE_N_A * currents) * (SLOW_m_s / speeds)[:, None]
     return Map(
-        np.concatenate([-speeds[::-1], speeds]), currents, np.concatenate([-along[::-1], along])
+        VELOCITY,
+        np.concatenate([-speeds[::-1], speeds]),
+        currents,
+        np.concatenate([-along[::-1], along]),
     )
 
 

@@ -25,13 +25,8 @@ def make(rig: LawRig, values: dict[str, float]) -> Compiled:
 
 RECIPE = Recipe(
     "clipped_linear",
-<<<<<<< HEAD
-    "F = g_a a + g_v v_a + g_x x + g_r v_r, clipped to what the damper can do",
+    "F = g_a a_a + g_v v_a + g_b a_b + g_w v_b + g_x r + g_r v_r, clipped",
     "static output feedback",
-=======
-    "F = g_a a_a + g_v v_a + g_b a_b + g_w v_b + g_x x + g_r v_r, clipped",
-    "static output feedback with tuned gains; signals whose gain is 0 need no sensor",
->>>>>>> clairvoyant
     "inverse",
     (
         Setting("accel_N_s2_m", 0.0, -1e5, 1e5, "of the absolute acceleration of end a"),
@@ -43,6 +38,6 @@ RECIPE = Recipe(
         LIMIT_N,
     ),
     make,
-    equation="F = g_a a + g_v v_a + g_x r + g_r v_r",
+    equation="F = g_a a_a + g_v v_a + g_b a_b + g_w v_b + g_x r + g_r v_r",
     when="Gains from a search (quiesce tune); a signal whose gain is 0 needs no sensor.",
 )
