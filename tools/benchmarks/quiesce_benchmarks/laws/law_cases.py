@@ -14,7 +14,7 @@ from quiesce.law.recipes import RECIPES
 from quiesce.law.tables import FORMS
 from quiesce.law.words import read_file
 
-from quiesce_benchmarks.laws import rigs
+from quiesce_benchmarks.laws import made_up_networks, rigs
 
 # A damper's map that fits no rig: what a tracker costs does not depend on that.
 MAP_DAMPER, MAP_MOST_A = "rd1005_kwok_tanh_smooth", 1.88
@@ -22,6 +22,8 @@ RIGS = (rigs.BUILDING, rigs.CAR, rigs.TWO_MASSES)
 # The most elements and currents that there are.
 BANK_DAMPER, BANK_MOST_A = "spencer_prototype", 2.25
 NO_WORDS: tuple[int, ...] = ()
+# Tables of laws that neither ship one nor have a recipe.
+MADE_UP = {"network": made_up_networks.law_words}
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,8 @@ def rig_of(recipe: Recipe) -> str:
 
 def forms() -> list[str]:
     """Laws that are a table of a recipe, by label."""
-    return [form.__name__.rpartition(".")[2] for form in FORMS.values()]
+    names = [form.__name__.rpartition(".")[2] for form in FORMS.values()]
+    return [name for name in names if name not in MADE_UP]
 
 
 def built_in() -> list[str]:
@@ -74,6 +77,8 @@ def trackers() -> list[str]:
 def map_words(tracker: str) -> tuple[int, ...]:
     """Of the table that a tracker works with, made here; none of one that works without, or whose
     table nobody has made yet: the run then says so."""
+    if tracker == "network":
+        return tuple(made_up_networks.tracker_words())
     if tracker == "bank":
         return tuple(rigs.bank_of(BANK_DAMPER, BANK_MOST_A))
     if tracker != "inverse":
@@ -96,7 +101,9 @@ def of_recipe(recipe: Recipe) -> list[LawCase]:
 
 
 def of_label(label: str) -> LawCase:
-    return LawCase(label, label, "", rigs.BUILDING, NO_WORDS, NO_WORDS)
+    """With the table that ships, or made up where a law has neither that nor a recipe."""
+    words = tuple(MADE_UP[label]()) if label in MADE_UP else NO_WORDS
+    return LawCase(label, label, "", rigs.BUILDING, words, NO_WORDS)
 
 
 def all_cases() -> list[list[LawCase]]:
