@@ -24,7 +24,8 @@
 /// Arguments of tanh are limited to +-32, of one Gaussian's side to +-128, of all of them to 128:
 /// there is nothing left of either. exp and tanh are within 2^-23 (activation.h).
 ///
-/// About 8 instructions a weight or coefficient, 30 a centre, 100 a unit; a table's sum is bounded.
+/// About 8 instructions a weight or coefficient, 30 a centre, 90 to 140 a unit; a table's sum is
+/// bounded. On a Cortex-M4 12 and 8 tanh units on 6 values take 4480, 21 Gaussians on 4 4690.
 #ifndef NETWORK_H
 #define NETWORK_H
 

@@ -144,7 +144,7 @@ std::vector<std::uint32_t> load_rules(const std::string &file) {
 namespace {
 
 /// First words of trackers' tables that are no maps; require_tables asks the tracker itself.
-constexpr std::uint32_t kOtherTrackers[] = {0x314E5451}; // network
+constexpr std::uint32_t kOtherTrackers[] = {0x314E5451, 0x314B4251}; // network, bank
 
 bool is_of_other_tracker(const std::vector<std::uint32_t> &words) {
     return std::find(std::begin(kOtherTrackers), std::end(kOtherTrackers), words[0]) !=

@@ -177,7 +177,7 @@ def test_one_wrong_word_is_refused_on_both_sides() -> None:
 
 
 def test_too_much_is_refused_before_it_is_written() -> None:
-    layers = random_dense(np.random.default_rng(1), (3, 32, 1))
+    layers = random_dense(np.random.default_rng(1), (3, 24, 1))
     section = NetworkSection(SPANS, 0, 1000, layers)
     assert verdict("network", NetworkTable((section,)).words()) == 0
     with pytest.raises(ValueError, match="instructions a tick; 5000 are allowed"):

@@ -47,7 +47,7 @@ class Dense:
     @property
     def work(self) -> int:
         """Instructions, about."""
-        return len(self.rows) * (110 + 8 * (len(self.rows[0]) - 2))
+        return len(self.rows) * (140 + 8 * (len(self.rows[0]) - 2))
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,8 @@ class Radial:
     @property
     def work(self) -> int:
         """Instructions, about."""
-        return len(self.centres) * (90 + 30 * len(self.centres[0]))
+        of_unit = 90 + 30 * len(self.centres[0]) + (35 if self.is_normalised else 0)
+        return len(self.centres) * of_unit
 
 
 Layer = Dense | Radial

@@ -35,7 +35,7 @@ FIGURES = (
     ("svr_hot_with_temperature_pct", "%", None, "lower"),
     ("svr_hot_over_blind", "-", 1.0, "lower"),
 )
-DAMPERS = {"rd1005_kwok_tanh_smooth": 1.8, "rd1005_kwok_bouc_wen": 1.5, "rd8040_kwok_tanh": 1.0}
+DAMPERS = {"rd1005_kwok_tanh_smooth": 1.8, "rd1005_kwok_bouc_wen": 1.5}
 TEMPERATURES_C = [15.0, 35.0, 55.0, 75.0, 95.0]
 HEAT_CAPACITY_J_K = 10.0  # a fiftieth of a damper's: the same warm-up in less time
 KNOWING, BLIND, MAP = "with temperature", "without", "map, made at 25 C"
