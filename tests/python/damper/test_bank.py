@@ -25,6 +25,7 @@ from quiesce.damper.inverse import forces_by
 from quiesce.damper.inverses.banked import BankInverse, read_words
 from quiesce.damper.learned.model import silent
 from quiesce.damper.simulate import simulator_of_file
+from quiesce.damper.words import words_of_file
 from quiesce.law.forms.network import DEMAND
 from quiesce.law.signal import BY_NAME
 from quiesce_benchmarks.laws.firmware_laws import Tracker, tracker_verdict
@@ -191,3 +192,19 @@ def test_words_of_several_dampers_are_no_inverse(tmp_path: Path) -> None:
     file.write_text(BankInverse(bank_words([small_bank(), small_bank()])).to_text())
     with pytest.raises(UsageError, match="2 dampers"):
         read_words(file)
+
+
+def test_banks_of_several_dampers_are_made_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [tmp_path / "a.words", tmp_path / "b.words", tmp_path / "slow.words"]
+    banks = [small_bank(), replace(small_bank(), lead_um_s=0), replace(small_bank(), rate_Hz=500)]
+    for file, bank in zip(files, banks, strict=True):
+        file.write_text(BankInverse(bank_words([bank])).to_text())
+    asked = ["identify", "inverse", "--out", str(tmp_path)]
+    assert main([*asked, *map(str, files[:2])]) == 0
+    assert banks_of_words(words_of_file(tmp_path / "bank.words", table.MAGIC)) == tuple(banks[:2])
+    assert main([*asked, *map(str, files)]) == 2
+    assert "different tick rates" in capsys.readouterr().err
+    assert main([*asked, *map(str, [files[0]] * 5)]) == 2
+    assert "5 dampers" in capsys.readouterr().err

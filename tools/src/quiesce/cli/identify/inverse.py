@@ -23,7 +23,8 @@ of the check says why not, map.words: the map that tracker inverse of a controll
 the current stiffens, such as an elastomer, --over stroke makes the map.
 
 A map of one damper stands for every damper of a controller. With files of words (map.words), one
-map is made of all of them, the first for the controller's first damper; --out takes it.
+map is made of all of them, the first for the controller's first damper; --out takes it. Likewise of
+banks (bank.words).
 
 With --method, inverses are made and follow wanted forces (sines, a sweep, band noise) on the
 damper, beside the best constant current and the ideal inverse. Some methods need a damper file,
@@ -98,11 +99,17 @@ def run(args: argparse.Namespace) -> int:
 
 def join(args: argparse.Namespace) -> int:
     from quiesce.damper.force_map import joined, maps_of_words
+    from quiesce.damper.inverses import banked
     from quiesce.damper.inverses.mapped import read_map
     from quiesce.damper.report.inverse_text import write_joined
 
     if args.method or args.read or args.json or args.out is None:
         raise UsageError("maps (words) are made one with --out FOLDER and no other option")
+    if all(banked.is_bank(file) for file in args.files):
+        words = banked.joined(args.files)
+        write_joined(args.out, words, "bank.words")
+        print(f"written: {shown(args.out)}/bank.words, {4 * len(words)} bytes")
+        return 0
     try:
         words = joined([read_map(file) for file in args.files])
     except ValueError as error:

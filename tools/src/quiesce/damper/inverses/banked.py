@@ -4,6 +4,7 @@ read back.
 firmware/track/force_bank.h says what the words are and how a current is found between models.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -75,16 +76,38 @@ class BankInverse:
         ]
 
 
-def read_words(file: Path) -> BankInverse:
-    """UsageError where they are no bank of one damper."""
-    words = words_of_file(file, MAGIC)
+def is_bank(file: Path) -> bool:
+    """By its first word. UsageError where it holds no words."""
+    return words_of_file(file, MAGIC)[:1] == [MAGIC]
+
+
+def read_banks(file: Path) -> tuple[Bank, ...]:
+    """Of one damper or several. UsageError where they are no bank."""
     try:
-        banks = banks_of_words(words)
+        return banks_of_words(words_of_file(file, MAGIC))
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}") from None
+
+
+def read_words(file: Path) -> BankInverse:
+    """UsageError where they are no bank of one damper."""
+    banks = read_banks(file)
     if len(banks) > 1:
         raise UsageError(f"{shown(file)}: a bank of {len(banks)} dampers; an inverse is of one")
-    return BankInverse(words)
+    return BankInverse(bank_words(banks))
+
+
+def joined(files: Sequence[Path]) -> list[int]:
+    """One table for several dampers, in this order. UsageError where they are too many, too long,
+    or not of one rate."""
+    banks = [bank for file in files for bank in read_banks(file)]
+    names = ", ".join(shown(file) for file in files)
+    if len({bank.rate_Hz for bank in banks}) > 1:
+        raise UsageError(f"{names}: banks for different tick rates")
+    try:
+        return bank_words(banks)
+    except ValueError as error:
+        raise UsageError(f"{names}: {error}") from None
 
 
 def make(source: Source, seed: int = 0, progress: Report = silent) -> BankInverse:

@@ -19,7 +19,6 @@ import tomli_w
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
-from quiesce.damper.bank.table import MAGIC as BANK_MAGIC
 from quiesce.damper.inverses import (
     banked,
     feed_forward,
@@ -98,7 +97,7 @@ def _read_words(file: Path) -> tuple[str, Inverse]:
         # Its words do not say how it was fitted.
         method = svr.NAME if file.stem == svr.NAME else network.NAME
         return method, networks.read_words(file)
-    one = banked if magic == [BANK_MAGIC] else mapped
+    one = banked if banked.is_bank(file) else mapped
     return one.NAME, one.read_words(file)
 
 

@@ -120,9 +120,9 @@ def words_text(words: Sequence[int]) -> str:
     return "".join(f"0x{word:08x}\n" for word in words)
 
 
-def write_joined(folder: Path, words: Sequence[int]) -> None:
+def write_joined(folder: Path, words: Sequence[int], name: str = "map.words") -> None:
     with output_files(folder) as staging:
-        (staging / "map.words").write_text(words_text(words), encoding="utf-8")
+        (staging / name).write_text(words_text(words), encoding="utf-8")
 
 
 def write_map(folder: Path, damper: DamperModel, found: Monotone) -> None:
