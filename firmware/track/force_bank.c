@@ -5,14 +5,14 @@
 #include "fixq.h"
 #include "sections.h"
 
-#define ONE_Q30 (UINT32_C(1) << 30)
+#define ONE_Q30 (INT32_C(1) << 30)
 
 enum { SECTION_WORDS = 6, ELEMENT_WORDS = 3, MODEL_WORDS = 3, HALF_Q30 = 1 << 29 };
 enum { LEAD_SHIFT = 20 };
 
 typedef struct {
     uint32_t leads;
-    uint32_t leak_q30;
+    int32_t leak_q30;
     int32_t limit_um_s;
 } element_t;
 
@@ -61,8 +61,8 @@ static uint32_t size(const uint32_t *words, uint32_t left) {
 }
 
 static bool is_element_good(const element_t *element) {
-    return element->leads <= 1u && element->leak_q30 <= ONE_Q30 && element->limit_um_s > 0 &&
-           element->limit_um_s <= VIEW_LIMIT;
+    return element->leads <= 1u && element->leak_q30 >= 0 && element->leak_q30 <= ONE_Q30 &&
+           element->limit_um_s > 0 && element->limit_um_s <= VIEW_LIMIT;
 }
 
 // Each product is below 2^61: no sum passes 2^63 before it is seen to be beyond 2^62.
@@ -157,21 +157,25 @@ uint32_t force_bank_rate_Hz(const uint32_t *words) {
     return (uint32_t)rate_Hz;
 }
 
-// The velocity, below 2^30, and the lead, below 2^30: below 2^31.
-static int64_t led_um_s(const section_t *bank, const view_damper_t *damper) {
+// Limited to what a velocity is limited to.
+static int32_t led_um_s(const section_t *bank, const view_damper_t *damper) {
     const int64_t lead_um_s = ((int64_t)bank->lead_q20 * damper->stroke_nm) >> LEAD_SHIFT;
-    return damper->velocity_um_s + clamp_i64(lead_um_s, -bank->lead_um_s, bank->lead_um_s);
+    return (int32_t)clamp_i64(damper->velocity_um_s +
+                                  clamp_i64(lead_um_s, -bank->lead_um_s, bank->lead_um_s),
+                              -VIEW_LIMIT, VIEW_LIMIT);
 }
 
+// A state and what it follows are below 2^30: their sum is below 2^31.
 void force_bank_move(force_bank_t *self, const uint32_t *section, const view_damper_t *damper) {
     const section_t *bank = as_section(section);
-    const int64_t follows_um_s[] = {damper->velocity_um_s, led_um_s(bank, damper)};
+    const int32_t velocity_um_s = damper->velocity_um_s;
+    const int32_t led = bank->lead_q20 != 0 ? led_um_s(bank, damper) : velocity_um_s;
     for (uint32_t j = 0; j < bank->elements; j++) {
         const element_t *element = &bank->element[j];
-        const int64_t z = self->z[j];
-        const int64_t lost = (z * element->leak_q30 + HALF_Q30) >> 30;
-        self->z[j] = (int32_t)clamp_i64(z - lost + follows_um_s[element->leads],
-                                        -(int64_t)element->limit_um_s, element->limit_um_s);
+        const int32_t z = self->z[j];
+        const int32_t lost = (int32_t)(((int64_t)z * element->leak_q30 + HALF_Q30) >> 30);
+        self->z[j] = clamp_i32(z - lost + (element->leads != 0 ? led : velocity_um_s),
+                               -element->limit_um_s, element->limit_um_s);
     }
 }
 

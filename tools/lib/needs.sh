@@ -18,6 +18,7 @@ needs_of() {
     "sweep "*) echo bench plant ;;
     "identify plan") ;;
     "identify "*) echo dampers ;;
+    "tune law") echo bench ;;
     "tune "*) echo bench plant dampers ;;
     "can "*) ;;
     esac

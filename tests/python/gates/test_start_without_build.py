@@ -101,6 +101,7 @@ def busy(clone: Clone) -> Iterator[Clone]:
         ("law list", ""),
         ("law show x.words", ""),
         ("law make skyhook", "bench"),
+        ("tune law skyhook", "bench"),
         ("rules show x.fcl", "bench"),
         ("sweep", "bench plant"),
         ("identify x.csv", "dampers"),

@@ -32,6 +32,7 @@ def test_list_names_every_recipe_and_says_what_one_takes(quiesce) -> None:
             ["law linear, demands force", "acceleration of body 3", "damping ratio"],
         ),
         ("skyhook_on_off", ["sign 1: +1 velocity of body 1; band 0.001", "++ 2.25 A"]),
+        ("quasi_bang_bang", ["-- 0.45 A", "+- 2.25 A", "++ 0.45 A"]),  # shares of the ceiling
         ("modulated_friction", ["50000 N/m", "both"]),
         ("polynomial", ["2 A |stroke velocity of damper 1|^1"]),
         ("fuzzy_skyhook", ["1: velocity of body 1 1 -0.1 m/s", "1 is 5 0 A 1.125 A 2.25 A"]),

@@ -89,6 +89,7 @@ static void run(law_trial_t *trial) {
     for (uint32_t i = 0; i < TICKS; i++) {
         law_trial_look(trial);
         law_trial_step(trial);
+        law_trial_guard(trial);
         REQUIRE(law_trial_breaks(trial) == 0);
     }
 }

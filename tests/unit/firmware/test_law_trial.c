@@ -61,6 +61,7 @@ static uint32_t breaks_in(uint32_t ticks) {
     for (uint32_t i = 0; i < ticks; i++) {
         law_trial_look(&trial);
         law_trial_step(&trial);
+        law_trial_guard(&trial);
         breaks |= law_trial_breaks(&trial);
     }
     return breaks;

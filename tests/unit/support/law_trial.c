@@ -198,6 +198,9 @@ void law_trial_step(law_trial_t *self) {
     if (self->has_demand && self->forces.track != NULL) {
         forces_step(&self->forces, &self->setup.params, &self->view, &self->current);
     }
+}
+
+void law_trial_guard(law_trial_t *self) {
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         self->command.value[i] = guard_step(&self->guard[i], self->current.value[i], true);
     }

@@ -50,8 +50,9 @@ bool law_trial_start(law_trial_t *self, const quiesce_params_t *params, const ui
 // its limits, of any size below 2^30.
 void law_trial_look(law_trial_t *self);
 
-// Law and tracker, once.
+// Law and tracker, once; then the guard.
 void law_trial_step(law_trial_t *self);
+void law_trial_guard(law_trial_t *self);
 
 // LAW_TRIAL_ bits of the last step.
 uint32_t law_trial_breaks(const law_trial_t *self);

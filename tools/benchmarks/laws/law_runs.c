@@ -147,7 +147,8 @@ typedef struct {
     uint32_t accepted;
 } found_t;
 
-static void note(found_t *self, const law_trial_t *trial) {
+static void note(found_t *self, law_trial_t *trial) {
+    law_trial_guard(trial);
     const uint32_t breaks = law_trial_breaks(trial);
     const uint32_t bytes = law_trial_state_bytes(trial);
     self->ticks++;

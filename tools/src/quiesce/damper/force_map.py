@@ -55,9 +55,13 @@ def map_words(found: Monotone) -> list[int]:
     # What integration and rounding leave of a fall is less than a part in a million: levelled.
     along = np.maximum.accumulate(np.rint(1e3 * _resampled_N(found)).astype(int), axis=1)
     forces = np.sign(places)[:, None] * along  # > 0 resists a stroke that grows
-    values = [found.forces.axis.word, len(places), len(currents)]
-    values += [int(value) for part in (places, currents, forces.ravel()) for value in part]
-    return sealed(MAGIC, [values], "map")
+    return sealed(MAGIC, [_section(found.forces.axis, places, currents, forces)], "map")
+
+
+def _section(axis: Axis, places: np.ndarray, currents: np.ndarray, forces: np.ndarray) -> list[int]:
+    """Of the axis' units, mA and mN."""
+    values = [axis.word, len(places), len(currents)]
+    return values + [int(value) for part in (places, currents, forces.ravel()) for value in part]
 
 
 def joined(tables: Sequence[Sequence[int]]) -> list[int]:
@@ -75,6 +79,19 @@ class Map:
     places: np.ndarray
     currents_A: np.ndarray
     forces_N: np.ndarray
+
+
+def words_of_map(wanted: Map) -> list[int]:
+    """ValueError, in one line, for a map that the firmware refuses."""
+    parts = (
+        np.rint(unit * values).astype(int)
+        for unit, values in (
+            (wanted.axis.per_unit, wanted.places), (1e3, wanted.currents_A), (1e3, wanted.forces_N)
+        )
+    )  # fmt: skip
+    words = sealed(MAGIC, [_section(wanted.axis, *parts)], "map")
+    maps_of_words(words)
+    return words
 
 
 def maps_of_words(words: Sequence[int]) -> tuple[Map, ...]:

@@ -38,8 +38,8 @@ class Effort:
 
     hold_ticks: int = 4
     tried: int = 2
-    first_runs: int = 12
-    stages: tuple[tuple[float, int], ...] = ((8.0, 20), (16.0, 20), (32.0, 20), (64.0, 20))
+    first_runs: int = 10
+    stages: tuple[tuple[float, int], ...] = ((32.0, 50), (128.0, 60))
 
     @property
     def runs(self) -> int:

