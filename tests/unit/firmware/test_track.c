@@ -499,10 +499,10 @@ static void test_track_proportional_follows_what_is_missing(void) {
 
 static void test_track_no_other_tracker_is_known(void) {
     TEST_ASSERT_NULL(track_find(-1));
-    TEST_ASSERT_NULL(track_find(QUIESCE_TRACKER_NETWORK + 1));
+    TEST_ASSERT_NULL(track_find(QUIESCE_TRACKER_BANK + 1));
     const char *const *labels =
         quiesce_param_info(offsetof(quiesce_params_t, tracker) / sizeof(int32_t))->labels;
-    for (int32_t i = 0; i <= QUIESCE_TRACKER_NETWORK; i++) {
+    for (int32_t i = 0; i <= QUIESCE_TRACKER_BANK; i++) {
         TEST_ASSERT_EQUAL_STRING(labels[i], track_find(i)->name);
     }
 }
