@@ -3,10 +3,10 @@ test has one).
 
 The machine of support_vector.py has hundreds of vectors; a tick has time for some fifteen. Those
 are chosen among its own, one after the other by what each adds to its answer at the training's
-rows. Around each stands a rule with a conclusion of first order, fitted to that answer by least squares:
-no support-vector machine any more, but what few rules keep of one. (Plain Gaussians around 21
-vectors keep less: 0.15 of the largest current, root mean square, where 10 rules leave 0.08 and the
-machine itself 0.06.)
+rows. Around each stands a rule with a conclusion of first order, fitted to that answer by least
+squares: no support-vector machine any more, but what few rules keep of one. (Plain Gaussians
+around 21 vectors keep less: 0.15 of the largest current, root mean square, where 10 rules leave
+0.08 and the machine itself 0.06.)
 """
 
 import numpy as np
