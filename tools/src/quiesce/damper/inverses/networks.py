@@ -3,7 +3,7 @@
 firmware/track/track_network.c says what the tracker makes of it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -45,13 +45,14 @@ class NetworkInverse:
         return 1e-3 * self.table.sections[0].largest_mA
 
     def currents(self, demand: Record) -> np.ndarray:
-        """Of the controller's integers, in float64. UsageError where the demand has no temperature
-        and the network wants one, or where its rate is not that of the delays."""
+        """Of the controller's integers, in float64, the delay at the demand's own rate. UsageError
+        where the demand has no temperature and the network wants one."""
         section = self.table.sections[0]
-        if section.delay_ticks and demand.rate_Hz != TICK_RATE_HZ:
-            raise UsageError(f"{demand.name}: {demand.rate_Hz:g} Hz; delays count in 1 kHz")
+        if section.delay_ticks:
+            samples = round(section.delay_ticks * demand.rate_Hz / TICK_RATE_HZ)
+            section = replace(section, delay_ticks=max(1, samples))
         values = [column(demand, _KEYS[one.signal.quantity.name]) for one in section.inputs]
-        return self.table.currents_A(np.stack(values, axis=1))[:, 0]
+        return NetworkTrackTable((section,)).currents_A(np.stack(values, axis=1))[:, 0]
 
     def parameters(self) -> dict[str, Any]:
         return {"words": self.table.words()}
