@@ -15,7 +15,7 @@ FIGURES = (
     ("law_float_flips_worst_pct", "%", None, "lower"),
 )
 TICKS, QUICK_TICKS = 60000, 10000
-NEEDS_TWO_ENDS = ("groundhook", "groundhook_on_off", "mixed_hooks")
+NEEDS_TWO_ENDS = ("groundhook", "groundhook_on_off", "mixed_hooks", "bilinear")
 # So that a law covers its output's range.
 LOUDNESS = {"acceleration": 10.0, "velocity": 0.3, "displacement": 0.02, "stroke": 0.02,
             "stroke velocity": 0.3, "force": 1000.0}  # fmt: skip

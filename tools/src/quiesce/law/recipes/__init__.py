@@ -6,6 +6,7 @@ from quiesce.law.recipes import (
     add,
     backstepping,
     bang_bang,
+    bilinear,
     clipped_linear,
     clipped_optimal,
     groundhook,
@@ -42,6 +43,7 @@ RECIPES: tuple[Recipe, ...] = (
     quasi_bang_bang.RECIPE,
     max_dissipation.RECIPE,
     polynomial.RECIPE,
+    bilinear.RECIPE,
 )
 
 
