@@ -11,7 +11,7 @@ from quiesce.law.signal import Input
 # Signals by short names, and where they are cut off, in SI units: what is small is told finely.
 SIGNALS = {
     "accel": ("acceleration", 30.0),  # of end a
-    "velocity": ("velocity", 4.0),
+    "velocity": ("velocity", 2.0),
     "lower_accel": ("acceleration", 120.0),  # of end b
     "rate": ("stroke velocity", 2.0),
 }
