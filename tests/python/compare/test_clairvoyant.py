@@ -276,5 +276,7 @@ def test_the_command_puts_it_beside_everything(quiesce, tmp_path: Path) -> None:
     assert all(0.0 <= float(one["upper_current_A"]) <= 2.0 for one in currents)
     again = quiesce(*words, *goal)
     assert again.returncode == 0 and " runs" not in again.stderr  # from the store
-    result = quiesce(*words, "--clairvoyant", "nothing")
-    assert result.returncode == 2 and result.stderr.count("\n") == 1
+    for wrong in ("nothing", "tyre_share"):  # this plant has no tyre
+        result = quiesce(*words, "--clairvoyant", wrong)
+        assert result.returncode == 2 and result.stderr.count("\n") == 1, result.stderr
+        assert wrong in result.stderr

@@ -97,6 +97,7 @@ class Comparison:
     ) -> list[Cell]:
         """Of the laws and the three references, record by record and seed by seed. goal: of the
         best constant current."""
+        goal.require(bool(self._contacts))
         all_mA = self.rig.all_mA
         steps = [constant(round(all_mA * i / GRID), f"{i}") for i in range(1, GRID)]
         none, all_current = self.references()
