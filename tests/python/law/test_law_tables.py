@@ -34,7 +34,8 @@ def two(build: Path) -> LawRig:
 
 def tables(rig: LawRig) -> dict[str, Table]:
     """Of all recipes that the building takes: those for two moving ends need another rig."""
-    names = [one.name for one in RECIPES if "hook" not in one.name or "sky" in one.name]
+    two_ends = ("groundhook", "groundhook_on_off", "mixed_hooks", "bilinear")
+    names = [one.name for one in RECIPES if one.name not in two_ends]
     return {name: make(find(name), rig, values_of(find(name), [])).table for name in names}
 
 
