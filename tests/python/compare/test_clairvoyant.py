@@ -242,12 +242,15 @@ def test_without_a_possible_start_there_is_no_search() -> None:
         best_waveform(loop, Acceleration(), 1.0, [np.zeros((900, 1))], SHORT)
 
 
-def test_the_command_puts_it_beside_everything(quiesce, tmp_path: Path) -> None:
+def test_the_command_puts_it_beside_everything(quiesce, tmp_path: Path, build: Path) -> None:
+    (tmp_path / "build").mkdir()  # with a store that is empty
+    (tmp_path / "build/host").symlink_to(build / "host")
+    store = {"QUIESCE_BUILD": str(tmp_path / "build")}
     quake_file = tmp_path / "quake.csv"
     quake_file.write_text(quake(0.6, 1.0).csv())
     words = ["compare", "--rig", "two_storeys", "--record", quake_file, "--law", "fuzzy"]
     goal = ["--clairvoyant", "disp_rms_mm"]
-    result = quiesce(*words, *goal, "--seeds", "2", "--out", tmp_path / "out")
+    result = quiesce(*words, *goal, "--seeds", "2", "--out", tmp_path / "out", **store)
     assert result.returncode == 0, result.stderr
     assert "clairvoyant, quake: disp_rms_mm" in result.stderr
     assert "the best waveform found for disp_rms_mm, not a proof" in result.stdout
@@ -274,7 +277,9 @@ def test_the_command_puts_it_beside_everything(quiesce, tmp_path: Path) -> None:
     assert list(currents[0]) == ["t_s", "lower_current_A", "upper_current_A"]
     assert len(currents) == 2595
     assert all(0.0 <= float(one["upper_current_A"]) <= 2.0 for one in currents)
-    again = quiesce(*words, *goal)
+    again = quiesce(*words, *goal, **store)
     assert again.returncode == 0 and " runs" not in again.stderr  # from the store
-    result = quiesce(*words, "--clairvoyant", "nothing")
-    assert result.returncode == 2 and result.stderr.count("\n") == 1
+    for wrong in ("nothing", "tyre_share"):  # this plant has no tyre
+        result = quiesce(*words, "--clairvoyant", wrong)
+        assert result.returncode == 2 and result.stderr.count("\n") == 1, result.stderr
+        assert wrong in result.stderr

@@ -41,8 +41,8 @@ def mount(build: Path) -> LawRig:
 def tables(rig: LawRig) -> dict[str, Table]:
     """Of all recipes that the building takes: those for two moving ends, or a mount beside the
     damper, need another rig."""
-    names = [one.name for one in RECIPES if "hook" not in one.name or "sky" in one.name]
-    names.remove("skyhook_elastomer")
+    others = ("groundhook", "groundhook_on_off", "mixed_hooks", "bilinear", "skyhook_elastomer")
+    names = [one.name for one in RECIPES if one.name not in others]
     return {name: make(find(name), rig, values_of(find(name), [])).table for name in names}
 
 

@@ -339,7 +339,8 @@ TEST(LawTable, a_map_is_of_the_boards_dampers) {
     EXPECT_EQ(refusal("inverse --law-table " + table.name() + " --force-map " + three.name()),
               "quiesce_bench: " + three.name() +
                   ": the controller refuses the map: it is of more dampers than this board has, or "
-                  "over a stroke that no sensor tells (quiesce board show)\n");
+                  "over a stroke that no sensor tells (quiesce board show), or a bank for another "
+                  "tick_rate_Hz\n");
 }
 
 // Half of the demand and of the velocity of the stroke, by a straight line; least speed 1 mm/s.

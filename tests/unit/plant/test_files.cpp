@@ -144,7 +144,8 @@ const Mistake kScenarioMistakes[] = {
      "feed_current: expected true or false, found 'yes'"},
     {"unknown_key", "noise_mg = 0.5", "noise_g = 0.5", "noise_g: unknown key"},
     {"unknown_segment", "kind = \"sine\"", "kind = \"square\"",
-     "segment[1].kind: expected one of: sine, chirp, tones, random, impulse, record; found "
+     "segment[1].kind: expected one of: sine, chirp, tones, random, impulse, record, base_tones; "
+     "found "
      "'square'"},
     {"no_frequency", "freq_Hz = 20", "", "segment[2].freq_Hz: missing"},
     {"chirp_without_end", "kind = \"sine\"", "kind = \"chirp\"", "segment[1].end_freq_Hz: missing"},

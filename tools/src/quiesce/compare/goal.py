@@ -4,7 +4,7 @@ that of all current."""
 from dataclasses import dataclass
 
 from quiesce.base.errors import UsageError
-from quiesce.compare.figures import INDEXED, Figures
+from quiesce.compare.figures import INDEXED, OF_CONTACTS, Figures
 from quiesce.compare.smooth import SMOOTH, Layout, slopes_of
 from quiesce.plant.open_loop import Motion
 
@@ -17,6 +17,16 @@ class Goal:
 
     name: str
     weights: tuple[tuple[str, float], ...]
+
+    def require(self, has_contacts: bool) -> None:
+        """UsageError where it asks for a figure that only plants with contacts have."""
+        of_contacts = {name for name, _, _ in OF_CONTACTS}
+        for name, _ in self.weights:
+            if name in of_contacts and not has_contacts:
+                raise UsageError(
+                    f"--clairvoyant {self.name}: the plant has no contact below a body, and only "
+                    f"those have {name}"
+                )
 
     def value(self, figures: Figures, all_current: Figures) -> float:
         return sum(weight * figures[name] / all_current[name] for name, weight in self.weights)

@@ -113,6 +113,7 @@ class Comparison:
     ) -> list[Cell]:
         """Of the laws and the three references, record by record and seed by seed. goal: of the
         best constant current."""
+        goal.require(bool(self._contacts))
         wanted = [*self.constants(), *laws]
         cases = [Case(law, r, seed) for r in records for seed in seeds for law in wanted]
         found = self.figures(cases)

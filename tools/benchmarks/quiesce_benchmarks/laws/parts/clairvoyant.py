@@ -16,6 +16,7 @@ from quiesce.compare.run import ALL, BEST, BY_INDEX, OFF, Cell, Shaking
 from quiesce.compare.table import laws_of, means
 from quiesce.damper.force_map import Map, words_of_map
 from quiesce.damper.inverse import VELOCITY
+from quiesce.law.recipes import find
 from quiesce.law.words import file_text
 from quiesce.optimum.waveform import Effort as Search
 
@@ -51,6 +52,9 @@ LATE = {
     "lower_velocity_N_s_m": 6572.0, "stroke_N_m": 168470.0, "stroke_N_s_m": -21600.0,
     "limit_N": 2e5,
 }  # fmt: skip
+# A quadratic form, of velocities down to lower frequencies than by default.
+FORM = (-1.315, -0.08291, 8.593, -0.08767, 24.58, -25.33, -1.671, 522.5, -0.0007625, 0.9316, -422.5)
+SLOWER = ("velocity_cutoff_mHz=100", "dc_cutoff_mHz=20")
 LATE_N, LATE_N_A, SLOW_m_s = 5050.0, 1000.0, 0.0268
 
 
@@ -128,7 +132,13 @@ def comfort_laws(folder: Path) -> list[ComparedLaw]:
             folder, "clipped linear, late", rigs.made(rigs.CAR, "clipped_linear", LATE),
             map_file=late,
         ),
+        rigs.compared(folder, "bilinear", rigs.made(rigs.CAR, "bilinear", form()), *SLOWER),
     ]  # fmt: skip
+
+
+def form() -> dict[str, float]:
+    names = [one.name for one in find("bilinear").settings]
+    return dict(zip(names, FORM, strict=True))
 
 
 def late_map() -> Map:

@@ -6,6 +6,7 @@ from quiesce.law.recipes import (
     add,
     backstepping,
     bang_bang,
+    bilinear,
     clipped_linear,
     clipped_optimal,
     fuzzy_drift,
@@ -50,6 +51,7 @@ RECIPES: tuple[Recipe, ...] = (
     fuzzy_skyhook.RECIPE,
     fuzzy_drift.RECIPE,
     tsk.RECIPE,
+    bilinear.RECIPE,
 )
 
 
