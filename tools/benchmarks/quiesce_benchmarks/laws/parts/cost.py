@@ -8,6 +8,7 @@ from quiesce.base.table import format_table
 from quiesce.engine.bench import Bench
 from quiesce.engine.pool import run_work
 from quiesce.law.recipes import RECIPES
+from quiesce.law.tables import FORMS, table_of_words
 
 from quiesce_benchmarks.laws import law_cases, law_runs
 from quiesce_benchmarks.laws.law_cases import LawCase
@@ -56,7 +57,15 @@ class Cost:
             "table_words": len(self.case.words),
             "map_words": len(self.case.map_words),
             "running_ticks": self.whole["running_ticks"],
+            "signals": signals(self.case),
         }
+
+
+def signals(case: LawCase) -> list[str]:
+    """That its table names, each once; none of a law that no recipe makes."""
+    if not case.words or case.words[0] not in FORMS:
+        return []
+    return list(dict.fromkeys(one.name for one in table_of_words(case.words).signals()))
 
 
 def both(case: LawCase, mode: int, ticks: int, seed: int) -> tuple[Run, Run]:
