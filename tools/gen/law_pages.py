@@ -30,10 +30,11 @@ LISTED = re.compile(r"(<!-- laws: [^\n]*\n).*?(\n<!-- end -->)", re.DOTALL)
 BUILDING = "building of 1996, records that nobody chose on"
 CAR = "quarter of a car, a road that nobody chose on"
 CANTILEVER = "frozen cantilever, the four frequencies that it was tuned on"
-CONSTANTS = ("constant_best", "best constant")
+BEST_CONSTANT = "best constant"
 UNKNOWN = "not recorded yet"
-SYMBOLS = """x, v and a are a body's absolute displacement, velocity and acceleration; r and v_r a damper's
-stroke and its velocity, of end a less end b; F its force, above 0 where it resists a stroke that grows."""
+SYMBOLS = """x, v and a are a body's absolute displacement, velocity and acceleration; r and v_r a
+damper's stroke and its velocity, of end a less end b; F its force, above 0 where it resists a
+stroke that grows."""
 
 Reported = dict[str, dict[str, Any]]
 
@@ -219,7 +220,7 @@ def on_car(name: str, reported: Reported) -> list[Cell]:
 def on_cantilever(name: str, reported: Reported) -> list[Cell]:
     found = reported.get("cantilever", {}).get("rows", {})
     own = [row["score_pct"] for key, row in found.items() if is_of(name, key)]
-    constant = [found[key]["score_pct"] for key in CONSTANTS if key in found]
+    constant = [row["score_pct"] for key, row in found.items() if key.startswith(BEST_CONSTANT)]
     if not own or not constant:
         return []
     what = "mean reduction of displacement and acceleration in %"
