@@ -98,7 +98,7 @@ def test_a_page_too_many_and_one_that_differs_are_found(pages, tmp_path: Path) -
     (tmp_path / "docs").mkdir()
     (tmp_path / "tools/gen").mkdir(parents=True)
     (tmp_path / "tools/gen/laws.toml").write_bytes((ROOT / "tools/gen/laws.toml").read_bytes())
-    (tmp_path / "docs/index.md").write_text("<!-- laws: here -->\nold\n<!-- end -->\n")
+    (tmp_path / "docs/index.md").write_text("<!-- laws: here -->\nOLD LINE\n<!-- end -->\n")
     files = pages.written(tmp_path)
     assert len(files) == len(RECIPES) + 6 + 1
-    assert "old" not in files[pages.INDEX] and "add.md" in files[pages.INDEX]
+    assert "OLD LINE" not in files[pages.INDEX] and "add.md" in files[pages.INDEX]
