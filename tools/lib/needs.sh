@@ -13,7 +13,8 @@ needs_of() {
     "board "* | "chain "* | "params "* | "plant "* | "record "*) echo bench ;;
     "rules lookup" | "rules optimize" | "rules show") echo bench ;;
     "rules "*) ;;
-    "compare "* | "law make") echo bench ;;
+    "compare "*) needs_of_compare "$@" ;;
+    "law make" | "law rules" | "law fit") echo bench ;;
     "law "*) ;;
     "sweep "*) echo bench plant ;;
     "identify plan") ;;
@@ -34,12 +35,20 @@ needs_of_target() {
     esac
 }
 
+# needs_of_compare OPTION...: the clairvoyant goes by the plant's own slopes.
+needs_of_compare() {
+    case "$*" in
+    *--clairvoyant*) echo bench plant ;;
+    *) echo bench ;;
+    esac
+}
+
 # needs_of_benchmark NAME...: of `benchmark`. Images that only benchmarks run: their build_images.
 needs_of_benchmark() {
     case "${1:-}" in
     can | fuzzy | house | signal) echo bench ;;
     controller) echo bench dampers images ;;
-    laws) echo bench dampers ;;
+    laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
     trust) echo bench images trust ;;
     *) echo bench plant dampers ;;
