@@ -53,11 +53,11 @@ static uint32_t words_in(const section_t *bank) {
 
 static uint32_t size(const uint32_t *words, uint32_t left) {
     const section_t *bank = as_section(words);
-    const bool is_good = left >= SECTION_WORDS && bank->elements >= 1u &&
-                         bank->elements <= FORCE_BANK_MAX_ELEMENTS &&
-                         bank->currents >= FORCE_BANK_MIN_CURRENTS &&
-                         bank->currents <= FORCE_BANK_MAX_CURRENTS && left >= words_in(bank);
-    return is_good ? words_in(bank) : 0;
+    const bool has_shape = left >= SECTION_WORDS && bank->elements >= 1u &&
+                           bank->elements <= FORCE_BANK_MAX_ELEMENTS &&
+                           bank->currents >= FORCE_BANK_MIN_CURRENTS &&
+                           bank->currents <= FORCE_BANK_MAX_CURRENTS && left >= words_in(bank);
+    return has_shape ? words_in(bank) : 0;
 }
 
 static bool is_element_good(const element_t *element) {

@@ -34,11 +34,11 @@ static uint32_t words_in(const section_t *map) {
 
 static uint32_t size(const uint32_t *words, uint32_t left) {
     const section_t *map = as_section(words);
-    const bool is_good = left >= SECTION_WORDS && map->places >= FORCE_MAP_MIN_POINTS &&
-                         map->places <= FORCE_MAP_MAX_PLACES &&
-                         map->currents >= FORCE_MAP_MIN_POINTS &&
-                         map->currents <= FORCE_MAP_MAX_CURRENTS && left >= words_in(map);
-    return is_good ? words_in(map) : 0;
+    const bool has_shape = left >= SECTION_WORDS && map->places >= FORCE_MAP_MIN_POINTS &&
+                           map->places <= FORCE_MAP_MAX_PLACES &&
+                           map->currents >= FORCE_MAP_MIN_POINTS &&
+                           map->currents <= FORCE_MAP_MAX_CURRENTS && left >= words_in(map);
+    return has_shape ? words_in(map) : 0;
 }
 
 static bool is_rising(const int32_t *values, uint32_t count) {

@@ -56,11 +56,11 @@ static uint32_t size(const uint32_t *words, uint32_t left) {
 }
 
 static bool is_term_good(const term_t *term, uint32_t inputs) {
-    bool is_good = abs_i32(term->coefficient_q8) <= VIEW_LIMIT;
+    bool is_right = abs_i32(term->coefficient_q8) <= VIEW_LIMIT;
     for (uint32_t i = 0; i < MOST_INPUTS; i++) {
-        is_good = is_good && term->power[i] <= (i < inputs ? MOST_POWER : 0);
+        is_right = is_right && term->power[i] <= (i < inputs ? MOST_POWER : 0);
     }
-    return is_good;
+    return is_right;
 }
 
 static bool is_good(const uint32_t *words) {
