@@ -16,8 +16,7 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
 from quiesce.damper.model_file import DamperModel
 
-
-TICK_RATE_Hz = 1000  # of the controller that tables with memory are made for
+TICK_RATE_HZ = 1000  # of the controller that tables with memory are made for
 
 
 @dataclass(frozen=True)

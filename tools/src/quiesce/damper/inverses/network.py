@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.damper.inverses.demand import TICK_RATE_Hz, Source, checked_levels
+from quiesce.damper.inverses.demand import TICK_RATE_HZ, Source, checked_levels
 from quiesce.damper.inverses.networks import READ_BY, NetworkInverse, inverse_of
 from quiesce.damper.inverses.taps import (
     INPUTS,
@@ -40,8 +40,8 @@ class Settings:
 
 def ticks_of(time_s: float) -> int:
     """0 where it is not a number of ticks that the controller keeps."""
-    ticks = round(time_s * TICK_RATE_Hz)
-    is_whole = abs(time_s * TICK_RATE_Hz - ticks) < 0.05
+    ticks = round(time_s * TICK_RATE_HZ)
+    is_whole = abs(time_s * TICK_RATE_HZ - ticks) < 0.05
     return ticks if is_whole and 1 <= ticks <= MOST_PAST // len(INPUTS) else 0
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.damper.data.record import Record
-from quiesce.damper.inverses.demand import TICK_RATE_Hz, in_ticks
+from quiesce.damper.inverses.demand import TICK_RATE_HZ, in_ticks
 from quiesce.damper.learned.inputs import Box, column
 from quiesce.law.forms.network import (
     DEMAND,
@@ -45,8 +45,8 @@ class NetworkInverse:
         return 1e-3 * self.table.sections[0].largest_mA
 
     def currents(self, demand: Record) -> np.ndarray:
-        """Of the controller's integers, in float64; with a delay, at its own ticks. UsageError where
-        the demand has no temperature and the network wants one."""
+        """Of the controller's integers, in float64; a delay counts in its own ticks. UsageError
+        where the demand has no temperature and the network wants one."""
         section = self.table.sections[0]
         seen, at = demand, np.arange(len(demand))
         if section.rate_Hz:
@@ -70,7 +70,7 @@ def inverse_of(
         for key, low, high in zip(box.keys, box.low, box.high, strict=True)
     )
     least_um_s = round(STROKE_VELOCITY.per_unit * least_m_s)
-    rate_Hz = TICK_RATE_Hz if delay_ticks else 0
+    rate_Hz = TICK_RATE_HZ if delay_ticks else 0
     largest_mA = round(1e3 * max_current_A)
     section = NetworkSection(inputs, delay_ticks, largest_mA, layers, least_um_s, rate_Hz)
     inverse = NetworkInverse(NetworkTrackTable((section,)))
