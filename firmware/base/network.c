@@ -10,7 +10,7 @@
 enum { DENSE_TANH, DENSE_LINE, RADIAL, RADIAL_NORMALISED, KINDS };
 
 enum {
-    HEADER_WORDS = 5,
+    HEADER_WORDS = 6,
     INPUT_WORDS = 5,
     LAYER_WORDS = 2,
     DENSE_WORDS = 2,  ///< of a unit, beside its weights
@@ -193,7 +193,8 @@ static bool is_output_good(place_t last) {
 }
 
 bool network_is_good(const network_t *self) {
-    bool is_good = self->largest_mA >= 1u && self->largest_mA <= QUIESCE_HIGHEST_CURRENT_mA;
+    bool is_good = self->largest_mA >= 1u && self->largest_mA <= QUIESCE_HIGHEST_CURRENT_mA &&
+                   (self->delay_ticks == 0 ? self->rate_Hz == 0 : self->rate_Hz > 0);
     for (uint32_t i = 0; i < self->inputs; i++) {
         is_good = is_good && is_input_good(&self->input[i]);
     }
@@ -242,6 +243,20 @@ quiesce_table_verdict_t network_table_check(const sections_kind_t *kind, const u
         network = network_next(network);
     }
     return work <= NETWORK_MOST_WORK ? QUIESCE_TABLE_OK : QUIESCE_TABLE_SHAPE;
+}
+
+uint32_t network_table_rate_Hz(const uint32_t *words) {
+    const network_t *network = sections_first(words);
+    uint32_t found_Hz = TABLE_ANY_RATE;
+    for (uint32_t i = 0; i < sections_count(words); i++) {
+        const uint32_t rate_Hz = (uint32_t)network->rate_Hz;
+        if (rate_Hz != 0 && found_Hz != TABLE_ANY_RATE && rate_Hz != found_Hz) {
+            return 0;
+        }
+        found_Hz = rate_Hz != 0 ? rate_Hz : found_Hz;
+        network = network_next(network);
+    }
+    return found_Hz;
 }
 
 // ---- a tick -------------------------------------------------------------------------------------

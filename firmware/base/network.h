@@ -1,8 +1,8 @@
 /// Small networks in integers: from signals to a current, through one or two layers.
 ///
 /// Words of a network: a number of whoever uses it, largest current in mA, inputs m, delay in
-/// ticks, layers l; m inputs (network_input_t); l layers; the output. A table is sections
-/// (sections.h), each a network.
+/// ticks, ticks a second that the delay counts in (0 without one), layers l; m inputs
+/// (network_input_t); l layers; the output. A table is sections (sections.h), each a network.
 ///
 /// A layer of n units over k values: kind, n, then n units. A dense unit {shift, bias, k weights}
 /// is tanh, or the straight line limited to -1 .. 1, of (bias + sum of weights x values) x
@@ -51,6 +51,7 @@ typedef struct {
     uint32_t largest_mA;
     uint32_t inputs;
     uint32_t delay_ticks; ///< 0: no delayed inputs
+    int32_t rate_Hz;      ///< of these ticks, > 0; 0 iff there are none
     uint32_t layers;
     network_input_t input[];
 } network_t;
@@ -78,6 +79,10 @@ bool network_is_good(const network_t *self);
 /// more than NETWORK_MOST_WORK instructions.
 quiesce_table_verdict_t network_table_check(const sections_kind_t *kind, const uint32_t *words,
                                             uint32_t count);
+
+/// Ticks a second that a checked table's delays count in: TABLE_ANY_RATE where it has none, 0 where
+/// they differ.
+uint32_t network_table_rate_Hz(const uint32_t *words);
 
 /// The network after this one, which has been checked.
 const network_t *network_next(const network_t *self);

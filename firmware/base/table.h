@@ -5,6 +5,9 @@
 
 #include "quiesce.h"
 
+/// Of a table that is made for no tick rate of its own.
+#define TABLE_ANY_RATE UINT32_MAX
+
 enum { TABLE_MAGIC, TABLE_CRC, TABLE_WORDS, TABLE_HEAD_WORDS };
 
 /// Whether count words are a whole table of a kind whose own part begins with further words.

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "table.h"
+
 #define TABLE_CRC_WORD 1 ///< of every kind of table
 
 // Of what a law needs that demands forces, or lacks its table: a bit that no view has. Such a law
@@ -182,7 +184,9 @@ static quiesce_table_verdict_t use_shipped(control_t *self) {
 
 static bool is_of_this_rate(const control_t *self, uint32_t (*rate_Hz)(const uint32_t *words),
                             const uint32_t *words) {
-    return rate_Hz == NULL || rate_Hz(words) == (uint32_t)self->setup.params.tick_rate_Hz;
+    const uint32_t made_for_Hz = rate_Hz != NULL ? rate_Hz(words) : TABLE_ANY_RATE;
+    return made_for_Hz == TABLE_ANY_RATE ||
+           made_for_Hz == (uint32_t)self->setup.params.tick_rate_Hz;
 }
 
 // Whether it is good, of this tick rate, and the board has what it needs.

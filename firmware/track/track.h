@@ -27,7 +27,8 @@ typedef struct {
     /// VIEW_ bits that a checked table needs beside the tracker, VIEW_EACH of each that there is;
     /// one that the board cannot serve is refused. NULL: none.
     uint64_t (*needs)(const uint32_t *words);
-    /// Ticks a second that a checked table is made for; at another rate it is refused. NULL: any.
+    /// Ticks a second that a checked table is made for, TABLE_ANY_RATE, or 0 where its parts
+    /// differ; at another rate it is refused. NULL: any.
     uint32_t (*rate_Hz)(const uint32_t *words);
 } track_table_kind_t;
 

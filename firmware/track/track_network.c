@@ -106,7 +106,11 @@ static int32_t step(void *state, const track_setup_t *setup, const view_damper_t
 }
 
 static const track_table_kind_t networks = {
-    .magic = TRACK_NETWORK_MAGIC, .check = check, .needs = needs_of_table};
+    .magic = TRACK_NETWORK_MAGIC,
+    .check = check,
+    .needs = needs_of_table,
+    .rate_Hz = network_table_rate_Hz,
+};
 
 extern const track_t track_network;
 const track_t track_network = {.name = "network", .kind = &networks, .step = step};

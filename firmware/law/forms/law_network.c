@@ -58,7 +58,11 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
 }
 
 static const law_table_kind_t networks = {
-    .magic = NETWORK_MAGIC, .check = check, .needs = needs_of_table};
+    .magic = NETWORK_MAGIC,
+    .check = check,
+    .needs = needs_of_table,
+    .rate_Hz = network_table_rate_Hz,
+};
 
 extern const law_t law_network;
 const law_t law_network = {.name = "network", .kind = &networks, .step = step};

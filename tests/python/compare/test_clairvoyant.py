@@ -177,7 +177,7 @@ def test_a_share_is_of_the_gain_over_the_best_constant() -> None:
     def cell(law: str, weighted_m_s2: float) -> Cell:
         names = read_goal("index").weights
         figures = {**{name: 1.0 for name, _ in names}, "weighted_m_s2": weighted_m_s2}
-        return Cell(law, "r", 1, figures, 1.0)
+        return Cell("rig", law, "r", 1, figures, 1.0)
 
     cells = [cell("no current", 1.2), cell("all current", 2.0), cell("best constant", 1.0)]
     goal = read_goal("weighted_m_s2")

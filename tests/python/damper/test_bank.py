@@ -25,9 +25,9 @@ from quiesce.damper.inverse import forces_by
 from quiesce.damper.inverses.banked import BankInverse, read_words
 from quiesce.damper.learned.model import silent
 from quiesce.damper.simulate import simulator_of_file
-from quiesce.damper.words import words_of_file
 from quiesce.law.forms.network import DEMAND
 from quiesce.law.signal import BY_NAME
+from quiesce.law.words import read_file
 from quiesce_benchmarks.laws.firmware_laws import Tracker, tracker_verdict
 
 pytestmark = pytest.mark.usefixtures("build")
@@ -203,7 +203,7 @@ def test_banks_of_several_dampers_are_made_one(
         file.write_text(BankInverse(bank_words([bank])).to_text())
     asked = ["identify", "inverse", "--out", str(tmp_path)]
     assert main([*asked, *map(str, files[:2])]) == 0
-    assert banks_of_words(words_of_file(tmp_path / "bank.words", table.MAGIC)) == tuple(banks[:2])
+    assert banks_of_words(read_file(tmp_path / "bank.words")) == tuple(banks[:2])
     assert main([*asked, *map(str, files)]) == 2
     assert "different tick rates" in capsys.readouterr().err
     assert main([*asked, *map(str, [files[0]] * 5)]) == 2

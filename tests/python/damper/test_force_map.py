@@ -25,7 +25,7 @@ from quiesce.damper.force_map import (
 )
 from quiesce.damper.inverse import STROKE, VELOCITY, Axis, Monotone, SteadyForces, monotone_range
 from quiesce.damper.simulate import simulator_of_file
-from quiesce.damper.words import MAX_DAMPERS
+from quiesce.law.sections import MOST_SECTIONS
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -41,7 +41,7 @@ def test_limits_are_those_of_the_firmware() -> None:
     assert defined("track/force_map.h", "FORCE_MAP_MAGIC") == MAGIC
     assert defined("track/force_map.h", "FORCE_MAP_MAX_CURRENTS") == MAX_CURRENTS
     assert defined("track/force_map.h", "FORCE_MAP_MAX_PLACES") == MAX_PLACES
-    assert defined("include/quiesce_size.h", "QUIESCE_MAX_DAMPERS") == MAX_DAMPERS
+    assert defined("include/quiesce_size.h", "QUIESCE_MAX_DAMPERS") == MOST_SECTIONS
     assert defined("include/quiesce_board.h", "QUIESCE_HIGHEST_CURRENT_mA") == MAX_CURRENT_mA
     assert "VIEW_LIMIT ((1 << 30) - 1)" in (ROOT / "firmware/base/view.h").read_text("utf-8")
     assert LIMIT == (1 << 30) - 1
@@ -200,7 +200,7 @@ def test_command_joins_maps(tmp_path: Path, capsys) -> None:
         ([], "made one with --out"),
         (["--json", "--out", "x"], "no other option"),
         (["--method", "ffn", "--out", "x"], "no other option"),
-        (["--out", "x"], "a.words: expected words such as 0x32464d51"),
+        (["--out", "x"], "a.words: expected hexadecimal numbers, one a line"),
     ],
 )
 def test_command_joins_nothing_else(options: list[str], why: str, tmp_path: Path, capsys) -> None:

@@ -154,6 +154,30 @@ def test_a_file_read_back_answers_alike(name: str, tmp_path: Path) -> None:
     np.testing.assert_array_equal(commanded(again, demand), commanded(made(name), demand))
 
 
+@pytest.mark.parametrize("name", ["bank", "network"])
+def test_a_memory_counts_in_its_own_ticks(name: str) -> None:
+    """Whatever the rate of a demand, the current is that at 1 kHz."""
+    if name == "network":
+        section = made(name).table.sections[0]
+        assert section.delay_ticks > 0 and section.rate_Hz == 1000
+
+    def asked_A(rate_Hz: float) -> np.ndarray:
+        motion = two_tones(rate_Hz)
+        force_N = 400.0 * np.sign(motion.velocity_m_s) + 3e3 * motion.velocity_m_s
+        return made(name).currents(judged(replace(motion, force_N=force_N)))
+
+    at_ticks = asked_A(1000.0)
+    assert np.ptp(at_ticks) > 0.2
+    for every, rate_Hz in ((2, 500.0), (10, 100.0)):
+        few = at_ticks[::every]
+        # A demand that jumps does so between two samples, not between two ticks.
+        steady = np.abs(two_tones(rate_Hz).velocity_m_s) > 0.02
+        assert np.abs(asked_A(rate_Hz) - few)[steady].max() < 0.02 * MOST_A
+    many = asked_A(4000.0)
+    np.testing.assert_allclose(many[::4], at_ticks, atol=1e-6)
+    assert (many[3::4] == many[::4]).all()
+
+
 def test_training_is_the_same_for_the_same_seed() -> None:
     for name in ("ffn", "rnn"):
         again = METHODS[name].make(source(), 1, settings=SMALL[name])

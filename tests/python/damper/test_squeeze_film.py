@@ -1,5 +1,6 @@
 """The squeeze-mode film: the kernel beside the plant's damper, and how it is identified."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import conftest  # noqa: F401
@@ -10,7 +11,8 @@ from quiesce.base.errors import UsageError
 from quiesce.cli.main import main
 from quiesce.damper import library
 from quiesce.damper.candidates import names_of
-from quiesce.damper.inverse import ClosedForm
+from quiesce.damper.force_map import why_no_map
+from quiesce.damper.inverse import ClosedForm, InverseByInterpolation, forces_at, monotone_range
 from quiesce.damper.model_file import DamperModel, read_model
 from quiesce.damper.simulate import simulator, with_rig
 from quiesce_benchmarks.damper.synthetic import random_tones, record_of
@@ -119,3 +121,17 @@ def test_groups_of_models_leave_it_out() -> None:
 def test_its_current_has_no_closed_form() -> None:
     with pytest.raises(UsageError, match="interpolate"):
         ClosedForm(FILM, 3.0)
+
+
+def test_its_inverse_knows_its_current() -> None:
+    record = record_of(random_tones(2, (2.0, 40.0), 1e-4), 1000.0, 500, 0.0)
+    forces_N = forces_at(FILM, record, CURRENTS_A)
+    for current_A, force_N in zip(CURRENTS_A, forces_N, strict=True):
+        alone = record_of(random_tones(2, (2.0, 40.0), 1e-4), 1000.0, 500, current_A)
+        np.testing.assert_array_equal(force_N, simulator(FILM)(alone))
+    found = monotone_range(FILM, 3.0)
+    assert found.is_whole and why_no_map(found) == ""
+    wanted_N = 0.5 * (forces_N[0] + forces_N[3])
+    asked_A = InverseByInterpolation(FILM, 3.0, 61).currents(record, wanted_N)
+    again_N = simulator(FILM)(replace(record, command=asked_A))
+    assert again_N == pytest.approx(wanted_N, abs=2e-3 * float(np.abs(wanted_N).max()))

@@ -40,6 +40,7 @@ from quiesce_benchmarks.laws.firmware_laws import (
 )
 
 TICKS = 5000
+RATE_Hz = 1000
 STROKES = ("stroke of brace", "stroke velocity of brace")
 SPANS = (
     Span.of(signal("stroke", 0), -0.03, 0.03),
@@ -91,13 +92,14 @@ KINDS = {
 
 def made(kind: str) -> NetworkTable:
     delay_ticks, layers = KINDS[kind](np.random.default_rng(4))
-    return NetworkTable((NetworkSection(SPANS, delay_ticks, 2500, layers),))
+    rate_Hz = RATE_Hz if delay_ticks else 0
+    return NetworkTable((NetworkSection(SPANS, delay_ticks, 2500, layers, 0, rate_Hz),))
 
 
 def track_section(least_um_s: int = 20_000) -> NetworkSection:
     spans = (Span.of(Signal(DEMAND, 0), -1500.0, 1500.0), *SPANS[:2])
     layers = random_dense(np.random.default_rng(8), (6, 9, 1))
-    return NetworkSection(spans, 2, 1800, layers, least_um_s)
+    return NetworkSection(spans, 2, 1800, layers, least_um_s, RATE_Hz)
 
 
 def test_exp_and_tanh_are_within_two_to_the_minus_23() -> None:
@@ -183,7 +185,10 @@ def test_too_much_is_refused_before_it_is_written() -> None:
     with pytest.raises(ValueError, match="instructions a tick; 5000 are allowed"):
         NetworkTable((section, section)).words()
     with pytest.raises(ValueError, match="delayed by 5 ticks; 12 values fit"):
-        NetworkTable((NetworkSection(SPANS, 5, 1000, layers),)).words()
+        NetworkTable((NetworkSection(SPANS, 5, 1000, layers, 0, RATE_Hz),)).words()
+    for delay_ticks, rate_Hz in ((0, RATE_Hz), (2, 0), (2, -1)):
+        with pytest.raises(ValueError, match=f"{rate_Hz} of them a second"):
+            NetworkTable((NetworkSection(SPANS, delay_ticks, 1000, layers, 0, rate_Hz),)).words()
     with pytest.raises(ValueError, match="beyond 2"):
         output_of(0.0, np.array([1e8]))
 

@@ -25,6 +25,7 @@ enum {
     FORCE = 5,
     TEMPERATURE = 7,
     DEMAND = 64,
+    RATE_Hz = 1000, ///< that delays count in
     LAW_MAGIC = 0x314E4E51,
     TRACK_MAGIC = 0x314E5451,
 };
@@ -123,7 +124,7 @@ static void begin(uint32_t magic, int32_t sections) {
 
 static void put_network(int32_t own, int32_t largest_mA, int32_t inputs, int32_t delay,
                         int32_t layers) {
-    put_all((const int32_t[]){own, largest_mA, inputs, delay, layers}, 5);
+    put_all((const int32_t[]){own, largest_mA, inputs, delay, delay > 0 ? RATE_Hz : 0, layers}, 6);
 }
 
 // -2^20 .. 2^20 of its unit is -1 .. 1.
@@ -251,6 +252,57 @@ static void test_delayed_input_is_that_of_some_ticks_ago(void) {
         const int32_t change = at[i] - (i < 3 ? 0 : at[i - 3]);
         TEST_ASSERT_EQUAL_INT32(1000 + change * 125, tick_of(at[i] * (1 << 18), 0));
     }
+}
+
+static void test_a_delay_counts_in_ticks_of_one_rate(void) {
+    enum { AT_RATE = SECTIONS_FIRST + 4 };
+    make_dense(LINE);
+    TEST_ASSERT_EQUAL_UINT32(TABLE_ANY_RATE, law_network.kind->rate_Hz(words));
+    make_delayed();
+    TEST_ASSERT_EQUAL_UINT32(RATE_Hz, law_network.kind->rate_Hz(words));
+    // Another section, without a delay, of the same rate, of another.
+    const uint32_t first = count - SECTIONS_FIRST;
+    const uint32_t second = count;
+    memcpy(&words[second], &words[SECTIONS_FIRST], first * sizeof words[0]);
+    count += first;
+    words[SECTIONS_COUNT] = 2;
+    expect_good(true);
+    TEST_ASSERT_EQUAL_UINT32(RATE_Hz, law_network.kind->rate_Hz(words));
+    words[second + 4u] = 500;
+    expect_good(true);
+    TEST_ASSERT_EQUAL_UINT32(0, law_network.kind->rate_Hz(words));
+    static const int32_t wrong[] = {0, -1, INT32_MIN};
+    for (uint32_t i = 0; i < 3u; i++) {
+        words[second + 4u] = (uint32_t)wrong[i];
+        TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_POINT, verdict_of(true));
+    }
+    make_dense(LINE);
+    words[AT_RATE] = RATE_Hz;
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_POINT, verdict_of(true));
+}
+
+// A controller of 500 ticks a second takes a law's network without a delay, or with one of its own.
+static void test_the_controller_refuses_delays_of_another_rate(void) {
+    static quiesce_t controller;
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    params.tick_rate_Hz = 500;
+    params.law = QUIESCE_LAW_NETWORK;
+    quiesce_board_t board;
+    quiesce_board_default(&board);
+    for (int32_t sense = STROKE; sense <= VELOCITY; sense++) {
+        quiesce_board_sensor_t *sensor = &board.sensor[board.sensors++];
+        *sensor = board.sensor[0];
+        sensor->sense = (uint8_t)sense;
+    }
+    TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
+    make_dense(LINE);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, words, count));
+    make_delayed();
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, quiesce_table_use(&controller, words, count));
+    words[SECTIONS_FIRST + 4] = 500;
+    expect_good(true);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, words, count));
 }
 
 // ---- the tracker --------------------------------------------------------------------------------
@@ -501,12 +553,12 @@ static void test_tracker_without_a_demand_or_a_way_is_refused(void) {
     };
     for (uint32_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
         make_tracker();
-        words[SECTIONS_FIRST + 5] = (uint32_t)pairs[i][0];
-        words[SECTIONS_FIRST + 10] = (uint32_t)pairs[i][1];
+        words[SECTIONS_FIRST + 6] = (uint32_t)pairs[i][0];
+        words[SECTIONS_FIRST + 11] = (uint32_t)pairs[i][1];
         TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_POINT, verdict_of(false));
     }
     make_tanh();
-    words[SECTIONS_FIRST + 5] = DEMAND;
+    words[SECTIONS_FIRST + 6] = DEMAND;
     TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_POINT, verdict_of(true));
 }
 
@@ -518,6 +570,8 @@ int main(void) {
     RUN_TEST(test_radial_falls_around_its_centre);
     RUN_TEST(test_rules_share_what_they_conclude);
     RUN_TEST(test_delayed_input_is_that_of_some_ticks_ago);
+    RUN_TEST(test_a_delay_counts_in_ticks_of_one_rate);
+    RUN_TEST(test_the_controller_refuses_delays_of_another_rate);
     RUN_TEST(test_tracker_gives_no_current_against_the_way);
     RUN_TEST(test_tracker_counts_a_slow_damper_as_moving);
     RUN_TEST(test_tracker_takes_the_way_of_the_force_where_it_sees_one);

@@ -13,19 +13,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import tomli_w
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import root
 from quiesce.damper.force_map import map_words
-from quiesce.damper.inverse import (
-    Monotone,
-    SteadyForces,
-    at,
-    default_places,
-    rising_until,
-    sine_at,
-)
+from quiesce.damper.inverse import monotone_range
 from quiesce.damper.simulate import simulator_of_file
 from quiesce.engine.bench import Bench
 from quiesce.law.recipe import Made, Recipe, make
@@ -47,7 +39,7 @@ CELL = {
 CELL_NOISE_mN = 2.0
 um_s2_PER_mg = 9806.65
 # Of the map of tracker inverse: around the motion at the published drive.
-MAP_AMPLITUDE_m, MAP_SPEED_m_s, MAP_CURRENTS = 2e-4, 0.02, 31
+MAP_AMPLITUDE_m, MAP_SPEED_m_s = 2e-4, 0.02
 STEADY_s, LAST_s = 8.0, 2.0
 FREQS_Hz = (5.0, 10.0, 15.0, 20.0)
 STEP = Scenario(
@@ -151,19 +143,9 @@ def map_of_film(folder: Path) -> list[int]:
     data["parameters"]["force_scale"] *= HEAVIER
     file = folder / "film.toml"
     file.write_text(tomli_w.dumps(data), encoding="utf-8")
-    model, simulate = simulator_of_file(file)
-    velocities = default_places(
-        replace(model, stroke_m=2.0 * MAP_AMPLITUDE_m, speed_m_s=MAP_SPEED_m_s)
-    )
-    currents = np.linspace(0.0, most_A(), MAP_CURRENTS)
-    rows = []
-    for velocity in velocities:
-        record, place = sine_at(abs(velocity), MAP_AMPLITUDE_m, velocity < 0.0)
-        at_currents = [simulate(at(record, current))[place] for current in currents]
-        rows.append(np.sign(velocity) * np.array(at_currents))
-    forces = SteadyForces(velocities, currents, np.array(rows))
-    limits = np.array([rising_until(currents, row) for row in forces.force_N])
-    return map_words(Monotone(float(limits.min()), limits, forces))
+    model, _ = simulator_of_file(file)
+    moved = replace(model, stroke_m=2.0 * MAP_AMPLITUDE_m, speed_m_s=MAP_SPEED_m_s)
+    return map_words(monotone_range(moved, most_A()))
 
 
 def most_A() -> float:

@@ -20,7 +20,7 @@ SPANS = (
 )
 FORCE = Span.of(signal("force", 0), -1500.0, 1500.0)
 LARGEST_mA, USUAL_mA, LEAST_um_s = 2500, 700.0, 20_000
-DELAY_ticks = 2
+DELAY_ticks, RATE_Hz = 2, 1000
 
 
 def layers(inputs: int, seed: int) -> Layers:
@@ -37,5 +37,5 @@ def law_words() -> list[int]:
 def tracker_words() -> list[int]:
     """Of tracker `network`: from the demand, stroke and its velocity, now and two ticks before."""
     spans = (Span.of(Signal(DEMAND, 0), -1500.0, 1500.0), *SPANS)
-    section = NetworkSection(spans, DELAY_ticks, LARGEST_mA, layers(6, 8), LEAST_um_s)
+    section = NetworkSection(spans, DELAY_ticks, LARGEST_mA, layers(6, 8), LEAST_um_s, RATE_Hz)
     return NetworkTrackTable((section,)).words()

@@ -3,13 +3,14 @@
 firmware/track/force_map.h describes the words; it checks them again.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from quiesce.damper.inverse import AXES, Axis, Monotone, SteadyForces
-from quiesce.damper.words import sealed, sections_of
+from quiesce.law.sections import read_kind, sealed_sections
+from quiesce.law.words import Reader
 
 MAGIC = 0x32464D51
 SECTION_WORDS = 3
@@ -55,7 +56,7 @@ def map_words(found: Monotone) -> list[int]:
     # What integration and rounding leave of a fall is less than a part in a million: levelled.
     along = np.maximum.accumulate(np.rint(1e3 * _resampled_N(found)).astype(int), axis=1)
     forces = np.sign(places)[:, None] * along  # > 0 resists a stroke that grows
-    return sealed(MAGIC, [_section(found.forces.axis, places, currents, forces)], "map")
+    return sealed_sections(MAGIC, [_section(found.forces.axis, places, currents, forces)], "map")
 
 
 def _section(axis: Axis, places: np.ndarray, currents: np.ndarray, forces: np.ndarray) -> list[int]:
@@ -67,7 +68,7 @@ def _section(axis: Axis, places: np.ndarray, currents: np.ndarray, forces: np.nd
 def joined(tables: Sequence[Sequence[int]]) -> list[int]:
     """One table for several dampers: the sections of all, in this order. ValueError, in one line,
     where one is no map, or they are too many or too long for a controller."""
-    return sealed(MAGIC, [one for words in tables for one in _sections(words)], "map")
+    return sealed_sections(MAGIC, [one for words in tables for one in _sections(words)], "map")
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def words_of_map(wanted: Map) -> list[int]:
             (wanted.axis.per_unit, wanted.places), (1e3, wanted.currents_A), (1e3, wanted.forces_N)
         )
     )  # fmt: skip
-    words = sealed(MAGIC, [_section(wanted.axis, *parts)], "map")
+    words = sealed_sections(MAGIC, [_section(wanted.axis, *parts)], "map")
     maps_of_words(words)
     return words
 
@@ -100,20 +101,17 @@ def maps_of_words(words: Sequence[int]) -> tuple[Map, ...]:
     return tuple(_map_of(section) for section in _sections(words))
 
 
-def _sections(words: Sequence[int]) -> Iterator[list[int]]:
+def _sections(words: Sequence[int]) -> tuple[list[int], ...]:
     """Signed words of each. ValueError where head or sizes are not right."""
-    return sections_of(MAGIC, words, _size, "map")
+    return read_kind(MAGIC, words, _taken, "map")
 
 
-def _size(rest: Sequence[int]) -> int:
-    if len(rest) < SECTION_WORDS:
-        raise ValueError("it ends before all of its dampers")
-    n, m = rest[1:SECTION_WORDS]
-    size = SECTION_WORDS + n + m + n * m
-    is_shape = MIN_POINTS <= n <= MAX_PLACES and MIN_POINTS <= m <= MAX_CURRENTS
-    if not is_shape or size > len(rest):
+def _taken(reader: Reader) -> list[int]:
+    head = reader.take(SECTION_WORDS)
+    n, m = head[1:]
+    if not (MIN_POINTS <= n <= MAX_PLACES and MIN_POINTS <= m <= MAX_CURRENTS):
         raise ValueError(f"{n} places and {m} currents are not the shape of a map")
-    return size
+    return head + reader.take(n + m + n * m)
 
 
 def _map_of(section: Sequence[int]) -> Map:

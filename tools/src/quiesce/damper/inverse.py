@@ -48,7 +48,7 @@ def forces_at(damper: DamperModel, record: Record, currents_A: Sequence[float]) 
     if one.states:
         rates = [library.fastest_rates(one, orders, bare, at(record, i))[0] for i in currents]
         steps = library.substeps_for(max(rates), record.rate_Hz)
-    if not damper.rig.get("field_exponent"):
+    if not (damper.rig.get("field_exponent") or _has_current_inside(one)):
         # At a constant current every parameter is a constant: all currents run side by side.
         rig = bare[first:]
         rows = [np.concatenate([library.values_at(one, orders, bare, i), rig]) for i in currents]
@@ -56,6 +56,11 @@ def forces_at(damper: DamperModel, record: Record, currents_A: Sequence[float]) 
         return library.simulate(one, [1] * len(orders), np.array(rows), motion, steps)
     motions = [library.motion(at(record, i)) for i in currents]
     return np.concatenate([library.simulate(one, orders, bare, m, steps) for m in motions])
+
+
+def _has_current_inside(one: library.Model) -> bool:
+    """Whether its equations themselves work with the current, and no parameter follows it."""
+    return not any(parameter.follows_current for parameter in one.parameters)
 
 
 def at(record: Record, current_A: float) -> Record:
@@ -171,7 +176,7 @@ def why_no_closed_form(damper: DamperModel) -> str:
         return "the model remembers"
     if damper.rig.get("field_exponent"):
         return "the field saturates"
-    if not any(parameter.follows_current for parameter in one.parameters):
+    if _has_current_inside(one):
         return "its equations have the current in them"
     following = [
         parameter.name

@@ -17,7 +17,10 @@ def _section(damper: int, section: NetworkSection) -> str:
         f"{section.work} instructions"
     ]
     if section.delay_ticks:
-        lines.append(f"also what its inputs were {section.delay_ticks} ticks ago")
+        lines.append(
+            f"also what its inputs were {section.delay_ticks} ticks ago, at "
+            f"{section.rate_Hz} ticks a second"
+        )
     if section.least_um_s:
         lines.append(f"slower than {1e-3 * section.least_um_s:g} mm/s it counts as that fast")
     rows = [[one.signal.name, *_ends(one)] for one in section.inputs]

@@ -54,10 +54,7 @@ class CurrentSections(Generic[S]):
 
     def words(self) -> list[int]:
         """ValueError where there is too much of it."""
-        values = [len(self.sections)]
-        for section in self.sections:
-            values += section.words()
-        return sealed(self.magic, values)
+        return sealed_sections(self.magic, [one.words() for one in self.sections], "table")
 
     def currents_A(self, values: np.ndarray) -> np.ndarray:
         """Of each damper [ticks 4] for signals [ticks, as signals() lists them] in SI units, in
@@ -72,6 +69,24 @@ class CurrentSections(Generic[S]):
 
 
 T = TypeVar("T")
+
+
+def sealed_sections(magic: int, sections: Sequence[Sequence[int]], what: str) -> list[int]:
+    """A whole table of words, signed or not. ValueError, in one line, where it is more than a
+    controller takes; `what` is what it is called there."""
+    if not 1 <= len(sections) <= MOST_SECTIONS:
+        raise ValueError(f"{len(sections)} dampers; a {what} is of 1 .. {MOST_SECTIONS}")
+    return sealed(magic, [len(sections), *(word for section in sections for word in section)])
+
+
+def read_kind(
+    magic: int, words: Sequence[int], read_one: Callable[[Reader], T], what: str
+) -> tuple[T, ...]:
+    """As read_sections, of a table that has to be of this kind."""
+    opened(words)
+    if words[0] != magic:
+        raise ValueError(f"it begins with 0x{words[0]:08x}, a {what} with 0x{magic:08x}")
+    return read_sections(words, read_one)
 
 
 def read_sections(words: Sequence[int], read_one: Callable[[Reader], T]) -> tuple[T, ...]:

@@ -20,7 +20,7 @@ def sealed(magic: int, values: Sequence[int]) -> list[int]:
     """A whole table from what follows its head, signed or not. ValueError where it is too long."""
     count = HEAD_WORDS + len(values)
     if count > MOST_WORDS:
-        raise ValueError(f"a table of {count} words; {MOST_WORDS} fit")
+        raise ValueError(f"{count} words; a controller takes {MOST_WORDS}")
     after = [count, *(value % WORD for value in values)]
     return [magic, zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after]
 

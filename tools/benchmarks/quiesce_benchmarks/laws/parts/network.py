@@ -96,8 +96,8 @@ def law_error_pct(inverse: NetworkInverse, seed: int) -> float:
     for of_rules in (False, True):
         found, _ = radial.fitted(x, target, 12, rng, of_rules)
         section = replace(
-            inverse.table.sections[0], inputs=spans, delay_ticks=0, least_um_s=0, largest_mA=2000,
-            layers=found.layers(2000.0),
+            inverse.table.sections[0], inputs=spans, delay_ticks=0, rate_Hz=0, least_um_s=0,
+            largest_mA=2000, layers=found.layers(2000.0),
         )  # fmt: skip
         table = NetworkTable((section,))
         exact = table.currents_A(values)[:, 0]

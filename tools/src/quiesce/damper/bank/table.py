@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.damper.words import sealed, sections_of
+from quiesce.law.sections import read_kind, sealed_sections
+from quiesce.law.words import Reader
 
 MAGIC = 0x314B4251
 HEAD_WORDS = 6  # of a section
@@ -115,30 +116,20 @@ def clipped_sums(followed: np.ndarray, leak: np.ndarray, limit: np.ndarray) -> n
 def bank_words(banks: Sequence[Bank]) -> list[int]:
     """One is of all dampers that there are, several are of the first, the second, ... ValueError,
     in one line, where they are too many or too long for a controller."""
-    return sealed(MAGIC, [one.words() for one in banks], "bank")
+    return sealed_sections(MAGIC, [one.words() for one in banks], "bank")
 
 
 def banks_of_words(words: Sequence[int]) -> tuple[Bank, ...]:
     """ValueError, in one line, for words that the firmware refuses."""
-    return tuple(_bank_of(section) for section in sections_of(MAGIC, words, _size, "bank"))
+    return read_kind(MAGIC, words, _bank_of, "bank")
 
 
-def _size(rest: Sequence[int]) -> int:
-    if len(rest) < HEAD_WORDS:
-        raise ValueError("it ends before all of its dampers")
-    n, k = rest[:2]
-    size = HEAD_WORDS + ELEMENT_WORDS * n + k * (MODEL_WORDS + n)
-    is_shape = 1 <= n <= MAX_ELEMENTS and MIN_CURRENTS <= k <= MAX_CURRENTS
-    if not is_shape or size > len(rest):
+def _bank_of(reader: Reader) -> Bank:
+    n, k, rate_Hz, shift, lead_q20, lead_um_s = reader.take(HEAD_WORDS)
+    if not (1 <= n <= MAX_ELEMENTS and MIN_CURRENTS <= k <= MAX_CURRENTS):
         raise ValueError(f"{n} elements and {k} currents are not the shape of a bank")
-    return size
-
-
-def _bank_of(section: Sequence[int]) -> Bank:
-    n, k, rate_Hz, shift, lead_q20, lead_um_s = section[:HEAD_WORDS]
-    first = HEAD_WORDS + ELEMENT_WORDS * n
-    elements = tuple(_element(section[i : i + 3]) for i in range(HEAD_WORDS, first, ELEMENT_WORDS))
-    rows = [section[first + i * (MODEL_WORDS + n) :][: MODEL_WORDS + n] for i in range(k)]
+    elements = tuple(_element(reader.take(ELEMENT_WORDS)) for _ in range(n))
+    rows = [reader.take(MODEL_WORDS + n) for _ in range(k)]
     models = tuple(ConstantModel(row[0], row[1], row[2], tuple(row[3:])) for row in rows)
     if not (rate_Hz > 0 and 0 <= shift <= MAX_SHIFT and 0 <= lead_um_s <= LIMIT):
         raise ValueError("its rate, shift or lead is out of range")

@@ -17,16 +17,15 @@ from quiesce.damper.bank.fit import fit_bank
 from quiesce.damper.bank.table import MAGIC, Bank, bank_words, banks_of_words
 from quiesce.damper.data.record import Record
 from quiesce.damper.inverse import forces_by, interpolated
-from quiesce.damper.inverses.demand import Source
+from quiesce.damper.inverses.demand import TICK_RATE_HZ, Source, in_ticks
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.simulate import simulator
-from quiesce.damper.words import words_of_file
+from quiesce.law.words import file_text, read_file
 
 NAME = "bank"
 TITLE = "models at constant currents, with memory"
 HELP = "stops, saturations and dashpots that weigh at each current what the damper file says"
 TRACKER = "tracker bank reads it"
-RATE_Hz = 1000
 
 
 @dataclass(frozen=True)
@@ -48,20 +47,15 @@ class BankInverse:
     def currents(self, demand: Record) -> np.ndarray:
         """The motion of a demand at another rate is interpolated at the bank's own ticks."""
         bank = self.bank
-        time_s = demand.time_s - demand.time_s[0]
-        ticks_s = np.arange(round(time_s[-1] * bank.rate_Hz) + 1) / bank.rate_Hz
-        forces_N = bank.forces_N(
-            np.interp(ticks_s, time_s, demand.disp_m),
-            np.interp(ticks_s, time_s, demand.velocity_m_s),
-        )
-        at = np.minimum(np.rint(time_s * bank.rate_Hz).astype(int), len(ticks_s) - 1)
-        return interpolated(bank.currents_A, forces_N[:, at], demand.force_N)
+        seen, at = in_ticks(demand, bank.rate_Hz)
+        forces_N = bank.forces_N(seen.disp_m, seen.velocity_m_s)
+        return interpolated(bank.currents_A, forces_N, seen.force_N)[at]
 
     def parameters(self) -> dict[str, Any]:
         return {"words": self.words}
 
     def to_text(self) -> str:
-        return "".join(f"0x{word:08x}\n" for word in self.words)
+        return file_text(self.words)
 
     def notes(self) -> list[str]:
         """What a user has to know of it."""
@@ -78,13 +72,13 @@ class BankInverse:
 
 def is_bank(file: Path) -> bool:
     """By its first word. UsageError where it holds no words."""
-    return words_of_file(file, MAGIC)[:1] == [MAGIC]
+    return read_file(file)[:1] == [MAGIC]
 
 
 def read_banks(file: Path) -> tuple[Bank, ...]:
     """Of one damper or several. UsageError where they are no bank."""
     try:
-        return banks_of_words(words_of_file(file, MAGIC))
+        return banks_of_words(read_file(file))
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}") from None
 
@@ -114,7 +108,7 @@ def make(source: Source, seed: int = 0, progress: Report = silent) -> BankInvers
     """UsageError where there is no bank."""
     damper = source.model_for(NAME)
     forces = forces_by(damper, None if damper.is_kernel else simulator(damper))
-    found = fit_bank(damper, forces, source.max_current_A, RATE_Hz, seed, progress)
+    found = fit_bank(damper, forces, source.max_current_A, TICK_RATE_HZ, seed, progress)
     inverse = BankInverse(bank_words([found.bank]), tuple(found.error_pct.tolist()))
     progress(f"bank: {4 * len(inverse.words)} bytes, up to {inverse.max_current_A:g} A")
     return inverse

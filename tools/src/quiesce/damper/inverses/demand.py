@@ -6,7 +6,7 @@ Methods see it as a wanted force of 0.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,6 +15,8 @@ from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
 from quiesce.damper.model_file import DamperModel
+
+TICK_RATE_HZ = 1000  # of the controller that tables with memory are made for
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,22 @@ def judged(demand: Record) -> Record:
     """The demand with 0 N where it does not resist the motion."""
     is_resisting = resists(demand.force_N, demand.velocity_m_s)
     return replace(demand, force_N=np.where(is_resisting, demand.force_N, 0.0))
+
+
+def in_ticks(demand: Record, rate_Hz: int) -> tuple[Record, np.ndarray]:
+    """The demand as a controller with so many ticks a second sees it, from its first sample on, and
+    the last tick up to each sample, [samples]. Between samples its arrays are interpolated."""
+    if demand.rate_Hz == rate_Hz:
+        return demand, np.arange(len(demand))
+    time_s = np.arange(len(demand)) / demand.rate_Hz
+    at = np.floor(time_s * rate_Hz + 1e-6).astype(int)
+    ticks_s = np.arange(at[-1] + 1) / rate_Hz
+    seen = {
+        one.name: np.interp(ticks_s, time_s, value)
+        for one in fields(demand)
+        if isinstance(value := getattr(demand, one.name), np.ndarray)
+    }
+    return replace(demand, rate_Hz=float(rate_Hz), **seen), at
 
 
 def commanded(inverse: Inverse, demand: Record) -> np.ndarray:

@@ -12,12 +12,12 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.damper.data.record import Record
-from quiesce.damper.force_map import MAGIC, Map, map_words, maps_of_words, why_no_map
+from quiesce.damper.force_map import Map, map_words, maps_of_words, why_no_map
 from quiesce.damper.inverse import VELOCITY, interpolated, monotone_range
 from quiesce.damper.inverses.demand import Source
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.simulate import simulator
-from quiesce.damper.words import words_of_file
+from quiesce.law.words import file_text, read_file
 
 NAME = "map"
 TITLE = "force map of the controller"
@@ -60,12 +60,12 @@ class MapInverse:
         return {"words": self.words}
 
     def to_text(self) -> str:
-        return "".join(f"0x{word:08x}\n" for word in self.words)
+        return file_text(self.words)
 
 
 def read_map(file: Path) -> list[int]:
     """Words of one damper or several. UsageError where they are no map."""
-    words = words_of_file(file, MAGIC)
+    words = read_file(file)
     try:
         maps_of_words(words)
     except ValueError as error:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.damper.inverses.demand import Source, checked_levels
-from quiesce.damper.inverses.networks import READ_BY, TICK_RATE_HZ, NetworkInverse, inverse_of
+from quiesce.damper.inverses.demand import TICK_RATE_HZ, Source, checked_levels
+from quiesce.damper.inverses.networks import READ_BY, NetworkInverse, inverse_of
 from quiesce.damper.inverses.taps import (
     INPUTS,
     LEAST_SPEED,

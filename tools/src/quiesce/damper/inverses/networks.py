@@ -3,7 +3,7 @@
 firmware/track/track_network.c says what the tracker makes of it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.damper.data.record import Record
+from quiesce.damper.inverses.demand import TICK_RATE_HZ, in_ticks
 from quiesce.damper.learned.inputs import Box, column
 from quiesce.law.forms.network import (
     DEMAND,
@@ -26,7 +27,6 @@ from quiesce.law.words import file_text, read_file
 from quiesce.network.layers import Layers
 
 READ_BY = "tracker network reads it"
-TICK_RATE_HZ = 1000.0  # that delays count in
 _SEEN = {
     "force_N": DEMAND,
     "displacement_m": BY_NAME["stroke"],
@@ -45,14 +45,14 @@ class NetworkInverse:
         return 1e-3 * self.table.sections[0].largest_mA
 
     def currents(self, demand: Record) -> np.ndarray:
-        """Of the controller's integers, in float64, the delay at the demand's own rate. UsageError
+        """Of the controller's integers, in float64; a delay counts in its own ticks. UsageError
         where the demand has no temperature and the network wants one."""
         section = self.table.sections[0]
-        if section.delay_ticks:
-            samples = round(section.delay_ticks * demand.rate_Hz / TICK_RATE_HZ)
-            section = replace(section, delay_ticks=max(1, samples))
-        values = [column(demand, _KEYS[one.signal.quantity.name]) for one in section.inputs]
-        return NetworkTrackTable((section,)).currents_A(np.stack(values, axis=1))[:, 0]
+        seen, at = demand, np.arange(len(demand))
+        if section.rate_Hz:
+            seen, at = in_ticks(demand, section.rate_Hz)
+        values = [column(seen, _KEYS[one.signal.quantity.name]) for one in section.inputs]
+        return self.table.currents_A(np.stack(values, axis=1))[at, 0]
 
     def parameters(self) -> dict[str, Any]:
         return {"words": self.table.words()}
@@ -70,7 +70,9 @@ def inverse_of(
         for key, low, high in zip(box.keys, box.low, box.high, strict=True)
     )
     least_um_s = round(STROKE_VELOCITY.per_unit * least_m_s)
-    section = NetworkSection(inputs, delay_ticks, round(1e3 * max_current_A), layers, least_um_s)
+    rate_Hz = TICK_RATE_HZ if delay_ticks else 0
+    largest_mA = round(1e3 * max_current_A)
+    section = NetworkSection(inputs, delay_ticks, largest_mA, layers, least_um_s, rate_Hz)
     inverse = NetworkInverse(NetworkTrackTable((section,)))
     try:
         inverse.table.words()

@@ -20,6 +20,7 @@ from quiesce.damper.inverse import (
 )
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.plain import plain
+from quiesce.law.words import file_text
 from quiesce.report.plot_style import pyplot
 
 FORCES = 41
@@ -116,13 +117,9 @@ def up_to_limit(found: Monotone) -> SteadyForces:
     return replace(forces, currents_A=forces.currents_A[:kept], force_N=forces.force_N[:, :kept])
 
 
-def words_text(words: Sequence[int]) -> str:
-    return "".join(f"0x{word:08x}\n" for word in words)
-
-
 def write_joined(folder: Path, words: Sequence[int], name: str = "map.words") -> None:
     with output_files(folder) as staging:
-        (staging / name).write_text(words_text(words), encoding="utf-8")
+        (staging / name).write_text(file_text(words), encoding="utf-8")
 
 
 def write_map(folder: Path, damper: DamperModel, found: Monotone) -> None:
@@ -145,7 +142,7 @@ def write_map(folder: Path, damper: DamperModel, found: Monotone) -> None:
         (staging / "forces.csv").write_text("\n".join([*table, ""]), encoding="utf-8")
         plot_forces(staging / "inverse.svg", damper, found)
         if not why_no_map(found):
-            (staging / "map.words").write_text(words_text(map_words(found)), encoding="utf-8")
+            (staging / "map.words").write_text(file_text(map_words(found)), encoding="utf-8")
     if why_no_map(found):
         # One of a run before must not pass for this damper's.
         (folder / "map.words").unlink(missing_ok=True)

@@ -8,9 +8,9 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from quiesce.law.sections import read_sections
+from quiesce.law.sections import read_sections, sealed_sections
 from quiesce.law.signal import Signal, signal
-from quiesce.law.words import Reader, sealed
+from quiesce.law.words import Reader
 
 MAGIC = 0x31524651
 LIMIT = 2**30 - 1
@@ -47,10 +47,7 @@ class FrictionTable:
         return set(range(len(self.sections)))
 
     def words(self) -> list[int]:
-        values = [len(self.sections)]
-        for section in self.sections:
-            values += astuple(section)
-        return sealed(MAGIC, values)
+        return sealed_sections(MAGIC, [astuple(one) for one in self.sections], "table")
 
     def forces_N(self, values: np.ndarray) -> np.ndarray:
         """Of each damper [ticks 4] for signals [ticks, as signals() lists them] in SI units, in

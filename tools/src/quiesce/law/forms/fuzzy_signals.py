@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from quiesce.law.forms.rule_words import MAX_INPUTS, MAX_OUTPUTS, Rules, read_rules
-from quiesce.law.sections import CurrentSections, limited, read_sections
+from quiesce.law.sections import CurrentSections, limited, read_sections, sealed_sections
 from quiesce.law.signal import Input, read_input
-from quiesce.law.words import Reader, sealed
+from quiesce.law.words import Reader
 from quiesce.rules.model import RuleBase
 from quiesce.rules.reference import evaluate
 
@@ -82,11 +82,9 @@ class FuzzySignalsTable(CurrentSections[FuzzySection]):
     law = "fuzzy_signals"
 
     def words(self) -> list[int]:
-        values, before = [len(self.sections)], None
-        for section in self.sections:
-            values += section.words_after(before)
-            before = section.rules
-        return sealed(MAGIC, values)
+        before = [None, *(one.rules for one in self.sections)]
+        pairs = zip(self.sections, before, strict=False)
+        return sealed_sections(MAGIC, [one.words_after(last) for one, last in pairs], "table")
 
 
 def read(words: Sequence[int]) -> FuzzySignalsTable:

@@ -67,21 +67,25 @@ class Span:
 @dataclass(frozen=True)
 class NetworkSection:
     """Of one damper. least_um_s, of trackers only: slower than it the damper counts as if it moved
-    at it, the way of the demand. delay_ticks 0: no delayed inputs."""
+    at it, the way of the demand. delay_ticks 0: no delayed inputs;
+    rate_Hz: of these ticks, 0 without them."""
 
     inputs: tuple[Span, ...]
     delay_ticks: int
     largest_mA: int
     layers: Layers
     least_um_s: int = 0
+    rate_Hz: int = 0
 
     def words(self) -> list[int]:
         _require_sizes(len(self.inputs), self.delay_ticks, len(self.layers.layers))
+        _require_rate(self.delay_ticks, self.rate_Hz)
         return [
             self.least_um_s,
             self.largest_mA,
             len(self.inputs),
             self.delay_ticks,
+            self.rate_Hz,
             len(self.layers.layers),
             *(word for one in self.inputs for word in one.words()),
             *self.layers.words(),
@@ -158,6 +162,11 @@ def _require_sizes(inputs: int, delay_ticks: int, layers: int) -> None:
         raise ValueError(f"{inputs} inputs delayed by {delay_ticks} ticks; {MOST_PAST} values fit")
 
 
+def _require_rate(delay_ticks: int, rate_Hz: int) -> None:
+    if (rate_Hz > 0) != (delay_ticks > 0) or rate_Hz < 0:
+        raise ValueError(f"a delay of {delay_ticks} ticks, {rate_Hz} of them a second")
+
+
 def _require_work(sections: Sequence[NetworkSection]) -> None:
     work = sum(section.work for section in sections)
     if work > MOST_WORK:
@@ -183,14 +192,15 @@ def read_tracker(words: Sequence[int]) -> NetworkTrackTable:
 def _read_section(reader: Reader, of_tracker: bool) -> NetworkSection:
     least_um_s = reader.one(0, LIMIT if of_tracker else 0, "least speed")
     largest_mA = reader.one(1, MOST_mA, "largest current")
-    m, delay_ticks, count = reader.take(3)
+    m, delay_ticks, rate_Hz, count = reader.take(4)
     _require_sizes(m, delay_ticks, count)
+    _require_rate(delay_ticks, rate_Hz)
     inputs = tuple(_read_span(reader, of_tracker) for _ in range(m))
     names = {one.signal.quantity.name for one in inputs}
     if of_tracker and not (DEMAND.name in names and names & {FORCE.name, STROKE_VELOCITY.name}):
         raise ValueError("it lacks the demand, or both force and stroke velocity")
     layers = read_layers(reader.take, m * (2 if delay_ticks else 1), count)
-    return NetworkSection(inputs, delay_ticks, largest_mA, layers, least_um_s)
+    return NetworkSection(inputs, delay_ticks, largest_mA, layers, least_um_s, rate_Hz)
 
 
 def _read_span(reader: Reader, of_tracker: bool) -> Span:

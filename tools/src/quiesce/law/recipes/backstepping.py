@@ -46,6 +46,7 @@ RECIPE = Recipe(
     equation="F = m (1 + h1 h2) x + m (h1 + h2) v - k x - c v",
     errata="The printed denominator lacks g, and g's sign is not that of the minus before it. As "
     "a force there is no denominator: to divide by the hysteretic state is the inverse's "
-    "work, which tracker bank does with that state observed.",
-    when="One mass whose mount is known.",
+    "work. Tracker bank does it: its models with memory observe that state, the hysteresis "
+    "observer that the law needs; tracker inverse has a map without memory.",
+    when="One mass whose mount is known. Tracker bank for a damper with hysteresis.",
 )
