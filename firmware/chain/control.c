@@ -20,12 +20,15 @@ uint64_t control_serves(const quiesce_params_t *params) {
     return may_need_more ? ~UINT64_C(0) : control_needs(params);
 }
 
+// The law, from rest. One that demands forces shares its memory with the tracker, which goes on.
 static void start(control_t *self) {
-    for (uint32_t i = 0; i < sizeof self->state / sizeof self->state[0]; i++) {
-        self->state[i] = 0;
+    const uint32_t bytes =
+        self->forces.track != NULL ? sizeof self->state.force.law : sizeof self->state.law;
+    for (uint32_t i = 0; i < bytes / sizeof self->state.law[0]; i++) {
+        self->state.law[i] = 0;
     }
     if (self->law->init != NULL) {
-        self->law->init(self->state, &self->setup);
+        self->law->init(self->state.law, &self->setup);
     }
 }
 
@@ -109,8 +112,7 @@ const char *control_lacks_table(const control_t *self) {
 
 // What words of the tracker's kind need, none of NULL, where these bodies and dampers are.
 static uint64_t force_table_needs(const control_t *self, const uint32_t *words) {
-    return needs_there(forces_table_needs(&self->forces, words), self->bodies,
-                       self->forces.dampers);
+    return needs_there(forces_table_needs(&self->forces, words), self->bodies, self->dampers);
 }
 
 static void find_needs(control_t *self) {
@@ -123,8 +125,9 @@ static void find_needs(control_t *self) {
 
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
     self->law = law_find(params->law);
-    forces_init(&self->forces, self->law, params, places->dampers);
+    forces_init(&self->forces, self->law, params);
     self->bodies = places->bodies;
+    self->dampers = places->dampers;
     self->fixed_needs = needs_there(control_needs(params), places->bodies, places->dampers);
     self->provided = places_provide(places);
     self->setup = (law_setup_t){
@@ -134,11 +137,12 @@ void control_init(control_t *self, const places_t *places, const quiesce_params_
     self->blind_ticks = 0;
     self->blind_most_ticks = ticks_in_ms(CONTROL_BLIND_ms, params->tick_rate_Hz);
     find_needs(self);
+    self->state.force.track = (forces_state_t){0};
     start(self);
 }
 
 static void use_force_table(control_t *self, const uint32_t *words) {
-    forces_use(&self->forces, words);
+    forces_use(&self->forces, &self->state.force.track, words);
     find_needs(self);
 }
 
@@ -146,7 +150,7 @@ static void use_law_table(control_t *self, const uint32_t *words) {
     self->setup.table = words;
     find_needs(self);
     if (self->law->retable != NULL) {
-        self->law->retable(self->state, &self->setup);
+        self->law->retable(self->state.law, &self->setup);
     } else {
         start(self);
     }
@@ -236,7 +240,7 @@ bool control_sees(const control_t *self, const view_t *view) {
 }
 
 static bool ask(control_t *self, const view_t *view, law_demand_t *out) {
-    return self->law->step(self->state, &self->setup, view, out);
+    return self->law->step(self->state.law, &self->setup, view, out);
 }
 
 static bool ask_more(control_t *self, const view_t *view, law_demand_t *out) {
@@ -244,7 +248,8 @@ static bool ask_more(control_t *self, const view_t *view, law_demand_t *out) {
         return false;
     }
     if (self->forces.track != NULL) {
-        forces_step(&self->forces, &self->setup.params, view, out);
+        const forces_in_t in = {&self->setup.params, view, self->dampers};
+        forces_step(&self->forces, &self->state.force.track, &in, out);
     }
     return true;
 }
@@ -265,14 +270,14 @@ void control_report(const control_t *self, int32_t word[QUIESCE_REPORT_WORDS]) {
         word[i] = 0;
     }
     if (self->law->report != NULL) {
-        self->law->report(self->state, &self->setup, word);
+        self->law->report(self->state.law, &self->setup, word);
     }
 }
 
 bool control_save(const control_t *self, quiesce_learnt_t *out) {
     *out = (quiesce_learnt_t){0};
     if (self->law->save != NULL) {
-        out->count = self->law->save(self->state, &self->setup, out->words);
+        out->count = self->law->save(self->state.law, &self->setup, out->words);
     }
     return out->count != 0;
 }
@@ -282,7 +287,7 @@ bool control_load(control_t *self, const quiesce_learnt_t *in) {
     if (self->law->load == NULL || count > QUIESCE_LEARNT_MAX_WORDS || (in != NULL && count == 0)) {
         return in == NULL;
     }
-    return self->law->load(self->state, &self->setup, in == NULL ? NULL : in->words, count);
+    return self->law->load(self->state.law, &self->setup, in == NULL ? NULL : in->words, count);
 }
 
 uint32_t control_table_hash(const control_t *self) {

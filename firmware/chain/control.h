@@ -1,5 +1,5 @@
-/// The law that runs, with the tracker of the forces that it may demand: its table, its state, and
-/// the currents that it asks for in a tick.
+/// The law that runs, with the tracker of the forces that it may demand: their tables, their
+/// states, and the currents that they ask for in a tick.
 #ifndef CONTROL_H
 #define CONTROL_H
 
@@ -16,11 +16,12 @@ typedef struct {
     uint64_t fixed_needs; ///< those of law and tracker
     uint64_t provided;    ///< what the board's sensors can
     uint32_t bodies;      ///< of the board
+    uint32_t dampers;
     law_setup_t setup;
     uint32_t blind_ticks; ///< in a row, with the output on
     uint32_t blind_most_ticks;
     forces_t forces;
-    uint64_t state[LAW_STATE_BYTES / sizeof(uint64_t)];
+    law_arena_t state;
 } control_t;
 
 /// VIEW_ bits that the law of these parameters and its tracker are served with: what they need, and

@@ -20,8 +20,8 @@ typedef struct {
     supervisor_t supervisor;
     uint32_t supervisor_twin[TWIN_WORDS(WORDS_OF(supervisor_t))];
     drive_t drive[QUIESCE_DAMPERS];
-    rest_t rest;
     sweep_t sweep;
+    rest_t rest;
     law_demand_t request; ///< of the last tick
     uint32_t last_tick;
     uint32_t bad_sample_count;

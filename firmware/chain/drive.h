@@ -21,11 +21,11 @@ typedef struct {
 typedef struct {
     drive_limits_t limits;
     uint32_t twin[TWIN_WORDS(WORDS_OF(drive_limits_t))];
+    int32_t last_command_mA; ///< that the driver is expected to make
     current_monitor_t monitor;
     coil_t coil;
     energy_t energy;
     heat_t heat;
-    int32_t last_command_mA; ///< that the driver is expected to make
 } drive_t;
 
 /// Starts at the safe current. Parameters that were refused leave its limits within their ranges.

@@ -12,6 +12,9 @@
 /// Bytes for the state of the law that runs; its file asserts that they are enough.
 #define LAW_STATE_BYTES 816u
 
+/// The same where the law demands forces; the rest is its tracker's.
+#define LAW_FORCE_STATE_BYTES 592u
+
 /// What a law works with; lives beside its state.
 typedef struct {
     quiesce_params_t params; ///< checked

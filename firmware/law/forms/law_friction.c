@@ -34,7 +34,7 @@ typedef struct {
     int32_t peak_nm; ///< magnitude
 } peak_t;
 
-_Static_assert(sizeof(peak_t) * QUIESCE_DAMPERS <= LAW_STATE_BYTES, "the arena is too small");
+_Static_assert(sizeof(peak_t) * QUIESCE_DAMPERS <= LAW_FORCE_STATE_BYTES, "the arena is too small");
 
 static const section_t *section_of(const uint32_t *words, uint32_t i) {
     return (const section_t *)sections_first(words) + i;

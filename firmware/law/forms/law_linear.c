@@ -40,7 +40,7 @@ typedef struct {
     uint32_t overflows; ///< since it was set up
 } linear_t;
 
-_Static_assert(sizeof(linear_t) <= LAW_STATE_BYTES, "the arena is too small");
+_Static_assert(sizeof(linear_t) <= LAW_FORCE_STATE_BYTES, "the arena is too small");
 
 static const linear_table_t *as_table(const uint32_t *words) {
     return (const linear_table_t *)(const void *)words;

@@ -1,5 +1,5 @@
-// What a tracker's table needs: a tracker of the test's own takes the place of the others. Its
-// table of one word of its own says which bits.
+// What a tracker's table needs, and its state beside the law's: laws and a tracker of the test's
+// own take the place of the others. The tracker's table of one word of its own says which bits.
 #include <string.h>
 
 #include "crc32.h"
@@ -10,6 +10,8 @@
 #include "unity.h"
 
 enum { RATE_Hz = 1000, ASKED_mA = 900, UNLOCK_mA = 1100, MAGIC = 0x54534554, WORDS = 5 };
+enum { LAW_FULL = 1, LAW_MAGIC = 0x4C4C5546, LAW_WORDS = 3 };
+enum { STATE_WORDS = LAW_FORCE_STATE_BYTES / sizeof(uint32_t) };
 
 static quiesce_t controller;
 static quiesce_board_t board;
@@ -28,7 +30,43 @@ static bool step_law(void *state, const law_setup_t *setup, const view_t *view, 
 
 static const law_t test_law = {.name = "test", .demands = LAW_DEMANDS_FORCE, .step = step_law};
 
+// Every word of what it may have is a tick more for each tick since it began.
+static bool step_full(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *to) {
+    uint32_t *words = state;
+    for (uint32_t i = 0; i < STATE_WORDS; i++) {
+        words[i]++;
+    }
+    return step_law(state, setup, view, to);
+}
+
+static void report_full(const void *state, const law_setup_t *setup,
+                        int32_t word[QUIESCE_REPORT_WORDS]) {
+    (void)setup;
+    const uint32_t *words = state;
+    word[0] = (int32_t)words[0];
+    for (uint32_t i = 1; i < STATE_WORDS; i++) {
+        word[1] += words[i] != words[0] ? 1 : 0;
+    }
+}
+
+static const uint32_t law_table[LAW_WORDS] = {LAW_MAGIC, 0, LAW_WORDS};
+
+static quiesce_table_verdict_t check_full(const uint32_t *words, uint32_t count) {
+    return count == LAW_WORDS && words[0] == LAW_MAGIC ? QUIESCE_TABLE_OK : QUIESCE_TABLE_SIZE;
+}
+
+static const law_table_kind_t full_kind = {
+    .magic = LAW_MAGIC, .shipped = law_table, .check = check_full};
+static const law_t full_law = {.name = "full",
+                               .kind = &full_kind,
+                               .demands = LAW_DEMANDS_FORCE,
+                               .step = step_full,
+                               .report = report_full};
+
 const law_t *law_find(int32_t index) {
+    if (index == LAW_FULL) {
+        return &full_law;
+    }
     return index >= 0 && index <= QUIESCE_LAW_PHASE ? &test_law : NULL;
 }
 
@@ -157,11 +195,50 @@ static void test_another_table_starts_from_rest(void) {
     TEST_ASSERT_EQUAL_INT32(ASKED_mA + 1, out.telemetry.current_law_mA);
 }
 
+// With the law that fills its part of the memory, and a tracker's table.
+static void run_full(uint32_t ticks) {
+    params.law = LAW_FULL;
+    TEST_ASSERT_TRUE(quiesce_init_board(&controller, &board, &params));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(0));
+    run(ticks, true);
+}
+
+static void expect_ticks(const quiesce_t *of, int32_t law, int32_t tracker) {
+    int32_t word[QUIESCE_REPORT_WORDS];
+    quiesce_report(of, word);
+    TEST_ASSERT_EQUAL_INT32(law, word[0]);
+    TEST_ASSERT_EQUAL_INT32(0, word[1]);
+    TEST_ASSERT_EQUAL_INT32(ASKED_mA + tracker - 1, out.telemetry.current_law_mA);
+}
+
+static void test_a_table_of_one_leaves_the_others_state(void) {
+    run_full(1000);
+    expect_ticks(&controller, 1000, 1000);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, law_table, LAW_WORDS));
+    run(1, true);
+    expect_ticks(&controller, 1, 1001);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, use(0));
+    run(1, true);
+    expect_ticks(&controller, 2, 1);
+}
+
+static void test_a_copy_goes_on_where_the_controller_was(void) {
+    static quiesce_t copy;
+    run_full(1000);
+    copy = controller;
+    memset(&controller, 0xA5, sizeof controller);
+    in.tick++;
+    quiesce_step(&copy, &in, &out);
+    expect_ticks(&copy, 1001, 1001);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_table_that_the_board_cannot_serve_is_refused);
     RUN_TEST(test_a_tracker_waits_for_what_its_table_needs);
     RUN_TEST(test_what_a_table_needs_is_served);
     RUN_TEST(test_another_table_starts_from_rest);
+    RUN_TEST(test_a_table_of_one_leaves_the_others_state);
+    RUN_TEST(test_a_copy_goes_on_where_the_controller_was);
     return UNITY_END();
 }

@@ -178,25 +178,26 @@ bool law_trial_start(law_trial_t *self, const quiesce_params_t *params, const ui
         .view = {.valid = ~UINT64_C(0), .is_output_on = true, .may_learn = true},
         .seed = seed,
     };
-    forces_init(&self->forces, self->law, params, QUIESCE_DAMPERS);
+    forces_init(&self->forces, self->law, params);
     start_guards(self, params);
     if (!take_table(self, table, count) || !take_map(self, map, map_count)) {
         return false;
     }
     if (self->law->init != NULL) {
-        self->law->init(self->state, &self->setup);
+        self->law->init(self->state.law, &self->setup);
     }
     return true;
 }
 
 void law_trial_step(law_trial_t *self) {
-    self->has_demand = self->law->step(self->state, &self->setup, &self->view, &self->demand);
+    self->has_demand = self->law->step(self->state.law, &self->setup, &self->view, &self->demand);
     if (!self->has_demand) {
         law_demand_all(&self->demand, 0);
     }
     self->current = self->demand;
     if (self->has_demand && self->forces.track != NULL) {
-        forces_step(&self->forces, &self->setup.params, &self->view, &self->current);
+        const forces_in_t in = {&self->setup.params, &self->view, QUIESCE_DAMPERS};
+        forces_step(&self->forces, &self->state.force.track, &in, &self->current);
     }
 }
 
@@ -219,7 +220,7 @@ static bool is_spring(const forces_t *forces, uint32_t damper) {
 // No model of the bank has a force of the demand's sign.
 static bool is_against_bank(const law_trial_t *self, uint32_t i, int32_t demand_mN) {
     const uint32_t *section = force_bank_section(self->forces.table, i);
-    const force_bank_t *bank = (const force_bank_t *)(const void *)self->forces.state[i];
+    const force_bank_t *bank = (const force_bank_t *)(const void *)self->state.force.track.of[i];
     bool is_against = true;
     for (uint32_t k = 0; section != NULL && k < force_bank_currents(section); k++) {
         const int32_t force_mN = force_bank_force_mN(bank, section, k, &self->view.damper[i]);
@@ -268,8 +269,8 @@ uint32_t law_trial_breaks(const law_trial_t *self) {
 }
 
 uint32_t law_trial_state_bytes(const law_trial_t *self) {
-    const uint8_t *bytes = (const uint8_t *)self->state;
-    uint32_t used = LAW_STATE_BYTES;
+    const uint8_t *bytes = (const uint8_t *)self->state.law;
+    uint32_t used = self->forces.track != NULL ? LAW_FORCE_STATE_BYTES : LAW_STATE_BYTES;
     while (used > 0 && bytes[used - 1u] == 0) {
         used--;
     }

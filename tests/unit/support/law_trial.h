@@ -10,7 +10,6 @@
 
 enum {
     LAW_TRIAL_SIGNALS = 6 * QUIESCE_MAX_BODIES + 8 * QUIESCE_MAX_DAMPERS, // at most
-    LAW_TRIAL_STATE_WORDS = LAW_STATE_BYTES / sizeof(uint64_t),
 };
 
 // Bits: a demand against what the damper does got a current; a current is beyond max_current_mA, or
@@ -28,7 +27,7 @@ typedef struct {
     const law_t *law;
     law_setup_t setup;
     forces_t forces;
-    uint64_t state[LAW_TRIAL_STATE_WORDS];
+    law_arena_t state;
     view_t view;
     law_demand_t demand;  // of the law
     law_demand_t current; // of the tracker, of the law where that demands currents; mA
