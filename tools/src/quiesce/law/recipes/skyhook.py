@@ -25,6 +25,6 @@ RECIPE = Recipe(
     equation="F = sgn(v_a) min(limit, c |v_a|)",
     errata="Compares signed numbers, so that below 0 it never clips; magnitudes here. The 0 of "
     "its other case is the damper's force without current.",
-    when="A body to be kept quiet, at its own resonance and above. Tracker bank, in place of inverse, "
+    when="A body to be kept quiet, at its own resonance and above. Tracker bank, not inverse, "
     "for a damper with hysteresis.",
 )
