@@ -30,7 +30,14 @@ from quiesce.law.words import file_text, opened, read_file, sealed
 from quiesce.network.dense import Network
 from quiesce.network.integers import dense_layer, of_dense, output_of, radial_layer
 from quiesce.network.layers import Dense, Layers
-from quiesce.network.radial import chosen, fitted, gaussians, with_centres
+from quiesce.network.radial import (
+    as_rules,
+    best_rules,
+    chosen,
+    fitted,
+    gaussians,
+    with_centres,
+)
 from quiesce_benchmarks.laws.firmware_laws import (
     NetworkTracker,
     demands,
@@ -300,3 +307,23 @@ def test_a_trackers_network_is_shown(tmp_path: Path) -> None:
     text = described(read_table(file))
     assert text.startswith("tracker network; dampers 1")
     assert "demand of damper 1" in text and "slower than 20 mm/s it counts as that fast" in text
+
+
+def test_rules_get_the_width_that_suits_rows_they_do_not_know() -> None:
+    rng = np.random.default_rng(3)
+    x, fresh = rng.uniform(-1.0, 1.0, (2000, 2)), rng.uniform(-1.0, 1.0, (1000, 2))
+
+    def wanted(at: np.ndarray) -> np.ndarray:
+        return 0.5 + 0.4 * np.tanh(8.0 * at[:, 0]) * np.abs(at[:, 1])
+
+    broad = with_centres(x, wanted(x), x[:200], 0.5, 12)
+    errors = [
+        np.sqrt(np.mean((one.parts(fresh) - wanted(fresh)) ** 2))
+        for one in (as_rules(broad, x, wanted(x)), best_rules(broad, x, wanted(x)))
+    ]
+    assert errors[1] < 0.7 * errors[0]
+    best = best_rules(broad, x, wanted(x))
+    np.testing.assert_array_equal(best.centres, broad.centres)
+    for one in (broad, best):
+        sums_mA = one.layers(1000.0).sums_mA(fresh)
+        np.testing.assert_allclose(sums_mA, 1e3 * one.parts(fresh), atol=0.01)

@@ -4,9 +4,10 @@ test has one).
 The machine of support_vector.py has hundreds of vectors; a tick has time for some fifteen. Those
 are chosen among its own, one after the other by what each adds to its answer at the training's
 rows. Around each stands a rule with a conclusion of first order, fitted to that answer by least
-squares: no support-vector machine any more, but what few rules keep of one. (Plain Gaussians
-around 21 vectors keep less: 0.15 of the largest current, root mean square, where 10 rules leave
-0.08 and the machine itself 0.06.)
+squares: no support-vector machine any more, but what few rules keep of one. Few rules have to be
+narrower than its hundreds of vectors: their width is the one that keeps most of its answer at rows
+that they were not fitted to. (Plain Gaussians around 21 vectors keep less: 0.15 of the largest
+current, root mean square, where 10 rules leave 0.08 and the machine itself 0.06.)
 """
 
 import numpy as np
@@ -24,7 +25,7 @@ from quiesce.damper.inverses.support_vector import (
 from quiesce.damper.inverses.taps import INPUTS, LEAST_SPEED, largest_speed_m_s
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.learned.support_vector import fitted
-from quiesce.network.radial import as_rules, with_centres
+from quiesce.network import radial
 
 NAME = "svr"
 TITLE = "support-vector inverse in integers, of few vectors"
@@ -56,12 +57,12 @@ def make(
     machine = fitted(
         box.scaled(seen[some]), part[some], settings.penalty, settings.gamma, settings.epsilon
     )
-    told_A = np.clip(machine.predict(x[: 2 * settings.rows]), 0.0, 1.0)
-    vectors = with_centres(
-        x[: 2 * settings.rows], told_A, machine.support_vectors_,
-        float(np.sqrt(settings.gamma)), UNITS[len(keys)],
-    )  # fmt: skip
-    few = as_rules(vectors, x[: 2 * settings.rows], told_A)
+    asked = x[: 2 * settings.rows]
+    answers = np.clip(machine.predict(asked), 0.0, 1.0)
+    vectors = radial.with_centres(
+        asked, answers, machine.support_vectors_, float(np.sqrt(settings.gamma)), UNITS[len(keys)]
+    )
+    few = radial.best_rules(vectors, asked, answers)
     most_A = source.max_current_A
     layers = few.layers(1e3 * most_A)
     error = np.sqrt(np.mean((np.clip(layers.sums_mA(x) / 1e3 / most_A, 0, 1) - part[rows]) ** 2))
