@@ -345,9 +345,9 @@ TEST(LawTable, a_map_is_of_the_boards_dampers) {
 
 // Half of the demand and of the velocity of the stroke, by a straight line; least speed 1 mm/s.
 Words network_of_dampers(std::uint32_t count) {
-    Words words = {0x314E5451u, 0, 4u + 25u * count, count};
+    Words words = {0x314E5451u, 0, 4u + 26u * count, count};
     for (std::uint32_t i = 0; i < count; ++i) {
-        words.insert(words.end(), {1000, 1500, 2, 0, 1});
+        words.insert(words.end(), {1000, 1500, 2, 0, 0, 1});
         for (const std::uint32_t signal : {64u, 4u}) {
             words.insert(words.end(), {signal, 0xFFF00000u, 0x100000u, 16, 0});
         }
