@@ -320,6 +320,7 @@ static void normalise(const uint32_t *distance, int32_t *y, uint32_t units) {
         y[i] = (int32_t)exp_minus_q24(distance[i] - nearest);
         sum += (uint32_t)y[i];
     }
+    sum = sum > (uint32_t)ONE ? sum : (uint32_t)ONE; // the nearest one alone is that
     const uint32_t up = leading_zeros_u64(sum) - 32u;
     const uint32_t reciprocal = reciprocal_u32(sum << up); // 2^63 / (sum x 2^up)
     for (uint32_t i = 0; i < units; i++) {
@@ -329,7 +330,7 @@ static void normalise(const uint32_t *distance, int32_t *y, uint32_t units) {
 }
 
 static void pass_radial(place_t at, const int32_t *x, int32_t *y) {
-    uint32_t distance[NETWORK_MOST_UNITS];
+    uint32_t distance[NETWORK_MOST_UNITS] = {0};
     for (uint32_t i = 0; i < at.layer->units; i++) {
         distance[i] = distance_q24(&at.layer->word[i * 2u * at.values], x, at.values);
     }
@@ -369,7 +370,7 @@ static int64_t conclude(place_t last, const int32_t *x, const int32_t *y) {
 }
 
 int32_t network_current_mA(const network_t *self, network_past_t *past, const int32_t *values) {
-    int32_t x[2][NETWORK_MOST_UNITS]; // what a layer sees, and what it makes, in turns
+    int32_t x[2][NETWORK_MOST_UNITS] = {{0}}; // what a layer sees, and what it makes, in turns
     place_t at = first_of(self);
     see(self, past, values, x[0]);
     for (uint32_t i = 0; i + 1u < self->layers; i++) {

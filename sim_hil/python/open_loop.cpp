@@ -150,8 +150,8 @@ void OpenLoop::run(const double *command_A, bool is_rounded, const MotionColumns
 /// Slopes of of_rates_ times the rates and of_force_ times the forces there; of_force_ is spent.
 void OpenLoop::pull_rates(const std::vector<double> &y, const Currents &at, Currents &of_currents) {
     std::fill(of_stage_.begin(), of_stage_.end(), 0.0);
-    pullback_.add(reached_, y, at.effective_A, of_rates_, of_force_, of_stage_,
-                  of_currents.effective_A);
+    pullback_.add({reached_, y, at.effective_A}, {of_rates_, of_force_},
+                  {of_stage_, of_currents.effective_A});
     of_force_ = {};
 }
 

@@ -117,48 +117,46 @@ void RatesPullback::add_mount(const PlantMount &one, double stroke_step_m, doubl
     add_scaled(one.stroke, of_force * per_m_s, of_state.data() + modes_);
 }
 
-void RatesPullback::add_damper(std::size_t k, const Reached &reached, const std::vector<double> &y,
-                               const DamperValues &current_A, const std::vector<double> &of_rates,
-                               double of_force, std::vector<double> &of_state,
-                               DamperValues &of_current) {
+void RatesPullback::add_damper(std::size_t k, const PullbackPlace &at, const PullbackWeights &of,
+                               const PullbackSlopes &slopes) {
     const PlantDamper &one = model_.dampers[k];
     const std::size_t first = first_state_[k];
     const std::size_t count = one.damper->state_count();
-    const double of_all_force = of_force - dot(one.stroke, of_rates.data() + modes_);
-    std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(first), count, state_.begin());
-    DamperInput input{dot(one.stroke, y.data() + modes_), dot(one.stroke, y.data()), current_A[k]};
+    const double of_all_force = of.force[k] - dot(one.stroke, of.rates.data() + modes_);
+    std::copy_n(at.y.begin() + static_cast<std::ptrdiff_t>(first), count, state_.begin());
+    DamperInput input{dot(one.stroke, at.y.data() + modes_), dot(one.stroke, at.y.data()),
+                      at.current_A[k]};
     const auto sum = [&] {
         double out = of_all_force * one.damper->force_N(input, state_.data(), rates_.data());
         for (std::size_t i = 0; i < count; ++i) {
-            out += of_rates[first + i] * rates_[i];
+            out += of.rates[first + i] * rates_[i];
         }
         return out;
     };
-    const double per_m = slope_about(input.position_m, step_over(reached.stroke_m[k]), sum);
-    const double per_m_s = slope_about(input.velocity_m_s, step_over(reached.speed_m_s[k]), sum);
-    add_scaled(one.stroke, per_m, of_state.data());
-    add_scaled(one.stroke, per_m_s, of_state.data() + modes_);
+    const double per_m = slope_about(input.position_m, step_over(at.reached.stroke_m[k]), sum);
+    const double per_m_s = slope_about(input.velocity_m_s, step_over(at.reached.speed_m_s[k]), sum);
+    add_scaled(one.stroke, per_m, slopes.state.data());
+    add_scaled(one.stroke, per_m_s, slopes.state.data() + modes_);
     for (std::size_t i = 0; i < count; ++i) {
-        of_state[first + i] += slope_about(state_[i], step_over(reached.state[first + i]), sum);
+        const double step = step_over(at.reached.state[first + i]);
+        slopes.state[first + i] += slope_about(state_[i], step, sum);
     }
     // There is no current below 0.
     const double step_A = kPart * model_.driver.max_current_A;
-    const double now_A = current_A[k];
-    of_current[k] += slope(input.current_A, std::max(now_A - step_A, 0.0), now_A + step_A, sum);
+    const double now_A = at.current_A[k];
+    slopes.current[k] += slope(input.current_A, std::max(now_A - step_A, 0.0), now_A + step_A, sum);
 }
 
-void RatesPullback::add(const Reached &reached, const std::vector<double> &y,
-                        const DamperValues &current_A, const std::vector<double> &of_rates,
-                        const DamperValues &of_force, std::vector<double> &of_state,
-                        DamperValues &of_current) {
-    add_structure(of_rates, of_state);
+void RatesPullback::add(const PullbackPlace &at, const PullbackWeights &of,
+                        const PullbackSlopes &slopes) {
+    add_structure(of.rates, slopes.state);
     for (std::size_t k = 0; k < model_.dampers.size(); ++k) {
-        add_damper(k, reached, y, current_A, of_rates, of_force[k], of_state, of_current);
+        add_damper(k, at, of, slopes);
     }
     for (std::size_t j = 0; j < model_.mounts.size(); ++j) {
-        const std::size_t at = model_.dampers.size() + j;
-        add_mount(model_.mounts[j], step_over(reached.stroke_m[at]),
-                  step_over(reached.speed_m_s[at]), y, of_rates, of_state);
+        const std::size_t k = model_.dampers.size() + j;
+        add_mount(model_.mounts[j], step_over(at.reached.stroke_m[k]),
+                  step_over(at.reached.speed_m_s[k]), at.y, of.rates, slopes.state);
     }
 }
 

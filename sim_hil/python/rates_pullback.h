@@ -20,6 +20,25 @@ struct Reached {
     std::vector<double> speed_m_s; ///< likewise
 };
 
+/// Where slopes are taken.
+struct PullbackPlace {
+    const Reached &reached;
+    const std::vector<double> &y; ///< [state_count]
+    const DamperValues &current_A;
+};
+
+/// The sum whose slopes are taken: its weights.
+struct PullbackWeights {
+    const std::vector<double> &rates; ///< [state_count]
+    const DamperValues &force;        ///< of the dampers
+};
+
+/// Its slopes, which are added to.
+struct PullbackSlopes {
+    std::vector<double> &state; ///< [state_count]
+    DamperValues &current;
+};
+
 class RatesPullback {
   public:
     explicit RatesPullback(const PlantModel &model);
@@ -31,20 +50,15 @@ class RatesPullback {
     /// Widens what is reached by state y.
     void reach(const std::vector<double> &y, Reached &reached) const;
 
-    /// of_rates [state_count]: weights of the rates; of_force: of the dampers' forces. Adds the
-    /// slopes of that sum at y and current_A to of_state [state_count] and of_current.
-    void add(const Reached &reached, const std::vector<double> &y, const DamperValues &current_A,
-             const std::vector<double> &of_rates, const DamperValues &of_force,
-             std::vector<double> &of_state, DamperValues &of_current);
+    void add(const PullbackPlace &at, const PullbackWeights &of, const PullbackSlopes &slopes);
 
   private:
     void add_structure(const std::vector<double> &of_rates, std::vector<double> &of_state) const;
     void add_mount(const PlantMount &one, double stroke_step_m, double speed_step_m_s,
                    const std::vector<double> &y, const std::vector<double> &of_rates,
                    std::vector<double> &of_state) const;
-    void add_damper(std::size_t k, const Reached &reached, const std::vector<double> &y,
-                    const DamperValues &current_A, const std::vector<double> &of_rates,
-                    double of_force, std::vector<double> &of_state, DamperValues &of_current);
+    void add_damper(std::size_t k, const PullbackPlace &at, const PullbackWeights &of,
+                    const PullbackSlopes &slopes);
 
     PlantModel model_;
     std::vector<std::size_t> first_state_; ///< of each damper, in y
