@@ -124,8 +124,9 @@ def settings(law: Law) -> list[str]:
 
 
 def of_cost(name: str, reported: Reported) -> dict[str, Any] | None:
-    found: dict[str, dict[str, Any]] = reported.get("cost", {}).get("of_law", {})
-    return found.get(name)
+    """With its own tracker, which is the first."""
+    found: dict[str, dict[str, Any]] = reported.get("cost", {}).get("costs", {})
+    return next(iter(own_rows(name, found)), None)
 
 
 def cost(law: Law, reported: Reported) -> str:

@@ -23,7 +23,7 @@ def pages():
 
 REPORTED = {
     "cost": {
-        "of_law": {
+        "costs": {
             "add": {
                 "law": "signs", "signals": ["acceleration of body 1"], "rig": "building",
                 "tracker": "", "tick_worst_instr": 4000, "own_worst_instr": 200,
