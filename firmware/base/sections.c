@@ -1,5 +1,7 @@
 #include "sections.h"
 
+#include <stddef.h>
+
 #include "view_signal.h"
 
 quiesce_table_verdict_t sections_check(const sections_kind_t *kind, const uint32_t *words,
@@ -34,4 +36,22 @@ uint64_t sections_need(const sections_kind_t *kind, const uint32_t *words) {
         at += kind->size(&words[at], words[TABLE_WORDS] - at);
     }
     return bits;
+}
+
+const uint32_t *sections_shared(const sections_kind_t *kind, const uint32_t *words,
+                                uint32_t damper) {
+    const uint32_t count = sections_count(words);
+    if (count > 1u && damper >= count) {
+        return NULL;
+    }
+    uint32_t at = SECTIONS_FIRST;
+    for (uint32_t i = 0; count > 1u && i < damper; i++) {
+        at += kind->size(&words[at], words[TABLE_WORDS] - at);
+    }
+    return &words[at];
+}
+
+uint64_t sections_shared_need(const sections_kind_t *kind, const uint32_t *words) {
+    return sections_count(words) > 1u ? sections_need(kind, words)
+                                      : VIEW_EACH(kind->needs(sections_first(words), 0));
 }

@@ -26,6 +26,14 @@ quiesce_table_verdict_t sections_check(const sections_kind_t *kind, const uint32
 /// VIEW_ bits that a checked table needs: each of its dampers, and what their sections need.
 uint64_t sections_need(const sections_kind_t *kind, const uint32_t *words);
 
+/// Of tables whose only section, where there is one, is of every damper: the section of a damper.
+/// NULL iff there are several and none is its own.
+const uint32_t *sections_shared(const sections_kind_t *kind, const uint32_t *words,
+                                uint32_t damper);
+
+/// As sections_need, of such tables: VIEW_EACH of what an only section needs.
+uint64_t sections_shared_need(const sections_kind_t *kind, const uint32_t *words);
+
 static inline uint32_t sections_count(const uint32_t *words) {
     return words[SECTIONS_COUNT];
 }

@@ -127,20 +127,11 @@ quiesce_table_verdict_t force_bank_check(const uint32_t *words, uint32_t count) 
 }
 
 uint64_t force_bank_needs(const uint32_t *words) {
-    return sections_count(words) > 1u ? sections_need(&kind, words)
-                                      : VIEW_EACH(needs(sections_first(words), 0));
+    return sections_shared_need(&kind, words);
 }
 
 const uint32_t *force_bank_section(const uint32_t *words, uint32_t damper) {
-    const uint32_t *section = sections_first(words);
-    const uint32_t count = sections_count(words);
-    if (count > 1u && damper >= count) {
-        return NULL;
-    }
-    for (uint32_t i = 0; count > 1u && i < damper; i++) {
-        section += words_in(as_section(section));
-    }
-    return section;
+    return sections_shared(&kind, words, damper);
 }
 
 uint32_t force_bank_currents(const uint32_t *section) {

@@ -107,20 +107,11 @@ quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t 
 }
 
 const uint32_t *force_map_section(const uint32_t *words, uint32_t damper) {
-    const uint32_t *section = sections_first(words);
-    const uint32_t count = sections_count(words);
-    if (count > 1u && damper >= count) {
-        return NULL;
-    }
-    for (uint32_t i = 0; count > 1u && i < damper; i++) {
-        section += words_in(as_section(section));
-    }
-    return section;
+    return sections_shared(&kind, words, damper);
 }
 
 uint64_t force_map_needs(const uint32_t *words) {
-    return sections_count(words) > 1u ? sections_need(&kind, words)
-                                      : VIEW_EACH(axis_needs(sections_first(words), 0));
+    return sections_shared_need(&kind, words);
 }
 
 int32_t force_map_place(const uint32_t *section, const view_damper_t *damper) {

@@ -39,5 +39,5 @@ RECIPE = Recipe(
     ),
     make,
     equation="F = g_a a_a + g_v v_a + g_b a_b + g_w v_b + g_x r + g_r v_r",
-    when="Gains from a search (quiesce tune); a signal whose gain is 0 needs no sensor.",
+    when="Gains from a search (quiesce tune law); a signal whose gain is 0 needs no sensor.",
 )
