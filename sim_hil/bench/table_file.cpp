@@ -172,13 +172,15 @@ std::vector<std::uint32_t> load_law_table(const std::string &file) {
 
 namespace {
 
-void require_accepted_table(quiesce_t &controller, const std::string &file) {
-    const std::vector<std::uint32_t> words = load_law_table(file);
+/// Returns the words: the controller reads them from now on.
+std::vector<std::uint32_t> require_accepted_table(quiesce_t &controller, const std::string &file) {
+    std::vector<std::uint32_t> words = load_law_table(file);
     const quiesce_table_verdict_t verdict =
         quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
     if (verdict != QUIESCE_TABLE_OK) {
         throw InputError(file + ": " + kRefused + reason_of_form(verdict));
     }
+    return words;
 }
 
 /// A map or bank that is good in itself: of this board's dampers and strokes, of this tick rate.
@@ -206,8 +208,9 @@ void require_tables(const quiesce_board_t *board, const quiesce_params_t &params
     } else {
         quiesce_init(controller.get(), &params);
     }
+    std::vector<std::uint32_t> used;
     if (!law_table.empty()) {
-        require_accepted_table(*controller, law_table);
+        used = require_accepted_table(*controller, law_table);
     }
     const char *lacking = quiesce_lacks_table(controller.get());
     if (lacking != nullptr && law_label(params) == lacking) {
