@@ -64,11 +64,15 @@ bool quiesce_tables_sum(quiesce_tables_t *tables, uint32_t words) {
     if (tables->filled > from) {
         const uint32_t left = tables->filled - from;
         const uint32_t count = left < words ? left : words;
-        tables->crc =
-            crc32_continue(tables->crc, &tables->words[tables->arrival][from], count);
+        tables->crc = crc32_continue(tables->crc, &tables->words[tables->arrival][from], count);
         tables->summed = from + count;
     }
     return tables->summed >= tables->filled;
+}
+
+const uint32_t *quiesce_tables_arrival(const quiesce_tables_t *tables, uint32_t *count) {
+    *count = tables->filled;
+    return tables->words[tables->arrival];
 }
 
 // The arrival, summed to its end. Returns whether its CRC is right.
@@ -101,8 +105,7 @@ quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_
 static bool use_room(const quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner,
                      uint32_t room) {
     const uint32_t *words = room == SHIPPED ? tables->of[owner].shipped : tables->words[room];
-    if (words != NULL &&
-        quiesce_table_use(self, words, words[TABLE_WORDS]) == QUIESCE_TABLE_OK) {
+    if (words != NULL && quiesce_table_use(self, words, words[TABLE_WORDS]) == QUIESCE_TABLE_OK) {
         return true;
     }
     return room == SHIPPED && quiesce_table_drop(self, owner);
