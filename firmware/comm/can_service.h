@@ -31,6 +31,9 @@ typedef enum {
     CAN_NODE_NOTHING_TO_SEND = 7,
     CAN_NODE_FAULT_IS_LATCHED = 8,
     CAN_NODE_IS_ARMED = 9,
+    CAN_NODE_TABLE_REFUSED = 10,    ///< param_value: quiesce_table_verdict_t
+    CAN_NODE_NOTHING_RECEIVED = 11, ///< no whole transfer, or of another CRC
+    CAN_NODE_NO_SUCH_TABLE = 12,    ///< no such road, or nothing of that number to tell
 } can_node_result_t;
 
 typedef struct {
