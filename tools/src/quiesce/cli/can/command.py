@@ -5,12 +5,12 @@ from collections.abc import Callable
 
 from quiesce.base.errors import UsageError
 from quiesce.cli.can import (
+    bus_load,
     check,
     decode,
     freeze,
     get,
     list,
-    load,
     monitor,
     record,
     replay,
@@ -25,6 +25,7 @@ PACKAGES = {
     "asammdf": "asammdf",
     "serial": "pyserial",
     "msgpack": "msgpack",
+    "isotp": "can-isotp",
 }
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
@@ -39,7 +40,7 @@ ACTIONS = (
     set,
     stop,
     freeze,
-    load,
+    bus_load,
 )
 
 EPILOG = """examples:

@@ -1,4 +1,4 @@
-"""`quiesce can load`: bus load and worst-case response times, computed from the DBC."""
+"""`quiesce can bus-load`: bus load and worst-case response times, computed from the DBC."""
 
 import argparse
 import json
@@ -9,10 +9,10 @@ from quiesce.base.table import format_table
 from quiesce.cli.can.options import add_database_option, database_of
 
 EPILOG = """examples:
-  quiesce can load
-  quiesce can load --bitrate 250000 --sensor-node
-  quiesce can load --sensors 1 --dampers 2
-  quiesce can load --errors-per-s 10 --jitter-ms 0.1 --json
+  quiesce can bus-load
+  quiesce can bus-load --bitrate 250000 --sensor-node
+  quiesce can bus-load --sensors 1 --dampers 2
+  quiesce can bus-load --errors-per-s 10 --jitter-ms 0.1 --json
 
 Longest frames (worst-case bit stuffing), each message at its least period: its cycle time, or for
 services the least time between two. 'response' is from the event to the frame's last bit, when
@@ -26,7 +26,7 @@ MOST_SENSORS, MOST_DAMPERS = 8, 4  # that the interface has messages for
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
-        "load",
+        "bus-load",
         help="bus load and worst-case response times",
         description="Bus load and worst-case response times, computed from the DBC.",
         epilog=EPILOG,
@@ -84,23 +84,25 @@ def run(args: argparse.Namespace) -> int:
 
 
 def computed(args: argparse.Namespace) -> dict[str, Any]:
-    from quiesce.can import load
+    from quiesce.can import bus_load
 
     database = database_of(args)
-    raw = load.named(database, load.RAW)
+    raw = bus_load.named(database, bus_load.RAW)
     left_out = raw if args.no_raw else []
     sensors = args.sensors if args.sensors is not None else int(args.sensor_node)
-    chosen = [one for one in load.on_bus(database, sensors, args.dampers) if one not in left_out]
+    chosen = [
+        one for one in bus_load.on_bus(database, sensors, args.dampers) if one not in left_out
+    ]
     if not chosen:
         raise UsageError(f"{database.file}: no message has a cycle time (GenMsgCycleTime)")
-    analysis = load.Analysis(chosen, args.bitrate, args.jitter_ms, args.errors_per_s)
-    sent = load.slcan_messages(database, args.dampers)
-    need, baud = load.baud_needed(sent)
-    need_less, baud_less = load.baud_needed([one for one in sent if one not in raw])
+    analysis = bus_load.Analysis(chosen, args.bitrate, args.jitter_ms, args.errors_per_s)
+    sent = bus_load.slcan_messages(database, args.dampers)
+    need, baud = bus_load.baud_needed(sent)
+    need_less, baud_less = bus_load.baud_needed([one for one in sent if one not in raw])
     in_totals = 1 if args.sensors is None else args.sensors
     return {
         "bitrate": args.bitrate,
-        "load_pct": load.totals_pct(database, args.bitrate, in_totals, args.dampers),
+        "load_pct": bus_load.totals_pct(database, args.bitrate, in_totals, args.dampers),
         "messages": [row(analysis, index) for index in range(len(analysis.streams))],
         "slcan": {
             "bits_per_s": need,
@@ -129,7 +131,7 @@ def row(analysis: Any, index: int) -> dict[str, Any]:
 
 
 def text(report: dict[str, Any]) -> str:
-    from quiesce.can.load import totals_table
+    from quiesce.can.bus_load import totals_table
 
     rows = [
         [
