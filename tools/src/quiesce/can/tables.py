@@ -14,7 +14,7 @@ from quiesce.can.transfer import Channel, Progress, TooLarge, TransferFailed
 
 TRIES = 3  # of a whole transfer
 BUSY_S = 5.0
-STORE_S = 10.0
+STORE_S = 3.0  # the controller gives its store 2 s
 # A last frame may be behind its check, which has the higher priority: asked again after this time.
 BEHIND_S = 0.05
 WORD = 1 << 32

@@ -20,7 +20,8 @@ EPILOG = """examples:
 Never sends what a controller or a driver would act on, unless --include-commands: CurrentDemand of
 every damper, EmergencyStop, OperatorCommand, ServiceRequest and TableData (which may change
 parameters and tables), what sensor nodes and drivers send (AccelSample, SensorSample1 ..,
-CurrentMeasured), lock-step messages (0x600 .. 0x6FF). Their ids are those of the shipped DBC; --dbc only names messages for --only.
+CurrentMeasured), lock-step messages (0x600 .. 0x6FF). Their ids are those of the shipped DBC; --dbc
+only names messages for --only.
 """
 
 COMMANDS = ("CurrentDemand", "EmergencyStop", "OperatorCommand", "ServiceRequest", "TableData")
