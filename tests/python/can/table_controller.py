@@ -17,9 +17,8 @@ REQUEST, REPLY, DATA, FLOW = (
     for name in ("ServiceRequest", "ServiceReply", "TableData", "TableFlow")
 )
 MOST_BYTES = 16 + 4 * 2048
-BLOCK, GAP_MS = 32, 2
+BLOCK, GAP_MS, SILENCE_S = 32, 2, 1.0
 ROADS = 3
-LAW_INDEX, TRACKER_INDEX = 1, 2  # replaced by the tests with those of the parameters
 
 
 @dataclass
@@ -180,21 +179,25 @@ class TableController(threading.Thread):
             yield bytes([0x20 | number % 16]) + data[at : at + 7]
 
     def _await_flow_control(self) -> bytes | None:
-        end_s = time.monotonic() + 0.3
-        while time.monotonic() < end_s:
+        end_s = time.monotonic() + SILENCE_S
+        while time.monotonic() < end_s and not self._is_over.is_set():
             frame = self._bus.recv(0.05)
             if frame is not None and frame.arbitration_id == DATA.frame_id:
                 return bytes(frame.data) if frame.data[0] == 0x30 else None
+            if frame is not None and frame.arbitration_id == REQUEST.frame_id:
+                self._answer(bytes(frame.data), is_sending=True)
         return None
 
     # Services
 
-    def _answer(self, data: bytes) -> None:
+    def _answer(self, data: bytes, is_sending: bool = False) -> None:
         assert data[-1] == frame_crc(REQUEST.frame_id, data)
         raw = REQUEST.decode(data, decode_choices=False)
         name = str(REQUEST.get_signal_by_name("operation").choices[raw["operation"]])
         self.requests.append(name)
-        result, value = self._result(name, raw["param_index"], raw["param_value"])
+        result, value = "BUSY", 0
+        if not is_sending:
+            result, value = self._result(name, raw["param_index"], raw["param_value"])
         if self.faults.lose_replies.get(name, 0) > 0:
             self.faults.lose_replies[name] -= 1
             return

@@ -42,8 +42,8 @@ def table(magic: int, count: int = 40) -> list[int]:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Silences are found out soon."""
-    monkeypatch.setattr(transfer, "SILENCE_MS", 150)
-    monkeypatch.setattr(tables, "BUSY_S", 0.5)
+    monkeypatch.setattr(transfer, "SILENCE_MS", 500)
+    monkeypatch.setattr(tables, "BUSY_S", 2.0)
     monkeypatch.setattr(tables, "STORE_S", 0.3)
     monkeypatch.setattr(tables, "BEHIND_S", 0.01)
 
@@ -197,7 +197,7 @@ def test_the_last_frame_lost_each_time(controller, tool, tmp_path: Path) -> None
 def test_no_flow_control(controller, tool, tmp_path: Path) -> None:
     controller.faults.has_flow_control = False
     file = written(tmp_path / "a.table", table(RULES))
-    failed(tool("load", "law", file), "the controller gave no flow control for 0.15 s")
+    failed(tool("load", "law", file), "the controller gave no flow control for 0.5 s")
 
 
 @pytest.mark.parametrize(("waits", "code"), [(3, 0), (50, 1)])
@@ -485,7 +485,7 @@ def test_other_lengths_and_silence_are_no_transfer(quick: None) -> None:
         (b"\x10\x20" + bytes(6), "more bytes came than were said"),
         (b"\x07" + bytes(7), "7 bytes came, not 16"),
         (b"\x40" + bytes(7), "none of ISO-TP"),
-        (b"\x10\x10" + bytes(6), "no frame came for 0.15 s"),
+        (b"\x10\x10" + bytes(6), "no frame came for 0.5 s"),
     ):
         link = ScriptedLink([])
         channel = Channel(link, load())
