@@ -4,6 +4,7 @@ import itertools
 import json
 import re
 import struct
+import time
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -517,3 +518,27 @@ def test_kinds_are_the_firmwares() -> None:
     for kind in KINDS:
         labels = LABELS["tracker" if kind.road == "tracker" else "law"]
         assert set(kind.users) <= set(labels)
+
+
+def test_the_page_is_enough(controller, tool, tmp_path: Path, monkeypatch) -> None:
+    """Its numbers, and its program."""
+    page = (ROOT / "docs/reference/can-messages.md").read_text().split("\n## Tables\n")[1]
+    rows = re.findall(r"^\| (\d+) \| ([A-Z]+) \| ", page, re.M)
+    assert {int(n): label for n, label in rows} == {n: v.label for n, v in VERDICTS.items() if n}
+    named = re.findall(r"(\w+) 0x([0-9A-F]{8})", page.split("### The transfer")[0])
+    assert {name: int(n, 16) for name, n in named} == {kind.name: kind.magic for kind in KINDS}
+    choices = load().codec.get_message_by_name("ServiceRequest").get_signal_by_name("operation")
+    told = re.findall(r"^\| ((?:TABLE|LEARNT)_\w+) \|", page, re.M)
+    assert told == [
+        one for one in map(str, choices.choices.values()) if one[:6] in ("TABLE_", "LEARNT")
+    ]
+    program = page.split("```python\n")[1].split("```")[0]
+    bus = f'can.Bus(interface="virtual", channel="{controller._bus.channel_id}")'
+    words = table(RULES, 400)
+    written(tmp_path / "mine.table", words)
+    monkeypatch.chdir(tmp_path)
+    exec(re.sub(r"can\.Bus\(.*\)", bus, program), {})  # noqa: S102
+    end_s = time.monotonic() + 5.0
+    while not controller.received and time.monotonic() < end_s:
+        time.sleep(0.01)
+    assert controller.received == file_of(words)
