@@ -2,11 +2,47 @@
 
 #include <stddef.h>
 
-bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
-                    const quiesce_params_t *params) {
-    server->in = (quiesce_in_t){0};
+static bool start(lockstep_t *server, const quiesce_board_t *board,
+                  const quiesce_params_t *params) {
     return board == NULL ? quiesce_init(&server->controller, params)
                          : quiesce_init_board(&server->controller, board, params);
+}
+
+static quiesce_table_verdict_t use(lockstep_t *server, const lockstep_table_t *table) {
+    if (table->count == 0) {
+        return QUIESCE_TABLE_OK;
+    }
+    return table->count <= QUIESCE_TABLE_WORDS
+               ? quiesce_table_use(&server->controller, table->words, table->count)
+               : QUIESCE_TABLE_SIZE;
+}
+
+// Every one of them is tried. Returns false iff one is refused.
+static bool use_tables(lockstep_t *server, const lockstep_table_t *tables) {
+    bool are_accepted = true;
+    for (uint32_t i = 0; tables != NULL && i < LOCKSTEP_TABLES; i++) {
+        server->verdict[i] = use(server, &tables[i]);
+        are_accepted = are_accepted && server->verdict[i] == QUIESCE_TABLE_OK;
+    }
+    return are_accepted;
+}
+
+bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
+                    const quiesce_params_t *params, const lockstep_table_t *tables) {
+    server->in = (quiesce_in_t){0};
+    for (uint32_t i = 0; i < LOCKSTEP_TABLES; i++) {
+        server->verdict[i] = QUIESCE_TABLE_OK;
+    }
+    if (!start(server, board, params)) {
+        return false;
+    }
+    if (use_tables(server, tables)) {
+        return true;
+    }
+    quiesce_params_t refused = *params; // else what ships ran in the place of what was asked for
+    refused.tick_rate_Hz = 0;
+    (void)start(server, board, &refused);
+    return false;
 }
 
 static void take(quiesce_in_t *in, const lockstep_stimulus_t *stimulus) {
