@@ -10,8 +10,6 @@
 
 namespace quiesce {
 
-namespace {
-
 const char *reason(quiesce_table_verdict_t verdict) {
     switch (verdict) {
     case QUIESCE_TABLE_OK:
@@ -40,6 +38,8 @@ const char *reason(quiesce_table_verdict_t verdict) {
     }
     return "unknown reason";
 }
+
+namespace {
 
 /// A table in a text file, for messages.
 struct TextTable {

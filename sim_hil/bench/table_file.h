@@ -33,6 +33,9 @@ std::vector<std::uint32_t> load_pulses(const std::string &file);
 void require_tables(const quiesce_board_t *board, const quiesce_params_t &params,
                     const std::string &law_table, const std::string &force_map);
 
+/// A verdict in words: what is wrong with a table.
+const char *reason(quiesce_table_verdict_t verdict);
+
 /// Makes a controller use them. Throws InputError where its law refuses.
 void use_table(quiesce_t &controller, const std::vector<std::uint32_t> &words);
 

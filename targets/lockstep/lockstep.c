@@ -17,27 +17,25 @@ static quiesce_table_verdict_t use(lockstep_t *server, const lockstep_table_t *t
                : QUIESCE_TABLE_SIZE;
 }
 
-// Every one of them is tried. Returns false iff one is refused.
+// One after the other, until one is refused.
 static bool use_tables(lockstep_t *server, const lockstep_table_t *tables) {
-    bool are_accepted = true;
+    server->refused = (lockstep_refusal_t){QUIESCE_TABLE_OK, LOCKSTEP_LAW_TABLE};
     for (uint32_t i = 0; tables != NULL && i < LOCKSTEP_TABLES; i++) {
-        server->verdict[i] = use(server, &tables[i]);
-        are_accepted = are_accepted && server->verdict[i] == QUIESCE_TABLE_OK;
+        const quiesce_table_verdict_t verdict = use(server, &tables[i]);
+        if (verdict != QUIESCE_TABLE_OK) {
+            server->refused = (lockstep_refusal_t){(uint32_t)verdict, i};
+            return false;
+        }
     }
-    return are_accepted;
+    return true;
 }
 
 bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
                     const quiesce_params_t *params, const lockstep_table_t *tables) {
     server->in = (quiesce_in_t){0};
-    for (uint32_t i = 0; i < LOCKSTEP_TABLES; i++) {
-        server->verdict[i] = QUIESCE_TABLE_OK;
-    }
-    if (!start(server, board, params)) {
-        return false;
-    }
-    if (use_tables(server, tables)) {
-        return true;
+    const bool is_accepted = start(server, board, params);
+    if (use_tables(server, is_accepted ? tables : NULL)) {
+        return is_accepted;
     }
     quiesce_params_t refused = *params; // else what ships ran in the place of what was asked for
     refused.tick_rate_Hz = 0;

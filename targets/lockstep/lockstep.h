@@ -47,11 +47,17 @@ typedef struct {
     uint32_t count; ///< 0: there is none; more than QUIESCE_TABLE_WORDS are refused unread
 } lockstep_table_t;
 
+/// The table that a start refused. Words only.
+typedef struct {
+    uint32_t verdict; ///< quiesce_table_verdict_t; OK: it refused none
+    uint32_t table;   ///< LOCKSTEP_LAW_TABLE or LOCKSTEP_TRACKER_TABLE
+} lockstep_refusal_t;
+
 typedef struct {
     quiesce_t controller;
-    quiesce_table_verdict_t verdict[LOCKSTEP_TABLES]; ///< of the last start; OK where it had none
-    quiesce_in_t in;                                  ///< of the last tick
-    quiesce_out_t out;                                ///< of the last tick
+    lockstep_refusal_t refused; ///< by the last start
+    quiesce_in_t in;            ///< of the last tick
+    quiesce_out_t out;          ///< of the last tick
 } lockstep_t;
 
 /// (Re)starts the controller from rest. board: NULL where the parameters say what is wired. tables:

@@ -25,7 +25,7 @@ static void put_status(const lockstep_can_t *self, can_frame_t *out) {
         .is_started = self->is_started,
         .param_is_refused = self->param_is_refused,
         .board_is_refused = self->board_is_refused,
-        .table_verdict = self->table_verdict,
+        .table_verdict = (uint8_t)self->server.refused.verdict,
         .refused_index = self->refused_index,
         .param_count = QUIESCE_PARAM_COUNT,
         .telemetry_words = QUIESCE_CAN_TELEMETRY_WORDS,
@@ -41,15 +41,12 @@ static void put_status(const lockstep_can_t *self, can_frame_t *out) {
 
 // What the last start of the server refused: one thing at the most.
 static void note_refusal(lockstep_can_t *self, bool is_accepted) {
-    const quiesce_table_verdict_t *verdict = self->server.verdict;
-    const uint8_t table = verdict[LOCKSTEP_LAW_TABLE] != QUIESCE_TABLE_OK ? LOCKSTEP_LAW_TABLE
-                                                                          : LOCKSTEP_TRACKER_TABLE;
-    const bool table_is_refused = verdict[table] != QUIESCE_TABLE_OK;
+    const lockstep_refusal_t *table = &self->server.refused;
+    const bool table_is_refused = table->verdict != QUIESCE_TABLE_OK;
     quiesce_param_error_t error = {0};
     self->param_is_refused = !quiesce_params_check(&self->params, &error);
-    self->refused_index = table_is_refused ? table : (uint8_t)error.index;
-    self->table_verdict = (uint8_t)verdict[table];
     self->board_is_refused = !is_accepted && !self->param_is_refused && !table_is_refused;
+    self->refused_index = (uint8_t)(table_is_refused ? table->table : error.index);
 }
 
 static bool start_server(lockstep_can_t *self, const quiesce_board_t *board) {

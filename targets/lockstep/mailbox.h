@@ -12,7 +12,7 @@
 #define MAILBOX_BASE 0x21000000u
 #define MAILBOX_BYTES (16u * 1024u * 1024u)
 
-#define MAILBOX_START 1u ///< params, board, tables -> status 1 accepted, 0 refused; verdicts
+#define MAILBOX_START 1u ///< params, board, tables -> status 1 accepted, 0 refused; refused
 #define MAILBOX_STEP 2u  ///< stimulus -> reply
 #define MAILBOX_STOP 3u  ///< stack_used_bytes; the image ends
 

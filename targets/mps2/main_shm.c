@@ -31,9 +31,7 @@ static void start(mailbox_t *box, lockstep_t *server) {
     };
     const quiesce_board_t *board = box->has_board != 0 ? &box->board : NULL;
     box->status = lockstep_start(server, board, &box->params, tables) ? 1u : 0u;
-    for (uint32_t i = 0; i < LOCKSTEP_TABLES; i++) {
-        box->verdict[i] = (uint32_t)server->verdict[i];
-    }
+    box->refused = server->refused;
 }
 
 static void serve(mailbox_t *box, lockstep_t *server) {

@@ -26,7 +26,7 @@ def law_options(law: str, file: Path | None, folder: Path) -> tuple[str, ...]:
         return ()
     words = folder / WORDS_FILE
     words.write_bytes(law_bytes(read_law(file)))
-    return ("--phase-table", str(words))
+    return ("--pulses", str(words))
 
 
 def table_bytes(law: str, file: Path | None) -> int | None:

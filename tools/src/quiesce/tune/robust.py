@@ -44,7 +44,7 @@ class ClosedLoop:
         self.bench = Bench()
         words = folder / "law.words"
         words.write_bytes(law_bytes(law))
-        self._options = ["--phase-table", str(words), *setting_options(settings)]
+        self._options = ["--pulses", str(words), *setting_options(settings)]
 
     def run(self, plant: Path, freq_Hz: float, duration_s: float, law: str, *more: str) -> Any:
         """The bench's figures over the last 2 s. more: options."""
