@@ -143,20 +143,12 @@ RunSetup run_setup(const Arguments &arguments) {
 
 Tables tables_from(const Arguments &arguments, const quiesce_board_t *board,
                    const quiesce_params_t &params) {
-    require_tables(board, params, arguments.text("law-table").value_or(""),
-                   arguments.text("force-map").value_or(""));
-    using Load = std::vector<std::uint32_t> (*)(const std::string &file);
-    const std::pair<const char *, Load> options[] = {{"rules", load_rules},
-                                                     {"pulses", load_pulses},
-                                                     {"law-table", load_law_table},
-                                                     {"force-map", load_force_map}};
-    std::vector<std::vector<std::uint32_t>> given;
-    for (const auto &[option, load] : options) {
-        if (const auto file = arguments.text(option)) {
-            given.push_back(load(*file));
-        }
-    }
-    return tables_for(board, params, given);
+    const auto file = [&arguments](const char *option) {
+        return arguments.text(option).value_or("");
+    };
+    const TableFiles files = {file("rules"), file("pulses"), file("law-table"), file("force-map")};
+    require_tables(board, params, files);
+    return tables_for(board, params, load_tables(files));
 }
 
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {

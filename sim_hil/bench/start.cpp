@@ -1,19 +1,18 @@
 #include "start.h"
 
-#include <memory>
-
 #include "input_error.h"
-#include "table_file.h"
+#include "table_verdict.h"
 
 namespace quiesce {
 
 namespace {
 
-std::string refusal(const StartAnswer &answer, const quiesce_board_t *board) {
+std::string refusal(const StartAnswer &answer, const quiesce_board_t *board, const Tables &tables) {
     if (answer.table.verdict != QUIESCE_TABLE_OK) {
-        const bool is_of_law = answer.table.table == LOCKSTEP_LAW_TABLE;
-        return std::string(is_of_law ? "the law's" : "the tracker's") +
-               " table: " + reason(static_cast<quiesce_table_verdict_t>(answer.table.verdict));
+        const char *whose =
+            answer.table.table == LOCKSTEP_LAW_TABLE ? "the law's" : "the tracker's";
+        const auto verdict = static_cast<quiesce_table_verdict_t>(answer.table.verdict);
+        return std::string(whose) + " table: " + reason_of(verdict, tables.at(answer.table.table));
     }
     return board != nullptr ? "its parameters or its board; is it built for as many sensors and "
                               "dampers?"
@@ -23,15 +22,14 @@ std::string refusal(const StartAnswer &answer, const quiesce_board_t *board) {
 } // namespace
 
 Tables tables_for(const quiesce_board_t *board, const quiesce_params_t &params,
-                  const std::vector<std::vector<std::uint32_t>> &given) {
-    const auto trial = std::make_unique<lockstep_t>();
-    lockstep_start(trial.get(), board, &params, nullptr);
+                  const std::vector<TableWords> &given) {
+    const auto trial = controller_with(board, params);
     Tables tables;
-    for (const std::vector<std::uint32_t> &words : given) {
+    for (const TableWords &words : given) {
         const auto count = static_cast<std::uint32_t>(words.size());
         const bool is_of_tracker =
             quiesce_tracker_table_check(words.data(), count) != QUIESCE_TABLE_MAGIC;
-        if (quiesce_table_use(&trial->controller, words.data(), count) != QUIESCE_TABLE_MAGIC) {
+        if (use_table(*trial, words) != QUIESCE_TABLE_MAGIC) {
             tables[is_of_tracker ? LOCKSTEP_TRACKER_TABLE : LOCKSTEP_LAW_TABLE] = words;
         }
     }
@@ -43,7 +41,7 @@ void start_controller(ControllerLink &link, const quiesce_board_t *board,
     const StartAnswer answer = link.start(board, params, tables);
     if (!answer) {
         throw InputError("the controller on target " + link.target() + " refuses " +
-                         refusal(answer, board));
+                         refusal(answer, board, tables));
     }
 }
 
