@@ -136,20 +136,27 @@ RunSetup run_setup(const Arguments &arguments) {
     return setup;
 }
 
+namespace {
+
+TableFiles table_files(const Arguments &arguments) {
+    const auto file = [&arguments](const char *option) {
+        return arguments.text(option).value_or("");
+    };
+    return {file("rules"), file("phase-table"), file("law-table"), file("force-map")};
+}
+
+} // namespace
+
 void require_tables(const Arguments &arguments, const quiesce_board_t *board,
                     const quiesce_params_t &params) {
-    require_tables(board, params, arguments.text("law-table").value_or(""),
-                   arguments.text("force-map").value_or(""));
+    require_tables(board, params, table_files(arguments));
 }
 
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {
     LinkOptions options;
     options.image_path = arguments.text("image").value_or("");
     options.plugin_path = arguments.text("plugin").value_or("");
-    options.rules_path = arguments.text("rules").value_or("");
-    options.phase_table_path = arguments.text("phase-table").value_or("");
-    options.force_map_path = arguments.text("force-map").value_or("");
-    options.law_table_path = arguments.text("law-table").value_or("");
+    options.tables = table_files(arguments);
     options.can_channel = arguments.text("can").value_or("");
     options.telemetry_every_ticks = arguments.integer("telemetry-every", 1, UINT16_MAX);
     options.greeting_time_s = arguments.number("wait-s", 0.1, 3600.0);
