@@ -113,14 +113,10 @@ static bool use_room(const quiesce_tables_t *tables, quiesce_t *self, quiesce_ow
 
 bool quiesce_tables_revert(quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner) {
     const uint32_t before = tables->of[owner].before;
-    if (tables->of[owner].now == SHIPPED && before == SHIPPED) {
-        return false;
-    }
-    if (!use_room(tables, self, owner, before)) {
+    if (before == tables->of[owner].now || !use_room(tables, self, owner, before)) {
         return false;
     }
     tables->of[owner].now = before;
-    tables->of[owner].before = SHIPPED;
     return true;
 }
 

@@ -162,6 +162,7 @@ static void put_first(isotp_t *self, uint8_t *frame, isotp_byte_t byte, const vo
     }
     put_bytes(self, frame, header_bytes, byte, context);
     self->sequence = 1;
+    self->quiet_ms = ISOTP_PATIENCE_MS;
     self->owes_first = false;
 }
 

@@ -275,10 +275,12 @@ const quiesce_params_t *node_task(node_t *node) {
 uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
     const uint32_t count =
         can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
-    const uint32_t passed_ms = node->can.schedule.passed_ms;
-    return count + (table_service_tick(&node->tables, &node->controller, passed_ms, &frames[count])
-                        ? 1u
-                        : 0u);
+    const table_tick_t tick = {
+        .controller = &node->controller,
+        .passed_ms = node->can.schedule.passed_ms,
+        .is_answered = !node->can.service.is_taken,
+    };
+    return count + (table_service_tick(&node->tables, &tick, &frames[count]) ? 1u : 0u);
 }
 
 uint32_t node_tick(node_t *node, const node_inputs_t *inputs, can_frame_t frames[NODE_MAX_FRAMES]) {

@@ -388,11 +388,13 @@ static void keep_learnt(table_service_t *self, const quiesce_t *controller) {
     }
 }
 
-bool table_service_tick(table_service_t *self, const quiesce_t *controller, uint32_t passed_ms,
-                        can_frame_t *frame) {
-    if (learnt_is_due(&self->learnt, passed_ms)) {
-        keep_learnt(self, controller);
+bool table_service_tick(table_service_t *self, const table_tick_t *tick, can_frame_t *frame) {
+    const isotp_t *isotp = &self->link.isotp;
+    if (learnt_is_due(&self->learnt, tick->passed_ms)) {
+        keep_learnt(self, tick->controller);
     }
-    return !isotp_is_idle(&self->link.isotp) &&
-           table_link_tick(&self->link, passed_ms, &self->tables, frame);
+    if (isotp_is_idle(isotp) || (isotp->owes_first && !tick->is_answered)) {
+        return false;
+    }
+    return table_link_tick(&self->link, tick->passed_ms, &self->tables, frame);
 }

@@ -301,8 +301,8 @@ quiesce_table_verdict_t quiesce_tables_check(quiesce_tables_t *tables, const qui
 /// one in use where it is. Call it, like the next two, between steps.
 quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_t *self);
 
-/// Goes back to the table in use before the last commit; a second call goes on to the one that
-/// ships. Returns false iff there is none before, or it is refused by now.
+/// Goes back to the table in use before the last commit or unload. Returns false, and changes
+/// nothing, iff that has been done already, there was none, or it is refused by now.
 bool quiesce_tables_revert(quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner);
 
 /// Goes back to the table that ships, which the next revert undoes. Returns false iff law and
