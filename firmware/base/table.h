@@ -27,7 +27,8 @@ typedef struct {
     uint32_t (*rate_Hz)(const uint32_t *words);
 } table_kind_t;
 
-/// Whether count words are a good table of a kind: SIZE, MAGIC, SIZE, CRC, then what its check says.
+/// Whether count words are a good table of a kind: SIZE, MAGIC, SIZE, CRC, then what its check
+/// says.
 quiesce_table_verdict_t table_check(const table_kind_t *kind, const uint32_t *words,
                                     uint32_t count);
 

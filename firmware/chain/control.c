@@ -191,9 +191,8 @@ static quiesce_owner_t owner_of(const control_t *self, const uint32_t *words, ui
 static bool is_served(const control_t *self, quiesce_owner_t owner, const uint32_t *words) {
     const table_kind_t *kind = kind_of(self, owner);
     const uint64_t needs = kind->needs != NULL ? kind->needs(words) : 0;
-    const uint64_t there = owner == QUIESCE_OF_TRACKER
-                               ? needs_there(needs, self->bodies, self->dampers)
-                               : needs;
+    const uint64_t there =
+        owner == QUIESCE_OF_TRACKER ? needs_there(needs, self->bodies, self->dampers) : needs;
     return (there & ~self->provided) == 0;
 }
 
@@ -211,8 +210,8 @@ quiesce_table_verdict_t control_check(const control_t *self, const uint32_t *wor
     if (kind == NULL) {
         return QUIESCE_TABLE_MAGIC;
     }
-    const quiesce_table_verdict_t verdict = is_summed ? table_check_summed(kind, words, count)
-                                                      : table_check(kind, words, count);
+    const quiesce_table_verdict_t verdict =
+        is_summed ? table_check_summed(kind, words, count) : table_check(kind, words, count);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }

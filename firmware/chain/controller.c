@@ -398,8 +398,8 @@ quiesce_table_verdict_t controller_check_table(const quiesce_t *self, const uint
     return control_check(known_of(self), words, count, is_summed);
 }
 
-quiesce_table_verdict_t controller_use_table(quiesce_t *self, const uint32_t *words,
-                                             uint32_t count, bool is_summed) {
+quiesce_table_verdict_t controller_use_table(quiesce_t *self, const uint32_t *words, uint32_t count,
+                                             bool is_summed) {
     controller_t *c = (controller_t *)(void *)self->opaque;
     const quiesce_table_verdict_t verdict = control_check(&c->control, words, count, is_summed);
     if (verdict == QUIESCE_TABLE_OK) {

@@ -1,5 +1,5 @@
-/// What tables.c does with a controller beyond its public calls: words whose CRC has just been found
-/// right (is_summed) are not summed again.
+/// What tables.c does with a controller beyond its public calls: words whose CRC has just been
+/// found right (is_summed) are not summed again.
 #ifndef CONTROLLER_TABLES_H
 #define CONTROLLER_TABLES_H
 
@@ -10,7 +10,7 @@ quiesce_table_verdict_t controller_check_table(const quiesce_t *self, const uint
                                                uint32_t count, bool is_summed);
 
 /// As quiesce_table_use.
-quiesce_table_verdict_t controller_use_table(quiesce_t *self, const uint32_t *words,
-                                             uint32_t count, bool is_summed);
+quiesce_table_verdict_t controller_use_table(quiesce_t *self, const uint32_t *words, uint32_t count,
+                                             bool is_summed);
 
 #endif

@@ -259,8 +259,8 @@ const char *quiesce_lacks_table(const quiesce_t *self);
 /// CRC-32 that the table in use carries: the law's, else its tracker's; 0 where there is none.
 uint32_t quiesce_table_hash(const quiesce_t *self);
 
-/// Room for tables that arrive in parts, beside those in use: law's and tracker's, each with the one
-/// before it, and the one that arrives. A table is put to use whole and checked, or not at all.
+/// Room for tables that arrive in parts, beside those in use: law's and tracker's, each with the
+/// one before it, and the one that arrives. A table is put to use whole and checked, or not at all.
 /// Contents are private.
 #define QUIESCE_TABLE_ROOMS 5u
 typedef struct {
@@ -270,7 +270,7 @@ typedef struct {
     uint32_t crc;     ///< from the third word on
     uint32_t arrival; ///< the room that is filled
     struct {
-        uint32_t now, before; ///< rooms; QUIESCE_TABLE_ROOMS: what ships
+        uint32_t now, before;    ///< rooms; QUIESCE_TABLE_ROOMS: what ships
         const uint32_t *shipped; ///< NULL: what the law ships with
     } of[QUIESCE_TABLE_OWNERS];
 } quiesce_tables_t;
@@ -288,7 +288,7 @@ bool quiesce_tables_write(quiesce_tables_t *tables, uint32_t offset, const uint3
                           uint32_t count);
 
 /// Sums up to so many words of what has arrived, some 60 instructions a word, ahead of what check
-/// and commit would do at once. Returns true iff all of them are.
+/// and commit would do at once. Returns true iff nothing is left to sum.
 bool quiesce_tables_sum(quiesce_tables_t *tables, uint32_t words);
 
 /// What commit would say. Changes nothing.

@@ -47,7 +47,7 @@ static inline int32_t law_unlock_mA(const quiesce_params_t *params, const view_t
 typedef struct {
     const char *name;              ///< value of parameter law
     uint64_t needs;                ///< VIEW_ bits; while they are not all valid it is not stepped
-    const table_kind_t *kind;   ///< of its table; NULL: it has none
+    const table_kind_t *kind;      ///< of its table; NULL: it has none
     uint8_t demands;               ///< law_demand_kind_t
     bool wants_lock;               ///< the dominant component is to be locked on to
     const quiesce_word_t *reports; ///< QUIESCE_REPORT_WORDS of them, the last ones without a name

@@ -37,6 +37,8 @@ const char *reason(quiesce_table_verdict_t verdict) {
         return "its frequencies do not rise, or a floor is above its level; a force map's axes do "
                "not rise from below 0 to above it (currents: from 0 to 20 A at most), or its force "
                "does not grow with the current";
+    case QUIESCE_TABLE_BOARD:
+        return "it is made for another board";
     }
     return "unknown reason";
 }
@@ -159,7 +161,7 @@ std::vector<std::uint32_t> load_force_map(const std::string &file) {
         return words;
     }
     const quiesce_table_verdict_t verdict =
-        quiesce_tracker_table_check(words.data(), static_cast<std::uint32_t>(words.size()));
+        quiesce_table_check(words.data(), static_cast<std::uint32_t>(words.size()));
     if (verdict != QUIESCE_TABLE_OK) {
         throw InputError(file + ": " + kRefused + reason(verdict));
     }

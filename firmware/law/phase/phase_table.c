@@ -5,7 +5,8 @@
 enum { POINT_WORDS = 4, LONGEST_RAMP_q16 = 32767 };
 
 _Static_assert(sizeof(phase_point_t) == 4u * POINT_WORDS, "words on the wire");
-_Static_assert(offsetof(phase_table_t, point) == 4u * PHASE_TABLE_HEADER_WORDS, "words on the wire");
+_Static_assert(offsetof(phase_table_t, point) == 4u * PHASE_TABLE_HEADER_WORDS,
+               "words on the wire");
 
 static bool are_points_good(const phase_point_t *points, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {

@@ -15,7 +15,8 @@
 #define PHASE_TABLE_MIN_POINTS 2u
 #define PHASE_TABLE_MAX_POINTS 64u
 #define PHASE_TABLE_HEADER_WORDS 5u
-#define PHASE_TABLE_MAX_WORDS (PHASE_TABLE_HEADER_WORDS + 4u * PHASE_TABLE_SETTINGS * PHASE_TABLE_MAX_POINTS)
+#define PHASE_TABLE_MAX_WORDS                                                                      \
+    (PHASE_TABLE_HEADER_WORDS + 4u * PHASE_TABLE_SETTINGS * PHASE_TABLE_MAX_POINTS)
 #define PHASE_WIDTH_ALL 65535u ///< no gap: one current throughout
 
 typedef struct {
@@ -38,8 +39,8 @@ typedef struct {
     phase_point_t point[];      ///< of the first setting, then of the next one, rising freq_mHz
 } phase_table_t;
 
-/// Of words with a good head. SHAPE: numbers of points; POINT: frequencies that do not rise, a floor
-/// above its level, a ramp too long. Nothing else reads a table that has not passed.
+/// Of words with a good head. SHAPE: numbers of points; POINT: frequencies that do not rise, a
+/// floor above its level, a ramp too long. Nothing else reads a table that has not passed.
 quiesce_table_verdict_t phase_table_check(const uint32_t *words);
 
 /// Points of a setting.

@@ -12,7 +12,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 
 HEAD_WORDS = 3
-MOST_WORDS = 1024
+MOST_WORDS = 2048
 WORD = 2**32
 
 
