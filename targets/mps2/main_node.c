@@ -117,7 +117,7 @@ static void say_farewell(board_t *board) {
 }
 
 static void run_tick(board_t *board, uint32_t ticks) {
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     const uint32_t begin = board->tick.timer->value;
     board->inputs.ticks_elapsed = ticks;
     board->inputs.overruns += ticks - 1u;

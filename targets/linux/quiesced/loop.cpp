@@ -217,7 +217,7 @@ bool Loop::is_safe_command() const {
 }
 
 void Loop::send() {
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     const std::uint32_t count = node_frames(&node_, frames);
     std::int64_t demand_ns = 0;
     if (bus_ != nullptr) {

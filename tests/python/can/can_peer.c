@@ -45,9 +45,12 @@ static void end(int number) {
     stop = 1;
 }
 
-static bool keep(void *context, const quiesce_params_t *params) {
-    (void)params;
-    return ((const peer_t *)context)->has_store;
+static keeper_answer_t keep(void *context, keeper_record_t record, const uint32_t *words,
+                            uint32_t count) {
+    (void)record;
+    (void)words;
+    (void)count;
+    return ((const peer_t *)context)->has_store ? KEEPER_DONE : KEEPER_FAILED;
 }
 
 static void receive(peer_t *peer) {
@@ -101,7 +104,7 @@ static void tick(peer_t *peer, unsigned number) {
         .work_us = 20,
         .unsent = peer->unsent,
     };
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     const uint32_t count = node_tick(&peer->node, &inputs, frames);
     for (uint32_t i = 0; i < count; i++) {
         send_frame(peer, &frames[i]);
@@ -172,8 +175,7 @@ int main(int argc, char **argv) {
     if (!node_init(&peer.node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
         return 1;
     }
-    peer.node.store = keep;
-    peer.node.store_context = &peer;
+    node_use_store(&peer.node, keep, &peer);
     run(&peer);
     return 0;
 }
