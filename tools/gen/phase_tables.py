@@ -10,7 +10,8 @@ import hashlib
 import sys
 from pathlib import Path
 
-from quiesce.tune.phase_table import law_words, read_law
+from quiesce.tune.phase_table import read_law
+from quiesce.tune.phase_words import law_words
 
 ROOT = Path(__file__).resolve().parents[2]
 

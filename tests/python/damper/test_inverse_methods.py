@@ -21,7 +21,7 @@ from quiesce.cli.identify import inverse as cli_inverse
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import is_number, whole
 from quiesce.damper.example import EXAMPLE
-from quiesce.damper.force_map import MAGIC, maps_of_words
+from quiesce.damper.force_map import maps_of_words
 from quiesce.damper.inverse import InverseByInterpolation, forces_at
 from quiesce.damper.inverses import (
     feed_forward,
@@ -53,6 +53,7 @@ from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.recurrent import Settings as RecurrentSettings
 from quiesce.damper.learned.sampled import sampled_rows, series_of
 from quiesce.damper.simulate import simulator
+from quiesce.table.file import table_bytes
 
 pytestmark = pytest.mark.usefixtures("build")
 MOST_A = 2.0
@@ -409,10 +410,10 @@ def test_words_that_the_firmware_refuses_are_refused(firmware: ctypes.CDLL, tmp_
         with pytest.raises(ValueError, match=".") as caught:
             maps_of_words(words)
         assert "\n" not in str(caught.value)
-    file = tmp_path / "map.words"
-    for text in ("0xzz\n", "", f"0x{MAGIC:08x}\n"):
-        file.write_text(text, encoding="utf-8")
-        with pytest.raises(UsageError, match="map.words"):
+    file = tmp_path / "map.table"
+    for data in (b"0xzz\n", b"", table_bytes(good)[:-1], table_bytes(broken[0])):
+        file.write_bytes(data)
+        with pytest.raises(UsageError, match="map.table"):
             read_inverse(file)
 
 
@@ -427,11 +428,11 @@ def test_command_makes_compares_writes_and_reads_back(tmp_path: Path, capsys) ->
     told = capsys.readouterr().out
     assert "tracker inverse reads it" in told and "ideal" in told and "constant" in told
     assert {one.name for one in out.iterdir()} == {
-        "map.words", "inverse_steps.toml", "inverse.html"
+        "map.table", "inverse_steps.toml", "inverse.html"
     }  # fmt: skip
     page = (out / "inverse.html").read_text(encoding="utf-8")
     assert page.count("<img") == 4 and "steps" in page
-    read = ("--read", out / "inverse_steps.toml", "--read", out / "map.words", "--json")
+    read = ("--read", out / "inverse_steps.toml", "--read", out / "map.table", "--json")
     assert act(cli_inverse, file, "--max-current-A", "2", *read) == 0
     found = json.loads(capsys.readouterr().out)
     assert [one["method"] for one in found["inverses"]] == ["steps", "map"]

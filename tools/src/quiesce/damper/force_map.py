@@ -10,9 +10,10 @@ import numpy as np
 
 from quiesce.damper.inverse import AXES, Axis, Monotone, SteadyForces
 from quiesce.law.sections import read_kind, sealed_sections
-from quiesce.law.words import Reader
+from quiesce.table.kinds import MAP
+from quiesce.table.words import Reader
 
-MAGIC = 0x32464D51
+MAGIC = MAP.magic
 SECTION_WORDS = 3
 MAX_CURRENTS = 16
 MAX_PLACES = 32
