@@ -40,7 +40,7 @@ static uint32_t road_of(const uint32_t *words, uint32_t count) {
     return (uint32_t)owner;
 }
 
-// ---- from an earlier run ------------------------------------------------------------------------
+// ---- from an earlier run, or a file -------------------------------------------------------------
 
 static quiesce_table_verdict_t find_learnt(table_service_t *self, quiesce_t *controller,
                                            const table_found_t *found) {
@@ -61,9 +61,23 @@ static quiesce_table_verdict_t find_table(table_service_t *self, quiesce_t *cont
                : QUIESCE_TABLE_SIZE;
 }
 
+static uint32_t road_found(const table_found_t *found) {
+    return (uint32_t)found->record - (uint32_t)KEEPER_LAW_TABLE;
+}
+
+static quiesce_table_verdict_t settle(table_service_t *self, const table_found_t *found,
+                                      quiesce_table_verdict_t verdict) {
+    const uint32_t road = road_found(found);
+    self->of[road].refusal = verdict;
+    if (verdict == QUIESCE_TABLE_OK) {
+        self->of[road].source = found->source;
+    }
+    return verdict;
+}
+
 quiesce_table_verdict_t table_service_found(table_service_t *self, quiesce_t *controller,
                                             const table_found_t *found) {
-    const uint32_t road = (uint32_t)found->record - (uint32_t)KEEPER_LAW_TABLE;
+    const uint32_t road = road_found(found);
     const bool is_stored = found->source == TABLE_FROM_STORE;
     if (is_stored) {
         keeper_found(&self->keeper, found->record, found->count > 1u ? found->words[CRC_WORD] : 0u,
@@ -72,14 +86,32 @@ quiesce_table_verdict_t table_service_found(table_service_t *self, quiesce_t *co
     if (found->count == 0u) {
         return QUIESCE_TABLE_OK;
     }
-    const quiesce_table_verdict_t verdict = road == ROAD_LEARNT
-                                                ? find_learnt(self, controller, found)
-                                                : find_table(self, controller, found);
-    self->of[road].refusal = verdict;
-    if (verdict == QUIESCE_TABLE_OK) {
-        self->of[road].source = found->source;
+    return settle(self, found,
+                  road == ROAD_LEARNT ? find_learnt(self, controller, found)
+                                      : find_table(self, controller, found));
+}
+
+// What has arrived is this very table.
+static bool is_arrival(const table_service_t *self, const table_found_t *found) {
+    uint32_t count;
+    const uint32_t *words = quiesce_tables_arrival(&self->tables, &count);
+    return count == found->count && words[CRC_WORD] == found->words[CRC_WORD];
+}
+
+bool table_service_offer(table_service_t *self, quiesce_t *controller, const table_found_t *found,
+                         quiesce_table_verdict_t *verdict) {
+    if (!is_arrival(self, found)) {
+        table_link_drop(&self->link);
+        if (!quiesce_tables_write(&self->tables, 0, found->words, found->count)) {
+            *verdict = settle(self, found, QUIESCE_TABLE_SIZE);
+            return true;
+        }
     }
-    return verdict;
+    if (!quiesce_tables_sum(&self->tables, SUMMED_A_TICK)) {
+        return false;
+    }
+    *verdict = settle(self, found, quiesce_tables_commit(&self->tables, controller));
+    return true;
 }
 
 // ---- linked into the program --------------------------------------------------------------------

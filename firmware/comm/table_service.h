@@ -65,6 +65,12 @@ typedef struct {
 quiesce_table_verdict_t table_service_found(table_service_t *self, quiesce_t *controller,
                                             const table_found_t *found);
 
+/// A table while it runs, which is summed over ticks as one from the bus is: call it once a tick,
+/// with the same words, until it returns true and *verdict says how it went. A transfer that is
+/// under way is given up.
+bool table_service_offer(table_service_t *self, quiesce_t *controller, const table_found_t *found,
+                         quiesce_table_verdict_t *verdict);
+
 /// Works on a request, once a tick. Returns true once *result and *value are its reply.
 bool table_service_work(table_service_t *self, quiesce_t *controller,
                         const can_service_request_t *request, can_node_result_t *result,

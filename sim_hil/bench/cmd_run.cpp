@@ -157,13 +157,14 @@ std::optional<TraceObserver> trace_from(const Arguments &arguments, const RunSet
 } // namespace
 
 int cmd_run(const std::vector<std::string> &words) {
-    const Arguments arguments(
-        "run", words,
-        options(
-            {run_option_names(), target_option_names(), {"trace", "columns", "every", "repeat"}}));
+    const Arguments arguments("run", words,
+                              options({run_option_names(),
+                                       target_option_names(),
+                                       table_option_names(),
+                                       {"trace", "columns", "every", "repeat"}}));
     arguments.require_no_positional();
     RunSetup setup = run_setup(arguments);
-    require_tables(arguments, setup.board(), setup.params);
+    setup.tables = tables_from(arguments, setup.board(), setup.params);
     setup.wants_report = arguments.text("trace").has_value();
     setup.wants_picture = setup.wants_report && setup.rig.has_value();
     const std::int64_t repeat = arguments.integer("repeat", 1, 1000000).value_or(1);

@@ -9,7 +9,6 @@
 #include "input_error.h"
 #include "qemu_shm_link.h"
 #include "qemu_uart_link.h"
-#include "table_file.h"
 
 namespace quiesce {
 
@@ -26,16 +25,6 @@ void refuse(bool is_given, const char *option, const char *why) {
     }
 }
 
-void refuse_tables(const LinkOptions &options) {
-    refuse(!options.rules_path.empty(), "--rules", "only the host target takes a rule table");
-    refuse(!options.phase_table_path.empty(), "--phase-table",
-           "only the host target takes a table of pulses");
-    refuse(!options.force_map_path.empty(), "--force-map",
-           "only the host target takes a damper's map");
-    refuse(!options.law_table_path.empty(), "--law-table",
-           "only the host target takes a law's table");
-}
-
 void refuse_can(const LinkOptions &options) {
     constexpr const char *kWhy = "only --target linux is driven over CAN";
     refuse(!options.can_channel.empty(), "--can", kWhy);
@@ -44,7 +33,6 @@ void refuse_can(const LinkOptions &options) {
 }
 
 QemuOptions emulated(const LinkOptions &options) {
-    refuse_tables(options);
     refuse_can(options);
     if (options.image_path.empty()) {
         throw InputError(
@@ -59,7 +47,6 @@ QemuOptions emulated(const LinkOptions &options) {
 }
 
 std::unique_ptr<ControllerLink> make_linux(const LinkOptions &options) {
-    refuse_tables(options);
     refuse(!options.image_path.empty(), "--image", "--target linux runs no image");
     refuse(!options.plugin_path.empty(), "--plugin", "--target linux runs no image");
     if (options.can_channel.empty()) {
@@ -81,20 +68,7 @@ const Target kTargets[] = {
     {"host",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
          refuse_can(options);
-         std::vector<InProcessLink::Words> tables;
-         if (!options.rules_path.empty()) {
-             tables.push_back(load_rules(options.rules_path));
-         }
-         if (!options.phase_table_path.empty()) {
-             tables.push_back(load_pulses(options.phase_table_path));
-         }
-         if (!options.law_table_path.empty()) {
-             tables.push_back(load_law_table(options.law_table_path));
-         }
-         if (!options.force_map_path.empty()) {
-             tables.push_back(load_force_map(options.force_map_path));
-         }
-         return std::make_unique<InProcessLink>(std::move(tables));
+         return std::make_unique<InProcessLink>();
      }},
     {"mps2",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {

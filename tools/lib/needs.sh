@@ -16,6 +16,8 @@ needs_of() {
     "compare "*) needs_of_compare "$@" ;;
     "law make" | "law rules" | "law fit") echo bench ;;
     "law "*) ;;
+    "table check" | "table stamp") echo bench ;;
+    "table "*) ;;
     "sweep "*) echo bench plant ;;
     "identify plan") ;;
     "identify "*) echo dampers ;;

@@ -21,7 +21,8 @@ COMMANDS = (
     ("chain", "chain", "magnitude and phase of the conditioning"),
     ("rules", "rules.command", "fuzzy rule files"),
     ("compare", "compare", "control laws side by side on recorded ground motions"),
-    ("law", "law.command", "published control laws as tables: list, make, show"),
+    ("law", "law.command", "published control laws as tables: list, make"),
+    ("table", "table.command", "table files: show, check, diff, stamp"),
     ("sweep", "sweep", "excitation and current steps to record, and the plant from a recording"),
     (
         "identify",
@@ -43,7 +44,7 @@ EPILOG = """examples:
   quiesce board check my_board.toml             and my board of sensors and dampers?
   quiesce params                                every parameter of the controller
   quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
-  quiesce law make skyhook --board my_board.toml -o sky.words   a published law for my board
+  quiesce law make skyhook --board my_board.toml -o sky.table   a published law for my board
   quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
   quiesce identify FILE.csv --model all         damper models from a test rig's recording
   quiesce tune my_plant.toml                    pulses of current for my own plant

@@ -1,7 +1,7 @@
 """What a rule base does to the structure: the controller with it in closed loop, on the bench.
 
-The one place that knows how a rule base reaches the bench: compiled to the words of the run-time
-table, in a file, by its option `run --rules`.
+The one place that knows how a rule base reaches the bench: compiled to a table, in a file, by its
+option `run --rules`.
 """
 
 import hashlib
@@ -22,6 +22,7 @@ from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.objective import Outcome, Steady
+from quiesce.table.file import table_bytes
 
 # A rule base for the controller has Hz and m/s2 in, A out; the controller uHz, um/s2 and mA.
 INPUT_LSB = (1e-6, 1e-6)
@@ -94,8 +95,8 @@ class ClosedLoop:
     def of_rules(self, base: RuleBase) -> Outcome:
         words = table_words(compile_base(base, inputs=list(INPUT_LSB), outputs=list(OUTPUT_LSB)))
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
-            file = Path(folder) / "rules"
-            file.write_text("".join(f"0x{word:08x}\n" for word in words), encoding="ascii")
+            file = Path(folder) / "rules.table"
+            file.write_bytes(_file_of(base, words))
             return self._outcome("fuzzy", ("--rules", str(file)))
 
     def of_constant(self, current_mA: int) -> Outcome:
@@ -123,6 +124,14 @@ class ClosedLoop:
             figures = self._bench.json("run", *words, "--trace", str(file))
             trace: Trace = read_trace(file, TRACE_COLUMNS)
         return Run(case, figures, trace)
+
+
+def _file_of(base: RuleBase, words: Sequence[int]) -> bytes:
+    """UsageError where it is too long for a controller."""
+    try:
+        return table_bytes(words)
+    except ValueError as error:
+        raise UsageError(f"{base.name}: {error}")
 
 
 def window_count(run: Run) -> int:

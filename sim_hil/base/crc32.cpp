@@ -35,4 +35,10 @@ void Crc32::append(const std::uint32_t *words, std::size_t count) {
     }
 }
 
+std::uint32_t crc32_of(const std::uint32_t *words, std::size_t count) {
+    Crc32 crc;
+    crc.append(words, count);
+    return crc.value();
+}
+
 } // namespace quiesce

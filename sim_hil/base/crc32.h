@@ -23,6 +23,9 @@ class Crc32 {
     std::uint32_t crc_ = 0xFFFFFFFFu;
 };
 
+/// Of these words alone.
+std::uint32_t crc32_of(const std::uint32_t *words, std::size_t count);
+
 } // namespace quiesce
 
 #endif
