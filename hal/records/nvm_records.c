@@ -19,9 +19,9 @@ uint32_t nvm_records_words(uint32_t block_words) {
     return HAL_NVM_RECORDS * SLOTS * slot_words(block_words);
 }
 
-bool nvm_records_open(hal_nvm_t *nvm, hal_nvm_memory_t *memory) {
+bool nvm_records_open(hal_nvm_t *nvm, hal_nvm_memory_t *memory, uint32_t owner) {
     const uint32_t block_words = hal_nvm_memory_block_words(memory);
-    *nvm = (hal_nvm_t){.memory = memory, .slot_words = slot_words(block_words)};
+    *nvm = (hal_nvm_t){.memory = memory, .slot_words = slot_words(block_words), .owner = owner};
     return hal_nvm_memory_words(memory) >= nvm_records_words(block_words);
 }
 
@@ -33,9 +33,10 @@ static uint32_t magic_of(uint32_t record) {
     return NVM_MAGIC + (record << 24);
 }
 
-// Of the head but its first word; the record's words follow.
-static uint32_t crc_of_head(const uint32_t head[NVM_HEAD_WORDS]) {
-    return crc32_words(&head[NVM_HEAD_SEQUENCE], NVM_HEAD_WORDS - NVM_HEAD_SEQUENCE);
+// Of the owner and the head but its first word; the record's words follow.
+static uint32_t crc_of_head(const hal_nvm_t *nvm, const uint32_t head[NVM_HEAD_WORDS]) {
+    return crc32_continue(crc32_words(&nvm->owner, 1), &head[NVM_HEAD_SEQUENCE],
+                          NVM_HEAD_WORDS - NVM_HEAD_SEQUENCE);
 }
 
 // Sequence numbers go round.
@@ -68,7 +69,7 @@ static bool is_whole(hal_nvm_t *nvm, uint32_t record, uint32_t slot,
     uint32_t part[HAL_NVM_SLICE_WORDS];
     const uint32_t at = slot_at(nvm, record, slot) + NVM_HEAD_WORDS;
     const uint32_t count = head[NVM_HEAD_COUNT];
-    uint32_t crc = crc_of_head(head);
+    uint32_t crc = crc_of_head(nvm, head);
     if (head[NVM_HEAD_MAGIC] != magic_of(record) || count > HAL_NVM_MAX_WORDS) {
         return false;
     }
@@ -135,7 +136,7 @@ bool hal_nvm_begin(hal_nvm_t *nvm, uint32_t record, const uint32_t *words, uint3
     nvm->head[NVM_HEAD_SEQUENCE] = nvm->record[record].sequence + 1u;
     nvm->head[NVM_HEAD_COUNT] = count;
     nvm->head[NVM_HEAD_MAGIC] = magic_of(record);
-    nvm->head[NVM_HEAD_CRC] = crc_of_head(nvm->head);
+    nvm->head[NVM_HEAD_CRC] = crc_of_head(nvm, nvm->head);
     return true;
 }
 

@@ -2,7 +2,7 @@
 ///
 /// A slot is a head of four words and the record's words after it. The head is programmed last, its
 /// magic as the last word of all, so that a slot counts only once everything is in it; the CRC-32
-/// covers the rest of head and record. The newer one of two whole slots holds the record.
+/// covers owner, head and record. The newer one of two whole slots holds the record.
 #ifndef NVM_RECORDS_H
 #define NVM_RECORDS_H
 
@@ -23,6 +23,7 @@ typedef enum { NVM_REST, NVM_ERASE, NVM_WORDS, NVM_HEAD } nvm_phase_t;
 
 struct hal_nvm {
     hal_nvm_memory_t *memory;
+    uint32_t owner;
     uint32_t slot_words;
     struct {
         bool is_read;
@@ -39,8 +40,8 @@ struct hal_nvm {
 /// Words of memory that blocks of this size make necessary.
 uint32_t nvm_records_words(uint32_t block_words);
 
-/// memory: the caller's, of nothing else. Reads and writes nothing yet. Returns false iff it is too
-/// small.
-bool nvm_records_open(hal_nvm_t *nvm, hal_nvm_memory_t *memory);
+/// memory: the caller's, of nothing else. owner: such as a board's CRC. Reads and writes nothing
+/// yet. Returns false iff the memory is too small.
+bool nvm_records_open(hal_nvm_t *nvm, hal_nvm_memory_t *memory, uint32_t owner);
 
 #endif

@@ -21,7 +21,7 @@ typedef enum {
     HAL_NVM_NONE = 0,  ///< never written
     HAL_NVM_KEPT = 1,  ///< what was written last
     HAL_NVM_OLDER = 2, ///< perhaps the one before: one of its two slots is damaged, or was cut off
-    HAL_NVM_LOST = 3,  ///< both are damaged
+    HAL_NVM_LOST = 3,  ///< both are damaged, or another owner's
 } hal_nvm_found_t;
 
 typedef enum {

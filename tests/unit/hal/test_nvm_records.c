@@ -8,6 +8,7 @@
 #define MOST_WORDS (8u * 3072u)
 #define ERASED UINT32_MAX
 #define NEVER UINT32_MAX
+#define OWNER 5u
 
 struct hal_nvm_memory {
     uint32_t words[MOST_WORDS];
@@ -29,7 +30,7 @@ static uint32_t back[HAL_NVM_MAX_WORDS];
 static void open_memory(void) {
     memory.left = NEVER;
     memory.busy = 0;
-    TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory));
+    TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory, OWNER));
 }
 
 static void make_memory(uint32_t block_words, uint32_t content) {
@@ -205,7 +206,7 @@ static void test_what_cannot_be_written_is_refused(void) {
     assert_nothing(HAL_NVM_NONE, HAL_NVM_RECORDS);
     TEST_ASSERT_EQUAL_UINT32(0, hal_nvm_writes(&nvm, HAL_NVM_RECORDS));
     memory.size--;
-    TEST_ASSERT_FALSE(nvm_records_open(&nvm, &memory));
+    TEST_ASSERT_FALSE(nvm_records_open(&nvm, &memory, OWNER));
 }
 
 // What was known before a cut: whatever the power leaves is this or the next write, and never
@@ -350,6 +351,18 @@ static void test_slot_of_another_record_is_not_taken(void) {
     assert_nothing(HAL_NVM_NONE, 3);
 }
 
+// Not used, but the memory's wear is known.
+static void test_record_of_another_owner_is_lost(void) {
+    prepare(32, 3, 5);
+    TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory, OWNER + 1u));
+    assert_nothing(HAL_NVM_LOST, 1);
+    TEST_ASSERT_EQUAL_UINT32(3, hal_nvm_writes(&nvm, 1));
+    write_record(1, 5, 60);
+    uint32_t count;
+    TEST_ASSERT_EQUAL(HAL_NVM_OLDER, read_record(1, &count)); // beside one of the other owner
+    TEST_ASSERT_TRUE(is_record(5, 60, count));
+}
+
 static void test_sequence_goes_round(void) {
     read_all();
     nvm.record[1].sequence = UINT32_MAX - 2u;
@@ -410,6 +423,7 @@ int main(void) {
     RUN_TEST(test_flipped_bit_of_the_older_slot_does_no_harm);
     RUN_TEST(test_two_damaged_slots_are_told_and_written_anew);
     RUN_TEST(test_slot_of_another_record_is_not_taken);
+    RUN_TEST(test_record_of_another_owner_is_lost);
     RUN_TEST(test_sequence_goes_round);
     RUN_TEST(test_failed_word_leaves_the_record_before);
     RUN_TEST(test_unreadable_memory_has_nothing_and_takes_nothing);

@@ -58,7 +58,7 @@ static void test_what_is_outside_is_refused(void) {
 static void test_records_fit_and_are_found_again(void) {
     hal_nvm_t nvm;
     uint32_t count = 0;
-    TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory));
+    TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory, 0));
     for (uint32_t record = 0; record < HAL_NVM_RECORDS; record++) {
         (void)hal_nvm_read(&nvm, record, words, &count);
         words[0] = record;
@@ -67,7 +67,7 @@ static void test_records_fit_and_are_found_again(void) {
         while (hal_nvm_work(&nvm) == HAL_NVM_BUSY) {
         }
     }
-    TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory));
+    TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory, 0));
     for (uint32_t record = 0; record < HAL_NVM_RECORDS; record++) {
         TEST_ASSERT_EQUAL(HAL_NVM_KEPT, hal_nvm_read(&nvm, record, words, &count));
         TEST_ASSERT_EQUAL_UINT32(HAL_NVM_MAX_WORDS, count);
