@@ -1,6 +1,6 @@
 # Backend for mps2-an386 (Cortex-M4 under QEMU) and its images.
-add_library(hal_mps2 STATIC mps2/fault.c mps2/fault_exit.c mps2/nap.c mps2/semihost.c mps2/stack.c
-            mps2/tick_mps2.c mps2/uart_mps2.c)
+add_library(hal_mps2 STATIC mps2/fault.c mps2/fault_exit.c mps2/nap.c mps2/nvm_mps2.c mps2/semihost.c
+            mps2/stack.c mps2/tick_mps2.c mps2/uart_mps2.c)
 target_include_directories(hal_mps2 PUBLIC mps2 include)
 target_compile_definitions(hal_mps2 PUBLIC QUIESCE_TARGET_MPS2)
 target_link_libraries(hal_mps2 PRIVATE quiesce_warnings)

@@ -264,7 +264,8 @@ class TableController(threading.Thread):
 
     def _table_ship(self, index: int, _value: int) -> tuple[str, int]:
         road = self.roads[index]
-        road.words, road.source = road.shipped, 1 if road.shipped else 0
+        road.previous, road.words = road.words, road.shipped
+        road.source = 1 if road.shipped else 0
         return "DONE", 0
 
     def _table_save(self, index: int, _value: int) -> tuple[str, int]:

@@ -14,18 +14,18 @@ import pytest
 from conftest import ROOT
 from quiesce.can import tables, transfer
 from quiesce.can.database import load
-from quiesce.can.kinds import BY_MAGIC, KINDS
 from quiesce.can.link import Lost
 from quiesce.can.parameters import parameters
 from quiesce.can.refusals import VERDICTS, verdict_of, why_not_this_kind
-from quiesce.can.table_file import words_of
+from quiesce.can.roads import chooser_of, users_of
 from quiesce.can.transfer import Channel, TransferFailed
 from quiesce.cli.main import main
+from quiesce.table import kinds
+from quiesce.table.file import read_data
 from table_controller import TableController, file_of
 
 RULES, PULSES, MAP, LEARNT = (
-    next(kind.magic for kind in KINDS if kind.name == name)
-    for name in ("rules", "pulses", "map", "learnt")
+    kind.magic for kind in (kinds.RULES, kinds.PULSES, kinds.MAP, kinds.LEARNT)
 )
 INDEX = {one["name"]: one["index"] for one in parameters()}
 LABELS = {one["name"]: one["labels"] for one in parameters()}
@@ -280,18 +280,17 @@ def test_the_wrong_law_is_named_with_what_to_set(controller, tool, tmp_path: Pat
 
 
 def test_what_runs_is_named_for_every_kind() -> None:
-    by_name = {kind.name: kind for kind in KINDS}
     assert (
         "runs law off, which takes no table; this is rules, for law fuzzy or fuzzy_selftune: "
-        in (why_not_this_kind(by_name["rules"], "off", "inverse"))
+        in (why_not_this_kind(kinds.RULES, "off", "inverse"))
     )
     assert "runs tracker inverse, which takes map; this is bank, for tracker bank: " in (
-        why_not_this_kind(by_name["bank"], "linear", "inverse")
+        why_not_this_kind(kinds.BANK, "linear", "inverse")
     )
     assert "law fuzzy, which demands a current" in (
-        why_not_this_kind(by_name["map"], "fuzzy", "inverse")
+        why_not_this_kind(kinds.MAP, "fuzzy", "inverse")
     )
-    assert "of another version" in why_not_this_kind(by_name["rules"], "fuzzy", "inverse")
+    assert "of another version" in why_not_this_kind(kinds.RULES, "fuzzy", "inverse")
 
 
 def test_what_was_learnt_of_another_law_is_refused(controller, tool, tmp_path: Path) -> None:
@@ -315,13 +314,17 @@ def bad_files() -> dict[str, tuple[str, bytes, str]]:
     damaged = good[:-1] + bytes([good[-1] ^ 1])
     many = file_of(table(RULES, 2049))
     return {
-        "empty": ("a.table", b"", "0 bytes"),
-        "short": ("a.table", good[:-4], "where its head says 176"),
-        "odd": ("a.table", good + b"\0", "177 bytes"),
+        "empty": ("a.table", b"", "not a table file"),
+        "short": ("a.table", good[:-4], "ends after 39 words, 156 bytes where its head says 40"),
+        "odd": ("a.table", good + b"\0", "goes on after the 40 words"),
         "damaged": ("a.table", damaged, "damaged"),
-        "head": ("a.table", b"\0" + good[1:], "does not begin"),
-        "board": ("a.table", good[:4] + b"\1" + good[5:], "does not begin"),
-        "large": ("a.table", many, "2049 words; a controller takes 4 .. 2048"),
+        "head": ("a.table", b"\0" + good[1:], "not a table file"),
+        "board": ("a.table", good[:4] + b"\1" + good[5:], "CRC-32 of its head is wrong"),
+        "large": (
+            "a.table",
+            many,
+            "2049 words, 8196 bytes; a controller takes 2048 words, 8192 bytes",
+        ),
         "kind": ("a.table", file_of(table(0x12345678)), "no known kind"),
         "other": ("a.table", file_of(table(PULSES)), "quiesce can load pulses"),
         "suffix": ("a.txt", good, "not a rule file"),
@@ -408,7 +411,7 @@ def test_lost_frames_are_fetched_again(controller, tool, tmp_path: Path, lost: s
     controller.roads[0].words = table(RULES)
     controller.faults.lose_flow = lost
     assert tool("fetch", "law", "-o", tmp_path / "a.table").returncode == 0
-    assert words_of((tmp_path / "a.table").read_bytes()) == table(RULES)
+    assert read_data((tmp_path / "a.table").read_bytes()).words == table(RULES)
 
 
 def test_frames_that_come_twice_and_fetches_that_fail(controller, tool, tmp_path: Path) -> None:
@@ -431,7 +434,7 @@ def test_learnt_is_kept_put_back_and_forgotten(controller, tool, tmp_path: Path)
     words, file = table(LEARNT), tmp_path / "learnt.table"
     controller.roads[2].words = words
     assert f"{words[1]:08x}" in tool("save-learnt", file).stdout
-    assert words_of(file.read_bytes()) == controller.roads[2].stored == words
+    assert read_data(file.read_bytes()).words == controller.roads[2].stored == words
     assert "forgotten" in tool("forget-learnt").stdout
     assert controller.roads[2].words == []
     failed(tool("fetch", "learnt", "-o", file), "has no table")
@@ -511,13 +514,14 @@ def test_kinds_are_the_firmwares() -> None:
     """Each law's and tracker's, and what is learnt."""
     found = set()
     for file in sorted((ROOT / "firmware").glob("*/**/*.[ch]")):
-        if "generated" not in file.parts and file.parts[-2] != "comm":
+        if "generated" not in file.parts:
             text = file.read_text()
-            found |= {int(n, 16) for n in re.findall(r"_MAGIC UINT32_C\((0x\w{8})\)", text)}
-    assert found == set(BY_MAGIC)
-    for kind in KINDS:
-        labels = LABELS["tracker" if kind.road == "tracker" else "law"]
-        assert set(kind.users) <= set(labels)
+            found |= set(re.findall(r"#define (\w+) UINT32_C\((0x\w{8})\)", text))
+    inside = ("TABLE_FILE_MAGIC", "ADAPT_STORE_MAGIC")  # of the file, of what a learnt table holds
+    magics = {name: int(n, 16) for name, n in found if re.search("MAGIC|LEARNT", name)}
+    assert {n for name, n in magics.items() if name not in inside} == set(kinds.KINDS)
+    for kind in kinds.KINDS.values():
+        assert set(users_of(kind)) <= set(LABELS[chooser_of(kind)])
 
 
 def test_the_page_is_enough(controller, tool, tmp_path: Path, monkeypatch) -> None:
@@ -526,7 +530,8 @@ def test_the_page_is_enough(controller, tool, tmp_path: Path, monkeypatch) -> No
     rows = re.findall(r"^\| (\d+) \| ([A-Z]+) \| ", page, re.M)
     assert {int(n): label for n, label in rows} == {n: v.label for n, v in VERDICTS.items() if n}
     named = re.findall(r"(\w+) 0x([0-9A-F]{8})", page.split("### The transfer")[0])
-    assert {name: int(n, 16) for name, n in named} == {kind.name: kind.magic for kind in KINDS}
+    names = {kind.name: kind.magic for kind in kinds.KINDS.values()}
+    assert {name: int(n, 16) for name, n in named} == names
     choices = load().codec.get_message_by_name("ServiceRequest").get_signal_by_name("operation")
     told = re.findall(r"^\| ((?:TABLE|LEARNT)_\w+) \|", page, re.M)
     assert told == [

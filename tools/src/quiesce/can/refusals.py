@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 
-from quiesce.can.kinds import KINDS, LAW, LEARNT, TRACKER, Kind, users_text
 from quiesce.can.parameters import text_of
+from quiesce.can.roads import chooser_of, users_of
 from quiesce.can.services import DONE, Services
 from quiesce.engine.params import parameters
+from quiesce.table.kinds import KINDS, LEARNT_ROAD, TRACKER, Kind
 
 
 @dataclass(frozen=True)
@@ -79,11 +80,11 @@ def verdict_of(number: int) -> Verdict:
 
 def why_refused(services: Services, number: int, kind: Kind) -> str:
     """A table of this kind, by the controller behind `services`, which is asked what it runs."""
-    if kind.road == LEARNT:
+    if kind.road == LEARNT_ROAD:
         return LEARNT_TEXT
     if number != MAGIC:
         return verdict_of(number).text
-    return why_not_this_kind(kind, label_of(services, LAW), label_of(services, TRACKER))
+    return why_not_this_kind(kind, label_of(services, "law"), label_of(services, "tracker"))
 
 
 def label_of(services: Services, name: str) -> str:
@@ -95,14 +96,17 @@ def label_of(services: Services, name: str) -> str:
 
 def why_not_this_kind(kind: Kind, law: str, tracker: str) -> str:
     """law, tracker: labels of what runs."""
-    runs = tracker if kind.road == TRACKER else law
-    if runs not in kind.users:
-        name = "tracker" if kind.road == TRACKER else "law"
-        taken = next((one.name for one in KINDS if one.road == kind.road and runs in one.users), "")
-        takes = f"takes {taken}" if taken else "takes no table"
+    chooser, users = chooser_of(kind), users_of(kind)
+    runs = tracker if chooser == "tracker" else law
+    if runs not in users:
+        taken = next(
+            (one.name for one in KINDS.values() if one.road == kind.road and runs in users_of(one)),
+            "",
+        )
         return (
-            f"the controller runs {name} {runs or 'of an unknown number'}, which {takes}; this is "
-            f"{kind.name}, for {users_text(kind)}: quiesce can set {name}={kind.users[0]}"
+            f"the controller runs {chooser} {runs or 'of an unknown number'}, which takes "
+            f"{taken or 'no table'}; this is {kind.name}, for {chooser} {' or '.join(users)}: "
+            f"quiesce can set {chooser}={users[0]}"
         )
     if kind.road == TRACKER:
         return (

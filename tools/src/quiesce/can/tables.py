@@ -6,11 +6,12 @@ from typing import Any
 
 from quiesce.base.errors import BenchFailure
 from quiesce.can.database import Database
-from quiesce.can.kinds import ROADS
 from quiesce.can.link import Link
+from quiesce.can.roads import ROADS
 from quiesce.can.services import BUSY, DONE, Reply, Services, no_answer
-from quiesce.can.table_file import words_of
 from quiesce.can.transfer import Channel, Progress, TooLarge, TransferFailed
+from quiesce.table.file import read_data
+from quiesce.table.words import opened
 
 TRIES = 3  # of a whole transfer
 BUSY_S = 5.0
@@ -122,7 +123,7 @@ class Tables:
                 if reply.result == NOTHING:
                     raise self._failure(f"there is nothing to fetch: road {road} has no table")
                 data = self._channel.receive(self._done(reply).param_value % WORD)
-                words_of(data)
+                opened(read_data(data).words)
                 return data
             except (TransferFailed, ValueError) as error:
                 why = str(error)

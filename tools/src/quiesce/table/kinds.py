@@ -34,7 +34,7 @@ NETWORK = Kind("network", 0x314E4E51, LAW, ("network",))
 MAP = Kind("map", 0x32464D51, TRACKER, trackers=("inverse",))
 BANK = Kind("bank", 0x314B4251, TRACKER, trackers=("bank",))
 INVERSE_NETWORK = Kind("inverse_network", 0x314E5451, TRACKER, trackers=("network",))
-LEARNT = Kind("learnt", 0x31444151, LEARNT_ROAD, ("phase",))
+LEARNT = Kind("learnt", 0x31544C51, LEARNT_ROAD, ("phase",))
 
 KINDS = {
     one.magic: one

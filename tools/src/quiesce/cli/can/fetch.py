@@ -8,7 +8,7 @@ from typing import Any
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.can.kinds import ROADS
+from quiesce.can.roads import ROADS
 from quiesce.cli.can.bus_options import add_bus_options
 from quiesce.cli.can.table_options import add_json, add_road, opened
 
@@ -52,16 +52,16 @@ def check_out(file: Path) -> None:
 
 def fetched(tables: Any, road: str, file: Path) -> dict[str, Any]:
     """Writes it whole or not at all."""
-    from quiesce.can.kinds import name_of
-    from quiesce.can.table_file import words_of
+    from quiesce.can.roads import kind_name
+    from quiesce.table.file import read_data
 
     data = tables.fetch(road)
     with output_files(file.parent) as staging:
         (staging / file.name).write_bytes(data)
-    words = words_of(data)
+    words = read_data(data).words
     return {
         "file": shown(file),
-        "kind": name_of(words[0]),
+        "kind": kind_name(words[0]),
         "road": road,
         "words": len(words),
         "crc": f"{words[1]:08x}",

@@ -8,7 +8,7 @@ from typing import Any
 
 from quiesce.base.errors import BenchFailure
 from quiesce.base.paths import shown
-from quiesce.can.kinds import LEARNT
+from quiesce.can.roads import LEARNT
 from quiesce.cli.can.bus_options import add_bus_options
 from quiesce.cli.can.table_options import add_json, opened, step
 from quiesce.cli.can.table_sources import WORDS, Table, table_of
@@ -68,7 +68,7 @@ def put(tables: Any, table: Table, is_to_be_used: bool = True) -> float:
     from quiesce.can.refusals import why_refused
     from quiesce.can.tables import CRC, Refused
 
-    road = table.kind.road
+    road = table.road
     in_use = tables.info(road, CRC)  # answered by whoever takes tables
     step(f"road {road} has {in_use:08x}; sending {table.kind.name} {table.crc:08x}")
     start_s = time.monotonic()
@@ -89,9 +89,9 @@ def verify(tables: Any, table: Table) -> None:
     """What was learnt changes as it learns on: there is nothing to compare."""
     from quiesce.can.tables import CRC
 
-    if table.kind.road == LEARNT:
+    if table.road == LEARNT:
         return
-    crc = tables.info(table.kind.road, CRC)
+    crc = tables.info(table.road, CRC)
     if crc != table.crc:
         raise BenchFailure(f"the controller says that it uses {crc:08x}, not {table.crc:08x}")
 
@@ -99,7 +99,7 @@ def verify(tables: Any, table: Table) -> None:
 def save(tables: Any, table: Table) -> None:
     from quiesce.can.tables import STORED
 
-    road = table.kind.road
+    road = table.road
     try:
         tables.save(road)
         stored = tables.info(road, STORED)
@@ -115,7 +115,7 @@ def report_of(
     return {
         "file": shown(args.file),
         "kind": table.kind.name,
-        "road": table.kind.road,
+        "road": table.road,
         "words": len(table.words),
         "crc": f"{table.crc:08x}",
         "took_s": round(took_s, 3),

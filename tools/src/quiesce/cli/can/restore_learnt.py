@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from quiesce.base.errors import BenchFailure
-from quiesce.can.kinds import LEARNT
+from quiesce.can.roads import LEARNT
 from quiesce.cli.can.bus_options import add_bus_options
 from quiesce.cli.can.load import put
 from quiesce.cli.can.table_options import opened

@@ -3,7 +3,7 @@
 import argparse
 import json
 
-from quiesce.can.kinds import LAW, TRACKER
+from quiesce.can.roads import ROADS
 from quiesce.cli.can.bus_options import add_bus_options
 from quiesce.cli.can.table_options import add_json, add_road, opened
 
@@ -25,7 +25,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add_road(parser, (LAW, TRACKER))
+    add_road(parser, ROADS[:2])
     parser.add_argument("--shipped", action="store_true", help="to the one that ships")
     parser.add_argument("--save", action="store_true", help="for the next start, too")
     add_json(parser)
@@ -34,7 +34,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from quiesce.can.kinds import name_of
+    from quiesce.can.roads import kind_name
 
     with opened(args) as tables:
         before = tables.state(args.road)
@@ -47,15 +47,16 @@ def run(args: argparse.Namespace) -> int:
             "road": args.road,
             "before": f"{before.crc:08x}",
             "crc": f"{after.crc:08x}",
-            "kind": name_of(after.magic),
+            "kind": kind_name(after.magic),
             "source": after.source,
             "stored_crc": f"{after.stored_crc:08x}",
         }
         print(json.dumps(report, indent=1))
     else:
+        stored = f"{after.stored_crc:08x}" if after.stored_crc else "nothing"
         print(
-            f"road {args.road}: {name_of(before.magic)} {before.crc:08x} -> "
-            f"{name_of(after.magic)} {after.crc:08x} ({after.source}); stored for the next start: "
-            f"{f'{after.stored_crc:08x}' if after.stored_crc else 'nothing'}"
+            f"road {args.road}: {kind_name(before.magic)} {before.crc:08x} -> "
+            f"{kind_name(after.magic)} {after.crc:08x} ({after.source}); stored for the next "
+            f"start: {stored}"
         )
     return 0

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from quiesce.can.kinds import LEARNT
+from quiesce.can.roads import LEARNT
 from quiesce.cli.can.bus_options import add_bus_options
 from quiesce.cli.can.fetch import check_out, fetched, text
 from quiesce.cli.can.table_options import opened

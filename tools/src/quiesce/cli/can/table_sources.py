@@ -6,13 +6,13 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.can.kinds import BY_MAGIC, LAW, LEARNT, TRACKER, Kind
-from quiesce.can.table_file import MOST_WORDS, file_bytes, words_of
+from quiesce.can.roads import LAW, LEARNT, TRACKER, road_of
+from quiesce.table.file import SUFFIX, read_file, table_bytes
+from quiesce.table.kinds import KINDS, PULSES, RULES, Kind
+from quiesce.table.words import opened
 
-SUFFIX = ".table"
-RULES, PULSES = "rules", "pulses"
-# Names of one kind that have sources, and those of all kinds of a road.
-WORDS = (RULES, PULSES, LAW, TRACKER, LEARNT)
+# Kinds that have sources, and all kinds of a road.
+WORDS = (RULES.name, PULSES.name, LAW, TRACKER, LEARNT)
 
 
 @dataclass(frozen=True)
@@ -26,29 +26,40 @@ class Table:
     def crc(self) -> int:
         return self.words[1]
 
+    @property
+    def road(self) -> str:
+        return road_of(self.kind)
+
 
 def table_of(word: str, path: Path) -> Table:
     """word: of WORDS. UsageError, in one line, where it is no such table."""
-    file = file_in(path) if word == PULSES and path.is_dir() else path
-    if file.suffix == SUFFIX:
-        table = read_table(file)
-    elif word == RULES:
-        table = from_rules(file)
-    elif word == PULSES:
-        table = from_pulses(file)
-    else:
-        raise UsageError(f"{shown(file)}: not a table's file; its name ends in {SUFFIX}")
-    if len(table.words) > MOST_WORDS:
-        raise UsageError(
-            f"{shown(file)}: {len(table.words)} words; a controller takes {MOST_WORDS}"
-        )
-    if word not in (table.kind.name, table.kind.road):
-        better = table.kind.name if table.kind.name in WORDS else table.kind.road
+    file = file_in(path) if word == PULSES.name and path.is_dir() else path
+    try:
+        table = made_of(word, file)
+    except ValueError as error:
+        raise UsageError(f"{shown(file)}: {error}")
+    if word not in (table.kind.name, table.road):
+        better = table.kind.name if table.kind.name in WORDS else table.road
         raise UsageError(
             f"{shown(file)}: {table.kind.name}, not a table for '{word}': quiesce can load "
             f"{better} {shown(file)}"
         )
     return table
+
+
+def made_of(word: str, file: Path) -> Table:
+    """ValueError where a controller would not take so many words, or such ones."""
+    if file.suffix == SUFFIX:
+        found = read_file(file)
+        opened(found.words)
+        if found.words[0] not in KINDS:
+            raise ValueError(f"a table of no known kind, it begins 0x{found.words[0]:08x}")
+        return Table(KINDS[found.words[0]], found.words, table_bytes(found.words, found.board))
+    if word == RULES.name:
+        return from_rules(file)
+    if word == PULSES.name:
+        return from_pulses(file)
+    raise ValueError(f"not a table's file; its name ends in {SUFFIX}")
 
 
 def file_in(folder: Path) -> Path:
@@ -63,35 +74,19 @@ def file_in(folder: Path) -> Path:
     raise UsageError(f"{shown(folder)}: no NAME.phase.toml of 'quiesce tune' in it")
 
 
-def read_table(file: Path) -> Table:
-    try:
-        data = file.read_bytes()
-    except OSError as error:
-        raise UsageError(f"{shown(file)}: {error.strerror}; name a table's file")
-    try:
-        words = words_of(data)
-    except ValueError as error:
-        raise UsageError(f"{shown(file)}: {error}")
-    kind = BY_MAGIC.get(words[0])
-    if kind is None:
-        raise UsageError(f"{shown(file)}: a table of no known kind, it begins 0x{words[0]:08x}")
-    return Table(kind, words, data)
-
-
 def from_rules(file: Path) -> Table:
     from quiesce.cli.rules.formats import compiled_for_controller
     from quiesce.rules.formats.files import read_rules
     from quiesce.rules.integers.table import table_words
 
     compiled = compiled_for_controller(read_rules(file))
-    return made(table_words(compiled), compiled.notes)
+    words = table_words(compiled)
+    return Table(RULES, words, table_bytes(words), compiled.notes)
 
 
 def from_pulses(file: Path) -> Table:
-    from quiesce.tune.phase_table import law_words, read_law
+    from quiesce.tune.phase_table import read_law
+    from quiesce.tune.phase_words import law_words
 
-    return made(law_words(read_law(file)))
-
-
-def made(words: list[int], notes: Sequence[str] = ()) -> Table:
-    return Table(BY_MAGIC[words[0]], words, file_bytes(words), notes)
+    words = law_words(read_law(file))
+    return Table(PULSES, words, table_bytes(words))

@@ -32,7 +32,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from quiesce.can.kinds import ROADS
+    from quiesce.can.roads import ROADS
     from quiesce.can.tables import BOARD
 
     with opened(args) as tables:
@@ -48,13 +48,13 @@ def word(value: int) -> str | None:
 
 
 def row_of(state: Any) -> dict[str, Any]:
-    from quiesce.can.kinds import name_of
     from quiesce.can.refusals import verdict_of
+    from quiesce.can.roads import kind_name
 
     refusal = verdict_of(state.refusal) if state.refusal else None
     return {
         "road": state.road,
-        "kind": name_of(state.magic),
+        "kind": kind_name(state.magic),
         "crc": word(state.crc),
         "source": state.source,
         "stored_crc": word(state.stored_crc),
