@@ -31,7 +31,7 @@ TableWords load_of_law(const std::string &file, std::int32_t law) {
 TableWords load_of_tracker(const std::string &file) {
     TableWords words = read_table(file).words;
     const auto count = static_cast<std::uint32_t>(words.size());
-    require_ok(quiesce_tracker_table_check(words.data(), count), file, words);
+    require_ok(quiesce_table_check(words.data(), count), file, words);
     return words;
 }
 
@@ -51,9 +51,11 @@ void require_board(const quiesce_board_t &board, const std::string &file) {
     }
 }
 
-void require_accepted(quiesce_t &controller, const std::string &file) {
-    const TableWords words = read_table(file).words;
+/// The words that it uses from then on: they live as long as it.
+TableWords require_accepted(quiesce_t &controller, const std::string &file) {
+    TableWords words = read_table(file).words;
     require_ok(use_table(controller, words), file, words);
+    return words;
 }
 
 } // namespace
@@ -83,9 +85,8 @@ void require_tables(const quiesce_board_t *board, const quiesce_params_t &params
         }
     }
     const auto controller = controller_with(board, params);
-    if (!files.law.empty()) {
-        require_accepted(*controller, files.law);
-    }
+    const TableWords law =
+        files.law.empty() ? TableWords() : require_accepted(*controller, files.law);
     const char *lacking = quiesce_lacks_table(controller.get());
     if (lacking != nullptr && law_label(params) == lacking) {
         throw InputError("law " + std::string(lacking) +
@@ -96,7 +97,7 @@ void require_tables(const quiesce_board_t *board, const quiesce_params_t &params
                          " works with a damper's map: --force-map FILE (quiesce identify inverse)");
     }
     if (lacking != nullptr) {
-        require_accepted(*controller, files.tracker);
+        (void)require_accepted(*controller, files.tracker);
     }
 }
 

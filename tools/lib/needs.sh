@@ -16,7 +16,9 @@ needs_of() {
     "compare "*) needs_of_compare "$@" ;;
     "law make" | "law rules" | "law fit") echo bench ;;
     "law "*) ;;
-    "sweep "*) echo bench plant ;;
+    "table check" | "table stamp") echo bench ;;
+    "table "*) ;;
+    "new "* | "sweep "*) echo bench plant ;;
     "identify plan") ;;
     "identify "*) echo dampers ;;
     "tune law") echo bench ;;

@@ -1,6 +1,7 @@
 """Options that say in which integers a rule base is compiled: shared by compile and check."""
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 
 from quiesce.base.errors import UsageError
@@ -47,14 +48,19 @@ def compiled_from(args: argparse.Namespace) -> CompiledBase:
     if args.controller:
         if args.lsb:
             raise UsageError("--controller and --lsb exclude each other")
-        require_controller(base)
-        inputs: list[float | str] = list(CONTROLLER_INPUTS)
-        outputs: list[float | str] = list(CONTROLLER_OUTPUTS)
-    else:
-        named = assignments("--lsb", args.lsb, base)
-        inputs = [named.get(variable.name, Q15) for variable in base.inputs]
-        outputs = [named.get(variable.name, Q16) for variable in base.outputs]
+        return compiled_for_controller(base, defaults(args, base))
+    named = assignments("--lsb", args.lsb, base)
+    inputs: list[float | str] = [named.get(variable.name, Q15) for variable in base.inputs]
+    outputs: list[float | str] = [named.get(variable.name, Q16) for variable in base.outputs]
     return compile_base(base, inputs, outputs, defaults(args, base))
+
+
+def compiled_for_controller(
+    base: RuleBase, defaults: Mapping[str, float] | None = None
+) -> CompiledBase:
+    """In the controller's own integers. UsageError where it has not its inputs and output."""
+    require_controller(base)
+    return compile_base(base, list(CONTROLLER_INPUTS), list(CONTROLLER_OUTPUTS), defaults or {})
 
 
 def require_controller(base: RuleBase) -> None:

@@ -1,4 +1,4 @@
-"""Words of tables: what all kinds begin with, and files of them, one hexadecimal number a line.
+"""Words of tables: what all kinds begin with.
 
 firmware/base/table.h describes the head.
 """
@@ -6,50 +6,60 @@ firmware/base/table.h describes the head.
 import struct
 import zlib
 from collections.abc import Sequence
-from pathlib import Path
-
-from quiesce.base.errors import UsageError
-from quiesce.base.paths import shown
 
 HEAD_WORDS = 3
-MOST_WORDS = 1024
+MOST_WORDS = 2048
+WORD_BYTES = 4
 WORD = 2**32
+
+
+def packed(words: Sequence[int]) -> bytes:
+    """Little-endian."""
+    return struct.pack(f"<{len(words)}I", *words)
+
+
+def unpacked(data: bytes) -> list[int]:
+    """The whole words that it begins with."""
+    count = len(data) // WORD_BYTES
+    return list(struct.unpack(f"<{count}I", data[: WORD_BYTES * count]))
+
+
+def crc_of(words: Sequence[int]) -> int:
+    """CRC-32 as zlib's over their bytes."""
+    return zlib.crc32(packed(words))
+
+
+def size_text(count: int) -> str:
+    return f"{count} words, {WORD_BYTES * count} bytes"
+
+
+def require_room(count: int) -> None:
+    """ValueError where a controller does not take so many words."""
+    if count > MOST_WORDS:
+        raise ValueError(
+            f"a table of {size_text(count)}; a controller takes {size_text(MOST_WORDS)}"
+        )
 
 
 def sealed(magic: int, values: Sequence[int]) -> list[int]:
     """A whole table from what follows its head, signed or not. ValueError where it is too long."""
     count = HEAD_WORDS + len(values)
-    if count > MOST_WORDS:
-        raise ValueError(f"{count} words; a controller takes {MOST_WORDS}")
+    require_room(count)
     after = [count, *(value % WORD for value in values)]
-    return [magic, zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after]
+    return [magic, crc_of(after), *after]
 
 
 def opened(words: Sequence[int]) -> list[int]:
     """What follows the head, signed. ValueError, in one line, where the head is not right."""
     count = len(words)
-    if not HEAD_WORDS < count <= MOST_WORDS or not all(0 <= word < WORD for word in words):
+    require_room(count)
+    if count <= HEAD_WORDS or not all(0 <= word < WORD for word in words):
         raise ValueError(f"expected {HEAD_WORDS + 1} .. {MOST_WORDS} words of 32 bits")
     if words[2] != count:
         raise ValueError(f"{count} words where its head says {words[2]}")
-    if words[1] != zlib.crc32(struct.pack(f"<{count - 2}I", *words[2:])):
+    if words[1] != crc_of(words[2:]):
         raise ValueError("its CRC-32 is not that of its words: it is damaged")
     return [word - WORD if word >= WORD // 2 else word for word in words[HEAD_WORDS:]]
-
-
-def read_file(file: Path) -> list[int]:
-    """UsageError where it cannot be read or holds anything else."""
-    try:
-        words = [int(text, 16) for text in file.read_text(encoding="ascii").split()]
-    except OSError as error:
-        raise UsageError(f"{shown(file)}: {error.strerror}; name a table of words")
-    except (UnicodeDecodeError, ValueError):
-        raise UsageError(f"{shown(file)}: expected hexadecimal numbers, one a line")
-    return words
-
-
-def file_text(words: Sequence[int]) -> str:
-    return "".join(f"{word:08x}\n" for word in words)
 
 
 class Reader:

@@ -4,9 +4,9 @@ import json
 import random
 
 import pytest
-from quiesce.can import load as bus_load
+from quiesce.can import bus_load
+from quiesce.can.bus_load import Analysis, Stream, frame_bits
 from quiesce.can.database import CYCLIC, Message, load
-from quiesce.can.load import Analysis, Stream, frame_bits
 
 BITRATE = 1_000_000
 
@@ -114,7 +114,7 @@ def test_each_sensor_and_damper_costs(sensors: int, dampers: int, with_sensors_p
     """105 bits a sensor every 1 ms; 95 bits a damper every 1 ms and every 10 ms."""
     totals = bus_load.totals_pct(load(), 500_000, sensors, dampers)
     assert totals["with_sensor_node"] == pytest.approx(with_sensors_pct, abs=0.05)
-    assert len(bus_load.on_bus(load(), sensors, dampers)) == 17 + sensors + 2 * dampers
+    assert len(bus_load.on_bus(load(), sensors, dampers)) == 18 + sensors + 2 * dampers
 
 
 def test_slcan_rate_covers_what_a_controller_sends() -> None:
@@ -124,8 +124,8 @@ def test_slcan_rate_covers_what_a_controller_sends() -> None:
 
 
 @pytest.mark.slow
-def test_load_prints_what_it_computes(quiesce) -> None:
-    result = quiesce("can", "load", "--json")
+def test_bus_load_prints_what_it_computes(quiesce) -> None:
+    result = quiesce("can", "bus-load", "--json")
     assert result.returncode == 0
     report = json.loads(result.stdout)
     assert report["messages"][0]["name"] == "CurrentDemand"
@@ -137,13 +137,14 @@ def test_load_prints_what_it_computes(quiesce) -> None:
         "with_sensor_node": 54.7,
         "with_sensor_node_and_raw": 81.7,
         "everything": 89.8,
+        "with_table": 103.3,
     }
-    for command in (("can", "load"), ("bench", "can", "--no-vm")):
+    for command in (("can", "bus-load"), ("bench", "can", "--no-vm")):
         out = quiesce(*command).stdout
         for total in totals.values():
             assert f"  {total}\n" in out
         assert "The first leaves out AccelSample" in out
-    table = quiesce("can", "load", "--bitrate", "125000", "--sensor-node")
+    table = quiesce("can", "bus-load", "--bitrate", "125000", "--sensor-node")
     assert table.returncode == 0 and "no bound" in table.stdout
 
 
@@ -174,12 +175,12 @@ def test_the_bench_says_what_it_could_not_judge(quiesce) -> None:
         (["--dbc", "no.dbc"], "no.dbc"),
     ],
 )
-def test_load_refuses(refused, options: list[str], words: str) -> None:
-    assert words in refused("can", "load", *options)
+def test_bus_load_refuses(refused, options: list[str], words: str) -> None:
+    assert words in refused("can", "bus-load", *options)
 
 
 @pytest.mark.slow
 def test_a_file_that_is_no_dbc_is_refused(refused, tmp_path) -> None:
     for name, content in (("a.dbc", b"nonsense {"), ("b.dbc", b"\xff\xfe"), ("c.dbc", b"")):
         (tmp_path / name).write_bytes(content)
-        assert "not a DBC file" in refused("can", "load", "--dbc", name)
+        assert "not a DBC file" in refused("can", "bus-load", "--dbc", name)

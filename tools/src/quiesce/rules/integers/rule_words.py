@@ -4,17 +4,19 @@ Layout and numbers of parts are checked; the ranges of their values the firmware
 """
 
 import struct
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MAGIC = 0x31545A46
+from quiesce.table.kinds import RULES
+from quiesce.table.words import WORD, crc_of
+
+MAGIC = RULES.magic
 HEADER_WORDS, CELL_WORDS, RAMP_WORDS, RULE_WORDS, OUTPUT_WORDS = 16, 4, 4, 4, 8
 MAX_INPUTS = MAX_OUTPUTS = 4
 MAX_SETS, MAX_TERMS, MAX_RULES, MAX_CONDITIONS = 7, 64, 1024, 8
 CENTROID = 2
 NO_TERM = 0xFF
-WORD = 2**32
+LOWEST, HIGHEST = -(2**31), 2**31 - 1  # of an input
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,11 @@ class Rule:
 
 @dataclass(frozen=True)
 class Rules:
+    """is_for_controller: over frequency in uHz and RMS acceleration in um/s2, to a current in
+    mA."""
+
     words: tuple[int, ...]  # unsigned
+    is_for_controller: bool
     axes: tuple[Axis, ...]
     outputs: tuple[Terms, ...]
     rules: tuple[Rule, ...]
@@ -57,7 +63,7 @@ def read_rules(values: Sequence[int]) -> Rules:
     words = tuple(value % WORD for value in values)
     if len(words) < HEADER_WORDS or words[0] != MAGIC or words[2] != len(words):
         raise ValueError(f"{len(words)} words that are no table of rules")
-    if words[1] != zlib.crc32(struct.pack(f"<{len(words) - 2}I", *words[2:])):
+    if words[1] != crc_of(words[2:]):
         raise ValueError("the CRC-32 of its rules is not that of their words")
     inputs, outputs, _, _ = _bytes(words[3])
     rules_at, rules = words[8] & 0xFFFF, words[8] >> 16
@@ -65,6 +71,7 @@ def read_rules(values: Sequence[int]) -> Rules:
         raise ValueError(f"{rules} rules of {inputs} inputs and {outputs} outputs")
     return Rules(
         words,
+        words[15] >> 24 == 1,
         tuple(_axis(words, words[4 + i]) for i in range(inputs)),
         tuple(_terms(words, words[9 + i]) for i in range(outputs)),
         tuple(_rule(_part(words, rules_at + RULE_WORDS * i, RULE_WORDS), outputs)
@@ -108,9 +115,12 @@ def _axis(words: Sequence[int], head: int) -> Axis:
 
 
 def _extent(ends: list[tuple[int, int]]) -> tuple[int, int, int]:
+    """Of a set that is greatest up to an end of all integers, the other end of that."""
     peak = max(mu for _, mu in ends)
     tops = [n for n, mu in ends if mu == peak]
-    return min(n for n, _ in ends), max(n for n, _ in ends), (min(tops) + max(tops)) // 2
+    low, high = min(tops), max(tops)
+    greatest = high if low == LOWEST else low if high == HIGHEST else (low + high) // 2
+    return min(n for n, _ in ends), max(n for n, _ in ends), greatest
 
 
 def _terms(words: Sequence[int], at: int) -> Terms:
