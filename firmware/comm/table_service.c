@@ -40,7 +40,7 @@ static uint32_t road_of(const uint32_t *words, uint32_t count) {
     return (uint32_t)owner;
 }
 
-// ---- from an earlier run ------------------------------------------------------------------------
+// ---- from an earlier run, or a file -------------------------------------------------------------
 
 static quiesce_table_verdict_t find_learnt(table_service_t *self, quiesce_t *controller,
                                            const table_found_t *found) {
@@ -61,9 +61,23 @@ static quiesce_table_verdict_t find_table(table_service_t *self, quiesce_t *cont
                : QUIESCE_TABLE_SIZE;
 }
 
+static uint32_t road_found(const table_found_t *found) {
+    return (uint32_t)found->record - (uint32_t)KEEPER_LAW_TABLE;
+}
+
+static quiesce_table_verdict_t settle(table_service_t *self, const table_found_t *found,
+                                      quiesce_table_verdict_t verdict) {
+    const uint32_t road = road_found(found);
+    self->of[road].refusal = verdict;
+    if (verdict == QUIESCE_TABLE_OK) {
+        self->of[road].source = found->source;
+    }
+    return verdict;
+}
+
 quiesce_table_verdict_t table_service_found(table_service_t *self, quiesce_t *controller,
                                             const table_found_t *found) {
-    const uint32_t road = (uint32_t)found->record - (uint32_t)KEEPER_LAW_TABLE;
+    const uint32_t road = road_found(found);
     const bool is_stored = found->source == TABLE_FROM_STORE;
     if (is_stored) {
         keeper_found(&self->keeper, found->record, found->count > 1u ? found->words[CRC_WORD] : 0u,
@@ -72,12 +86,57 @@ quiesce_table_verdict_t table_service_found(table_service_t *self, quiesce_t *co
     if (found->count == 0u) {
         return QUIESCE_TABLE_OK;
     }
-    const quiesce_table_verdict_t verdict = road == ROAD_LEARNT
-                                                ? find_learnt(self, controller, found)
-                                                : find_table(self, controller, found);
-    self->of[road].refusal = verdict;
+    return settle(self, found,
+                  road == ROAD_LEARNT ? find_learnt(self, controller, found)
+                                      : find_table(self, controller, found));
+}
+
+// What has arrived is this very table.
+static bool is_arrival(const table_service_t *self, const table_found_t *found) {
+    uint32_t count;
+    const uint32_t *words = quiesce_tables_arrival(&self->tables, &count);
+    return count == found->count && words[CRC_WORD] == found->words[CRC_WORD];
+}
+
+bool table_service_offer(table_service_t *self, quiesce_t *controller, const table_found_t *found,
+                         quiesce_table_verdict_t *verdict) {
+    if (!is_arrival(self, found)) {
+        table_link_drop(&self->link);
+        if (!quiesce_tables_write(&self->tables, 0, found->words, found->count)) {
+            *verdict = settle(self, found, QUIESCE_TABLE_SIZE);
+            return true;
+        }
+    }
+    if (!quiesce_tables_sum(&self->tables, SUMMED_A_TICK)) {
+        return false;
+    }
+    *verdict = settle(self, found, quiesce_tables_commit(&self->tables, controller));
+    return true;
+}
+
+// ---- linked into the program --------------------------------------------------------------------
+
+static bool is_of_board(const table_service_t *self, const uint32_t *head) {
+    return head[TABLE_FILE_BOARD] == 0u || head[TABLE_FILE_BOARD] == self->board;
+}
+
+static quiesce_table_verdict_t judge_file(const table_service_t *self, const uint32_t *file) {
+    const uint32_t count = file[TABLE_FILE_WORDS];
+    if (!table_file_is_head(file, count)) {
+        return QUIESCE_TABLE_CRC;
+    }
+    return is_of_board(self, file) ? quiesce_table_check(&file[TABLE_FILE_HEAD_WORDS], count)
+                                   : QUIESCE_TABLE_BOARD;
+}
+
+quiesce_table_verdict_t table_service_ship(table_service_t *self, quiesce_t *controller,
+                                           const uint32_t *file) {
+    const uint32_t *words = &file[TABLE_FILE_HEAD_WORDS];
+    const quiesce_table_verdict_t verdict = judge_file(self, file);
+    self->of[road_of(words, file[TABLE_FILE_WORDS])].refusal = verdict;
     if (verdict == QUIESCE_TABLE_OK) {
-        self->of[road].source = found->source;
+        quiesce_tables_ship(&self->tables, words);
+        quiesce_tables_resume(&self->tables, controller);
     }
     return verdict;
 }
@@ -116,8 +175,7 @@ static quiesce_table_verdict_t judge(const work_t *work, bool is_used) {
     table_service_t *self = work->self;
     uint32_t count;
     const uint32_t *words = quiesce_tables_arrival(&self->tables, &count);
-    const uint32_t board = self->link.head[TABLE_FILE_BOARD];
-    if (board != 0u && board != self->board) {
+    if (!is_of_board(self, self->link.head)) {
         return QUIESCE_TABLE_BOARD;
     }
     if (is_learnt(words, count)) {

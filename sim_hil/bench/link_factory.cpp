@@ -25,13 +25,6 @@ void refuse(bool is_given, const char *option, const char *why) {
     }
 }
 
-void refuse_tables(const TableFiles &tables) {
-    refuse(!tables.rules.empty(), "--rules", "only the host target takes a rule table");
-    refuse(!tables.pulses.empty(), "--phase-table", "only the host target takes a table of pulses");
-    refuse(!tables.tracker.empty(), "--force-map", "only the host target takes a damper's map");
-    refuse(!tables.law.empty(), "--law-table", "only the host target takes a law's table");
-}
-
 void refuse_can(const LinkOptions &options) {
     constexpr const char *kWhy = "only --target linux is driven over CAN";
     refuse(!options.can_channel.empty(), "--can", kWhy);
@@ -40,7 +33,6 @@ void refuse_can(const LinkOptions &options) {
 }
 
 QemuOptions emulated(const LinkOptions &options) {
-    refuse_tables(options.tables);
     refuse_can(options);
     if (options.image_path.empty()) {
         throw InputError(
@@ -55,7 +47,6 @@ QemuOptions emulated(const LinkOptions &options) {
 }
 
 std::unique_ptr<ControllerLink> make_linux(const LinkOptions &options) {
-    refuse_tables(options.tables);
     refuse(!options.image_path.empty(), "--image", "--target linux runs no image");
     refuse(!options.plugin_path.empty(), "--plugin", "--target linux runs no image");
     if (options.can_channel.empty()) {
@@ -77,7 +68,7 @@ const Target kTargets[] = {
     {"host",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
          refuse_can(options);
-         return std::make_unique<InProcessLink>(load_tables(options.tables));
+         return std::make_unique<InProcessLink>();
      }},
     {"mps2",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "controller_link.h"
-#include "table_file.h"
 
 namespace quiesce {
 
@@ -16,7 +15,6 @@ namespace quiesce {
 struct LinkOptions {
     std::string image_path;  ///< --image: ELF for an emulated target
     std::string plugin_path; ///< --plugin: emulator plugin that counts instructions
-    TableFiles tables;       ///< for the controller, host only
     std::string can_channel; ///< --can: CAN channel, linux only (channel_factory.h)
     /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux only
     std::optional<std::int64_t> telemetry_every_ticks;

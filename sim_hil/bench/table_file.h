@@ -13,7 +13,7 @@ namespace quiesce {
 /// Of a run; empty where none is given.
 struct TableFiles {
     std::string rules;   ///< --rules: for law fuzzy
-    std::string pulses;  ///< --phase-table: for law phase
+    std::string pulses;  ///< --pulses: for law phase
     std::string law;     ///< --law-table: for the law that runs
     std::string tracker; ///< --force-map: for its tracker
 };

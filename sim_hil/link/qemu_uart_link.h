@@ -14,7 +14,8 @@ class QemuUartLink final : public ControllerLink {
     QemuUartLink(const QemuOptions &options, TelemetryRate telemetry);
 
     std::string target() const override { return "mps2-uart"; }
-    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
+    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                      const Tables &tables) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     bool has_picture() const override { return false; }
     ReplyWords received() const override { return client_.received(); }

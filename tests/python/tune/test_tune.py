@@ -117,7 +117,7 @@ def run_bench(folder: Path, table: Path) -> dict:
     scenario = folder / "scenario.toml"
     scenario.write_text(sine_text(write_one_mode(folder), 8.0, 8.0), encoding="utf-8")
     options = ("--set", "adapt=off", "--set", "phase_setting=displacement")
-    words = ("--scenario", str(scenario), "--law", "phase", "--phase-table", str(table), *options)
+    words = ("--scenario", str(scenario), "--law", "phase", "--pulses", str(table), *options)
     return Bench().json("run", *words)
 
 

@@ -106,7 +106,7 @@ const BadCall kBadCalls[] = {
     {"image", "--target linux --can x --image y.elf", "--image: --target linux runs no image"},
     {"plugin", "--target linux --can x --plugin y.so", "--plugin: --target linux runs no image"},
     {"rules", "--target linux --can x --rules y", "--rules: only the host target"},
-    {"phase_table", "--target linux --can x --phase-table y", "--phase-table: only the host"},
+    {"phase_table", "--target linux --can x --pulses y", "--pulses: only the host"},
     {"can_on_host", "--can slcan:/dev/ptmx", "--can: only --target linux is driven over CAN"},
     {"can_on_image", "--target mps2 --can slcan:/dev/ptmx", "--can: only --target linux"},
     {"telemetry_on_host", "--telemetry-every 5", "--telemetry-every: only --target linux"},

@@ -29,7 +29,7 @@ def law_options(law: str, file: Path | None, folder: Path) -> tuple[str, ...]:
         return ()
     table = folder / TABLE_FILE
     table.write_bytes(table_bytes(law_words(read_law(file))))
-    return ("--phase-table", str(table))
+    return ("--pulses", str(table))
 
 
 def bytes_in_flash(law: str, file: Path | None) -> int | None:

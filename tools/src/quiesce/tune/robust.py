@@ -46,7 +46,7 @@ class ClosedLoop:
         self.bench = Bench()
         table = folder / "law.table"
         table.write_bytes(table_bytes(law_words(law)))
-        self._options = ["--phase-table", str(table), *setting_options(settings)]
+        self._options = ["--pulses", str(table), *setting_options(settings)]
 
     def run(self, plant: Path, freq_Hz: float, duration_s: float, law: str, *more: str) -> Any:
         """The bench's figures over the last 2 s. more: options."""
