@@ -24,9 +24,8 @@ CurrentDriverParams read_driver(TomlTable section) {
 ShakerParams read_shaker(TomlTable section, const Structure &structure) {
     ShakerParams params{};
     params.moves_base = section.has("gain_m_s2_V");
-    params.gain_per_V = params.moves_base
-                            ? section.number("gain_m_s2_V", {-1e6, 1e6, "m/s2 per V"})
-                            : section.number("gain_N_V", {-1e6, 1e6, "N/V"});
+    params.gain_per_V = params.moves_base ? section.number("gain_m_s2_V", {-1e6, 1e6, "m/s2 per V"})
+                                          : section.number("gain_N_V", {-1e6, 1e6, "N/V"});
     if (params.moves_base && structure.base_participation.isZero(0.0)) {
         section.fail("gain_m_s2_V", "the structure has no base_participation to feel it with");
     }

@@ -67,8 +67,7 @@ RandomSegment::RandomSegment(const ShakerParams &shaker_params, const RandomPara
         const std::size_t line = lines.first + i;
         const double freq_Hz = static_cast<double>(line) / period_s;
         const double turn = kTwoPi * static_cast<double>(line) / static_cast<double>(count);
-        const Complex half =
-            0.5 * shaker_.amplitude(freq_Hz, params.drive_rms_V) * lines.values[i];
+        const Complex half = 0.5 * shaker_.amplitude(freq_Hz, params.drive_rms_V) * lines.values[i];
         spectrum[line] = half * (1.0 - turn);
         spectrum[count - line] = std::conj(half) * (1.0 + turn);
     }

@@ -42,8 +42,8 @@ std::string text(const Parts &...parts) {
 
 SegmentSpec read_sine(TomlTable &section, const Context &context) {
     const double freq_Hz = section.number("freq_Hz", kFrequency);
-    return {text("sine, ", freq_Hz, " Hz"), read_open_duration_s(section, context), ShakenBy::shaker,
-            [freq_Hz](const ShakerParams &shaker) {
+    return {text("sine, ", freq_Hz, " Hz"), read_open_duration_s(section, context),
+            ShakenBy::shaker, [freq_Hz](const ShakerParams &shaker) {
                 return std::make_unique<SineSegment>(shaker, freq_Hz);
             }};
 }
@@ -87,8 +87,8 @@ std::string summary_of(const char *kind, const std::vector<Tone> &tones, const c
 
 SegmentSpec read_tones(TomlTable &section, const Context &context) {
     const std::vector<Tone> tones = read_tone_tables(section, "drive_V", kDrive);
-    return {summary_of("tones", tones, "V"), read_open_duration_s(section, context), ShakenBy::shaker,
-            [tones](const ShakerParams &shaker) {
+    return {summary_of("tones", tones, "V"), read_open_duration_s(section, context),
+            ShakenBy::shaker, [tones](const ShakerParams &shaker) {
                 return std::make_unique<TonesSegment>(shaker, tones);
             }};
 }
@@ -99,8 +99,8 @@ SegmentSpec read_base_tones(TomlTable &section, const Context &context) {
     for (const Tone &tone : tones) {
         lines.push_back({tone.freq_Hz, tone.size, tone.phase_deg / 360.0});
     }
-    return {summary_of("base tones", tones, "m/s2"), read_open_duration_s(section, context), ShakenBy::base,
-            [lines](const ShakerParams & /*shaker*/) {
+    return {summary_of("base tones", tones, "m/s2"), read_open_duration_s(section, context),
+            ShakenBy::base, [lines](const ShakerParams & /*shaker*/) {
                 return std::make_unique<BaseTonesSegment>(lines);
             }};
 }
