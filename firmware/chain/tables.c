@@ -61,13 +61,14 @@ bool quiesce_tables_write(quiesce_tables_t *tables, uint32_t offset, const uint3
 
 bool quiesce_tables_sum(quiesce_tables_t *tables, uint32_t words) {
     const uint32_t from = tables->summed > TABLE_SUMMED_FROM ? tables->summed : TABLE_SUMMED_FROM;
-    if (tables->filled > from) {
-        const uint32_t left = tables->filled - from;
-        const uint32_t count = left < words ? left : words;
-        tables->crc = crc32_continue(tables->crc, &tables->words[tables->arrival][from], count);
-        tables->summed = from + count;
+    if (tables->filled <= from) {
+        return true;
     }
-    return tables->summed >= tables->filled;
+    const uint32_t left = tables->filled - from;
+    const uint32_t count = left < words ? left : words;
+    tables->crc = crc32_continue(tables->crc, &tables->words[tables->arrival][from], count);
+    tables->summed = from + count;
+    return count == left;
 }
 
 const uint32_t *quiesce_tables_arrival(const quiesce_tables_t *tables, uint32_t *count) {
@@ -88,13 +89,23 @@ quiesce_table_verdict_t quiesce_tables_check(quiesce_tables_t *tables, const qui
                                   is_whole(tables));
 }
 
+// What a revert goes back to: a room whose words law and tracker did not take is none.
+static uint32_t room_in_use(const quiesce_tables_t *tables, const quiesce_t *self,
+                            quiesce_owner_t owner) {
+    return quiesce_tables_is_loaded(tables, self, owner) ? tables->of[owner].now : SHIPPED;
+}
+
 quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_t *self) {
     const uint32_t *words = tables->words[tables->arrival];
+    uint32_t before[QUIESCE_TABLE_OWNERS];
+    for (uint32_t i = 0; i < QUIESCE_TABLE_OWNERS; i++) {
+        before[i] = room_in_use(tables, self, (quiesce_owner_t)i);
+    }
     quiesce_owner_t owner;
     const quiesce_table_verdict_t verdict =
         controller_use_table(self, words, tables->filled, is_whole(tables));
     if (verdict == QUIESCE_TABLE_OK && quiesce_table_kind(words[TABLE_MAGIC], &owner) != NULL) {
-        tables->of[owner].before = tables->of[owner].now;
+        tables->of[owner].before = before[owner];
         tables->of[owner].now = tables->arrival;
     }
     free_arrival(tables);

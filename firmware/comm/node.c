@@ -61,6 +61,10 @@ quiesce_table_verdict_t node_found(node_t *node, const table_found_t *found) {
     return table_service_found(&node->tables, &node->controller, found);
 }
 
+quiesce_table_verdict_t node_ship(node_t *node, const uint32_t *file) {
+    return table_service_ship(&node->tables, &node->controller, file);
+}
+
 bool node_offer(node_t *node, const table_found_t *found, quiesce_table_verdict_t *verdict) {
     return table_service_offer(&node->tables, &node->controller, found, verdict);
 }

@@ -80,6 +80,11 @@ void node_use_store(node_t *node, keeper_store_t store, void *context);
 /// before the first tick. What is refused is not used; TABLE_INFO tells of it.
 quiesce_table_verdict_t node_found(node_t *node, const table_found_t *found);
 
+/// A table that is linked into the program takes the place of the one that ships, after node_init
+/// and before node_found; one a road. file: all of it, its head first; the caller's for as long as
+/// the node runs. What is refused is not used; TABLE_INFO tells of it.
+quiesce_table_verdict_t node_ship(node_t *node, const uint32_t *file);
+
 /// Another table while it runs, such as one from a configuration that has been read again: call it
 /// once a tick, between ticks, with the same words, until it returns true. *verdict then says
 /// whether it is in use.

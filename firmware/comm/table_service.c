@@ -114,6 +114,33 @@ bool table_service_offer(table_service_t *self, quiesce_t *controller, const tab
     return true;
 }
 
+// ---- linked into the program --------------------------------------------------------------------
+
+static bool is_of_board(const table_service_t *self, const uint32_t *head) {
+    return head[TABLE_FILE_BOARD] == 0u || head[TABLE_FILE_BOARD] == self->board;
+}
+
+static quiesce_table_verdict_t judge_file(const table_service_t *self, const uint32_t *file) {
+    const uint32_t count = file[TABLE_FILE_WORDS];
+    if (!table_file_is_head(file, count)) {
+        return QUIESCE_TABLE_CRC;
+    }
+    return is_of_board(self, file) ? quiesce_table_check(&file[TABLE_FILE_HEAD_WORDS], count)
+                                   : QUIESCE_TABLE_BOARD;
+}
+
+quiesce_table_verdict_t table_service_ship(table_service_t *self, quiesce_t *controller,
+                                           const uint32_t *file) {
+    const uint32_t *words = &file[TABLE_FILE_HEAD_WORDS];
+    const quiesce_table_verdict_t verdict = judge_file(self, file);
+    self->of[road_of(words, file[TABLE_FILE_WORDS])].refusal = verdict;
+    if (verdict == QUIESCE_TABLE_OK) {
+        quiesce_tables_ship(&self->tables, words);
+        quiesce_tables_resume(&self->tables, controller);
+    }
+    return verdict;
+}
+
 // ---- requests -----------------------------------------------------------------------------------
 
 typedef struct {
@@ -148,8 +175,7 @@ static quiesce_table_verdict_t judge(const work_t *work, bool is_used) {
     table_service_t *self = work->self;
     uint32_t count;
     const uint32_t *words = quiesce_tables_arrival(&self->tables, &count);
-    const uint32_t board = self->link.head[TABLE_FILE_BOARD];
-    if (board != 0u && board != self->board) {
+    if (!is_of_board(self, self->link.head)) {
         return QUIESCE_TABLE_BOARD;
     }
     if (is_learnt(words, count)) {

@@ -49,6 +49,10 @@ typedef struct {
 /// Nothing is loaded or kept. board: NULL where parameters say what is wired.
 void table_service_init(table_service_t *self, const quiesce_board_t *board);
 
+/// A whole file of a table that is linked into the program: from now on it is the one that ships.
+quiesce_table_verdict_t table_service_ship(table_service_t *self, quiesce_t *controller,
+                                           const uint32_t *file);
+
 /// What an earlier run or the target's configuration has: used where the controller takes it.
 typedef struct {
     keeper_record_t record; ///< but KEEPER_PARAMS

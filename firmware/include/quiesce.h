@@ -288,7 +288,7 @@ bool quiesce_tables_write(quiesce_tables_t *tables, uint32_t offset, const uint3
                           uint32_t count);
 
 /// Sums up to so many words of what has arrived, some 60 instructions a word, ahead of what check
-/// and commit would do at once. Returns true iff all of them are.
+/// and commit would do at once. Returns true iff nothing is left to sum.
 bool quiesce_tables_sum(quiesce_tables_t *tables, uint32_t words);
 
 /// What has arrived so far.

@@ -20,10 +20,9 @@ typedef struct {
 } track_setup_t;
 
 typedef struct {
-    const char *name; ///< value of parameter tracker
-    uint64_t needs;   ///< VIEW_ bits; while they are not all valid it is not stepped
-    const table_kind_t
-        *kind; ///< none ships: maps are of dampers that users have; NULL: it has none
+    const char *name;         ///< value of parameter tracker
+    uint64_t needs;           ///< VIEW_ bits; while they are not all valid it is not stepped
+    const table_kind_t *kind; ///< none ships: maps are of users' dampers; NULL: it has none
     /// One damper, one tick. Returns the current, mA, any value: what follows limits it. *state is
     /// 0 from rest and with another table. demand_mN: any value, > 0 resists a stroke that grows.
     int32_t (*step)(void *state, const track_setup_t *setup, const view_damper_t *damper,

@@ -36,7 +36,7 @@ int cmd_fuzzy_surface(const std::vector<std::string> &words) {
     arguments.require_no_positional();
     const auto file = arguments.text("rules");
     const std::vector<std::uint32_t> given =
-        file ? load_rules(*file) : std::vector<std::uint32_t>();
+        file ? load_tables({*file, {}, {}, {}}).front() : std::vector<std::uint32_t>();
     const std::uint32_t *table = file ? given.data() : nullptr;
     const std::vector<double> freq_Hz = axis(kFreqLast_Hz);
     const std::vector<double> rms_m_s2 = axis(kRmsLast_m_s2);

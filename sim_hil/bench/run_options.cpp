@@ -41,8 +41,8 @@ void apply_overrides(const Arguments &arguments, RunSetup &setup) {
 } // namespace
 
 void require_base(const Scenario &scenario, const PlantModel &plant) {
-    if (moves_base(scenario) && plant.structure.base_participation.isZero(0.0)) {
-        throw InputError("scenario " + scenario.name + ": a record shakes the base, but plant " +
+    if (moves_base(scenario, plant.shaker) && plant.structure.base_participation.isZero(0.0)) {
+        throw InputError("scenario " + scenario.name + ": it shakes the base, but plant " +
                          plant.name + " has no base_participation to feel it with");
     }
 }

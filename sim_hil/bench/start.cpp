@@ -26,11 +26,10 @@ Tables tables_for(const quiesce_board_t *board, const quiesce_params_t &params,
     const auto trial = controller_with(board, params);
     Tables tables;
     for (const TableWords &words : given) {
-        const auto count = static_cast<std::uint32_t>(words.size());
-        const bool is_of_tracker =
-            quiesce_tracker_table_check(words.data(), count) != QUIESCE_TABLE_MAGIC;
+        quiesce_owner_t owner = QUIESCE_OF_LAW;
+        (void)quiesce_table_kind(words.front(), &owner);
         if (use_table(*trial, words) != QUIESCE_TABLE_MAGIC) {
-            tables[is_of_tracker ? LOCKSTEP_TRACKER_TABLE : LOCKSTEP_LAW_TABLE] = words;
+            tables[owner == QUIESCE_OF_TRACKER ? LOCKSTEP_TRACKER_TABLE : LOCKSTEP_LAW_TABLE] = words;
         }
     }
     return tables;

@@ -31,7 +31,7 @@ TableWords load_of_law(const std::string &file, std::int32_t law) {
 TableWords load_of_tracker(const std::string &file) {
     TableWords words = read_table(file).words;
     const auto count = static_cast<std::uint32_t>(words.size());
-    require_ok(quiesce_tracker_table_check(words.data(), count), file, words);
+    require_ok(quiesce_table_check(words.data(), count), file, words);
     return words;
 }
 

@@ -12,7 +12,7 @@ enum Kind : std::uint32_t {
     kPulses = 0x31485051,
     kMap = 0x32464D51,
     kBank = 0x314B4251,
-    kLearnt = 0x31444151,
+    kLearnt = 0x31544C51,
 };
 
 enum Head : std::size_t { kMagicAt, kCrcAt, kCountAt };
@@ -130,16 +130,7 @@ quiesce_table_verdict_t verdict_of(const TableWords &words) {
     if (is_of(words, kLearnt)) {
         return of_learnt(words);
     }
-    for (const Label &law : kLaws) {
-        if (law_takes(law.number, words[kMagicAt])) {
-            const auto controller =
-                controller_with(nullptr, with(law.number, QUIESCE_TRACKER_COMPARE));
-            const quiesce_table_verdict_t verdict = use_table(*controller, words);
-            // What a form needs, the default board does not have to have.
-            return verdict == QUIESCE_TABLE_FIT && is_form(words) ? QUIESCE_TABLE_OK : verdict;
-        }
-    }
-    return quiesce_tracker_table_check(words.data(), count_of(words));
+    return quiesce_table_check(words.data(), count_of(words));
 }
 
 quiesce_table_verdict_t verdict_on(const quiesce_board_t &board, const TableWords &words) {

@@ -18,7 +18,7 @@ needs_of() {
     "law "*) ;;
     "table check" | "table stamp") echo bench ;;
     "table "*) ;;
-    "sweep "*) echo bench plant ;;
+    "new "* | "sweep "*) echo bench plant ;;
     "identify plan") ;;
     "identify "*) echo dampers ;;
     "tune law") echo bench ;;

@@ -21,6 +21,7 @@ AREAS = (
     ("firmware/comm/", "comm"),
     ("firmware/", "firmware"),
     ("hal/linux/", "linux"),
+    ("hal/records/", "hal"),
     ("targets/linux/", "linux"),
     ("targets/lockstep/", "comm"),
     ("sim_hil/board/", "board"),

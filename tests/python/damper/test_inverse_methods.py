@@ -6,6 +6,7 @@ import datetime
 import json
 import subprocess
 import tomllib
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -257,7 +258,8 @@ def test_a_free_runs_error_is_within_its_limits() -> None:
 @pytest.fixture(scope="module")
 def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     library = tmp_path_factory.mktemp("force_map") / "force_map.so"
-    sources = ["track/force_map.c", "base/sections.c", "base/table.c", "base/crc32.c"]
+    sources = ["track/track_inverse.c", "track/force_map.c"]
+    sources += ["base/sections.c", "base/table.c", "base/crc32.c"]
     folders = ["include", "base", "track"]
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-shared", "-fPIC", "-o", library]
@@ -270,11 +272,24 @@ def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     return found
 
 
+class Tracker(ctypes.Structure):
+    """The first of a track_t (firmware/track/track.h)."""
+
+    _fields_ = [("name", ctypes.c_char_p), ("needs", ctypes.c_uint64), ("kind", ctypes.c_void_p)]
+
+
+def verdict(firmware: ctypes.CDLL, words: Sequence[int]) -> int:
+    """What table_check says of them as a map."""
+    kind = Tracker.in_dll(firmware, "track_inverse").kind
+    raw = (ctypes.c_uint32 * len(words))(*words)
+    return firmware.table_check(ctypes.c_void_p(kind), raw, len(words))
+
+
 @pytest.mark.parametrize("name", ["map", "ffn", "anfis"])
 def test_a_map_is_read_as_the_firmware_reads_it(name: str, firmware: ctypes.CDLL) -> None:
     inverse = made(name) if name == "map" else compiled(made(name))
     words = (ctypes.c_uint32 * len(inverse.words))(*inverse.words)
-    assert firmware.quiesce_force_map_check(words, len(inverse.words)) == 0
+    assert verdict(firmware, inverse.words) == 0
     rng = np.random.default_rng(4)
     demand = two_tones().rows(0, 800)
     velocity_um_s = rng.integers(-400_000, 400_000, 800)
@@ -405,8 +420,7 @@ def test_words_that_the_firmware_refuses_are_refused(firmware: ctypes.CDLL, tmp_
         for k in (1, 2, 3, 4, 5, 6, 7, 7 + n, 7 + n + 1, len(good) - 1)
     ]
     for words in broken:
-        raw = (ctypes.c_uint32 * len(words))(*words)
-        assert firmware.quiesce_force_map_check(raw, len(words)) != 0
+        assert verdict(firmware, words) != 0
         with pytest.raises(ValueError, match=".") as caught:
             maps_of_words(words)
         assert "\n" not in str(caught.value)

@@ -385,7 +385,7 @@ TEST(TableCheck, asks_a_board_where_one_is_named) {
 }
 
 TEST(TableCheck, of_what_was_learnt_knows_head_and_checksum) {
-    const Words words = with_crc({0x31444151u, 0, 6, 7, 8, 9});
+    const Words words = with_crc({0x31544C51u, 0, 6, 7, 8, 9});
     EXPECT_EQ(checked(words)["verdict"], QUIESCE_TABLE_OK);
     EXPECT_EQ(checked(words, kOnBoard)["verdict"], QUIESCE_TABLE_OK);
     Words damaged = words;

@@ -302,6 +302,49 @@ static void test_a_stored_table_that_is_damaged_is_told_and_not_used(void) {
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_TABLE_CRC, info(ROAD_LAW, TABLE_INFO_REFUSAL));
 }
 
+static void test_a_table_of_the_program_takes_the_place_of_what_ships(void) {
+    start(QUIESCE_LAW_PHASE);
+    make_pulses(777);
+    (void)pack(pulses, pulses_count, 0);
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, node_ship(&node, file));
+    TEST_ASSERT_EQUAL_HEX32(pulses[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    TEST_ASSERT_EQUAL_UINT32(TABLE_SHIPS, info(ROAD_LAW, TABLE_INFO_SOURCE));
+    make_pulses(778);
+    const table_found_t found = {KEEPER_LAW_TABLE, TABLE_FROM_STORE, pulses, pulses_count, 7};
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, node_found(&node, &found));
+    TEST_ASSERT_EQUAL_HEX32(pulses[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(TABLE_SHIP), ROAD_LAW, 0).result);
+    TEST_ASSERT_EQUAL_HEX32(file[5], info(ROAD_LAW, TABLE_INFO_CRC));
+    params.law = QUIESCE_LAW_FUZZY; // works with another kind
+    node_restart(&node, &params);
+    TEST_ASSERT_EQUAL_HEX32(plant_rules_table[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    params.law = QUIESCE_LAW_PHASE;
+    node_restart(&node, &params);
+    TEST_ASSERT_EQUAL_HEX32(file[5], info(ROAD_LAW, TABLE_INFO_CRC));
+}
+
+static void assert_not_shipped(quiesce_table_verdict_t verdict) {
+    TEST_ASSERT_EQUAL(verdict, node_ship(&node, file));
+    TEST_ASSERT_EQUAL_HEX32(plant_pulses_table[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    TEST_ASSERT_EQUAL_UINT32(verdict, info(ROAD_LAW, TABLE_INFO_REFUSAL));
+}
+
+static void test_a_file_of_the_program_that_is_damaged_or_of_another_board_is_told(void) {
+    start(QUIESCE_LAW_PHASE);
+    make_pulses(777);
+    (void)pack(pulses, pulses_count, 5);
+    assert_not_shipped(QUIESCE_TABLE_BOARD);
+    (void)pack(pulses, pulses_count, 0);
+    file[20] ^= 1u;
+    assert_not_shipped(QUIESCE_TABLE_CRC);
+    file[20] ^= 1u;
+    file[3] ^= 1u;
+    assert_not_shipped(QUIESCE_TABLE_CRC);
+    pulses[0]++;
+    (void)pack(pulses, pulses_count, 0);
+    assert_not_shipped(QUIESCE_TABLE_MAGIC);
+}
+
 // Whatever happens to a frame: what was in use stays, and the next transfer gets through.
 static void check_mishap(uint32_t bytes, const mishap_t *mishap, uint32_t in_use_crc) {
     (void)transfer(bytes, mishap);
@@ -604,6 +647,8 @@ int main(void) {
     RUN_TEST(test_a_table_is_loaded_told_saved_and_reverted);
     RUN_TEST(test_a_saved_table_is_used_after_a_start);
     RUN_TEST(test_a_stored_table_that_is_damaged_is_told_and_not_used);
+    RUN_TEST(test_a_table_of_the_program_takes_the_place_of_what_ships);
+    RUN_TEST(test_a_file_of_the_program_that_is_damaged_or_of_another_board_is_told);
     RUN_TEST(test_mishaps_at_every_frame_leave_the_old_table_in_use);
     RUN_TEST(test_of_two_senders_none_gets_a_mixture_through);
     RUN_TEST(test_a_commit_means_one_table);

@@ -15,7 +15,7 @@ from quiesce.base.paths import build_folder, shown
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, target_options
 from quiesce.engine.linux_target import linux_channel
-from quiesce.hil.metrics import Result, differing_cases, make_rows, metrics_json
+from quiesce.hil.metrics import Result, differing_cases, make_rows, metrics_json, warnings_of
 from quiesce.hil.page import make_page
 from quiesce.hil.picture import plot_picture
 from quiesce.hil.published import load_reference
@@ -56,6 +56,9 @@ EPILOG = f"""examples:
   quiesce hil --target linux --can slcan:tcp:localhost:5556      ... in a virtual machine
   quiesce hil --target linux --can slcan:/dev/ttyACM0,bitrate=500000   ... behind an adapter
   quiesce hil --target linux --can socketcan:can0 --telemetry-every 1
+
+A line on stderr, and "warnings" in metrics.json, say where rules or pulses do not cover what a run
+shows.
 
 scenarios: {", ".join((*STEADY, STEP))} (and any .toml file)
 laws:      {", ".join(laws.names())}
@@ -212,8 +215,9 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
         say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
         uart = measure_uart(bench, UART_EXCHANGES)
     return Result(
-        rows, beside, reference.published, equal, differing_cases(runs), speed, uart, rig_rows(runs)
-    )
+        rows, beside, reference.published, equal, differing_cases(runs), speed, uart,
+        rig_rows(runs), warnings_of(runs),
+    )  # fmt: skip
 
 
 def details_json(result: Result, searches: list[ConstantSearch], runs: list[Run]) -> dict[str, Any]:
@@ -308,4 +312,6 @@ def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
     else:
         print(f"\n{table}")
         print(f"report: {shown(out / 'index.html')}\nmetrics: {shown(out / 'metrics.json')}")
+    for one in result.warnings:
+        say(f"quiesce: warning: {one.scenario}, {one.law}: {one.text}")
     return 0 if result.is_equal else EXIT_FAILED

@@ -15,6 +15,7 @@ COMMANDS = (
     ("hil", "hil", "the published scenarios in closed loop; table and report"),
     ("replay", "replay", "recorded motion through the firmware"),
     ("record", "record", "the simulated accelerometer's signal as a CSV file"),
+    ("new", "new.command", "plant, board and scenario files of your own structure"),
     ("plant", "plant", "plant files"),
     ("board", "board.command", "board files: sensors, dampers, their places and limits"),
     ("params", "params", "parameters of the controller: unit, range, default"),
@@ -40,6 +41,7 @@ COMMANDS = (
 EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report
   quiesce replay FILE.csv --column acc --unit g a recorded acceleration through the firmware
+  quiesce new plant press --mass 120 --freq 2.9 ..   files of my own structure
   quiesce plant check my_plant.toml             is my own plant file right?
   quiesce board check my_board.toml             and my board of sensors and dampers?
   quiesce params                                every parameter of the controller

@@ -98,7 +98,7 @@ def words_of_map(wanted: Map) -> list[int]:
 
 def maps_of_words(words: Sequence[int]) -> tuple[Map, ...]:
     """A section each. ValueError, in one line, for words that the firmware refuses
-    (quiesce_force_map_check)."""
+    (firmware/track/force_map.h)."""
     return tuple(_map_of(section) for section in _sections(words))
 
 

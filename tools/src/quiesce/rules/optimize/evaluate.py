@@ -9,15 +9,15 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import build_folder
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.laws import CONSTANT_BEST, OPEN_LOOP, find
 from quiesce.engine.scenarios import Scenario, read_toml
-from quiesce.engine.trace import Trace, read_trace
-from quiesce.hil.metrics import mean_current_A
-from quiesce.hil.runs import TRACE_COLUMNS, Case, Run, reduction_pct
+from quiesce.hil.metrics import excitation_text
+from quiesce.hil.runs import Case, Run, displacement_um, reduction_pct
 from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase
@@ -31,18 +31,18 @@ OUTPUT_LSB = (1e-3,)
 
 @dataclass(frozen=True)
 class Place:
-    """One steady state of one scenario."""
+    """One window of one scenario."""
 
     scenario: Scenario
     window: int
-    freq_Hz: float
+    freq_Hz: float  # 0: no one frequency
     drive_V: float
-    amp_um: float  # at 0 A
+    amp_um: float  # at 0 A: amplitude of the displacement; its RMS where there is no one frequency
     accel_rms_mm_s2: float  # at 0 A
 
     @property
     def label(self) -> str:
-        return f"{self.scenario.name}, {self.freq_Hz:g} Hz"
+        return f"{self.scenario.name}, {excitation_text(self.freq_Hz)}"
 
 
 def require_controller_shape(base: RuleBase) -> None:
@@ -107,7 +107,8 @@ class ClosedLoop:
         found: list[Steady] = []
         for at_rest in self._at_rest:
             run = self._run(at_rest.case.scenario, law, options)
-            found += [steady(run, at_rest, i) for i in range(window_count(run))]
+            pairs = zip(run.figures["windows"], at_rest.figures["windows"], strict=True)
+            found += [steady(ours, base) for ours, base in pairs]
         return tuple(found)
 
     def _run(self, scenario: Scenario, law: str, options: Sequence[str] = ()) -> Run:
@@ -115,15 +116,7 @@ class ClosedLoop:
             "--scenario", str(scenario.file), "--law", law, "--target", "host",
             *setting_options(self._settings), *self._options, *options,
         ]  # fmt: skip
-        case = Case(scenario, find(OPEN_LOOP), "host")
-        if len(scenario.windows_s) < 2:
-            return Run(case, self._bench.json("run", *words), {})
-        # The bench gives the mean current of the last window only.
-        with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
-            file = Path(folder) / "trace"
-            figures = self._bench.json("run", *words, "--trace", str(file))
-            trace: Trace = read_trace(file, TRACE_COLUMNS)
-        return Run(case, figures, trace)
+        return Run(Case(scenario, find(OPEN_LOOP), "host"), self._bench.json("run", *words), {})
 
 
 def _file_of(base: RuleBase, words: Sequence[int]) -> bytes:
@@ -134,30 +127,25 @@ def _file_of(base: RuleBase, words: Sequence[int]) -> bytes:
         raise UsageError(f"{base.name}: {error}")
 
 
-def window_count(run: Run) -> int:
-    return 2 if run.figures["freq2_hz"] is not None else 1
-
-
-def keys(window: int) -> tuple[str, str, str]:
-    number = "" if window == 0 else "2"
-    return f"freq{number}_hz", f"amp{number}_um", f"accel_rms{number}_mm_s2"
-
-
 def places_of(at_rest: Run) -> list[Place]:
     found = []
-    for window in range(window_count(at_rest)):
-        freq_Hz, amp_um, accel_mm_s2 = (at_rest.figures[key] for key in keys(window))
-        if not amp_um or not accel_mm_s2:
+    for number, window in enumerate(at_rest.figures["windows"]):
+        freq_Hz, accel_mm_s2 = window["freq_hz"], window["accel_rms_mm_s2"]
+        if not displacement_um(window) or not accel_mm_s2:
             raise UsageError(
-                f"scenario {at_rest.case.scenario.name} does not vibrate at {freq_Hz:g} Hz with "
-                "0 A; nothing can be reduced there"
+                f"scenario {at_rest.case.scenario.name} does not vibrate at "
+                f"{excitation_text(freq_Hz)} with 0 A; nothing can be reduced there"
             )
         drive_V = at_rest.figures["drive_V"]
-        found.append(Place(at_rest.case.scenario, window, freq_Hz, drive_V, amp_um, accel_mm_s2))
+        found.append(Place(at_rest.case.scenario, number, freq_Hz, drive_V,
+                           displacement_um(window), accel_mm_s2))  # fmt: skip
     return found
 
 
-def steady(run: Run, at_rest: Run, window: int) -> Steady:
-    _, amp, accel = keys(window)
-    reductions = [reduction_pct(run.figures[key], at_rest.figures[key]) for key in (amp, accel)]
-    return Steady(reductions[0] or 0.0, reductions[1] or 0.0, mean_current_A(run, window))
+def steady(ours: dict[str, Any], base: dict[str, Any]) -> Steady:
+    """Of a window, and of the same one at 0 A."""
+    return Steady(
+        reduction_pct(displacement_um(ours), displacement_um(base)) or 0.0,
+        reduction_pct(ours["accel_rms_mm_s2"], base["accel_rms_mm_s2"]) or 0.0,
+        ours["mean_current_A"],
+    )
