@@ -18,15 +18,9 @@ from quiesce.engine.scenarios import Scenario, read_toml
 from quiesce.engine.trace import Trace, read_trace
 from quiesce.hil.metrics import mean_current_A
 from quiesce.hil.runs import TRACE_COLUMNS, Case, Run, reduction_pct
-from quiesce.rules.integers.compile import compile_base
-from quiesce.rules.integers.table import table_words
+from quiesce.rules.integers.controller import controller_file
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.objective import Outcome, Steady
-from quiesce.table.file import table_bytes
-
-# A rule base for the controller has Hz and m/s2 in, A out; the controller uHz, um/s2 and mA.
-INPUT_LSB = (1e-6, 1e-6)
-OUTPUT_LSB = (1e-3,)
 
 
 @dataclass(frozen=True)
@@ -43,15 +37,6 @@ class Place:
     @property
     def label(self) -> str:
         return f"{self.scenario.name}, {self.freq_Hz:g} Hz"
-
-
-def require_controller_shape(base: RuleBase) -> None:
-    if len(base.inputs) != 2 or len(base.outputs) != 1:
-        raise UsageError(
-            f"{base.name} has {len(base.inputs)} inputs and {len(base.outputs)} outputs; the "
-            "controller's rules have two inputs, frequency (Hz) and RMS acceleration (m/s2), and "
-            "one output, current (A)"
-        )
 
 
 def require_bench_option(bench: Bench) -> None:
@@ -93,10 +78,9 @@ class ClosedLoop:
         return ClosedLoop(self._bench, self._scenarios, self._settings, options)
 
     def of_rules(self, base: RuleBase) -> Outcome:
-        words = table_words(compile_base(base, inputs=list(INPUT_LSB), outputs=list(OUTPUT_LSB)))
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
             file = Path(folder) / "rules.table"
-            file.write_bytes(_file_of(base, words))
+            file.write_bytes(controller_file(base))
             return self._outcome("fuzzy", ("--rules", str(file)))
 
     def of_constant(self, current_mA: int) -> Outcome:
@@ -124,14 +108,6 @@ class ClosedLoop:
             figures = self._bench.json("run", *words, "--trace", str(file))
             trace: Trace = read_trace(file, TRACE_COLUMNS)
         return Run(case, figures, trace)
-
-
-def _file_of(base: RuleBase, words: Sequence[int]) -> bytes:
-    """UsageError where it is too long for a controller."""
-    try:
-        return table_bytes(words)
-    except ValueError as error:
-        raise UsageError(f"{base.name}: {error}")
 
 
 def window_count(run: Run) -> int:
