@@ -160,8 +160,12 @@ std::vector<std::uint32_t> load_force_map(const std::string &file) {
     if (is_of_other_tracker(words)) {
         return words;
     }
+    quiesce_owner_t owner = QUIESCE_OF_LAW;
+    const bool is_trackers =
+        quiesce_table_kind(words[0], &owner) != nullptr && owner == QUIESCE_OF_TRACKER;
     const quiesce_table_verdict_t verdict =
-        quiesce_table_check(words.data(), static_cast<std::uint32_t>(words.size()));
+        is_trackers ? quiesce_table_check(words.data(), static_cast<std::uint32_t>(words.size()))
+                    : QUIESCE_TABLE_MAGIC;
     if (verdict != QUIESCE_TABLE_OK) {
         throw InputError(file + ": " + kRefused + reason(verdict));
     }
