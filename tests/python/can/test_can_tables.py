@@ -500,6 +500,16 @@ def test_other_lengths_and_silence_are_no_transfer(quick: None) -> None:
             channel.receive(16)
 
 
+def test_late_frames_of_an_earlier_try_do_no_harm(quick: None) -> None:
+    channel = Channel(ScriptedLink([]), load())
+    channel.begin()
+    late = (b"\x25" + bytes(7), b"\x30\0\0".ljust(8))
+    whole = (b"\x10\x10ABCDEF", b"\x21GHIJKLM", b"\x22NOP".ljust(8))
+    for data in (*late, *whole):
+        channel.take(SimpleNamespace(arbitration_id=0x418, is_extended_id=False, data=data))
+    assert channel.receive(16) == b"ABCDEFGHIJKLMNOP"
+
+
 # One source
 
 

@@ -209,6 +209,4 @@ def two(
     before: list[int] | None = None,
 ) -> Sample:
     first_mA = LEARNT_FIRST_mA if kind is kinds.LEARNT else FIRST_mA
-    return Sample(
-        kind, (make(first_mA), first_mA), (make(SECOND_mA), SECOND_mA), settings, before
-    )
+    return Sample(kind, (make(first_mA), first_mA), (make(SECOND_mA), SECOND_mA), settings, before)

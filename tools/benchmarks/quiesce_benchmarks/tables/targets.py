@@ -60,7 +60,9 @@ class Target:
     def _has_begun(self) -> bool:
         assert self._process is not None
         if self._process.poll() is not None:
-            last = ((self.folder / "log").read_text(errors="replace").strip() or "nothing").split("\n")
+            last = ((self.folder / "log").read_text(errors="replace").strip() or "nothing").split(
+                "\n"
+            )
             raise BenchFailure(
                 f"{self.name} ended with {ending(self._process.returncode)}: {last[-1]}"
             )

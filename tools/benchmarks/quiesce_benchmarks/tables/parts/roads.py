@@ -121,9 +121,7 @@ def travel_foreign(target: Target, sample: Sample) -> None:
     require(host.info(road, 0) == before, "what was before is back")
 
 
-def why_not(
-    kind: type[Target], sample: Sample, way: Callable[[Target, Sample], None]
-) -> str:
+def why_not(kind: type[Target], sample: Sample, way: Callable[[Target, Sample], None]) -> str:
     """Empty where it went all the way."""
     with tempfile.TemporaryDirectory() as folder:
         try:
