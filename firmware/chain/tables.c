@@ -68,7 +68,7 @@ bool quiesce_tables_sum(quiesce_tables_t *tables, uint32_t words) {
     const uint32_t count = left < words ? left : words;
     tables->crc = crc32_continue(tables->crc, &tables->words[tables->arrival][from], count);
     tables->summed = from + count;
-    return count == left;
+    return tables->summed == tables->filled;
 }
 
 const uint32_t *quiesce_tables_arrival(const quiesce_tables_t *tables, uint32_t *count) {

@@ -34,10 +34,8 @@ std::int32_t micro(double value) {
 int cmd_fuzzy_surface(const std::vector<std::string> &words) {
     const Arguments arguments("fuzzy-surface", words, {"rules"});
     arguments.require_no_positional();
-    const auto file = arguments.text("rules");
-    const std::vector<std::uint32_t> given =
-        file ? load_tables({*file, {}, {}, {}}).front() : std::vector<std::uint32_t>();
-    const std::uint32_t *table = file ? given.data() : nullptr;
+    const auto given = load_tables({arguments.text("rules").value_or(""), "", "", ""});
+    const std::uint32_t *table = given.empty() ? nullptr : given.front().data();
     const std::vector<double> freq_Hz = axis(kFreqLast_Hz);
     const std::vector<double> rms_m_s2 = axis(kRmsLast_m_s2);
     Json current_A = Json::array();

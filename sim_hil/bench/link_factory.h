@@ -16,7 +16,8 @@ struct LinkOptions {
     std::string image_path;  ///< --image: ELF for an emulated target
     std::string plugin_path; ///< --plugin: emulator plugin that counts instructions
     std::string can_channel; ///< --can: CAN channel, linux only (channel_factory.h)
-    /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux only
+    /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux and
+    /// mps2-uart only
     std::optional<std::int64_t> telemetry_every_ticks;
     /// --wait-s: longest wait for the first answer, 0.1 .. 3600; linux only
     std::optional<double> greeting_time_s;

@@ -13,9 +13,7 @@ const char *const kSilenceHint = "; is quiesced --lockstep running at the other 
 CanLink::CanLink(std::unique_ptr<FrameChannel> channel, const CanLinkOptions &options)
     : channel_(std::move(channel)),
       client_(*channel_, {options.telemetry, options.answer_time, kSilenceHint}),
-      greeting_time_(options.greeting_time),
-      is_complete_(options.telemetry.every_ticks == kFullTelemetry.every_ticks &&
-                   options.telemetry.frames == kFullTelemetry.frames) {}
+      greeting_time_(options.greeting_time), is_complete_(options.telemetry.is_full()) {}
 
 StartAnswer CanLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
                            const Tables &tables) {

@@ -14,6 +14,9 @@ namespace quiesce {
 struct TelemetryRate {
     std::uint16_t every_ticks;
     std::uint8_t frames;
+
+    /// Whether every reply is complete.
+    bool is_full() const { return every_ticks == 1 && frames == QUIESCE_CAN_TELEMETRY_WORDS; }
 };
 
 /// Every word after every tick: replies are complete, as over the other links.

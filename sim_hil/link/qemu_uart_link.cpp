@@ -4,7 +4,8 @@ namespace quiesce {
 
 QemuUartLink::QemuUartLink(const QemuOptions &options, TelemetryRate telemetry)
     : uart_(options), channel_(uart_),
-      client_(channel_, {telemetry, options.answer_time, kUartSilenceHint}) {}
+      client_(channel_, {telemetry, options.answer_time, kUartSilenceHint}),
+      is_complete_(telemetry.is_full()) {}
 
 StartAnswer QemuUartLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
                                 const Tables &tables) {

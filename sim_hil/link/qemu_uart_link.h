@@ -17,6 +17,7 @@ class QemuUartLink final : public ControllerLink {
     StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
                       const Tables &tables) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
+    bool is_complete() const override { return is_complete_; }
     bool has_picture() const override { return false; }
     ReplyWords received() const override { return client_.received(); }
     std::optional<InstructionCounts> finish() override;
@@ -30,6 +31,7 @@ class QemuUartLink final : public ControllerLink {
     QemuUart uart_;
     SlcanChannel channel_;
     LockstepClient client_;
+    bool is_complete_;
     bool is_greeted_ = false;
 };
 

@@ -34,6 +34,7 @@ class Service {
   public:
     /// Starts the thread. Make it before the calling thread becomes a real-time thread. Everything
     /// that it is given must outlive it.
+    /// tables: of the start.
     Service(const Config &config, const ConfiguredTables &tables, Exchange &exchange,
             FaultStore &faults, RecordStore &records, Caretaker &caretaker, LogSink &sink);
     Service(const Service &) = delete;

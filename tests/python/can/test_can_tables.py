@@ -500,6 +500,16 @@ def test_other_lengths_and_silence_are_no_transfer(quick: None) -> None:
             channel.receive(16)
 
 
+def test_late_frames_of_an_earlier_try_do_no_harm(quick: None) -> None:
+    channel = Channel(ScriptedLink([]), load())
+    channel.begin()
+    late = (b"\x25" + bytes(7), b"\x30\0\0".ljust(8))
+    whole = (b"\x10\x10ABCDEF", b"\x21GHIJKLM", b"\x22NOP".ljust(8))
+    for data in (*late, *whole):
+        channel.take(SimpleNamespace(arbitration_id=0x418, is_extended_id=False, data=data))
+    assert channel.receive(16) == b"ABCDEFGHIJKLMNOP"
+
+
 # One source
 
 
@@ -510,16 +520,7 @@ def test_verdicts_are_the_firmwares() -> None:
     assert {number: one.label for number, one in VERDICTS.items()} == rows
 
 
-def test_kinds_are_the_firmwares() -> None:
-    """Each law's and tracker's, and what is learnt."""
-    found = set()
-    for file in sorted((ROOT / "firmware").glob("*/**/*.[ch]")):
-        if "generated" not in file.parts:
-            text = file.read_text()
-            found |= set(re.findall(r"#define (\w+) UINT32_C\((0x\w{8})\)", text))
-    inside = ("TABLE_FILE_MAGIC", "ADAPT_STORE_MAGIC")  # of the file, of what a learnt table holds
-    magics = {name: int(n, 16) for name, n in found if re.search("MAGIC|LEARNT", name)}
-    assert {n for name, n in magics.items() if name not in inside} == set(kinds.KINDS)
+def test_who_works_with_a_kind_is_there() -> None:
     for kind in kinds.KINDS.values():
         assert set(users_of(kind)) <= set(LABELS[chooser_of(kind)])
 

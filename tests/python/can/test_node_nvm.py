@@ -8,12 +8,15 @@ import random
 import socket
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
-from conftest import require
+from conftest import ROOT, require
+from quiesce.tune.phase_table import read_law
+from quiesce.tune.phase_words import law_words
 from test_node_image import DEADLINE_S, Rig, param_index, running
 
 # hal/mps2/nvm_mps2.h, hal/records/nvm_records.h
@@ -23,13 +26,29 @@ SLOT_BYTES = 3 * 4096
 MAGIC = 0x304D5651
 HEAD_WORDS = 4
 MOST_WORDS = 2048
+NO_BOARD = 0  # the memory's owner
 
-PARAMS = 0
+PARAMS, LAW_TABLE = 0, 1  # records
+LAW, LEARNT = 0, 2  # roads
+INFO_CRC, INFO_STORED_CRC, INFO_SOURCE, INFO_WRITES = 0, 2, 3, 5
+SHIPS, FROM_STORE = 1, 3
+PHASE = 4  # the law
 CURRENT = "constant_current_mA"
 
 
 def slot_base(record: int, slot: int) -> int:
     return AREA_BASE + (2 * record + slot) * SLOT_BYTES
+
+
+def crc_of(head: Sequence[int], words: Sequence[int]) -> int:
+    covered = (NO_BOARD, *head, *words)
+    return zlib.crc32(struct.pack(f"<{len(covered)}I", *covered))
+
+
+def pulses(unlock_current_mA: int) -> tuple[int, ...]:
+    """A table of the law `phase`: what ships, but for a current."""
+    law = read_law(ROOT / "firmware/plants/squeeze_2012/pulses.phase.toml")
+    return tuple(law_words(replace(law, unlock_current_mA=unlock_current_mA)))
 
 
 class Memory:
@@ -48,11 +67,19 @@ class Memory:
             file.seek(address - MEMORY_BASE)
             return struct.unpack(f"<{count}I", file.read(4 * count))
 
-    def flip(self, address: int) -> None:
-        flipped = self.words(address, 1)[0] ^ 1
+    def write(self, address: int, words: Sequence[int]) -> None:
         with self.path.open("r+b") as file:
             file.seek(address - MEMORY_BASE)
-            file.write(struct.pack("<I", flipped))
+            file.write(struct.pack(f"<{len(words)}I", *words))
+
+    def flip(self, address: int) -> None:
+        self.write(address, [self.words(address, 1)[0] ^ 1])
+
+    def put(self, record: int, words: Sequence[int]) -> None:
+        """In place of what a start finds, or as the first write."""
+        sequence, _ = self.kept(record) or (1, ())
+        head = (sequence, len(words), MAGIC + (record << 24))
+        self.write(self.newest(record), (crc_of(head, words), *head, *words))
 
     def slot(self, record: int, slot: int) -> tuple[int, tuple[int, ...]] | None:
         """Number of the write and the record's words; None where the slot is not whole."""
@@ -60,13 +87,21 @@ class Memory:
         if magic != MAGIC + (record << 24) or count > MOST_WORDS:
             return None
         words = self.words(slot_base(record, slot) + 4 * HEAD_WORDS, count)
-        covered = struct.pack(f"<{3 + count}I", sequence, count, magic, *words)
-        return (sequence, words) if zlib.crc32(covered) == crc else None
+        is_whole = crc == crc_of((sequence, count, magic), words)
+        return (sequence, words) if is_whole else None
+
+    def kept(self, record: int) -> tuple[int, tuple[int, ...]] | None:
+        """What a start finds."""
+        return max((one for slot in (0, 1) if (one := self.slot(record, slot))), default=None)
+
+    def newest(self, record: int) -> int:
+        """Where its slot begins; the first write goes to slot 1."""
+        kept = self.kept(record)
+        return slot_base(record, int(kept is None or self.slot(record, 1) == kept))
 
     def spare(self, record: int) -> int:
-        """The slot that is written next."""
-        numbers = [(found[0] if (found := self.slot(record, slot)) else -1) for slot in range(2)]
-        return numbers.index(min(numbers))
+        """The other slot."""
+        return 2 * slot_base(record, 0) + SLOT_BYTES - self.newest(record)
 
 
 class Stub:
@@ -120,29 +155,26 @@ def memory(tmp_path: Path) -> Memory:
     return Memory(tmp_path / "memory")
 
 
-def stage(rig: Rig, current_mA: int) -> None:
-    assert rig.ask("STAGE", param_index(CURRENT), current_mA)["result"] == "DONE"
+def save_with(rig: Rig, name: str, value: int) -> None:
+    assert rig.ask("STAGE", param_index(name), value)["result"] == "DONE"
     assert rig.ask("APPLY")["result"] == "DONE"
+    assert rig.ask("SAVE")["result"] == "DONE"
 
 
 def current_of(rig: Rig) -> int:
     return rig.ask("READ", param_index(CURRENT))["param_value"]
 
 
-def settle(rig: Rig) -> None:
-    """Until no request is under way: none was asked twice."""
-    asked = -1
-    while rig.alive.get("ServiceRequest", 0) != asked + 1:
-        asked = rig.alive.get("ServiceRequest", 0)
-        rig.ask("READ")
+def info(rig: Rig, road: int, what: int) -> int:
+    reply = rig.ask("TABLE_INFO", road, what)
+    assert reply["result"] == "DONE"
+    return reply["param_value"] & 0xFFFFFFFF
 
 
 def test_saved_parameters_are_used_after_a_power_up(image: Path, memory: Memory) -> None:
     with running(image, memory.options()) as rig:
         shipped = current_of(rig)
-        stage(rig, 1234)
-        assert rig.ask("SAVE")["result"] == "DONE"
-        stage(rig, 777)  # not saved
+        save_with(rig, CURRENT, 1234)
     with running(image, memory.options()) as rig:
         assert current_of(rig) == 1234
     # Both slots damaged: what ships is used, and others can be saved.
@@ -150,42 +182,93 @@ def test_saved_parameters_are_used_after_a_power_up(image: Path, memory: Memory)
         memory.flip(slot_base(PARAMS, slot) + 40)
     with running(image, memory.options()) as rig:
         assert current_of(rig) == shipped
-        stage(rig, 555)
-        assert rig.ask("SAVE")["result"] == "DONE"
+        save_with(rig, CURRENT, 555)
     with running(image, memory.options()) as rig:
         assert current_of(rig) == 555
 
 
+@pytest.mark.slow
+def test_saved_tables_are_used_after_a_power_up(image: Path, memory: Memory) -> None:
+    with running(image, memory.options()) as rig:
+        save_with(rig, "law", PHASE)
+        shipped = info(rig, LAW, INFO_CRC)
+    memory.put(LAW_TABLE, pulses(777))
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == info(rig, LAW, INFO_STORED_CRC) == pulses(777)[1]
+        assert info(rig, LAW, INFO_SOURCE) == FROM_STORE and info(rig, LAW, INFO_WRITES) == 1
+        assert rig.ask("TABLE_SAVE", LAW)["result"] == "DONE"
+        assert rig.ask("TABLE_SAVE", LEARNT)["result"] == "DONE"
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == pulses(777)[1] and info(rig, LAW, INFO_WRITES) >= 2
+        assert rig.ask("LEARNT_RESTORE")["result"] == "DONE"
+        assert rig.ask("TABLE_SHIP", LAW)["result"] == "DONE"
+        assert rig.ask("TABLE_SAVE", LAW)["result"] == "DONE"  # forgets it
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == shipped and info(rig, LAW, INFO_STORED_CRC) == 0
+        assert info(rig, LAW, INFO_SOURCE) == SHIPS and info(rig, LAW, INFO_WRITES) >= 3
+        assert rig.ask("LEARNT_RESTORE")["result"] == "TABLE_REFUSED"  # of the other table
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A record, how it is asked for and saved, and the word that tells it apart."""
+
+    record: int
+    save: str
+    question: tuple[str, int]
+    place: int
+
+
+SUBJECTS = [
+    Subject(PARAMS, "SAVE", ("READ", param_index(CURRENT)), 1 + param_index(CURRENT)),
+    Subject(LAW_TABLE, "TABLE_SAVE", ("TABLE_INFO", LAW), 1),
+]
 # Word of the slot, and the write to it: the first one erases, the second one programs.
 ANY = random.Random(20)
 MOMENTS = [
     *[(word, 1) for word in (0, 3, ANY.randrange(4, 1024))],
-    *[(word, 2) for word in (4, ANY.randrange(5, 50), 0, 2, 3)],
+    *[(word, 2) for word in (4, ANY.randrange(5, 40), 0, 2, 3)],
 ]
 
 
-def test_power_cut_while_parameters_are_saved(
-    image: Path, memory: Memory, tmp_path: Path
+def settled(rig: Rig, operation: str, index: int) -> int:
+    """The answer, once no request is under way: none was asked twice."""
+    while True:
+        asked = rig.alive.get("ServiceRequest", 0)
+        answer = rig.ask(operation, index)["param_value"]
+        if rig.alive["ServiceRequest"] == asked + 1:
+            return answer & 0xFFFFFFFF
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("subject", SUBJECTS, ids=("parameters", "table"))
+def test_power_cut_leaves_the_old_or_the_new(
+    image: Path, memory: Memory, tmp_path: Path, subject: Subject
 ) -> None:
     stub = Stub(tmp_path / "stub")
     with running(image, memory.options()) as rig:
-        kept = 900
-        stage(rig, kept)
-        assert rig.ask("SAVE")["result"] == "DONE"
+        save_with(rig, "law", PHASE)
+    _, params = memory.kept(PARAMS)
+    at = subject.place
+    words = {
+        PARAMS: [(*params[:at], 700 + i, *params[at + 1 :]) for i in range(2)],
+        LAW_TABLE: [pulses(700 + i) for i in range(2)],
+    }[subject.record]
+    memory.put(subject.record, words[0])
     outcomes = set()
-    for i, (word, times) in enumerate(MOMENTS):
-        with running(image, memory.options() + stub.options()) as rig:
-            assert current_of(rig) == kept
-            stage(rig, 1000 + i)
-            settle(rig)
+    for word, times in MOMENTS:
+        with running(image, (*memory.options(), *stub.options())) as rig:
+            _, used = memory.kept(subject.record)
+            assert settled(rig, *subject.question) == used[subject.place]
+            # Behind its back the record becomes the other one, which it replaces.
+            memory.put(subject.record, words[1 - words.index(used)])
             with stub.attached():
-                rig.send("ServiceRequest", operation="SAVE")
-                stub.until_written(slot_base(PARAMS, memory.spare(PARAMS)) + 4 * word, times)
+                rig.send("ServiceRequest", operation=subject.save)
+                stub.until_written(memory.spare(subject.record) + 4 * word, times)
                 rig.cut_power()
-        whole = [found for slot in range(2) if (found := memory.slot(PARAMS, slot))]
-        newest = max(whole)[1]
-        outcomes.add(newest[1 + param_index(CURRENT)] == kept)
-        kept = newest[1 + param_index(CURRENT)]
+        _, found = memory.kept(subject.record)
+        assert found in words
+        outcomes.add(found == used)
     with running(image, memory.options()) as rig:
-        assert current_of(rig) == kept
+        assert settled(rig, *subject.question) == found[subject.place]
     assert outcomes == {False, True}

@@ -16,7 +16,7 @@ from quiesce.rules.formats.files import read_rules
 from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.integers.table import table_words
 from quiesce.table.file import read_file, read_words, table_bytes
-from quiesce.table.kinds import KINDS, LEARNT, MAP
+from quiesce.table.kinds import KINDS, LEARNT, MAP, RULES
 from quiesce.table.words import sealed
 from quiesce.tune.phase_table import read_law
 from quiesce.tune.phase_words import law_words
@@ -286,3 +286,42 @@ def test_pack_refuses(tmp_path: Path, capsys, data: bytes, why: str) -> None:
     assert code == 2 and why in text and text.startswith(f"quiesce: {file}: ")
     assert not out.exists()
     assert told(capsys, "pack", tmp_path / "none", "-o", out)[0] == 2
+
+
+def rules_text(rules: int) -> str:
+    lines = "".join(
+        f"RULE {i + 1}: IF x IS {'low' if i % 2 else 'high'} THEN y IS p;\n" for i in range(rules)
+    )
+    return f"""FUNCTION_BLOCK many
+VAR_INPUT x : REAL; END_VAR
+VAR_OUTPUT y : REAL; END_VAR
+FUZZIFY x
+RANGE := (0 .. 1);
+TERM low := (0, 1) (1, 0);
+TERM high := (0, 0) (1, 1);
+END_FUZZIFY
+DEFUZZIFY y
+RANGE := (0 .. 1);
+TERM p := 1;
+METHOD : COGS;
+ACCU : SUM;
+DEFAULT := 0;
+END_DEFUZZIFY
+RULEBLOCK r
+AND : MIN;
+{lines}END_RULEBLOCK
+END_FUNCTION_BLOCK
+"""
+
+
+def test_rules_too_many_for_a_controller_have_c_and_no_table(tmp_path: Path, capsys) -> None:
+    for rules in (10, 700):
+        file, out = tmp_path / f"r{rules}.fcl", tmp_path / f"out{rules}"
+        file.write_text(rules_text(rules))
+        assert main(["rules", "compile", str(file), "--out", str(out)]) == 0
+        said = capsys.readouterr().out
+        assert (out / f"r{rules}.c").is_file()
+        assert (out / f"r{rules}.table").exists() == (rules == 10)
+        assert (f"r{rules}.table" in said) == (rules == 10)
+        assert ("a controller takes 2048 words, 8192 bytes" in said) == (rules == 700)
+    assert read_words(tmp_path / "out10/r10.table")[0] == RULES.magic

@@ -5,7 +5,6 @@
 
 #include "board_file.h"
 #include "input_error.h"
-#include "law_words.h"
 #include "loop_tables.h"
 #include "names.h"
 #include "status_file.h"
@@ -51,12 +50,11 @@ TableWords rules(std::uint32_t number) {
     return words;
 }
 
-TableWords map_of(std::uint32_t) {
-    return with_crc([] {
-        TableWords words(map_of_damper.words, map_of_damper.words + map_of_damper.count);
-        words[2] = map_of_damper.count;
-        return words;
-    }());
+/// A damper's: of one section, over stroke velocity, 2 places and 2 currents.
+TableWords damper_map() {
+    constexpr auto minus = [](std::uint32_t value) { return 0U - value; };
+    return with_crc({0x32464D51, 0, 15, 1, 4, 2, 2, minus(1000), 1000, 0, 1500, minus(20000),
+                     minus(500000), 20000, 500000});
 }
 
 // ---- files --------------------------------------------------------------------------------------
@@ -108,7 +106,7 @@ TEST_F(TableFile, that_is_no_good_one_is_told_in_a_line) {
 }
 
 TEST_F(TableFile, of_another_owner_is_sent_to_its_key) {
-    put(QUIESCE_OF_LAW, file_bytes(map_of(0)));
+    put(QUIESCE_OF_LAW, file_bytes(damper_map()));
     EXPECT_EQ(wrong(), "tables.law: law.table: a table of kind map is for tables.tracker");
 }
 

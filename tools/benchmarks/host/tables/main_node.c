@@ -1,9 +1,10 @@
 // The controller with its CAN interface as a program of this machine: SLCAN on a serial line, ticks
-// from the clock, samples and the operator's enable from the bus, records as files. Runs until it is
-// killed. Where its reader is slow it waits, so that a busy machine loses no frame; ticks that it
-// missed do not come.
+// from the clock, samples and the operator's enable from the bus, records as files. Runs until it
+// is killed. A busy machine makes it slow and changes nothing else: it waits for its reader, and
+// for the sample that answers its demand; ticks that it missed do not come.
 //
 // table_node LINE FOLDER
+#include "quiesce_can.h"
 #include "records.h"
 #include "slcan.h"
 
@@ -16,6 +17,7 @@
 
 #define NS_PER_S 1000000000L
 #define MOST_LATE_NS 20000000L
+#define SAMPLE_MS 200 ///< that a sample is waited for
 
 typedef struct {
     int line;
@@ -24,14 +26,24 @@ typedef struct {
     node_t node;
 } program_t;
 
-static void receive(program_t *self) {
+// Returns whether a sample was among what came.
+static bool receive(program_t *self) {
     uint8_t bytes[1024];
+    bool has_sample = false;
     const ssize_t count = read(self->line, bytes, sizeof bytes);
     for (ssize_t i = 0; i < count; i++) {
         can_frame_t frame;
         if (slcan_decode(&self->decoder, bytes[i], &frame)) {
+            has_sample = has_sample || frame.id == QUIESCE_CAN_ACCEL_SAMPLE_FRAME_ID;
             node_receive(&self->node, &frame);
         }
+    }
+    return has_sample;
+}
+
+static void receive_with_sample(program_t *self) {
+    struct pollfd more = {.fd = self->line, .events = POLLIN};
+    while (!receive(self) && poll(&more, 1, SAMPLE_MS) > 0) {
     }
 }
 
@@ -109,7 +121,7 @@ int main(int count, char **arguments) {
     (void)clock_gettime(CLOCK_MONOTONIC, &due);
     do {
         wait_until_due(&due, NS_PER_S / program.node.params.tick_rate_Hz);
-        receive(&program);
+        receive_with_sample(&program);
     } while (tick(&program));
     return 0;
 }

@@ -29,6 +29,7 @@ COMMAND_TICKS = 100
 LET_GO, PRESSED = 4, 12  # commands
 SAMPLES = 4000  # of the vibration, in a circle
 COUNTS, PERIOD_ticks = 40_000, 100
+READ_S = 0.0005
 SILENT_S = 60.0  # a controller on a busy machine
 
 
@@ -66,8 +67,9 @@ class Line:
     time."""
 
     def __init__(self, bus: Bus | None = None) -> None:
-        self._target, self._target_end, self.target = raw_pty()
+        self._pty, self._target_end, self.target = raw_pty()
         self._client, self._client_end, self.client = raw_pty()
+        self._target = self._pty
         self.bus = bus
         self.forwards: frozenset[int] | None = None  # to the client; None: all
         self.is_to_arm = False
@@ -91,7 +93,8 @@ class Line:
     def __exit__(self, *_: object) -> None:
         self._is_over = True
         self._thread.join()
-        for end in (self._target, self._target_end, self._client, self._client_end):
+        self.attach(self._pty)
+        for end in (self._pty, self._target_end, self._client, self._client_end):
             os.close(end)
 
     # What a client of the bench's own does
@@ -116,8 +119,15 @@ class Line:
         """Of the last ticks."""
         return max((one[0] for one in self.demands[-ticks:]), default=0)
 
+    def attach(self, target: int) -> None:
+        """Another line to the controller than `target`; it is closed with the next one."""
+        before, self._target = self._target, target
+        if before not in (self._pty, target):
+            os.close(before)
+
     def restarted(self) -> None:
         """The controller has ended, and the next one is to begin with an empty line."""
+        self.attach(self._pty)
         termios.tcflush(self._target_end, termios.TCIOFLUSH)
         with self._changed:
             self.demands.clear()
@@ -139,14 +149,19 @@ class Line:
     # The thread
 
     def _run(self) -> None:
-        rests = {self._target: b"", self._client: b""}
-        take = {self._target: self._from_target, self._client: self._from_client}
+        rests: dict[int, bytes] = {}
         while not self._is_over:
-            for end in select.select(list(rests), [], [], 0.05)[0]:
-                with contextlib.suppress(OSError):
-                    *lines, rests[end] = (rests[end] + os.read(end, 65536)).split(b"\r")
+            target = self._target
+            # An emulator writes byte by byte, and would wake this thread, and wait for it, each time.
+            time.sleep(READ_S)
+            with contextlib.suppress(OSError, ValueError):  # it has just been closed
+                for end in select.select([target, self._client], [], [], 0.05)[0]:
+                    data = os.read(end, 65536)
+                    if not data:
+                        time.sleep(0.01)  # it has hung up
+                    *lines, rests[end] = (rests.get(end, b"") + data).split(b"\r")
                     for line in lines:
-                        take[end](line)
+                        (self._from_target if end == target else self._from_client)(line)
             with self._changed:
                 self._changed.notify_all()
 
@@ -180,7 +195,7 @@ class Line:
     @staticmethod
     def _write(end: int, line: bytes) -> None:
         """A line that nobody reads loses frames."""
-        with contextlib.suppress(BlockingIOError):
+        with contextlib.suppress(OSError):
             os.write(end, line)
 
     def _on_demand(self, line: bytes) -> None:

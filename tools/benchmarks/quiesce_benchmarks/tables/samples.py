@@ -146,14 +146,13 @@ def map_for(current_mA: int) -> list[int]:
 
 
 def bank(current_mA: int) -> list[int]:
-    """The same as a saturation of the velocity."""
-    limit_um_s, shift = round(1e6 * LEAST_m_s), 20
+    """The same as a saturation of the velocity, at 1 um/s."""
     most_N = REST_N + (force_N(FIRST_mA) - REST_N) * MOST_mA / current_mA
     models = tuple(
-        ConstantModel(mA, 0, 0, (round(1e3 * force * 2**shift / limit_um_s),))
+        ConstantModel(mA, 0, 0, (round(1e3 * force),))
         for mA, force in ((0, REST_N), (MOST_mA, most_N))
     )
-    return bank_words([Bank(RATE_Hz, shift, 0, 0, (Element(False, ONE, limit_um_s),), models)])
+    return bank_words([Bank(RATE_Hz, 0, 0, 0, (Element(False, ONE, 1),), models)])
 
 
 def inverse_network(current_mA: int) -> list[int]:
@@ -210,6 +209,4 @@ def two(
     before: list[int] | None = None,
 ) -> Sample:
     first_mA = LEARNT_FIRST_mA if kind is kinds.LEARNT else FIRST_mA
-    return Sample(
-        kind, (make(first_mA), first_mA), (make(SECOND_mA), SECOND_mA), settings, before
-    )
+    return Sample(kind, (make(first_mA), first_mA), (make(SECOND_mA), SECOND_mA), settings, before)

@@ -75,11 +75,11 @@ def file_in(folder: Path) -> Path:
 
 
 def from_rules(file: Path) -> Table:
-    from quiesce.cli.rules.formats import compiled_for_controller
     from quiesce.rules.formats.files import read_rules
+    from quiesce.rules.integers.controller import compile_for_controller
     from quiesce.rules.integers.table import table_words
 
-    compiled = compiled_for_controller(read_rules(file))
+    compiled = compile_for_controller(read_rules(file))
     words = table_words(compiled)
     return Table(RULES, words, table_bytes(words), compiled.notes)
 

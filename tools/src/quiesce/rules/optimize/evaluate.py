@@ -18,15 +18,9 @@ from quiesce.engine.laws import CONSTANT_BEST, OPEN_LOOP, find
 from quiesce.engine.scenarios import Scenario, read_toml
 from quiesce.hil.metrics import excitation_text
 from quiesce.hil.runs import Case, Run, displacement_um, reduction_pct
-from quiesce.rules.integers.compile import compile_base
-from quiesce.rules.integers.table import table_words
+from quiesce.rules.integers.controller import controller_file
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.objective import Outcome, Steady
-from quiesce.table.file import table_bytes
-
-# A rule base for the controller has Hz and m/s2 in, A out; the controller uHz, um/s2 and mA.
-INPUT_LSB = (1e-6, 1e-6)
-OUTPUT_LSB = (1e-3,)
 
 
 @dataclass(frozen=True)
@@ -43,15 +37,6 @@ class Place:
     @property
     def label(self) -> str:
         return f"{self.scenario.name}, {excitation_text(self.freq_Hz)}"
-
-
-def require_controller_shape(base: RuleBase) -> None:
-    if len(base.inputs) != 2 or len(base.outputs) != 1:
-        raise UsageError(
-            f"{base.name} has {len(base.inputs)} inputs and {len(base.outputs)} outputs; the "
-            "controller's rules have two inputs, frequency (Hz) and RMS acceleration (m/s2), and "
-            "one output, current (A)"
-        )
 
 
 def require_bench_option(bench: Bench) -> None:
@@ -93,10 +78,9 @@ class ClosedLoop:
         return ClosedLoop(self._bench, self._scenarios, self._settings, options)
 
     def of_rules(self, base: RuleBase) -> Outcome:
-        words = table_words(compile_base(base, inputs=list(INPUT_LSB), outputs=list(OUTPUT_LSB)))
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
             file = Path(folder) / "rules.table"
-            file.write_bytes(_file_of(base, words))
+            file.write_bytes(controller_file(base))
             return self._outcome("fuzzy", ("--rules", str(file)))
 
     def of_constant(self, current_mA: int) -> Outcome:
@@ -117,14 +101,6 @@ class ClosedLoop:
             *setting_options(self._settings), *self._options, *options,
         ]  # fmt: skip
         return Run(Case(scenario, find(OPEN_LOOP), "host"), self._bench.json("run", *words), {})
-
-
-def _file_of(base: RuleBase, words: Sequence[int]) -> bytes:
-    """UsageError where it is too long for a controller."""
-    try:
-        return table_bytes(words)
-    except ValueError as error:
-        raise UsageError(f"{base.name}: {error}")
 
 
 def places_of(at_rest: Run) -> list[Place]:

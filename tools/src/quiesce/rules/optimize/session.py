@@ -12,9 +12,10 @@ import numpy as np
 from quiesce.base.progress import say
 from quiesce.engine.bench import Bench
 from quiesce.engine.scenarios import Scenario
+from quiesce.rules.integers.controller import require_controller_shape
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize import state as optimize_state
-from quiesce.rules.optimize.evaluate import ClosedLoop, bench_digest, require_controller_shape
+from quiesce.rules.optimize.evaluate import ClosedLoop, bench_digest
 from quiesce.rules.optimize.genes import Genome, Space, make_space
 from quiesce.rules.optimize.lookup import Sweep, best_constants, sweep
 from quiesce.rules.optimize.methods import NSGA2, Settings, make_search, settings_json
