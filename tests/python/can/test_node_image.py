@@ -271,6 +271,9 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     # The record of a second before the stop, its last two pages.
     assert rig.ask("FAULT_RECORD", value=316)["result"] == "DONE"
     rig.until("the record", lambda name: name == "FaultRecord")
+    # The table in use: its first frame.
+    assert rig.ask("TABLE_SEND")["result"] == "DONE"
+    rig.until("the table", lambda name: name == "TableFlow")
     assert {DATABASE.get_message_by_frame_id(i).name for i in CONTROLLER} == rig.seen.keys()
 
 
