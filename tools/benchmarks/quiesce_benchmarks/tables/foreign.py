@@ -22,7 +22,7 @@ LAW, TRACKER, LEARNT = range(3)
 CRC, MAGIC, STORED_CRC, SOURCE = range(4)  # of TABLE_INFO
 WORD = 1 << 32
 SHORT_MOST = 4095  # bytes that a first frame says in 12 bits
-REPLY_S, TRIES, SILENCE_S = 0.5, 20, 5.0
+REPLY_S, TRIES, SILENCE_S = 1.0, 20, 5.0
 
 
 class Line(Protocol):
@@ -79,6 +79,7 @@ class ForeignClient:
         self._line = line
         self._heard = line.listen((REPLY, FLOW))
         self._alive = 0
+        self.repeats = 0  # requests that were asked again
 
     def ask(self, operation: str, road: int = 0, value: int = 0) -> tuple[str, int]:
         """Result and value; asked again where nothing comes, or it is busy."""
@@ -88,6 +89,7 @@ class ForeignClient:
                 while (reply := self._reply_in(self._next(REPLY, REPLY_S))) is None:
                     pass
             except Silence:
+                self.repeats += 1
                 continue
             if reply[0] != BUSY:
                 return reply
