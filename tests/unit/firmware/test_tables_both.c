@@ -274,6 +274,7 @@ static void test_what_is_summed_is_not_summed_again(void) {
 static struct {
     struct {
         uint32_t now, before;
+        bool is_new; // and not gone back from
         const uint32_t *shipped;
     } of[QUIESCE_TABLE_OWNERS];
     uint32_t arriving, arrived; // which, and its words so far
@@ -345,6 +346,7 @@ static uint32_t commit_it(void) {
     if (is_good) {
         model.of[owner].before = now_of(owner);
         model.of[owner].now = model.arriving;
+        model.of[owner].is_new = true;
     }
     model.arriving = SHIPS;
     model.arrived = 0;
@@ -353,11 +355,11 @@ static uint32_t commit_it(void) {
 
 static uint32_t revert_it(quiesce_owner_t owner) {
     const uint32_t before = model.of[owner].before;
-    const bool is_one = model.of[owner].now != before;
-    const bool is_done = is_one && is_taken(owner, before);
+    const bool is_done = model.of[owner].is_new && is_taken(owner, before);
     TEST_ASSERT_EQUAL_INT(is_done, revert(owner));
     if (is_done) {
         model.of[owner].now = before;
+        model.of[owner].is_new = false;
     }
     return is_done ? 1u : 0u;
 }
@@ -368,6 +370,7 @@ static void unload_it(quiesce_owner_t owner) {
     if (is_done && model.of[owner].now != SHIPS) {
         model.of[owner].before = model.of[owner].now;
         model.of[owner].now = SHIPS;
+        model.of[owner].is_new = true;
     }
 }
 
