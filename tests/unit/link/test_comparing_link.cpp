@@ -95,7 +95,7 @@ TEST(comparing_link, disagreement_on_parameters_is_an_error) {
 }
 
 TEST(comparing_link, disagreement_on_why_a_table_is_refused_is_an_error) {
-    const Tables tables = {{{1, 2, 3, 4}, {}}};
+    const Tables tables = {{std::vector<std::uint32_t>(20, 7), {}}};
     InProcessLink host;
     FaultyLink faulty(0, 0, 0);
     ComparingLink link(host, faulty);
