@@ -29,9 +29,7 @@ def table(words: list[int]) -> list[int]:
 
 def file_of(words: list[int], board: int = 0) -> bytes:
     head = struct.pack("<3I", FILE_MAGIC, board, len(words))
-    return (
-        head + struct.pack("<I", zlib.crc32(head)) + struct.pack(f"<{len(words)}I", *words)
-    )
+    return head + struct.pack("<I", zlib.crc32(head)) + struct.pack(f"<{len(words)}I", *words)
 
 
 def words_of(data: bytes) -> list[int]:
