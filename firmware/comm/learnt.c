@@ -6,8 +6,6 @@
 
 enum { MAGIC, CRC, COUNT, HEAD_WORDS };
 
-#define MS_PER_S 1000u
-
 void learnt_init(learnt_store_t *self) {
     *self = (learnt_store_t){.left_s = LEARNT_FIRST_S, .pause_s = LEARNT_FIRST_S};
 }
@@ -44,12 +42,11 @@ bool learnt_put(const uint32_t *words, uint32_t count, quiesce_t *controller) {
     return quiesce_learnt_load(controller, &learnt);
 }
 
-bool learnt_is_due(learnt_store_t *self, uint32_t passed_ms) {
-    self->passed_ms += passed_ms;
-    if (self->passed_ms < MS_PER_S) {
+bool learnt_is_due(learnt_store_t *self) {
+    if (self->passed_ms < LEARNT_LOOK_MS) {
         return false;
     }
-    self->passed_ms -= MS_PER_S;
+    self->passed_ms -= LEARNT_LOOK_MS;
     self->left_s--;
     if (self->left_s > 0u) {
         return false;

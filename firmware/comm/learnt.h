@@ -6,6 +6,7 @@
 
 #include "table_file.h"
 
+#define LEARNT_LOOK_MS 1000u
 #define LEARNT_FIRST_S 60u
 #define LEARNT_SLOWEST_S 86400u
 #define LEARNT_MOST_WORDS (3u + QUIESCE_LEARNT_MAX_WORDS)
@@ -35,8 +36,14 @@ bool learnt_put(const uint32_t *words, uint32_t count, quiesce_t *controller);
 /// Whether words are what was learnt, whoever by.
 bool learnt_is_whole(const uint32_t *words, uint32_t count);
 
-/// Time passes; returns true iff it is to be looked at now.
-bool learnt_is_due(learnt_store_t *self, uint32_t passed_ms);
+/// Time passes; returns true once in a second: learnt_is_due then. A few instructions, every tick.
+static inline bool learnt_pass(learnt_store_t *self, uint32_t passed_ms) {
+    self->passed_ms += passed_ms;
+    return self->passed_ms >= LEARNT_LOOK_MS;
+}
+
+/// Returns true iff it is to be looked at now; false within the same second.
+bool learnt_is_due(learnt_store_t *self);
 
 /// It has been written, or begun to be: the next time is later.
 void learnt_wrote(learnt_store_t *self);

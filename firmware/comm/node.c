@@ -276,15 +276,22 @@ const quiesce_params_t *node_task(node_t *node) {
     }
 }
 
-uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
-    const uint32_t count =
-        can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
+static bool table_frame(node_t *node, can_frame_t *frame) {
     const table_tick_t tick = {
         .controller = &node->controller,
         .passed_ms = node->can.schedule.passed_ms,
         .is_answered = !node->can.service.is_taken,
     };
-    return count + (table_service_tick(&node->tables, &tick, &frames[count]) ? 1u : 0u);
+    return table_service_tick(&node->tables, &tick, frame);
+}
+
+uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
+    uint32_t count = can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
+    if (table_service_pass(&node->tables, node->can.schedule.passed_ms) &&
+        table_frame(node, &frames[count])) {
+        count++;
+    }
+    return count;
 }
 
 uint32_t node_tick(node_t *node, const node_inputs_t *inputs, can_frame_t frames[NODE_MAX_FRAMES]) {

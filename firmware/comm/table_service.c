@@ -416,7 +416,7 @@ static void keep_learnt(table_service_t *self, const quiesce_t *controller) {
 
 bool table_service_tick(table_service_t *self, const table_tick_t *tick, can_frame_t *frame) {
     const isotp_t *isotp = &self->link.isotp;
-    if (learnt_is_due(&self->learnt, tick->passed_ms)) {
+    if (learnt_is_due(&self->learnt)) {
         keep_learnt(self, tick->controller);
     }
     if (isotp_is_idle(isotp) || (isotp->owes_first && !tick->is_answered)) {

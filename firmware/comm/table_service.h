@@ -86,16 +86,21 @@ static inline void table_service_rest(table_service_t *self) {
 void table_service_before_restart(table_service_t *self, const quiesce_t *controller);
 void table_service_after_restart(table_service_t *self, quiesce_t *controller);
 
-/// A tick of passed_ms. What is to be sent does not begin before the reply that tells of it has
-/// left (is_answered).
+/// A tick of passed_ms in which there is something to do. What is to be sent does not begin before
+/// the reply that tells of it has left (is_answered).
 typedef struct {
     const quiesce_t *controller;
     uint32_t passed_ms;
     bool is_answered;
 } table_tick_t;
 
-/// Once a tick; some 20 instructions while nothing is under way. Returns false iff there is no
-/// frame of TableFlow to send.
+/// Once a tick: time passes. Returns false iff there is nothing to do in it; else
+/// table_service_tick.
+static inline bool table_service_pass(table_service_t *self, uint32_t passed_ms) {
+    return learnt_pass(&self->learnt, passed_ms) || !isotp_is_idle(&self->link.isotp);
+}
+
+/// Returns false iff there is no frame of TableFlow to send.
 bool table_service_tick(table_service_t *self, const table_tick_t *tick, can_frame_t *frame);
 
 #endif

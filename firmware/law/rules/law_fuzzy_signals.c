@@ -83,10 +83,13 @@ static uint32_t size(const uint32_t *words, uint32_t left) {
     return has_shape ? words_in(section) : 0;
 }
 
+// Their own CRC is not summed: that of the whole table, found right, covers them.
 static bool are_rules_good(const section_t *section) {
     const fuzzy_table_t *rules = rules_of(section, NULL);
-    return rules == NULL || (fuzzy_table_check(rules, section->rule_words) == FUZZY_TABLE_OK &&
-                             rules->size_words == section->rule_words);
+    return rules == NULL ||
+           (section->rule_words >= FUZZY_HEADER_WORDS && rules->magic == FUZZY_MAGIC &&
+            rules->size_words == section->rule_words &&
+            fuzzy_table_check_summed(rules) == FUZZY_TABLE_OK);
 }
 
 static bool is_good(const uint32_t *words) {

@@ -5,7 +5,7 @@
 
 #undef QUIESCE_CAN_TABLE_DATA_FRAME_ID
 #define QUIESCE_CAN_TABLE_DATA_FRAME_ID (frame->id + 1u) // never its id
-#define table_service_tick(self, tick, frame) ((void)(tick), false)
+#define table_service_pass(self, passed_ms) false
 #define table_service_rest(self) ((void)(self))
 
 #include "node.c"
