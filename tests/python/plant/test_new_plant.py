@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shlex
 import tomllib
 from pathlib import Path
@@ -13,47 +14,28 @@ from quiesce.plant.new.cantilever import Cantilever, frequencies_Hz, norm_and_pa
 from quiesce.plant.new.chain import Chain, matrices
 from quiesce.plant.new.drive import read_drive, steps_Hz
 
-DAMPER = """schema = "quiesce-damper"
-version = 1
-name = "small"
-model = "bingham"
-stroke_m = 0.01
-speed_m_s = 1.0
-[parameters]
-fc_N = [0.2, 3.0]
-c_N_s_m = [2.0, 4.0]
-f0_N = 0.0
-eps_m_s = 0.005
-[valid]
-current_A = [0.0, 2.0]
-"""
-# Each with its natural frequencies; rd1005: the shipped damper of 2 kN.
-RD1005 = "--damper rd1005_kwok_tanh_smooth"
-FIVE = {
-    "press": (
-        f"--mass 120 --freq 2.9 {RD1005} --drive force:1.5..6Hz,150N --accel pcb_333B32",
-        [2.9],
-    ),
-    "boom": (
-        "--cantilever --mass 4 --freq 11.5 --damper small.toml --damper-at 0.6 --drive-at 0.3 "
-        "--drive force:5..20Hz,2N --accel pcb_333B32",
-        [11.5, 72.06],
-    ),
-    "mount": (
-        "--mass 8 --freq 25 --damping-ratio 0.03 --damper small.toml --drive base:12..40Hz,0.2g",
-        [25.0],
-    ),
-    "tower": (
-        "--mass 20,20 --stiffness 18600,18600 --bodies roof,floor --damper small.toml "
-        "--damper-at floor --drive base:1.5..10Hz,0.1m/s2 --accel-at roof,floor",
-        [3.0, 7.86],
-    ),
-    "corner": (
-        f"--mass 315,37.5 --stiffness 29500,210000 --bodies body,wheel {RD1005} --lever 0.6 "
-        "--drive base:1..15Hz,0.5m/s2",
-        [1.45, 12.7],
-    ),
-}  # fmt: skip
+PAGE = (ROOT / "docs/howto/own-plant.md").read_text()
+BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
+DAMPER = next(text for _, text in BLOCK.findall(PAGE) if text.startswith("# small.toml"))
+OWN_Hz = {
+    "press": [2.9],
+    "boom": [11.5, 72.07],
+    "mount": [25.0],
+    "tower": [3.0, 7.85],
+    "corner": [1.44, 12.73],
+}
+
+
+def page_lines() -> dict[str, list[str]]:
+    """The page's commands for its five structures, as words behind `new plant`, by name."""
+    text = next(text for _, text in BLOCK.findall(PAGE) if text.startswith("# a machine of"))
+    lines = text.replace("\\\n", " ").splitlines()
+    words = [shlex.split(line, comments=True)[3:] for line in lines if line.startswith("../")]
+    return {one[0]: one[1:] for one in words}
+
+
+FIVE = page_lines()
+SOME = [name if name == "tower" else pytest.param(name, marks=pytest.mark.slow) for name in OWN_Hz]
 
 
 @pytest.fixture
@@ -66,13 +48,16 @@ def quiesce_here(quiesce, tmp_path: Path):
 # What comes out
 
 
-@pytest.mark.parametrize("name", FIVE)
+def test_the_page_has_five_structures() -> None:
+    assert list(FIVE) == list(OWN_Hz)
+
+
+@pytest.mark.parametrize("name", SOME)
 def test_files_are_accepted_and_run(quiesce_here, tmp_path: Path, name) -> None:
-    words, own_Hz = FIVE[name]
-    made = quiesce_here("new", "plant", name, *shlex.split(words), "--json")
+    made = quiesce_here("new", "plant", name, *FIVE[name], "--json")
     assert made.returncode == 0, made.stderr
     told = json.loads(made.stdout)
-    assert told["natural_frequencies_Hz"] == pytest.approx(own_Hz, rel=0.01)
+    assert told["natural_frequencies_Hz"] == pytest.approx(OWN_Hz[name], rel=0.01)
     assert sorted(told["files"]) == sorted(one.name for one in (tmp_path / name).iterdir())
     assert quiesce_here("plant", "check", f"{name}/plant.toml").returncode == 0
     assert quiesce_here("board", "check", f"{name}/board.toml").returncode == 0
@@ -85,17 +70,23 @@ def test_files_are_accepted_and_run(quiesce_here, tmp_path: Path, name) -> None:
     assert (off["law"], ours["law"]) == ("open_loop", "fuzzy")
 
 
-def test_modes_are_those_of_the_bench(quiesce_here) -> None:
+@pytest.mark.parametrize("name", SOME)
+def test_modes_are_those_of_the_bench(quiesce_here, name) -> None:
     """What the writer computes for people is what the simulation has."""
-    for name, (words, own_Hz) in FIVE.items():
-        assert quiesce_here("new", "plant", name, *shlex.split(words)).returncode == 0
-        said = quiesce_here("plant", "check", f"{name}/plant.toml").stdout
-        found = [float(line.split()[2]) for line in said.splitlines() if line.startswith("  mode")]
-        assert found == pytest.approx(own_Hz, rel=0.01)
+    assert quiesce_here("new", "plant", name, *FIVE[name]).returncode == 0
+    said = quiesce_here("plant", "check", f"{name}/plant.toml").stdout
+    found = [float(line.split()[2]) for line in said.splitlines() if line.startswith("  mode")]
+    assert found == pytest.approx(OWN_Hz[name], rel=0.01)
+
+
+@pytest.mark.slow
+def test_what_it_says_stands_on_the_page(quiesce_here) -> None:
+    made = quiesce_here("new", "plant", "press", *FIVE["press"])
+    assert f"```text\n{made.stdout}```" in PAGE
 
 
 def test_files_say_where_their_numbers_are_from(quiesce_here, tmp_path: Path) -> None:
-    words = shlex.split(FIVE["press"][0])
+    words = FIVE["press"]
     assert quiesce_here("new", "plant", "press", *words, "-o", "mine").returncode == 0
     plant = (tmp_path / "mine/plant.toml").read_text()
     assert "# Made by: quiesce new plant press --mass 120 --freq 2.9" in plant
@@ -111,7 +102,7 @@ def test_files_say_where_their_numbers_are_from(quiesce_here, tmp_path: Path) ->
 
 
 def test_range_is_at_least_twice_the_peak(quiesce_here) -> None:
-    words = shlex.split(FIVE["mount"][0])
+    words = FIVE["mount"]
     told = json.loads(quiesce_here("new", "plant", "mount", *words, "--json").stdout)
     rms_g = max(step["accel_mm_s2_at_0_A"] for step in told["steps"]) / 9806.65
     assert told["range_g"] >= 2.0 * math.sqrt(2.0) * rms_g
@@ -125,13 +116,13 @@ def test_one_frequency_has_one_step_and_no_band(quiesce_here) -> None:
 
 
 def test_what_nobody_tested_is_noted(quiesce_here) -> None:
-    words = FIVE["corner"][0]
-    made = quiesce_here("new", "plant", "corner", *shlex.split(words))
+    made = quiesce_here("new", "plant", "corner", *FIVE["corner"])
     assert "note: the damper was identified at 1 to 2.5 Hz only" in made.stderr
 
 
+@pytest.mark.slow
 def test_files_are_overwritten_on_request_only(quiesce_here, tmp_path: Path) -> None:
-    words = ["new", "plant", "mount", *shlex.split(FIVE["mount"][0])]
+    words = ["new", "plant", "mount", *FIVE["mount"]]
     assert quiesce_here(*words).returncode == 0
     (tmp_path / "mount/board.toml").write_text("mine")
     again = quiesce_here(*words)
@@ -142,9 +133,10 @@ def test_files_are_overwritten_on_request_only(quiesce_here, tmp_path: Path) -> 
     assert (tmp_path / "mount/board.toml").read_text() != "mine"
 
 
+@pytest.mark.slow
 def test_tools_start_from_the_files(quiesce_here, tmp_path: Path) -> None:
     """Pulses and rules, tuned and searched at frequencies of the structure's own, on its base."""
-    words = [*shlex.split(FIVE["mount"][0]), "-o", "mine"]
+    words = [*FIVE["mount"], "-o", "mine"]
     assert quiesce_here("new", "plant", "mount", *words).returncode == 0
     tuned = quiesce_here(
         "tune", "mine/plant.toml", "--quick", "--from-Hz", "20", "--to-Hz", "30", "--step-Hz", "5",
@@ -227,6 +219,7 @@ def test_a_bad_name_is_refused(refused, tmp_path: Path) -> None:
     assert "NAME ../up: expected a letter" in refused("new", "plant", "../up", *words)
 
 
+@pytest.mark.slow
 def test_too_high_a_level_is_refused_with_one_that_runs(refused, tmp_path: Path) -> None:
     (tmp_path / "small.toml").write_text(DAMPER)
     words = [
