@@ -248,7 +248,7 @@ static const uint32_t *words_to_store(const work_t *work, uint32_t *count) {
 }
 
 // TABLE_SAVE. Returns false while it is written.
-static bool save(const work_t *work, can_node_result_t *result) {
+static bool store_road(const work_t *work, can_node_result_t *result) {
     table_service_t *self = work->self;
     const uint32_t road = work->request->index;
     uint32_t count;
@@ -352,7 +352,7 @@ static bool act(const work_t *work, can_node_result_t *result) {
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_COMMIT_CHOICE:
         return take_arrival(work, true, result);
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_SAVE_CHOICE:
-        return save(work, result);
+        return store_road(work, result);
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_REVERT_CHOICE:
         *result = go_back(work);
         return true;

@@ -29,7 +29,8 @@ Tables tables_for(const quiesce_board_t *board, const quiesce_params_t &params,
         quiesce_owner_t owner = QUIESCE_OF_LAW;
         (void)quiesce_table_kind(words.front(), &owner);
         if (use_table(*trial, words) != QUIESCE_TABLE_MAGIC) {
-            tables[owner == QUIESCE_OF_TRACKER ? LOCKSTEP_TRACKER_TABLE : LOCKSTEP_LAW_TABLE] = words;
+            tables[owner == QUIESCE_OF_TRACKER ? LOCKSTEP_TRACKER_TABLE : LOCKSTEP_LAW_TABLE] =
+                words;
         }
     }
     return tables;

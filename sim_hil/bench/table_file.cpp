@@ -31,7 +31,11 @@ TableWords load_of_law(const std::string &file, std::int32_t law) {
 TableWords load_of_tracker(const std::string &file) {
     TableWords words = read_table(file).words;
     const auto count = static_cast<std::uint32_t>(words.size());
-    require_ok(quiesce_table_check(words.data(), count), file, words);
+    quiesce_owner_t owner = QUIESCE_OF_LAW;
+    (void)quiesce_table_kind(words.front(), &owner);
+    require_ok(owner == QUIESCE_OF_TRACKER ? quiesce_table_check(words.data(), count)
+                                           : QUIESCE_TABLE_MAGIC,
+               file, words);
     return words;
 }
 

@@ -44,9 +44,10 @@ Span most_of(const Bins &bins, std::int64_t count) {
     return {quantile(bins, count, kEdge), quantile(bins, count, 1.0 - kEdge)};
 }
 
-std::string text_of(const Span &span, const char *unit) {
+/// digits: as many as are known.
+std::string text_of(const Span &span, const char *unit, int digits) {
     std::ostringstream out;
-    out.precision(3);
+    out.precision(digits);
     out << span.low;
     if (span.high > kMargin * span.low) {
         out << " to " << span.high;
@@ -62,7 +63,7 @@ void tell(const Span &covered, const Spread &visited, const Span &allowed, const
         return;
     }
     std::string text =
-        what + text_of(covered, unit) + "; this run is at " + text_of(outside->most, unit);
+        what + text_of(covered, unit, 3) + "; this run is at " + text_of(outside->most, unit, 2);
     if (outside->part < kAll) {
         text += " for " + std::to_string(std::lround(100.0 * outside->part)) + " % of its time";
     }

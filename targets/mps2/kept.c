@@ -1,7 +1,5 @@
 #include "kept.h"
 
-#include <string.h>
-
 #include "can_node.h"
 #include "table_file.h"
 
@@ -25,6 +23,12 @@ uint32_t kept_writes(const kept_t *kept, keeper_record_t record) {
     return hal_nvm_writes(&kept->nvm, (uint32_t)record);
 }
 
+static void copy(uint32_t *to, const uint32_t *from, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        to[i] = from[i];
+    }
+}
+
 // Parameters come after the hash of those that ship.
 static uint32_t head_words(keeper_record_t record) {
     return record == KEEPER_PARAMS ? 1u : 0u;
@@ -35,7 +39,7 @@ bool kept_read_params(kept_t *kept, quiesce_params_t *params) {
         kept->words[0] != kept->shipped_hash) {
         return false;
     }
-    memcpy(params, &kept->words[1], sizeof *params);
+    copy((uint32_t *)(void *)params, &kept->words[1], QUIESCE_PARAM_COUNT);
     return true;
 }
 
@@ -50,9 +54,7 @@ keeper_answer_t kept_store(void *context, keeper_record_t record, const uint32_t
         return KEEPER_FAILED;
     }
     kept->words[0] = kept->shipped_hash;
-    if (count > 0u) {
-        memcpy(&kept->words[head], words, count * sizeof *words);
-    }
+    copy(&kept->words[head], words, count);
     kept->is_writing = hal_nvm_begin(&kept->nvm, (uint32_t)record, kept->words, head + count);
     return kept->is_writing ? KEEPER_BEGUN : KEEPER_FAILED;
 }

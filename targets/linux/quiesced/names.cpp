@@ -81,8 +81,7 @@ const char *verdict_text(quiesce_table_verdict_t verdict) {
         "a membership is out of range",
         "a rule names what is not there",
         "a term is out of range",
-        "inputs, outputs or units are not the law's, the board lacks a signal or damper that it "
-        "needs, or it is made for another tick_rate_Hz",
+        "made for another tick_rate_Hz, or for signals or dampers that are not there",
         "its points do not rise, or a coefficient, limit, band, power or current is out of range",
         "made for another board",
     };

@@ -204,14 +204,13 @@ void Service::store_words() {
         return;
     }
     const std::string error = store(*order);
-    const bool is_of_params = order->record == KEEPER_PARAMS;
-    const std::string what = is_of_params ? "parameters" : road_name(road_of(order->record));
-    const bool is_forgotten = order->of.count == 0;
+    const char *what =
+        order->record == KEEPER_PARAMS ? "parameters" : road_name(road_of(order->record));
+    const char *done = order->of.count == 0 ? "forgotten: " : "saved: ";
     exchange_.to_store.drop();
     sink_.write(error.empty() ? LogLevel::info : LogLevel::error,
-                what + (!error.empty() ? " not saved: " + error
-                        : is_forgotten ? " as stored is forgotten"
-                                       : " saved"));
+                error.empty() ? done + std::string(what)
+                              : std::string("not saved: ") + what + ": " + error);
     exchange_.store_result.store(error.empty() ? StoreResult::stored : StoreResult::failed);
 }
 

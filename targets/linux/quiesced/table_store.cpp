@@ -62,7 +62,8 @@ StoredTable TableStore::load(keeper_record_t record, const StoredOver &over,
     const char *why = verdict == NVM_OK ? change_since(record, kept.over, over) : error.text;
     const std::uint32_t count = std::min(kept.count, most_words(record));
     if (why != nullptr && (verdict != NVM_OK || count > 0)) {
-        note = std::string(road_name(road_of(record))) + " as stored is not used: " + why;
+        note = road_name(road_of(record)) +
+               std::string(record == KEEPER_LEARNT ? "" : " as stored") + " is not used: " + why;
     }
     const auto begin = kept.words.begin();
     return {why == nullptr ? TableWords(begin, begin + count) : TableWords(), kept.writes};

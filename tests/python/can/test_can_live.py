@@ -527,6 +527,13 @@ def test_list_says_why(quiesce) -> None:
         "set",
         "stop",
         "freeze",
+        "load",
+        "tables",
+        "revert",
+        "fetch",
+        "save-learnt",
+        "restore-learnt",
+        "forget-learnt",
         "bus-load",
     ],
 )

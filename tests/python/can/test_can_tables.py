@@ -520,16 +520,7 @@ def test_verdicts_are_the_firmwares() -> None:
     assert {number: one.label for number, one in VERDICTS.items()} == rows
 
 
-def test_kinds_are_the_firmwares() -> None:
-    """Each law's and tracker's, and what is learnt."""
-    found = set()
-    for file in sorted((ROOT / "firmware").glob("*/**/*.[ch]")):
-        if "generated" not in file.parts:
-            text = file.read_text()
-            found |= set(re.findall(r"#define (\w+) UINT32_C\((0x\w{8})\)", text))
-    inside = ("TABLE_FILE_MAGIC", "ADAPT_STORE_MAGIC")  # of the file, of what a learnt table holds
-    magics = {name: int(n, 16) for name, n in found if re.search("MAGIC|LEARNT", name)}
-    assert {n for name, n in magics.items() if name not in inside} == set(kinds.KINDS)
+def test_who_works_with_a_kind_is_there() -> None:
     for kind in kinds.KINDS.values():
         assert set(users_of(kind)) <= set(LABELS[chooser_of(kind)])
 

@@ -230,6 +230,13 @@ def test_image_controls_over_the_bus_and_stops(rig: Rig) -> None:
     rig.until("all cyclic messages", lambda _: cyclic <= rig.seen.keys())
     assert rig.seen["Identification"]["interface_version"] == 3
 
+    # The table of the law that ships: its first frame.
+    for _ in range(10):
+        if "TableFlow" not in rig.seen:  # not yet, or lost
+            assert rig.ask("TABLE_SEND")["result"] == "DONE"
+            rig.until("a report", lambda name: name == "CanHealth")
+    assert "TableFlow" in rig.seen
+
     # Parameters: another law, seen in the demand.
     for name, value in PARAMETERS.items():
         assert rig.ask("STAGE", param_index(name), value)["result"] == "DONE", name

@@ -174,7 +174,7 @@ def test_what_a_controller_cannot_hold_is_refused() -> None:
     currents = [float(i) for i in np.linspace(0.0, 1.0, MAX_CURRENTS)]
     forces = [[10.0 + 10.0 * i for i in currents] for _ in speeds]
     large = map_words(made(speeds, currents, forces))
-    with pytest.raises(ValueError, match="2256 words; a controller takes 2048"):
+    with pytest.raises(ValueError, match="2256 words, 9024 bytes; a controller takes 2048 words"):
         joined([large, large, large, large])
 
 

@@ -45,7 +45,7 @@ FIVE = {
     ),
     "tower": (
         "--mass 20,20 --stiffness 18600,18600 --bodies roof,floor --damper small.toml "
-        "--damper-at floor --drive base:1.5..10Hz,0.2m/s2 --accel-at roof,floor",
+        "--damper-at floor --drive base:1.5..10Hz,0.1m/s2 --accel-at roof,floor",
         [3.0, 7.86],
     ),
     "corner": (

@@ -284,8 +284,8 @@ TEST(Rig, noise_of_the_plant_is_before_that_of_the_sensors_file) {
 class TwoCurrents final : public quiesce::ControllerLink {
   public:
     std::string target() const override { return "two"; }
-    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t & /*params*/,
-                      const Tables & /*tables*/) override {
+    quiesce::StartAnswer start(const quiesce_board_t *board, const quiesce_params_t & /*params*/,
+                               const quiesce::Tables & /*tables*/) override {
         return {board != nullptr};
     }
     void exchange(const lockstep_stimulus_t & /*in*/, lockstep_reply_t &reply) override {

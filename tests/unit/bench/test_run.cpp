@@ -104,8 +104,9 @@ TEST(Run, a_disabled_driver_gives_no_current) {
     class Disabled final : public quiesce::ControllerLink {
       public:
         std::string target() const override { return "disabled"; }
-        StartAnswer start(const quiesce_board_t * /*board*/, const quiesce_params_t & /*params*/,
-                          const Tables & /*tables*/) override {
+        quiesce::StartAnswer start(const quiesce_board_t * /*board*/,
+                                   const quiesce_params_t & /*params*/,
+                                   const quiesce::Tables & /*tables*/) override {
             return {true};
         }
         void exchange(const lockstep_stimulus_t & /*in*/, lockstep_reply_t &reply) override {

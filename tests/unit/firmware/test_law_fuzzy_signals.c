@@ -232,12 +232,18 @@ typedef struct {
 
 static void test_a_section_s_own_words_are_checked(void) {
     static const mistake_t mistakes[] = {
-        {0, 0, QUIESCE_TABLE_SHAPE},          {0, 5, QUIESCE_TABLE_SHAPE},
-        {1, 4, QUIESCE_TABLE_SHAPE},          {2, 81, QUIESCE_TABLE_SHAPE},
-        {2, UINT32_MAX, QUIESCE_TABLE_SHAPE}, {3, 0xFF, QUIESCE_TABLE_POINT},
-        {4, 0, QUIESCE_TABLE_POINT},          {5, 30, QUIESCE_TABLE_POINT},
-        {6, 2, QUIESCE_TABLE_POINT},          {7, 1, QUIESCE_TABLE_POINT},
-        {8, 63, QUIESCE_TABLE_POINT},         {9, 1, QUIESCE_TABLE_POINT},
+        {0, 0, QUIESCE_TABLE_SHAPE},
+        {0, 5, QUIESCE_TABLE_SHAPE},
+        {1, 4, QUIESCE_TABLE_SHAPE},
+        {2, 81, QUIESCE_TABLE_SHAPE},
+        {2, UINT32_MAX, QUIESCE_TABLE_SHAPE},
+        {3, 0xFF, QUIESCE_TABLE_POINT},
+        {4, 0, QUIESCE_TABLE_POINT},
+        {5, 30, QUIESCE_TABLE_POINT},
+        {6, 2, QUIESCE_TABLE_POINT},
+        {7, 1, QUIESCE_TABLE_POINT},
+        {8, 63, QUIESCE_TABLE_POINT},
+        {9, 1, QUIESCE_TABLE_POINT},
         {11, 79, QUIESCE_TABLE_POINT},
         {10, 0, QUIESCE_TABLE_OK}, // of the rules' own CRC the whole table's is enough
     };

@@ -95,12 +95,12 @@ TEST(comparing_link, disagreement_on_parameters_is_an_error) {
 }
 
 TEST(comparing_link, disagreement_on_why_a_table_is_refused_is_an_error) {
-    const Tables tables = {{{1, 2, 3, 4}, {}}};
+    const Tables tables = {{std::vector<std::uint32_t>(20, 7), {}}};
     InProcessLink host;
     FaultyLink faulty(0, 0, 0);
     ComparingLink link(host, faulty);
     EXPECT_EQ(link.start(nullptr, default_params(), tables).table.verdict,
-              std::uint32_t{QUIESCE_TABLE_MAGIC});
+              std::uint32_t{QUIESCE_TABLE_SIZE});
     faulty.accepts = false;
     faulty.refused_table = QUIESCE_TABLE_CRC;
     expect_contains(error_of([&] { link.start(nullptr, default_params(), tables); }), "disagree");

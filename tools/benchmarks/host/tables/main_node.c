@@ -1,7 +1,7 @@
 // The controller with its CAN interface as a program of this machine: SLCAN on a serial line, ticks
-// from the clock, samples and the operator's enable from the bus, records as files. Runs until it is
-// killed. A busy machine makes it slow and changes nothing else: it waits for its reader, and for
-// the sample that answers its demand; ticks that it missed do not come.
+// from the clock, samples and the operator's enable from the bus, records as files. Runs until it
+// is killed. Where its reader is slow it waits, so that a busy machine loses no frame; ticks that
+// it missed do not come.
 //
 // table_node LINE FOLDER
 #include "quiesce_can.h"

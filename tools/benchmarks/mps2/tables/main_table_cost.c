@@ -21,7 +21,13 @@
 
 enum { IDLE, TRANSFER, COMMIT, USED, FETCH, MINUTE };
 enum { MOST_HEARD = 3, MINUTE_TICKS = 60000, AROUND_ticks = 10, MOST_ANSWER_ticks = 1000 };
-enum { RATE_Hz = 1000, FREQ_mHz = 10000, COUNTS = 40000, OPERATOR_ticks = 100, SETTLED_ticks = 2500 };
+enum {
+    RATE_Hz = 1000,
+    FREQ_mHz = 10000,
+    COUNTS = 40000,
+    OPERATOR_ticks = 100,
+    SETTLED_ticks = 2500
+};
 
 #define CRC_WORD 1u
 #define COUNT_WORD 2u
@@ -128,9 +134,8 @@ static void ask(rig_t *rig, uint8_t operation, uint8_t road, uint32_t value, boo
 
 // The host's flow control lets all of it go.
 static void fetch(rig_t *rig, uint8_t road, const uint32_t *words, bool is_counted) {
-    can_frame_t flow = {.id = QUIESCE_CAN_TABLE_DATA_FRAME_ID,
-                        .length = ISOTP_FRAME_BYTES,
-                        .data = {0x30, 0, 2}};
+    can_frame_t flow = {
+        .id = QUIESCE_CAN_TABLE_DATA_FRAME_ID, .length = ISOTP_FRAME_BYTES, .data = {0x30, 0, 2}};
     ask(rig, QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_SEND_CHOICE, road, 0, is_counted);
     tick(rig, is_counted);
     hear(rig, flow);
@@ -180,7 +185,7 @@ static void run_parts(rig_t *rig, const order_t *order, const uint32_t *words) {
     }
     transfer(rig, words, part == TRANSFER);
     ask(rig, QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_COMMIT_CHOICE, 0, words[CRC_WORD],
-              part == COMMIT);
+        part == COMMIT);
     run(rig, order->ticks, part == USED);
     fetch(rig, road_of(words), words, part == FETCH);
 }

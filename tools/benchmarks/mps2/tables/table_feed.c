@@ -12,8 +12,8 @@ void table_feed_begin(table_feed_t *self, const uint32_t *words, uint32_t count)
 
 static uint8_t byte_of(const table_feed_t *self, uint32_t at) {
     const uint32_t word = at / 4u;
-    const uint32_t value = word < TABLE_FILE_HEAD_WORDS ? self->head[word]
-                                                        : self->words[word - TABLE_FILE_HEAD_WORDS];
+    const uint32_t value =
+        word < TABLE_FILE_HEAD_WORDS ? self->head[word] : self->words[word - TABLE_FILE_HEAD_WORDS];
     return (uint8_t)(value >> (8u * (at % 4u)));
 }
 

@@ -30,7 +30,7 @@ from quiesce.tune.phase_table import MOST_POINTS, SETTINGS, PhaseLaw, Point
 from quiesce.tune.phase_words import law_words
 
 from quiesce_benchmarks.tables import samples
-from quiesce_benchmarks.tables.samples import MOST_mA, RATE_Hz, REST_N, Sample
+from quiesce_benchmarks.tables.samples import REST_N, MOST_mA, RATE_Hz, Sample
 
 SEED = 20
 QUANTITIES = ("velocity", "acceleration", "stroke", "stroke velocity")
@@ -57,7 +57,8 @@ def drawn_base(
     """Rules of chance over all inputs, with weights."""
     random = np.random.default_rng(seed)
     inputs = tuple(
-        model.Input(f"x{i}", low, high, grid_sets(low, high)) for i, (low, high) in enumerate(ranges)
+        model.Input(f"x{i}", low, high, grid_sets(low, high))
+        for i, (low, high) in enumerate(ranges)
     )
     terms = tuple(model.Singleton(f"t{i}", value) for i, value in enumerate(np.linspace(0, 1, 64)))
     out = tuple(
@@ -140,9 +141,7 @@ def dense_layers(values: int) -> Layers:
 
 def network(most_words: int) -> list[int]:
     spans = tuple(Span.of(signal(QUANTITIES[i % 4]), -1.0, 1.0) for i in range(8))
-    return NetworkTable(
-        (NetworkSection(spans, 1, MOST_mA, dense_layers(16), 0, RATE_Hz),)
-    ).words()
+    return NetworkTable((NetworkSection(spans, 1, MOST_mA, dense_layers(16), 0, RATE_Hz),)).words()
 
 
 def damper_map(most_words: int) -> list[int]:

@@ -10,7 +10,7 @@ from quiesce.base.errors import BenchFailure
 from quiesce.base.table import format_table
 
 from quiesce_benchmarks.part import Effort, Measured
-from quiesce_benchmarks.tables.client import SLEW_mA, Client, client_of
+from quiesce_benchmarks.tables.client import Client, SLEW_mA, client_of
 from quiesce_benchmarks.tables.line import RUNNING
 from quiesce_benchmarks.tables.parts.roads import prepare
 from quiesce_benchmarks.tables.samples import Sample, all_samples

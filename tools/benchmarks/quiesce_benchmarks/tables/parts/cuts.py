@@ -248,9 +248,7 @@ def power_cuts(scene: Scene, tally: Tally, moments: int, every: int) -> None:
 # ---- all of it ------------------------------------------------------------------------------
 
 
-def on_target(
-    kind: type[Target], words: int, effort: Effort, work: Callable[[Scene], None]
-) -> str:
+def on_target(kind: type[Target], words: int, effort: Effort, work: Callable[[Scene], None]) -> str:
     """Why it ended before its end; empty: it did not."""
     with tempfile.TemporaryDirectory() as folder:
         try:

@@ -248,6 +248,20 @@ def text_of(made: "Made", folder: Path) -> str:
             format_table(head, rows, left=()),
             "",
             f"written    {shown(folder)}: {', '.join(made.names)}",
-            f"run it     ./tools/hil --scenario {shown(folder / 'steps.toml')} --target host",
+            *next_lines(made, folder),
         ]
     )
+
+
+def next_lines(made: "Made", folder: Path) -> list[str]:
+    """What to type with these files."""
+    drive = made.plan.drive
+    plant, steps, rules, pulses = (
+        shown(folder / name) for name in ("plant.toml", "steps.toml", "rules", "pulses")
+    )
+    band = "" if drive.is_single else f" --from-Hz {drive.low_Hz:g} --to-Hz {drive.high_Hz:g}"
+    return [
+        f"run it     ./tools/hil --scenario {steps} --target host",
+        f"rules      ./tools/quiesce rules optimize --scenario {steps} --out {rules}",
+        f"pulses     ./tools/quiesce tune {plant}{band} --out {pulses}",
+    ]

@@ -53,7 +53,7 @@ def chain_structure(
         index_of(names, name, "--accel-at")
     units = np.eye(len(names))
     force = units[index_of(names, force_at, "--drive-at")]
-    stroke = lever * sum(
+    stroke = sum(
         sign * units[names.index(end)] for sign, end in zip((1, -1), ends, strict=True)
         if end != GROUND
     )  # fmt: skip
@@ -66,7 +66,7 @@ def chain_structure(
         *matrix_lines("damping_N_s_m", damping, f"{chain.damping_ratio:g} of each mode"),
         *matrix_lines("stiffness_N_m", stiffness, "--stiffness, or --freq: the springs' own"),
         f"force = {row(force)}    # where the shaker pushes: {force_at}",
-        f"damper = {row(stroke)}    # stroke: {' less '.join(ends)}{lever_text(lever)}",
+        f"damper = {row(stroke)}    # its ends: {' less '.join(ends)}",
         f"sensor = {row(units[names.index(sensors[0])])}    # the accelerometer: {sensors[0]}",
     ]
     for name, unit in zip(names, units, strict=True):
@@ -75,10 +75,6 @@ def chain_structure(
     return Structure(
         f"{masses} kg", lines, tuple(names), list(freqs_Hz), ends, lever, tuple(sensors)
     )
-
-
-def lever_text(lever: float) -> str:
-    return "" if lever == 1.0 else f", times the lever of {lever:g}"
 
 
 def matrix_lines(name: str, matrix: Floats, note: str) -> list[str]:

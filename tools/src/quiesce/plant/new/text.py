@@ -79,6 +79,8 @@ def damper_lines(plan: Plan) -> list[str]:
     lines = [f"# {part.name}: the model and its numbers are in {DAMPER}, a copy.", "[damper]",
              f'file = "{DAMPER}"']  # fmt: skip
     lines += ['command_unit = "V"'] if part.is_in_volts else []
+    if plan.structure.lever != 1.0:
+        lines += [f"ratio = {number(plan.structure.lever)}    # --lever: of its ends' motion"]
     lines += [
         "",
         "[driver]",

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.engine.bench import Bench, setting_options
+from quiesce.engine.params import parameters
 from quiesce.engine.trace import read_trace
 from quiesce.plant.new.text import ONLY, STEPS
 
@@ -32,7 +33,8 @@ class Trial:
 
 def run_trial(bench: Bench, folder: Path, current_mA: int) -> Trial:
     """The steps at a constant current. UsageError in the bench's words where they do not run."""
-    settings = [f"max_current_mA={max(current_mA, 1)}", f"constant_current_mA={current_mA}"]
+    usual_mA = next(one["default"] for one in parameters() if one["name"] == "max_current_mA")
+    settings = [f"max_current_mA={max(current_mA, usual_mA)}", f"constant_current_mA={current_mA}"]
     law = ["--law", "constant", *setting_options(settings)] if current_mA else ["--law", "off"]
     with tempfile.TemporaryDirectory(prefix="quiesce-") as scratch:
         file = Path(scratch) / "trace"
