@@ -18,19 +18,20 @@ static const uint32_t shipped[MY_WORDS] = {
     [FORCE_mN] = 50000,
 };
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    if (count != MY_WORDS) {
+static quiesce_table_verdict_t check(const uint32_t *words) {
+    if (words[TABLE_WORDS] != MY_WORDS) {
         return QUIESCE_TABLE_SIZE;
-    }
-    const quiesce_table_verdict_t verdict = table_check_head(words, count, CONSTANT_FORCE_MAGIC, 1);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
     }
     return words[FORCE_mN] <= VIEW_LIMIT ? QUIESCE_TABLE_OK : QUIESCE_TABLE_POINT;
 }
 
-static const law_table_kind_t force = {
-    .magic = CONSTANT_FORCE_MAGIC, .shipped = shipped, .check = check};
+static const table_kind_t force = {
+    .name = "constant_force",
+    .magic = CONSTANT_FORCE_MAGIC,
+    .least_words = MY_WORDS,
+    .shipped = shipped,
+    .check = check,
+};
 
 // Against the motion, whichever way it goes; nothing at rest.
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {

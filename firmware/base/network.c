@@ -230,9 +230,8 @@ const network_t *network_next(const network_t *self) {
     return (const network_t *)(const void *)&output->coefficient[coefficients_of(output, last)];
 }
 
-quiesce_table_verdict_t network_table_check(const sections_kind_t *kind, const uint32_t *words,
-                                            uint32_t count) {
-    const quiesce_table_verdict_t verdict = sections_check(kind, words, count);
+quiesce_table_verdict_t network_table_check(const sections_kind_t *kind, const uint32_t *words) {
+    const quiesce_table_verdict_t verdict = sections_check(kind, words);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }

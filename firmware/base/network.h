@@ -77,8 +77,7 @@ bool network_is_good(const network_t *self);
 
 /// As sections_check, of a kind with network_size; then SHAPE where all of them together would take
 /// more than NETWORK_MOST_WORK instructions.
-quiesce_table_verdict_t network_table_check(const sections_kind_t *kind, const uint32_t *words,
-                                            uint32_t count);
+quiesce_table_verdict_t network_table_check(const sections_kind_t *kind, const uint32_t *words);
 
 /// Ticks a second that a checked table's delays count in: TABLE_ANY_RATE where it has none, 0 where
 /// they differ.

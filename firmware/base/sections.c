@@ -4,13 +4,8 @@
 
 #include "view_signal.h"
 
-quiesce_table_verdict_t sections_check(const sections_kind_t *kind, const uint32_t *words,
-                                       uint32_t count) {
-    const quiesce_table_verdict_t verdict =
-        table_check_head(words, count, kind->magic, SECTIONS_FIRST - TABLE_HEAD_WORDS);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
+quiesce_table_verdict_t sections_check(const sections_kind_t *kind, const uint32_t *words) {
+    const uint32_t count = words[TABLE_WORDS];
     if (sections_count(words) == 0 || sections_count(words) > QUIESCE_MAX_DAMPERS) {
         return QUIESCE_TABLE_SHAPE;
     }

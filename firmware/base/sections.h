@@ -9,7 +9,6 @@ enum { SECTIONS_COUNT = TABLE_HEAD_WORDS, SECTIONS_FIRST };
 
 /// What a section of a kind is.
 typedef struct {
-    uint32_t magic;
     /// Words of the section that begins here. 0 iff a number in it is out of its range, or it would
     /// need more than left words, of which it reads none behind.
     uint32_t (*size)(const uint32_t *section, uint32_t left);
@@ -19,9 +18,9 @@ typedef struct {
     uint64_t (*needs)(const uint32_t *section, uint32_t i);
 } sections_kind_t;
 
-/// As table_check_head; then SHAPE for numbers and sizes, POINT for values.
-quiesce_table_verdict_t sections_check(const sections_kind_t *kind, const uint32_t *words,
-                                       uint32_t count);
+/// What a kind's check says of such tables: SHAPE for numbers and sizes, POINT for values. They
+/// have SECTIONS_FIRST words at least.
+quiesce_table_verdict_t sections_check(const sections_kind_t *kind, const uint32_t *words);
 
 /// VIEW_ bits that a checked table needs: each of its dampers, and what their sections need.
 uint64_t sections_need(const sections_kind_t *kind, const uint32_t *words);

@@ -4,8 +4,6 @@
 
 #include "table.h"
 
-#define TABLE_CRC_WORD 1 ///< of every kind of table
-
 // Of what a law needs that demands forces, or lacks its table: a bit that no view has. Such a law
 // fails the first test of a tick, and the others do not pay for a second one.
 #define MORE (UINT64_C(1) << 63)
@@ -118,7 +116,7 @@ static uint64_t force_table_needs(const control_t *self, const uint32_t *words) 
 }
 
 static void find_needs(control_t *self) {
-    const law_table_kind_t *kind = self->law->kind;
+    const table_kind_t *kind = self->law->kind;
     const bool has_own = kind != NULL && kind->needs != NULL && self->setup.table != NULL;
     const bool wants_more = self->forces.track != NULL || lacks_table(self);
     self->needs = self->fixed_needs | (has_own ? kind->needs(self->setup.table) : 0) |
@@ -158,80 +156,71 @@ static void use_law_table(control_t *self, const uint32_t *words) {
     }
 }
 
-quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic) {
-    const track_table_kind_t *map = forces_kind(&self->forces);
-    if (map != NULL && magic == map->magic) {
-        use_force_table(self, NULL);
-        return QUIESCE_TABLE_OK;
-    }
-    const law_table_kind_t *kind = self->law->kind;
-    if (kind == NULL || magic != kind->magic) {
-        return QUIESCE_TABLE_MAGIC;
-    }
-    use_law_table(self, kind->shipped);
-    return QUIESCE_TABLE_OK;
+static const table_kind_t *kind_of(const control_t *self, quiesce_owner_t owner) {
+    return owner == QUIESCE_OF_LAW ? self->law->kind : forces_kind(&self->forces);
 }
 
-// Of the law's kind; of the tracker's where the law has none.
-static quiesce_table_verdict_t use_shipped(control_t *self) {
-    const law_table_kind_t *kind = self->law->kind;
-    const track_table_kind_t *map = forces_kind(&self->forces);
+static void use_table(control_t *self, quiesce_owner_t owner, const uint32_t *words) {
+    if (owner == QUIESCE_OF_LAW) {
+        use_law_table(self, words);
+    } else {
+        use_force_table(self, words);
+    }
+}
+
+bool control_drop(control_t *self, quiesce_owner_t owner) {
+    const table_kind_t *kind = kind_of(self, owner);
     if (kind != NULL) {
-        return control_drop(self, kind->magic);
+        use_table(self, owner, kind->shipped);
     }
-    return map != NULL ? control_drop(self, map->magic) : QUIESCE_TABLE_MAGIC;
+    return kind != NULL;
 }
 
-static bool is_of_this_rate(const control_t *self, uint32_t (*rate_Hz)(const uint32_t *words),
+const uint32_t *control_table(const control_t *self, quiesce_owner_t owner) {
+    return owner == QUIESCE_OF_LAW ? self->setup.table : self->forces.table;
+}
+
+// Whose words are; the law's where they are nobody's.
+static quiesce_owner_t owner_of(const control_t *self, const uint32_t *words, uint32_t count) {
+    const table_kind_t *map = forces_kind(&self->forces);
+    return map != NULL && count > 0 && words[TABLE_MAGIC] == map->magic ? QUIESCE_OF_TRACKER
+                                                                        : QUIESCE_OF_LAW;
+}
+
+// Each of a tracker's table is each that there is; a law's says which ones.
+static bool is_served(const control_t *self, quiesce_owner_t owner, const uint32_t *words) {
+    const table_kind_t *kind = kind_of(self, owner);
+    const uint64_t needs = kind->needs != NULL ? kind->needs(words) : 0;
+    const uint64_t there =
+        owner == QUIESCE_OF_TRACKER ? needs_there(needs, self->bodies, self->dampers) : needs;
+    return (there & ~self->provided) == 0;
+}
+
+static bool is_of_this_rate(const control_t *self, const table_kind_t *kind,
                             const uint32_t *words) {
-    const uint32_t made_for_Hz = rate_Hz != NULL ? rate_Hz(words) : TABLE_ANY_RATE;
+    const uint32_t made_for_Hz = kind->rate_Hz != NULL ? kind->rate_Hz(words) : TABLE_ANY_RATE;
     return made_for_Hz == TABLE_ANY_RATE ||
            made_for_Hz == (uint32_t)self->setup.params.tick_rate_Hz;
 }
 
-// Whether it is good, of this tick rate, and the board has what it needs.
-static quiesce_table_verdict_t check_law_table(const control_t *self, const uint32_t *words,
-                                               uint32_t count) {
-    const law_table_kind_t *kind = self->law->kind;
+quiesce_table_verdict_t control_check(const control_t *self, const uint32_t *words, uint32_t count,
+                                      bool is_summed) {
+    const quiesce_owner_t owner = owner_of(self, words, count);
+    const table_kind_t *kind = kind_of(self, owner);
+    if (kind == NULL) {
+        return QUIESCE_TABLE_MAGIC;
+    }
     const quiesce_table_verdict_t verdict =
-        kind != NULL ? kind->check(words, count) : QUIESCE_TABLE_MAGIC;
+        is_summed ? table_check_summed(kind, words, count) : table_check(kind, words, count);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
-    const bool is_served = kind->needs == NULL || (kind->needs(words) & ~self->provided) == 0;
-    return is_served && is_of_this_rate(self, kind->rate_Hz, words) ? QUIESCE_TABLE_OK
-                                                                    : QUIESCE_TABLE_FIT;
+    return is_served(self, owner, words) && is_of_this_rate(self, kind, words) ? QUIESCE_TABLE_OK
+                                                                               : QUIESCE_TABLE_FIT;
 }
 
-static quiesce_table_verdict_t check_force_table(const control_t *self, const uint32_t *words,
-                                                 uint32_t count) {
-    const track_table_kind_t *kind = forces_kind(&self->forces);
-    const quiesce_table_verdict_t verdict = kind->check(words, count);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
-    const bool is_served = (force_table_needs(self, words) & ~self->provided) == 0;
-    return is_served && is_of_this_rate(self, kind->rate_Hz, words) ? QUIESCE_TABLE_OK
-                                                                    : QUIESCE_TABLE_FIT;
-}
-
-quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count) {
-    if (words == NULL) {
-        return use_shipped(self);
-    }
-    const track_table_kind_t *map = forces_kind(&self->forces);
-    const bool is_map = map != NULL && count > 0 && words[0] == map->magic;
-    const quiesce_table_verdict_t verdict =
-        is_map ? check_force_table(self, words, count) : check_law_table(self, words, count);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
-    if (is_map) {
-        use_force_table(self, words);
-    } else {
-        use_law_table(self, words);
-    }
-    return QUIESCE_TABLE_OK;
+void control_use(control_t *self, const uint32_t *words) {
+    use_table(self, owner_of(self, words, words[TABLE_WORDS]), words);
 }
 
 static bool has_all(const control_t *self, uint64_t valid) {
@@ -297,5 +286,5 @@ bool control_load(control_t *self, const quiesce_learnt_t *in) {
 uint32_t control_table_hash(const control_t *self) {
     const uint32_t *const table =
         self->setup.table != NULL ? self->setup.table : self->forces.table;
-    return table != NULL ? table[TABLE_CRC_WORD] : 0u;
+    return table != NULL ? table[TABLE_CRC] : 0u;
 }

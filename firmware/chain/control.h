@@ -31,12 +31,16 @@ uint64_t control_serves(const quiesce_params_t *params);
 /// The law of the parameters, which have been checked, with the table that ships, from rest.
 void control_init(control_t *self, const places_t *places, const quiesce_params_t *params);
 
-/// Another table, of the law or of the tracker; NULL: the one of the law that ships, or none. A
-/// table that is refused changes nothing.
-quiesce_table_verdict_t control_use(control_t *self, const uint32_t *words, uint32_t count);
+/// Whether law or tracker takes words, whose CRC has just been found right where they are summed.
+quiesce_table_verdict_t control_check(const control_t *self, const uint32_t *words, uint32_t count,
+                                      bool is_summed);
 
-/// As quiesce_table_drop.
-quiesce_table_verdict_t control_drop(control_t *self, uint32_t magic);
+/// Another table, of the law or of the tracker, which control_check accepts.
+void control_use(control_t *self, const uint32_t *words);
+
+/// As quiesce_table_drop and quiesce_table_in_use.
+bool control_drop(control_t *self, quiesce_owner_t owner);
+const uint32_t *control_table(const control_t *self, quiesce_owner_t owner);
 
 /// As quiesce_lacks_table.
 const char *control_lacks_table(const control_t *self);

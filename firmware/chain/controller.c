@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "control.h"
+#include "controller_tables.h"
 #include "drive.h"
 #include "rest.h"
 #include "signal_chain.h"
@@ -392,20 +393,35 @@ static const control_t *known_of(const quiesce_t *self) {
     return &((const controller_t *)(const void *)self->opaque)->control;
 }
 
-quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
+quiesce_table_verdict_t controller_check_table(const quiesce_t *self, const uint32_t *words,
+                                               uint32_t count, bool is_summed) {
+    return control_check(known_of(self), words, count, is_summed);
+}
+
+quiesce_table_verdict_t controller_use_table(quiesce_t *self, const uint32_t *words, uint32_t count,
+                                             bool is_summed) {
     controller_t *c = (controller_t *)(void *)self->opaque;
-    const quiesce_table_verdict_t verdict = control_use(&c->control, words, count);
+    const quiesce_table_verdict_t verdict = control_check(&c->control, words, count, is_summed);
     if (verdict == QUIESCE_TABLE_OK) {
+        control_use(&c->control, words);
         sweep_tables(c, words);
     }
     return verdict;
 }
 
-quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic) {
+quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count) {
+    return controller_use_table(self, words, count, false);
+}
+
+bool quiesce_table_drop(quiesce_t *self, quiesce_owner_t owner) {
     controller_t *c = (controller_t *)(void *)self->opaque;
-    const quiesce_table_verdict_t verdict = control_drop(&c->control, magic);
+    const bool is_dropped = control_drop(&c->control, owner);
     sweep_tables(c, NULL);
-    return verdict;
+    return is_dropped;
+}
+
+const uint32_t *quiesce_table_in_use(const quiesce_t *self, quiesce_owner_t owner) {
+    return control_table(known_of(self), owner);
 }
 
 void quiesce_watch(quiesce_t *self, uint32_t which, const uint32_t *words, uint32_t count) {

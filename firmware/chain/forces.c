@@ -20,7 +20,7 @@ void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *param
     *self = (forces_t){.track = tracker_of(law, params)};
 }
 
-const track_table_kind_t *forces_kind(const forces_t *self) {
+const table_kind_t *forces_kind(const forces_t *self) {
     return self->track != NULL ? self->track->kind : NULL;
 }
 
@@ -30,7 +30,7 @@ void forces_use(forces_t *self, forces_state_t *state, const uint32_t *table) {
 }
 
 uint64_t forces_table_needs(const forces_t *self, const uint32_t *table) {
-    const track_table_kind_t *kind = forces_kind(self);
+    const table_kind_t *kind = forces_kind(self);
     return table != NULL && kind->needs != NULL ? kind->needs(table) : 0;
 }
 

@@ -38,7 +38,7 @@ bool forces_may_need_more(const law_t *law, const quiesce_params_t *params);
 void forces_init(forces_t *self, const law_t *law, const quiesce_params_t *params);
 
 /// The kind of the tracker's table. NULL: no tracker, or it needs none.
-const track_table_kind_t *forces_kind(const forces_t *self);
+const table_kind_t *forces_kind(const forces_t *self);
 
 /// Takes words of that kind, which have been checked; NULL: none from now on. The tracker starts
 /// from rest.

@@ -80,6 +80,14 @@ void can_node_answer(can_node_t *self, can_node_result_t result, uint32_t param_
     can_service_answer(&self->service, result, param_index);
 }
 
+void can_node_answer_value(can_node_t *self, can_node_result_t result, int32_t value) {
+    can_service_answer_value(&self->service, result, value);
+}
+
+const can_service_request_t *can_node_request(const can_node_t *self) {
+    return &self->service.request;
+}
+
 const can_node_counters_t *can_node_counters(const can_node_t *self) {
     return &self->receive.counters;
 }

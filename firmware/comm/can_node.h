@@ -63,8 +63,14 @@ can_node_task_t can_node_task(const can_node_t *self);
 /// Parameters as staged; only for CAN_NODE_APPLY.
 const quiesce_params_t *can_node_staged(const can_node_t *self);
 
+/// The request that CAN_NODE_TABLE is about.
+const can_service_request_t *can_node_request(const can_node_t *self);
+
 /// Answers the task. param_index: of the parameter that was refused, else 0.
 void can_node_answer(can_node_t *self, can_node_result_t result, uint32_t param_index);
+
+/// Answers it with a value.
+void can_node_answer_value(can_node_t *self, can_node_result_t result, int32_t value);
 
 /// The frames that are due after the control step of this controller. Returns their number.
 uint32_t can_node_tick(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,

@@ -83,7 +83,7 @@ void can_unsent_count(can_unsent_t *unsent, uint32_t id) {
     if (id <= QUIESCE_CAN_STATUS_FRAME_ID) {
         unsent->demands++;
     } else if (id == QUIESCE_CAN_SERVICE_REPLY_FRAME_ID ||
-               id == QUIESCE_CAN_FAULT_FREEZE_FRAME_ID) {
+               id == QUIESCE_CAN_FAULT_FREEZE_FRAME_ID || id == QUIESCE_CAN_TABLE_FLOW_FRAME_ID) {
         unsent->answers++;
     } else {
         unsent->telemetry++;

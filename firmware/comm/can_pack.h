@@ -10,7 +10,7 @@
 /// Frames that never left since the start, by class; wrapping.
 typedef struct {
     uint32_t demands;   ///< demands and Status, for newer ones
-    uint32_t answers;   ///< service replies, pages of the freeze frame
+    uint32_t answers;   ///< service replies, frames of transfers, pages of the freeze frame
     uint32_t telemetry; ///< all others
 } can_unsent_t;
 

@@ -108,6 +108,18 @@ static can_node_result_t act(can_service_t *self, int32_t value, const can_servi
         return send_record(held->record, value, &self->reply);
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_CLEAR_RECORD_CHOICE:
         return clear_record(held->record);
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_CHECK_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_COMMIT_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_REVERT_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_SHIP_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_SAVE_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_INFO_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_SEND_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_LEARNT_RESTORE_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_LEARNT_FORGET_CHOICE:
+        self->task = CAN_NODE_TABLE;
+        self->save_ms = CAN_SERVICE_SAVE_MS;
+        return CAN_NODE_DONE;
     default:
         return CAN_NODE_NO_SUCH_OPERATION;
     }
@@ -132,6 +144,8 @@ void can_service_request(can_service_t *self, const can_frame_t *frame,
     }
     self->is_taken = true;
     self->reply = reply;
+    self->request =
+        (can_service_request_t){request.operation, request.param_index, request.param_value};
     self->reply.result = act(self, request.param_value, held);
 }
 
@@ -146,6 +160,11 @@ void can_service_answer(can_service_t *self, can_node_result_t result, uint32_t 
     self->task = CAN_NODE_NOTHING;
 }
 
+void can_service_answer_value(can_service_t *self, can_node_result_t result, int32_t value) {
+    self->reply.param_value = value;
+    can_service_answer(self, result, 0);
+}
+
 static uint32_t minus(uint32_t from, uint32_t amount) {
     return from > amount ? from - amount : 0u;
 }
@@ -154,7 +173,8 @@ void can_service_elapse(can_service_t *self, uint32_t passed_ms) {
     self->quiet_ms = minus(self->quiet_ms, passed_ms);
     self->raw_ms = minus(self->raw_ms, passed_ms);
     self->save_ms = minus(self->save_ms, passed_ms);
-    if (self->task == CAN_NODE_SAVE && self->save_ms == 0u) {
+    const bool can_wait = self->task == CAN_NODE_SAVE || self->task == CAN_NODE_TABLE;
+    if (can_wait && self->save_ms == 0u) {
         can_service_answer(self, CAN_NODE_STORE_FAILED, 0);
     }
 }

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "quiesce_can.h"
+
 // Between a start and the first step: the command, and what messages that go out before say of it.
 // The drivers are off; the self-test wants them so.
 static void rest(node_t *node) {
@@ -16,11 +18,16 @@ static void rest(node_t *node) {
 
 bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_t *params,
                node_sources_t from) {
-    *node = (node_t){.board = board,
-                     .params = *params,
-                     .most_mA = board == NULL ? params->max_current_mA : QUIESCE_HIGHEST_CURRENT_mA,
-                     .from = from};
+    node->board = board;
+    node->params = *params;
+    node->most_mA = board == NULL ? params->max_current_mA : QUIESCE_HIGHEST_CURRENT_mA;
+    node->from = from;
+    node->bus = (can_node_inputs_t){0};
+    node->said = (can_node_tick_t){0};
+    node->restarts = 0;
+    node->retunes = 0;
     can_node_init(&node->can, board, params);
+    table_service_init(&node->tables, board);
     const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
                                            : quiesce_init_board(&node->controller, board, params);
     if (board != NULL) { // a restart reads it again
@@ -38,13 +45,45 @@ uint32_t node_dampers(const node_t *node) {
 void node_restart(node_t *node, const quiesce_params_t *params) {
     node->params = *params;
     node->restarts++;
+    table_service_before_restart(&node->tables, &node->controller);
     (void)quiesce_restart(&node->controller, node->board, params);
+    table_service_after_restart(&node->tables, &node->controller);
     rest(node);
     can_node_use_params(&node->can, node->board, &node->params);
 }
 
+void node_use_store(node_t *node, keeper_store_t store, void *context) {
+    node->tables.keeper.store = store;
+    node->tables.keeper.context = context;
+}
+
+quiesce_table_verdict_t node_found(node_t *node, const table_found_t *found) {
+    return table_service_found(&node->tables, &node->controller, found);
+}
+
+quiesce_table_verdict_t node_ship(node_t *node, const uint32_t *file) {
+    return table_service_ship(&node->tables, &node->controller, file);
+}
+
+bool node_offer(node_t *node, const table_found_t *found, quiesce_table_verdict_t *verdict) {
+    return table_service_offer(&node->tables, &node->controller, found, verdict);
+}
+
+void node_stored(node_t *node, bool is_stored) {
+    keeper_stored(&node->tables.keeper, is_stored);
+}
+
+static bool is_table_data(const can_frame_t *frame) {
+    return frame->id == QUIESCE_CAN_TABLE_DATA_FRAME_ID && !frame->is_extended &&
+           !frame->is_remote && frame->length == QUIESCE_CAN_TABLE_DATA_LENGTH;
+}
+
 void node_receive(node_t *node, const can_frame_t *frame) {
-    can_node_receive(&node->can, frame);
+    if (is_table_data(frame)) {
+        table_link_take(&node->tables.link, frame, &node->tables.tables);
+    } else {
+        can_node_receive(&node->can, frame);
+    }
 }
 
 static bool is_enabled(const node_t *node, const node_inputs_t *board) {
@@ -202,11 +241,21 @@ static const quiesce_params_t *accept_staged(node_t *node) {
 
 // Nothing that has changed by itself is kept.
 static void save(node_t *node) {
-    const bool is_intact = can_node_param_hash(&node->params) == node->can.param_hash;
-    const bool is_stored =
-        is_intact && node->store != NULL && node->store(node->store_context, &node->params);
-    if (!is_stored || !node->store_is_slow) {
+    const uint32_t hash = can_node_param_hash(&node->params);
+    bool is_stored = false;
+    if (hash != node->can.param_hash || keeper_ask(&node->tables.keeper, KEEPER_PARAMS, hash,
+                                                   (const uint32_t *)(const void *)&node->params,
+                                                   QUIESCE_PARAM_COUNT, &is_stored)) {
         can_node_answer(&node->can, is_stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED, 0);
+    }
+}
+
+static void work_on_table(node_t *node) {
+    can_node_result_t result = CAN_NODE_DONE;
+    int32_t value = 0;
+    if (table_service_work(&node->tables, &node->controller, can_node_request(&node->can), &result,
+                           &value)) {
+        can_node_answer_value(&node->can, result, value);
     }
 }
 
@@ -217,18 +266,35 @@ const quiesce_params_t *node_task(node_t *node) {
     case CAN_NODE_SAVE:
         save(node);
         return NULL;
+    case CAN_NODE_TABLE:
+        work_on_table(node);
+        return NULL;
     case CAN_NODE_NOTHING:
     default:
+        table_service_rest(&node->tables);
         return NULL;
     }
 }
 
-uint32_t node_frames(node_t *node, can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
-    return can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
+static bool table_frame(node_t *node, can_frame_t *frame) {
+    const table_tick_t tick = {
+        .controller = &node->controller,
+        .passed_ms = node->can.schedule.passed_ms,
+        .is_answered = !node->can.service.is_taken,
+    };
+    return table_service_tick(&node->tables, &tick, frame);
 }
 
-uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
-                   can_frame_t frames[CAN_NODE_MAX_FRAMES]) {
+uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
+    uint32_t count = can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
+    if (table_service_pass(&node->tables, node->can.schedule.passed_ms) &&
+        table_frame(node, &frames[count])) {
+        count++;
+    }
+    return count;
+}
+
+uint32_t node_tick(node_t *node, const node_inputs_t *inputs, can_frame_t frames[NODE_MAX_FRAMES]) {
     node_step(node, inputs);
     const quiesce_params_t *const params = node_task(node);
     if (params != NULL) {

@@ -9,6 +9,10 @@
 
 #include "can_node.h"
 #include "safe_current.h"
+#include "table_service.h"
+
+/// Frames of a tick at the most.
+#define NODE_MAX_FRAMES (CAN_NODE_MAX_FRAMES + 1u)
 
 /// Words that it has the controller watch (quiesce_watch): its board, number 0. Those from here on
 /// are the target's.
@@ -44,9 +48,6 @@ typedef struct {
     uint32_t rx_lost; ///< times that a line or an interface lost what had come
 } node_inputs_t;
 
-/// Stores parameters for the next start. Returns false iff it could not; called from node_task.
-typedef bool (*node_store_t)(void *context, const quiesce_params_t *params);
-
 typedef struct {
     quiesce_t controller;
     can_node_t can;
@@ -61,19 +62,36 @@ typedef struct {
     uint32_t restarts;    ///< with other parameters, since node_init
     uint32_t retunes;     ///< live parameters changed, likewise
     node_sources_t from;
-    node_store_t store; ///< NULL: there is none, SAVE is refused
-    void *store_context;
-    bool store_is_slow; ///< a store that returns true has only begun; it is called every tick until
-                        ///< its owner says with can_node_answer how it went
+    table_service_t tables; ///< what is loaded; its keeper has the target's store
 } node_t;
 
-/// Starts from rest, without a store (set store and store_context afterwards): commands are the
-/// safe currents. board: what is wired to what, kept by the caller for as long as the node runs;
-/// NULL: one accelerometer and one damper, as parameters say. Returns false iff a parameter or the
-/// board is refused, or a signal is missing (quiesce_init_board); the controller then stays in its
-/// latched fault, at the safe currents with the drivers off.
+/// Starts from rest, without a store (node_use_store afterwards): commands are the safe currents.
+/// board: what is wired to what, kept by the caller for as long as the node runs; NULL: one
+/// accelerometer and one damper, as parameters say. Returns false iff a parameter or the board is
+/// refused, or a signal is missing (quiesce_init_board); the controller then stays in its latched
+/// fault, at the safe currents with the drivers off.
 bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_t *params,
                node_sources_t from);
+
+/// Gives it the target's memory, without which whatever is to be stored is refused.
+void node_use_store(node_t *node, keeper_store_t store, void *context);
+
+/// What that memory or the configuration has of tables and of what was learnt, after node_init and
+/// before the first tick. What is refused is not used; TABLE_INFO tells of it.
+quiesce_table_verdict_t node_found(node_t *node, const table_found_t *found);
+
+/// A table that is linked into the program takes the place of the one that ships, after node_init
+/// and before node_found; one a road. file: all of it, its head first; the caller's for as long as
+/// the node runs. What is refused is not used; TABLE_INFO tells of it.
+quiesce_table_verdict_t node_ship(node_t *node, const uint32_t *file);
+
+/// Another table while it runs, such as one from a configuration that has been read again: call it
+/// once a tick, between ticks, with the same words, until it returns true. *verdict then says
+/// whether it is in use.
+bool node_offer(node_t *node, const table_found_t *found, quiesce_table_verdict_t *verdict);
+
+/// The store says how what it has begun went.
+void node_stored(node_t *node, bool is_stored);
 
 /// Dampers in use: 0 .. node_dampers - 1.
 uint32_t node_dampers(const node_t *node);
@@ -94,17 +112,15 @@ void node_step(node_t *node, const node_inputs_t *inputs);
 const quiesce_params_t *node_task(node_t *node);
 
 /// The third part: the tick's frames. Returns their number.
-uint32_t node_frames(node_t *node, can_frame_t frames[CAN_NODE_MAX_FRAMES]);
+uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]);
 
 /// All three where there is no driver to write: the demand frame is the command.
-uint32_t node_tick(node_t *node, const node_inputs_t *inputs,
-                   can_frame_t frames[CAN_NODE_MAX_FRAMES]);
+uint32_t node_tick(node_t *node, const node_inputs_t *inputs, can_frame_t frames[NODE_MAX_FRAMES]);
 
 /// Starts from rest with the same board and other parameters, which quiesce_params_check accepts:
 /// commands are their safe currents, with the drivers off until the self-test has passed; counts in
-/// node->restarts. As at any start, a latched fault and what was learnt are forgotten,
-/// the shipped rules and pulses are in use, and the caller's tick has to run at
-/// params->tick_rate_Hz.
+/// node->restarts. As at any start, a latched fault is forgotten; tables and what was learnt are in
+/// use again where law and tracker take them. The caller's tick has to run at params->tick_rate_Hz.
 void node_restart(node_t *node, const quiesce_params_t *params);
 
 /// Other values of live parameters, while it runs (quiesce_params_use); counts in node->retunes.

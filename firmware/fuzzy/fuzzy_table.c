@@ -2,7 +2,6 @@
 
 #include "crc32.h"
 
-#define HEADER_WORDS 16u
 #define CRC_FROM_WORD 2u
 #define RAMP_WORDS 4u
 #define CELL_WORDS 4u
@@ -16,7 +15,7 @@ typedef struct {
 } largest_t;
 
 static bool is_inside(const fuzzy_table_t *table, uint32_t offset, uint32_t words) {
-    return offset >= HEADER_WORDS && offset <= table->size_words &&
+    return offset >= FUZZY_HEADER_WORDS && offset <= table->size_words &&
            words <= table->size_words - offset;
 }
 
@@ -200,13 +199,13 @@ static bool is_partition_good(const fuzzy_table_t *table, const largest_t *large
         return false;
     }
     if (output->method == FUZZY_CENTROID) {
-        return are_below(table, HEADER_WORDS, words, output->terms);
+        return are_below(table, FUZZY_HEADER_WORDS, words, output->terms);
     }
     // Strengths add up to twice `one` at most; fuzzy_short_quotient() takes 43 bits, half of what
     // it divides by included.
     const uint32_t half = (1u << table->fraction) / 2u;
     const uint32_t limit = (uint32_t)((UINT64_C(1) << 42) / table->one) - half;
-    return are_below(table, HEADER_WORDS, words, fuzzy_min(limit, MAX_VALUE)) &&
+    return are_below(table, FUZZY_HEADER_WORDS, words, fuzzy_min(limit, MAX_VALUE)) &&
            (output->method == FUZZY_SUM || is_inside(table, table->twins_offset, words));
 }
 
@@ -251,21 +250,7 @@ static bool are_rules_good(const fuzzy_table_t *table) {
     return true;
 }
 
-fuzzy_verdict_t fuzzy_table_check(const fuzzy_table_t *table, uint32_t words) {
-    if (words < HEADER_WORDS) {
-        return FUZZY_TABLE_SIZE;
-    }
-    if (table->magic != FUZZY_MAGIC) {
-        return FUZZY_TABLE_MAGIC;
-    }
-    if (table->size_words < HEADER_WORDS || table->size_words > words ||
-        table->size_words > FUZZY_MAX_WORDS) {
-        return FUZZY_TABLE_SIZE;
-    }
-    const uint32_t *all = (const uint32_t *)(const void *)table;
-    if (crc32_words(all + CRC_FROM_WORD, table->size_words - CRC_FROM_WORD) != table->crc) {
-        return FUZZY_TABLE_CRC;
-    }
+fuzzy_verdict_t fuzzy_table_check_summed(const fuzzy_table_t *table) {
     largest_t largest = {{0}};
     if (!has_shape(table)) {
         return FUZZY_TABLE_SHAPE;
@@ -277,4 +262,20 @@ fuzzy_verdict_t fuzzy_table_check(const fuzzy_table_t *table, uint32_t words) {
         return FUZZY_TABLE_OUTPUT;
     }
     return are_rules_good(table) ? FUZZY_TABLE_OK : FUZZY_TABLE_RULE;
+}
+
+fuzzy_verdict_t fuzzy_table_check(const fuzzy_table_t *table, uint32_t words) {
+    if (words < FUZZY_HEADER_WORDS) {
+        return FUZZY_TABLE_SIZE;
+    }
+    if (table->magic != FUZZY_MAGIC) {
+        return FUZZY_TABLE_MAGIC;
+    }
+    if (table->size_words < FUZZY_HEADER_WORDS || table->size_words > words ||
+        table->size_words > FUZZY_MAX_WORDS) {
+        return FUZZY_TABLE_SIZE;
+    }
+    const uint32_t *all = (const uint32_t *)(const void *)table;
+    const uint32_t crc = crc32_words(all + CRC_FROM_WORD, table->size_words - CRC_FROM_WORD);
+    return crc == table->crc ? fuzzy_table_check_summed(table) : FUZZY_TABLE_CRC;
 }

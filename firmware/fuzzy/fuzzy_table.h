@@ -14,6 +14,7 @@
 #include "fuzzy_math.h"
 
 #define FUZZY_MAGIC UINT32_C(0x31545A46)
+#define FUZZY_HEADER_WORDS 16u ///< of any table
 #define FUZZY_MAX_WORDS 65535u
 #define FUZZY_MAX_INPUTS 4u
 #define FUZZY_MAX_OUTPUTS 4u
@@ -181,5 +182,9 @@ typedef enum {
 /// every shift, every membership at both ends of every cell, every sum. words: how many there are
 /// at `table`, which is aligned to 4 bytes. Bounded by the table's size; reads nothing beyond it.
 fuzzy_verdict_t fuzzy_table_check(const fuzzy_table_t *table, uint32_t words);
+
+/// The rest of it, of a table whose first FUZZY_HEADER_WORDS words are there at least and whose
+/// magic, size and CRC have been found right.
+fuzzy_verdict_t fuzzy_table_check_summed(const fuzzy_table_t *table);
 
 #endif

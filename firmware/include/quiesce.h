@@ -217,24 +217,40 @@ typedef enum {
     QUIESCE_TABLE_POINT = 9,  ///< a frequency that does not rise, a floor above its level, a long
                               ///< ramp; an axis or a force of a map; a coefficient, limit, band,
                               ///< power or current of a law in form of a table
+    QUIESCE_TABLE_BOARD = 10, ///< its file is of another board
 } quiesce_table_verdict_t;
 
-/// The law that runs uses another table (rules, pulses, ..) from the next tick on: words from
-/// `quiesce rules compile`, `quiesce tune`, `quiesce law make`, .., count of them; NULL: the one
-/// that ships, or none where none ships: such a law requests nothing until it has one. What was
+/// What a table is of: there is one of each in use.
+typedef enum {
+    QUIESCE_OF_LAW = 0,     ///< rules, pulses, gains, ..
+    QUIESCE_OF_TRACKER = 1, ///< a damper's map, .., beside the law's where it demands forces
+    QUIESCE_TABLE_OWNERS
+} quiesce_owner_t;
+
+/// Words of a table at the most.
+#define QUIESCE_TABLE_WORDS 2048
+
+/// The name of a kind of table ("rules", "pulses", ..) by the first word of its tables, and what it
+/// is of (may be NULL). Returns NULL iff no law and no tracker works with that kind.
+const char *quiesce_table_kind(uint32_t magic, quiesce_owner_t *owner);
+
+/// Whether words are a good table of their kind; FIT, to a board and a tick rate, is not looked at.
+/// Bounded by their number, some 60 instructions a word.
+quiesce_table_verdict_t quiesce_table_check(const uint32_t *words, uint32_t count);
+
+/// Law or tracker uses another table from the next tick on: words from `quiesce rules compile`,
+/// `quiesce tune`, `quiesce law make`, `quiesce identify inverse`, .., count of them. What was
 /// learnt about another table is forgotten. The words stay the caller's and must not change while
 /// they are in use. A table that is refused changes nothing. Call between steps, also while
-/// running: the swap is one pointer. quiesce_init goes back to the one that ships.
-///
-/// Where the law demands forces and parameter tracker is inverse, a damper's map (`quiesce identify
-/// inverse`) is taken beside the law's table. None ships: until there is one, that is a signal
-/// which the law lacks. NULL takes it away only where the law has no table of its own;
-/// quiesce_table_drop always does.
+/// running: the swap is one pointer. quiesce_init goes back to those that ship.
 quiesce_table_verdict_t quiesce_table_use(quiesce_t *self, const uint32_t *words, uint32_t count);
 
-/// Back to the table that ships of one kind, by its first word, or to none where none ships; tables
-/// of other kinds stay in use. Returns QUIESCE_TABLE_MAGIC iff nothing here works with that kind.
-quiesce_table_verdict_t quiesce_table_drop(quiesce_t *self, uint32_t magic);
+/// Back to the table that ships, or to none where none ships: such a law requests nothing until it
+/// has one, to a tracker that is a signal which it lacks. Returns false iff there is no such table.
+bool quiesce_table_drop(quiesce_t *self, quiesce_owner_t owner);
+
+/// The table in use. NULL: none.
+const uint32_t *quiesce_table_in_use(const quiesce_t *self, quiesce_owner_t owner);
 
 /// Whose table is missing, so that nothing is requested but the fallback: the law's or the
 /// tracker's name. Returns NULL iff none is.
@@ -243,40 +259,63 @@ const char *quiesce_lacks_table(const quiesce_t *self);
 /// CRC-32 that the table in use carries: the law's, else its tracker's; 0 where there is none.
 uint32_t quiesce_table_hash(const quiesce_t *self);
 
-/// Whether words are a damper's map.
-quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count);
-
-/// Whether words are a table of one of the trackers, which their first word says: a damper's map, a
-/// bank of models. QUIESCE_TABLE_MAGIC: of none.
-quiesce_table_verdict_t quiesce_tracker_table_check(const uint32_t *words, uint32_t count);
-
-/// Receives a table in parts beside the one in use: two slots of the caller's memory. A table is
-/// put to use whole and checked, or not at all; the one before it is kept. A store holds tables of
-/// one kind: a damper's map beside a law's table has a store of its own.
-#define QUIESCE_TABLE_WORDS 1024
+/// Room for tables that arrive in parts, beside those in use: law's and tracker's, each with the
+/// one before it, and the one that arrives. A table is put to use whole and checked, or not at all.
+/// Contents are private.
+#define QUIESCE_TABLE_ROOMS 5u
 typedef struct {
-    uint32_t words[2][QUIESCE_TABLE_WORDS];
-    uint32_t filled;   ///< words received in the spare slot
-    uint32_t in_use;   ///< slot 0 or 1, or 2: the one that ships
-    uint32_t previous; ///< likewise, what quiesce_table_store_revert goes back to
-} quiesce_table_store_t;
+    uint32_t words[QUIESCE_TABLE_ROOMS][QUIESCE_TABLE_WORDS];
+    uint32_t filled;  ///< words that have arrived
+    uint32_t summed;  ///< of them, those that crc covers
+    uint32_t crc;     ///< from the third word on
+    uint32_t arrival; ///< the room that is filled
+    struct {
+        uint32_t now, before;    ///< rooms; QUIESCE_TABLE_ROOMS: what ships
+        const uint32_t *shipped; ///< NULL: what the law ships with
+    } of[QUIESCE_TABLE_OWNERS];
+} quiesce_tables_t;
 
-/// Empty, with the shipped table in use.
-void quiesce_table_store_init(quiesce_table_store_t *store);
+/// Empty, with the tables that ship in use.
+void quiesce_tables_init(quiesce_tables_t *tables);
 
-/// Appends words of a new table to the spare slot; offset 0 starts anew and gives up what
-/// quiesce_table_store_revert would go back to. Returns false, and changes nothing, iff offset is
-/// neither 0 nor where the last part ended, or the part does not fit.
-bool quiesce_table_store_write(quiesce_table_store_t *store, uint32_t offset, const uint32_t *words,
-                               uint32_t count);
+/// Words that take the place of those that the law ships with, such as ones that are linked into a
+/// program; a good table, which stays the caller's. Then quiesce_tables_resume.
+void quiesce_tables_ship(quiesce_tables_t *tables, const uint32_t *words);
 
-/// Checks what was received and uses it from the next tick on. A table that is refused leaves the
+/// Appends words of a table that arrives; offset 0 starts anew. Returns false, and changes nothing,
+/// iff offset is neither 0 nor where the last part ended, or the part does not fit.
+bool quiesce_tables_write(quiesce_tables_t *tables, uint32_t offset, const uint32_t *words,
+                          uint32_t count);
+
+/// Sums up to so many words of what has arrived, some 60 instructions a word, ahead of what check
+/// and commit would do at once. Returns true iff nothing is left to sum.
+bool quiesce_tables_sum(quiesce_tables_t *tables, uint32_t words);
+
+/// What has arrived so far.
+const uint32_t *quiesce_tables_arrival(const quiesce_tables_t *tables, uint32_t *count);
+
+/// What commit would say. Changes nothing.
+quiesce_table_verdict_t quiesce_tables_check(quiesce_tables_t *tables, const quiesce_t *self);
+
+/// Checks what has arrived and uses it from the next tick on. A table that is refused leaves the
 /// one in use where it is. Call it, like the next two, between steps.
-quiesce_table_verdict_t quiesce_table_store_commit(quiesce_table_store_t *store, quiesce_t *self);
+quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_t *self);
 
-/// Goes back to the table in use before the last commit, and gives up what was received since. A
-/// second call changes nothing.
-void quiesce_table_store_revert(quiesce_table_store_t *store, quiesce_t *self);
+/// Goes back to the table in use before the last commit or unload. Returns false, and changes
+/// nothing, iff that has been done already, there was none, or it is refused by now.
+bool quiesce_tables_revert(quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner);
+
+/// Goes back to the table that ships, which the next revert undoes. Returns false iff law and
+/// tracker have no such table.
+bool quiesce_tables_unload(quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner);
+
+/// After quiesce_init or quiesce_restart: those in use before are again, where law and tracker take
+/// them; the others stay where they are.
+void quiesce_tables_resume(const quiesce_tables_t *tables, quiesce_t *self);
+
+/// Whether the one in use has been loaded, and does not ship.
+bool quiesce_tables_is_loaded(const quiesce_tables_t *tables, const quiesce_t *self,
+                              quiesce_owner_t owner);
 
 /// What the law that runs has learnt about the structure, as words to keep over a restart.
 #define QUIESCE_LEARNT_MAX_WORDS 255

@@ -6,7 +6,7 @@
 #ifndef LAW_H
 #define LAW_H
 
-#include "quiesce.h"
+#include "table.h"
 #include "view.h"
 
 /// Bytes for the state of the law that runs; its file asserts that they are enough.
@@ -44,25 +44,10 @@ static inline int32_t law_unlock_mA(const quiesce_params_t *params, const view_t
     return view->is_at_rest ? params->safe_current_mA : params->unlock_current_mA;
 }
 
-/// One kind of table. Its words begin with magic (kind and version), CRC-32 and their number; its
-/// check knows them.
-typedef struct {
-    uint32_t magic;
-    const uint32_t *shipped; ///< used until another one is; NULL: none ships, and until one is in
-                             ///< use the law is not stepped
-    quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
-    /// VIEW_ bits that a checked table needs beside the law; one that the board cannot serve is
-    /// refused. NULL: none.
-    uint64_t (*needs)(const uint32_t *words);
-    /// Ticks a second that a checked table is made for, TABLE_ANY_RATE, or 0 where its parts
-    /// differ; at another rate it is refused. NULL: any.
-    uint32_t (*rate_Hz)(const uint32_t *words);
-} law_table_kind_t;
-
 typedef struct {
     const char *name;              ///< value of parameter law
     uint64_t needs;                ///< VIEW_ bits; while they are not all valid it is not stepped
-    const law_table_kind_t *kind;  ///< of its table; NULL: it has none
+    const table_kind_t *kind;      ///< of its table; NULL: it has none
     uint8_t demands;               ///< law_demand_kind_t
     bool wants_lock;               ///< the dominant component is to be locked on to
     const quiesce_word_t *reports; ///< QUIESCE_REPORT_WORDS of them, the last ones without a name

@@ -116,14 +116,13 @@ static uint64_t needs(const uint32_t *words, uint32_t i) {
 }
 
 static const sections_kind_t kind = {
-    .magic = FORCE_BANK_MAGIC,
     .size = size,
     .is_good = is_good,
     .needs = needs,
 };
 
-quiesce_table_verdict_t force_bank_check(const uint32_t *words, uint32_t count) {
-    return sections_check(&kind, words, count);
+quiesce_table_verdict_t force_bank_check(const uint32_t *words) {
+    return sections_check(&kind, words);
 }
 
 uint64_t force_bank_needs(const uint32_t *words) {

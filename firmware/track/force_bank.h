@@ -38,10 +38,10 @@ typedef struct {
     int32_t z[FORCE_BANK_MAX_ELEMENTS]; ///< um/s, below its element's limit
 } force_bank_t;
 
-/// SIZE, MAGIC, CRC; SHAPE: numbers of sections, elements or currents; POINT: a leak above 1, a
-/// limit, force or current that is out of its range, a negative weight, currents that do not rise,
-/// or weights with which a sum could reach 2^62.
-quiesce_table_verdict_t force_bank_check(const uint32_t *words, uint32_t count);
+/// Of words with a good head. SHAPE: numbers of sections, elements or currents; POINT: a leak above
+/// 1, a limit, force or current that is out of its range, a negative weight, currents that do not
+/// rise, or weights with which a sum could reach 2^62.
+quiesce_table_verdict_t force_bank_check(const uint32_t *words);
 
 /// VIEW_ bits that checked words need.
 uint64_t force_bank_needs(const uint32_t *words);

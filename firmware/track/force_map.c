@@ -96,14 +96,13 @@ static uint64_t axis_needs(const uint32_t *words, uint32_t i) {
 }
 
 static const sections_kind_t kind = {
-    .magic = FORCE_MAP_MAGIC,
     .size = size,
     .is_good = is_good,
     .needs = axis_needs,
 };
 
-quiesce_table_verdict_t quiesce_force_map_check(const uint32_t *words, uint32_t count) {
-    return sections_check(&kind, words, count);
+quiesce_table_verdict_t force_map_check(const uint32_t *words) {
+    return sections_check(&kind, words);
 }
 
 const uint32_t *force_map_section(const uint32_t *words, uint32_t damper) {

@@ -24,10 +24,11 @@
 #define FORCE_MAP_MAX_PLACES 32u
 #define FORCE_MAP_MAX_CURRENTS 16u
 
-/// quiesce_force_map_check says SIZE, MAGIC, CRC; SHAPE: no section or one too many, a number of
-/// points that is out of its range or not that of the words; POINT: an axis that there is not, does
-/// not rise, or has too little or too much on it, a force of 2^30 mN or more, or one that goes the
-/// wrong way with the current.
+/// Of words with a good head. SHAPE: no section or one too many, a number of points that is out of
+/// its range or not that of the words; POINT: an axis that there is not, does not rise, or has too
+/// little or too much on it, a force of 2^30 mN or more, or one that goes the wrong way with the
+/// current.
+quiesce_table_verdict_t force_map_check(const uint32_t *words);
 
 /// Of good words: the section of this damper. NULL iff they have several and none for it.
 const uint32_t *force_map_section(const uint32_t *words, uint32_t damper);

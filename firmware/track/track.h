@@ -6,7 +6,7 @@
 #ifndef TRACK_H
 #define TRACK_H
 
-#include "quiesce.h"
+#include "table.h"
 #include "view.h"
 
 /// Bytes for the state of a tracker, for each damper.
@@ -19,23 +19,10 @@ typedef struct {
     uint32_t damper;                ///< its number
 } track_setup_t;
 
-/// A kind of table. None ships: a map is of dampers that a user has. Its words begin with the
-/// magic, CRC-32 and their number.
 typedef struct {
-    uint32_t magic; ///< that no law's table has
-    quiesce_table_verdict_t (*check)(const uint32_t *words, uint32_t count);
-    /// VIEW_ bits that a checked table needs beside the tracker, VIEW_EACH of each that there is;
-    /// one that the board cannot serve is refused. NULL: none.
-    uint64_t (*needs)(const uint32_t *words);
-    /// Ticks a second that a checked table is made for, TABLE_ANY_RATE, or 0 where its parts
-    /// differ; at another rate it is refused. NULL: any.
-    uint32_t (*rate_Hz)(const uint32_t *words);
-} track_table_kind_t;
-
-typedef struct {
-    const char *name;               ///< value of parameter tracker
-    uint64_t needs;                 ///< VIEW_ bits; while they are not all valid it is not stepped
-    const track_table_kind_t *kind; ///< without a table of it it is not stepped; NULL: needs none
+    const char *name;         ///< value of parameter tracker
+    uint64_t needs;           ///< VIEW_ bits; while they are not all valid it is not stepped
+    const table_kind_t *kind; ///< none ships: maps are of users' dampers; NULL: it has none
     /// One damper, one tick. Returns the current, mA, any value: what follows limits it. *state is
     /// 0 from rest and with another table. demand_mN: any value, > 0 resists a stroke that grows.
     int32_t (*step)(void *state, const track_setup_t *setup, const view_damper_t *damper,

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "force_bank.h"
+#include "sections.h"
 #include "track.h"
 
 _Static_assert(sizeof(force_bank_t) <= TRACK_STATE_BYTES, "the state is too small");
@@ -19,8 +20,10 @@ static int32_t step(void *state, const track_setup_t *setup, const view_damper_t
     return force_bank_current_mA(state, section, damper, demand_mN);
 }
 
-static const track_table_kind_t bank = {
+static const table_kind_t bank = {
+    .name = "bank",
     .magic = FORCE_BANK_MAGIC,
+    .least_words = SECTIONS_FIRST,
     .check = force_bank_check,
     .needs = force_bank_needs,
     .rate_Hz = force_bank_rate_Hz,

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "force_map.h"
+#include "sections.h"
 #include "track.h"
 
 static int32_t step(void *state, const track_setup_t *setup, const view_damper_t *damper,
@@ -17,9 +18,11 @@ static int32_t step(void *state, const track_setup_t *setup, const view_damper_t
                                                : 0;
 }
 
-static const track_table_kind_t map = {
+static const table_kind_t map = {
+    .name = "map",
     .magic = FORCE_MAP_MAGIC,
-    .check = quiesce_force_map_check,
+    .least_words = SECTIONS_FIRST,
+    .check = force_map_check,
     .needs = force_map_needs,
 };
 

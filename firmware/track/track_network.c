@@ -54,10 +54,10 @@ static uint64_t needs(const uint32_t *section, uint32_t damper) {
     return bits;
 }
 
-static const sections_kind_t sections = {TRACK_NETWORK_MAGIC, network_size, is_good, needs};
+static const sections_kind_t sections = {network_size, is_good, needs};
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    return network_table_check(&sections, words, count);
+static quiesce_table_verdict_t check(const uint32_t *words) {
+    return network_table_check(&sections, words);
 }
 
 static uint64_t needs_of_table(const uint32_t *words) {
@@ -105,8 +105,10 @@ static int32_t step(void *state, const track_setup_t *setup, const view_damper_t
     return wanted_mN != 0 ? current_mA : 0;
 }
 
-static const track_table_kind_t networks = {
+static const table_kind_t networks = {
+    .name = "inverse_network",
     .magic = TRACK_NETWORK_MAGIC,
+    .least_words = SECTIONS_FIRST,
     .check = check,
     .needs = needs_of_table,
     .rate_Hz = network_table_rate_Hz,

@@ -1,9 +1,10 @@
 # Backend for mps2-an386 (Cortex-M4 under QEMU) and its images.
-add_library(hal_mps2 STATIC mps2/fault.c mps2/fault_exit.c mps2/nap.c mps2/semihost.c mps2/stack.c
-            mps2/tick_mps2.c mps2/uart_mps2.c)
+add_library(hal_mps2 STATIC mps2/fault.c mps2/fault_exit.c mps2/nap.c mps2/nvm_mps2.c mps2/semihost.c
+            mps2/stack.c mps2/tick_mps2.c mps2/uart_mps2.c)
 target_include_directories(hal_mps2 PUBLIC mps2 include)
 target_compile_definitions(hal_mps2 PUBLIC QUIESCE_TARGET_MPS2)
 target_link_libraries(hal_mps2 PRIVATE quiesce_warnings)
+target_link_libraries(hal_nvm INTERFACE hal_mps2) # the memory of its records
 
 # For images that run free: takes the place of fault_exit.c.
 add_library(mps2_fault_restart OBJECT mps2/fault_restart.c)

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "arguments.h"
+#include "board_crc.h"
 #include "board_file.h"
 #include "board_keys.h"
 #include "commands.h"
@@ -123,6 +124,7 @@ int cmd_board_check(const std::vector<std::string> &words) {
                       {"dampers", each(file, file.dampers.size(), describe_damper)},
                       {"signals", signals(file)},
                       {"laws", laws(file)},
+                      {"crc32", board_crc32(board)},
                       {"words", words_of(board)}};
     std::cout << out.dump(1) << '\n';
     return 0;

@@ -42,8 +42,9 @@ Json first_mismatch_json(const std::optional<FirstMismatch> &first,
 } // namespace
 
 int cmd_compare(const std::vector<std::string> &words) {
-    const Arguments arguments("compare", words,
-                              options({run_option_names(), target_option_names(), {"seeds"}}));
+    const Arguments arguments(
+        "compare", words,
+        options({run_option_names(), target_option_names(), table_option_names(), {"seeds"}}));
     arguments.require_no_positional();
     if (arguments.text("seed")) {
         throw InputError("compare: takes --seeds, a list, instead of --seed");
@@ -51,7 +52,7 @@ int cmd_compare(const std::vector<std::string> &words) {
     const std::vector<std::uint64_t> seeds = parse_seeds(arguments.required("seeds"));
     arguments.required("target");
     RunSetup setup = run_setup(arguments);
-    require_tables(arguments, setup.board(), setup.params);
+    setup.tables = tables_from(arguments, setup.board(), setup.params);
     // Instructions are those of the control step: a report is made for those who ask.
     setup.wants_report = !arguments.text("plugin").has_value();
     InProcessLink host;

@@ -1,4 +1,4 @@
-/// fuzzy-surface: the controller's rule base over its two inputs, as JSON.
+/// fuzzy-surface: the controller's rule base, or another, over its two inputs, as JSON.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "firmware.h"
 #include "json.h"
+#include "table_file.h"
 
 namespace quiesce {
 
@@ -31,14 +32,17 @@ std::int32_t micro(double value) {
 } // namespace
 
 int cmd_fuzzy_surface(const std::vector<std::string> &words) {
-    Arguments("fuzzy-surface", words, {}).require_no_positional();
+    const Arguments arguments("fuzzy-surface", words, {"rules"});
+    arguments.require_no_positional();
+    const auto given = load_tables({arguments.text("rules").value_or(""), "", "", ""});
+    const std::uint32_t *table = given.empty() ? nullptr : given.front().data();
     const std::vector<double> freq_Hz = axis(kFreqLast_Hz);
     const std::vector<double> rms_m_s2 = axis(kRmsLast_m_s2);
     Json current_A = Json::array();
     for (const double f : freq_Hz) {
         std::vector<double> row(rms_m_s2.size());
-        std::transform(rms_m_s2.begin(), rms_m_s2.end(), row.begin(), [f](double rms) {
-            return quiesce_rules_current_mA(micro(f), micro(rms), nullptr) / 1000.0;
+        std::transform(rms_m_s2.begin(), rms_m_s2.end(), row.begin(), [&](double rms) {
+            return quiesce_rules_current_mA(table, micro(f), micro(rms), nullptr) / 1000.0;
         });
         current_A.push_back(row);
     }

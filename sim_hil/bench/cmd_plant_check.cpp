@@ -78,10 +78,11 @@ int cmd_plant_check(const std::vector<std::string> &words) {
     }
     print_mounts(model);
     print_places(model);
-    std::printf("  sensor: +-%g g, %d bits, %g mg noise; drive %g V; integration step %g us "
+    std::printf("  sensor: +-%g g, %d bits, %g mg noise; drive %g V%s; integration step %g us "
                 "(at most %.0f us)\n",
                 model.sensor.full_scale_g, model.sensor.bits, model.sensor.noise_mg,
-                model.shaker.drive_V, 1e6 * model.max_step_s, 1e6 * longest_safe_step_s(model));
+                model.shaker.drive_V, model.shaker.moves_base ? " of its base" : "",
+                1e6 * model.max_step_s, 1e6 * longest_safe_step_s(model));
     return 0;
 }
 

@@ -15,6 +15,7 @@
 #include "param_options.h"
 #include "rig.h"
 #include "run_options.h"
+#include "start.h"
 #include "tick_columns.h"
 #include "trace.h"
 
@@ -49,6 +50,7 @@ std::vector<std::int32_t> read_counts(const std::string &file) {
 /// One record after the other, all of the same length, and what of them is written.
 struct Plan {
     std::optional<BoardFile> board;
+    Tables tables;
     std::size_t sensors;      ///< counts in a tick
     bool counts_instructions; ///< of the control step: reports and pictures are not made then
     std::size_t record_ticks;
@@ -84,8 +86,8 @@ std::size_t ticks_in(const std::vector<std::int32_t> &counts, std::size_t sensor
     return counts.size() / sensors;
 }
 
-Plan plan_from(const Arguments &arguments, std::optional<BoardFile> board, std::int32_t law,
-               const std::vector<std::int32_t> &counts) {
+Plan plan_from(const Arguments &arguments, std::optional<BoardFile> board, Tables tables,
+               std::int32_t law, const std::vector<std::int32_t> &counts) {
     const std::size_t sensors = board ? board->sensors.size() : 1;
     const std::size_t ticks = ticks_in(counts, sensors);
     const auto limit = static_cast<std::int64_t>(ticks);
@@ -98,6 +100,7 @@ Plan plan_from(const Arguments &arguments, std::optional<BoardFile> board, std::
                         arguments.text("columns"));
     return {
         std::move(board),
+        std::move(tables),
         sensors,
         arguments.text("plugin").has_value(),
         static_cast<std::size_t>(record_ticks),
@@ -154,11 +157,7 @@ void replay(const std::vector<std::int32_t> &counts, const Plan &plan,
     const auto start = std::chrono::steady_clock::now();
     const std::size_t record_counts = plan.record_ticks * plan.sensors;
     for (std::size_t first = 0; first < counts.size(); first += record_counts) {
-        if (!link.start(plan.board ? &plan.board->board : nullptr, params)) {
-            throw InputError(
-                "the controller on target " + link.target() +
-                (plan.board ? " refuses its parameters or its board" : " refuses its parameters"));
-        }
+        start_controller(link, plan.board ? &plan.board->board : nullptr, params, plan.tables);
         replay_record(&counts[first], plan, params.tick_rate_Hz, link, out);
     }
     out.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -169,6 +168,7 @@ void replay(const std::vector<std::int32_t> &counts, const Plan &plan,
 int cmd_replay(const std::vector<std::string> &words) {
     const Arguments arguments("replay", words,
                               options({target_option_names(),
+                                       table_option_names(),
                                        {"counts", "board", "law", "set", "trace", "record-ticks",
                                         "from-tick", "every", "columns"}}));
     arguments.require_no_positional();
@@ -182,10 +182,10 @@ int cmd_replay(const std::vector<std::string> &words) {
     if (board) {
         require_signals(*board, params);
     }
-    require_tables(arguments, board ? &board->board : nullptr, params);
+    Tables tables = tables_from(arguments, board ? &board->board : nullptr, params);
     const std::vector<std::int32_t> counts = read_counts(arguments.required("counts"));
     const std::string trace_file = arguments.required("trace");
-    const Plan plan = plan_from(arguments, std::move(board), params.law, counts);
+    const Plan plan = plan_from(arguments, std::move(board), std::move(tables), params.law, counts);
     const std::unique_ptr<ControllerLink> link = target_link(arguments);
     Replay result(plan.columns);
     replay(counts, plan, params, *link, result);

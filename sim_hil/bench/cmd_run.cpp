@@ -12,7 +12,9 @@
 #include "param_options.h"
 #include "rig_metrics.h"
 #include "run_options.h"
+#include "table_verdict.h"
 #include "trace_observer.h"
+#include "visits.h"
 
 namespace quiesce {
 
@@ -109,15 +111,48 @@ void add_rig(Json &out, const RunSetup &setup, const RigMetrics &metrics) {
     out.set("rig", windows);
 }
 
+/// Of the table that its law works with.
+std::optional<TableRange> range_in_use(const RunSetup &setup) {
+    const auto controller = controller_with(setup.board(), setup.params);
+    const TableWords &given = setup.tables[QUIESCE_OF_LAW];
+    const std::uint32_t *words =
+        given.empty() ? quiesce_table_in_use(controller.get(), QUIESCE_OF_LAW) : given.data();
+    return words == nullptr ? std::nullopt : range_of(words, setup.params.phase_setting);
+}
+
+Json span_json(const std::optional<Span> &span) {
+    return span ? Json(std::vector<double>{span->low, span->high}) : Json();
+}
+
+/// What the law's table covers, where the run was, and what of that it does not cover.
+void add_visits(Json &out, const std::optional<TableRange> &range, const VisitObserver &visits) {
+    const std::vector<std::string> warnings =
+        range ? warnings_of(*range, visits) : std::vector<std::string>();
+    const bool is_known = visits.freq_Hz().count() > 0;
+    const auto most = [is_known](const Spread &spread) {
+        return is_known ? std::optional(spread.most()) : std::nullopt;
+    };
+    out.set("visited", {{"freq_Hz", span_json(most(visits.freq_Hz()))},
+                        {"rms_m_s2", span_json(most(visits.rms_m_s2()))}});
+    out.set("covered", range ? Json({{"kind", range->kind},
+                                     {"freq_Hz", span_json(range->freq_Hz)},
+                                     {"rms_m_s2", span_json(range->rms_m_s2)}})
+                             : Json());
+    out.set("warnings", warnings);
+    for (const std::string &warning : warnings) {
+        std::cerr << "quiesce_bench: warning: " << warning << '\n';
+    }
+}
+
 void add_counts(Json &out, const std::optional<InstructionCounts> &counts) {
     out.set("instr_median", counts ? Json(counts->median) : Json());
     out.set("instr_worst", counts ? Json(counts->worst) : Json());
 }
 
 /// Runs it repeat times and returns the result with the fastest time. trace: records the last run;
-/// none where it is null.
+/// none where it is null. visits: of the last run.
 Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repeat,
-                  TraceObserver *trace) {
+                  TraceObserver *trace, VisitObserver &visits) {
     Json out;
     RunTiming best{};
     for (std::int64_t i = 0; i < repeat; ++i) {
@@ -128,8 +163,11 @@ Json repeated_run(const RunSetup &setup, ControllerLink &link, std::int64_t repe
         if (setup.rig) {
             observers.push_back(&rig_metrics);
         }
-        if (trace != nullptr && i + 1 == repeat) {
-            observers.push_back(trace);
+        if (i + 1 == repeat) {
+            observers.push_back(&visits);
+            if (trace != nullptr) {
+                observers.push_back(trace);
+            }
         }
         const RunTiming timing = run_scenario(setup, link, observers);
         if (i == 0 || timing.wall_s < best.wall_s) {
@@ -157,13 +195,14 @@ std::optional<TraceObserver> trace_from(const Arguments &arguments, const RunSet
 } // namespace
 
 int cmd_run(const std::vector<std::string> &words) {
-    const Arguments arguments(
-        "run", words,
-        options(
-            {run_option_names(), target_option_names(), {"trace", "columns", "every", "repeat"}}));
+    const Arguments arguments("run", words,
+                              options({run_option_names(),
+                                       target_option_names(),
+                                       table_option_names(),
+                                       {"trace", "columns", "every", "repeat"}}));
     arguments.require_no_positional();
     RunSetup setup = run_setup(arguments);
-    require_tables(arguments, setup.board(), setup.params);
+    setup.tables = tables_from(arguments, setup.board(), setup.params);
     setup.wants_report = arguments.text("trace").has_value();
     setup.wants_picture = setup.wants_report && setup.rig.has_value();
     const std::int64_t repeat = arguments.integer("repeat", 1, 1000000).value_or(1);
@@ -174,7 +213,9 @@ int cmd_run(const std::vector<std::string> &words) {
     const bool is_complete = link->is_complete() && (link->has_picture() || !setup.wants_picture);
     ControllerLink &driven = is_complete ? *link : static_cast<ControllerLink &>(checked);
     std::optional<TraceObserver> trace = trace_from(arguments, setup);
-    Json out = repeated_run(setup, driven, repeat, trace ? &*trace : nullptr);
+    VisitObserver visits;
+    Json out = repeated_run(setup, driven, repeat, trace ? &*trace : nullptr, visits);
+    add_visits(out, range_in_use(setup), visits);
     out.set("mismatches", is_complete ? Json() : Json(checked.mismatches()));
     if (trace) {
         trace->trace().write(arguments.required("trace"));

@@ -111,7 +111,7 @@ int cmd_uart_rate(const std::vector<std::string> &words) {
     QemuUartLink link(image(arguments, "image"), {kTelemetryTicks, 1});
     quiesce_params_t params;
     quiesce_params_default(&params);
-    link.start(nullptr, params);
+    link.start(nullptr, params, {});
     run_protocol(link, 0, kBlockExchanges);
     link.uart().pause();
     QemuUart echo(echo_options);

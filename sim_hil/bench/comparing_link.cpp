@@ -21,17 +21,19 @@ void copy_words(const lockstep_reply_t &from, const ReplyWords &words, lockstep_
 
 } // namespace
 
-bool ComparingLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
-    const bool is_accepted = reference_.start(board, params);
-    if (checked_.start(board, params) != is_accepted) {
+StartAnswer ComparingLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
+                                 const Tables &tables) {
+    const StartAnswer answer = reference_.start(board, params, tables);
+    const StartAnswer other = checked_.start(board, params, tables);
+    if (other.is_accepted != answer.is_accepted || other.table.verdict != answer.table.verdict ||
+        other.table.table != answer.table.table) {
         throw InputError("targets " + reference_.target() + " and " + checked_.target() +
-                         " disagree on whether parameters and board are allowed; rebuild both, for "
-                         "as many sensors "
-                         "and dampers");
+                         " disagree on whether parameters, board and tables are allowed; rebuild "
+                         "both, for as many sensors and dampers");
     }
     ++runs_;
     tick_ = 0;
-    return is_accepted;
+    return answer;
 }
 
 void ComparingLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {

@@ -30,8 +30,9 @@ class ComparingLink final : public ControllerLink {
 
     std::string target() const override { return checked_.target(); }
 
-    /// Throws InputError when one accepts the parameters and the other does not.
-    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
+    /// Throws InputError when one accepts what the other refuses.
+    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                      const Tables &tables) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     std::optional<InstructionCounts> finish() override { return checked_.finish(); }
 

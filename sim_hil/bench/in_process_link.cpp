@@ -2,14 +2,16 @@
 
 namespace quiesce {
 
-bool InProcessLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
+StartAnswer InProcessLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
+                                 const Tables &tables) {
     server_ = lockstep_t{};
-    const bool is_accepted = lockstep_start(&server_, board, &params);
-    for (const Words &words : tables_) {
-        (void)quiesce_table_use(&server_.controller, words.data(),
-                                static_cast<std::uint32_t>(words.size()));
+    tables_ = tables;
+    std::array<lockstep_table_t, LOCKSTEP_TABLES> used{};
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        used[i] = {tables_[i].data(), static_cast<std::uint32_t>(tables_[i].size())};
     }
-    return is_accepted;
+    const bool is_accepted = lockstep_start(&server_, board, &params, used.data());
+    return {is_accepted, server_.refused};
 }
 
 void InProcessLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {

@@ -9,7 +9,6 @@
 #include "input_error.h"
 #include "qemu_shm_link.h"
 #include "qemu_uart_link.h"
-#include "table_file.h"
 
 namespace quiesce {
 
@@ -26,26 +25,27 @@ void refuse(bool is_given, const char *option, const char *why) {
     }
 }
 
-void refuse_tables(const LinkOptions &options) {
-    refuse(!options.rules_path.empty(), "--rules", "only the host target takes a rule table");
-    refuse(!options.phase_table_path.empty(), "--phase-table",
-           "only the host target takes a table of pulses");
-    refuse(!options.force_map_path.empty(), "--force-map",
-           "only the host target takes a damper's map");
-    refuse(!options.law_table_path.empty(), "--law-table",
-           "only the host target takes a law's table");
-}
-
-void refuse_can(const LinkOptions &options) {
-    constexpr const char *kWhy = "only --target linux is driven over CAN";
+void refuse_channel(const LinkOptions &options) {
+    constexpr const char *kWhy = "only --target linux is driven over a CAN channel";
     refuse(!options.can_channel.empty(), "--can", kWhy);
-    refuse(options.telemetry_every_ticks.has_value(), "--telemetry-every", kWhy);
     refuse(options.greeting_time_s.has_value(), "--wait-s", kWhy);
 }
 
+void refuse_telemetry(const LinkOptions &options) {
+    refuse(options.telemetry_every_ticks.has_value(), "--telemetry-every",
+           "only --target linux and mps2-uart are driven by CAN messages");
+}
+
+TelemetryRate telemetry(const LinkOptions &options) {
+    TelemetryRate out = kFullTelemetry;
+    if (options.telemetry_every_ticks) {
+        out.every_ticks = static_cast<std::uint16_t>(*options.telemetry_every_ticks);
+    }
+    return out;
+}
+
 QemuOptions emulated(const LinkOptions &options) {
-    refuse_tables(options);
-    refuse_can(options);
+    refuse_channel(options);
     if (options.image_path.empty()) {
         throw InputError(
             "an emulated target needs --image ELF; cmake --preset mps2 && cmake --build "
@@ -59,7 +59,6 @@ QemuOptions emulated(const LinkOptions &options) {
 }
 
 std::unique_ptr<ControllerLink> make_linux(const LinkOptions &options) {
-    refuse_tables(options);
     refuse(!options.image_path.empty(), "--image", "--target linux runs no image");
     refuse(!options.plugin_path.empty(), "--plugin", "--target linux runs no image");
     if (options.can_channel.empty()) {
@@ -68,9 +67,7 @@ std::unique_ptr<ControllerLink> make_linux(const LinkOptions &options) {
                          "socketcan:can0");
     }
     CanLinkOptions out;
-    if (options.telemetry_every_ticks) {
-        out.telemetry.every_ticks = static_cast<std::uint16_t>(*options.telemetry_every_ticks);
-    }
+    out.telemetry = telemetry(options);
     if (options.greeting_time_s) {
         out.greeting_time = std::chrono::milliseconds(std::lround(1e3 * *options.greeting_time_s));
     }
@@ -80,29 +77,18 @@ std::unique_ptr<ControllerLink> make_linux(const LinkOptions &options) {
 const Target kTargets[] = {
     {"host",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
-         refuse_can(options);
-         std::vector<InProcessLink::Words> tables;
-         if (!options.rules_path.empty()) {
-             tables.push_back(load_rules(options.rules_path));
-         }
-         if (!options.phase_table_path.empty()) {
-             tables.push_back(load_pulses(options.phase_table_path));
-         }
-         if (!options.law_table_path.empty()) {
-             tables.push_back(load_law_table(options.law_table_path));
-         }
-         if (!options.force_map_path.empty()) {
-             tables.push_back(load_force_map(options.force_map_path));
-         }
-         return std::make_unique<InProcessLink>(std::move(tables));
+         refuse_channel(options);
+         refuse_telemetry(options);
+         return std::make_unique<InProcessLink>();
      }},
     {"mps2",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
+         refuse_telemetry(options);
          return std::make_unique<QemuShmLink>(emulated(options));
      }},
     {"mps2-uart",
      [](const LinkOptions &options) -> std::unique_ptr<ControllerLink> {
-         return std::make_unique<QemuUartLink>(emulated(options), kFullTelemetry);
+         return std::make_unique<QemuUartLink>(emulated(options), telemetry(options));
      }},
     {"linux", make_linux},
 };

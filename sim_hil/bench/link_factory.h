@@ -13,14 +13,11 @@ namespace quiesce {
 
 /// What the targets may need beyond their name; empty where the user gave none.
 struct LinkOptions {
-    std::string image_path;       ///< --image: ELF for an emulated target
-    std::string plugin_path;      ///< --plugin: emulator plugin that counts instructions
-    std::string rules_path;       ///< --rules: rule table for the controller, host only
-    std::string phase_table_path; ///< --phase-table: table of pulses, host only
-    std::string force_map_path;   ///< --force-map: a damper's map for the tracker, host only
-    std::string law_table_path;   ///< --law-table: a table of the law that runs, host only
-    std::string can_channel;      ///< --can: CAN channel, linux only (channel_factory.h)
-    /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux only
+    std::string image_path;  ///< --image: ELF for an emulated target
+    std::string plugin_path; ///< --plugin: emulator plugin that counts instructions
+    std::string can_channel; ///< --can: CAN channel, linux only (channel_factory.h)
+    /// --telemetry-every: ticks between two bursts of all telemetry words, 1 .. 65535; linux and
+    /// mps2-uart only
     std::optional<std::int64_t> telemetry_every_ticks;
     /// --wait-s: longest wait for the first answer, 0.1 .. 3600; linux only
     std::optional<double> greeting_time_s;

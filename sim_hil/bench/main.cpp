@@ -17,13 +17,13 @@ const Entry kCommands[] = {
     {"board-keys", "", quiesce::cmd_board_keys},
     {"compare",
      "--scenario FILE --law NAME --seeds N,N,... --target T [--board FILE] [--image ELF] "
-     "[--plugin SO] "
+     "[--plugin SO] [--rules FILE] [--pulses FILE] [--force-map FILE] [--law-table FILE] "
      "[--can CHANNEL] [--telemetry-every N] [--wait-s X] [--plant FILE] [--set NAME=VALUE]... "
      "[--noise-mg X] [--dt-us N]",
      quiesce::cmd_compare},
     {"count", "--image ELF [--word N]... [--data FILE] [--profile off|all|PASS] [--plugin SO]",
      quiesce::cmd_count},
-    {"fuzzy-surface", "", quiesce::cmd_fuzzy_surface},
+    {"fuzzy-surface", "[--rules FILE]", quiesce::cmd_fuzzy_surface},
     {"params", "", quiesce::cmd_params},
     {"plant-check", "FILE", quiesce::cmd_plant_check},
     {"replay",
@@ -34,12 +34,13 @@ const Entry kCommands[] = {
      "--scenario FILE --law NAME [--plant FILE] [--board FILE] [--set NAME=VALUE]... [--target T] "
      "[--image ELF] "
      "[--plugin SO] [--can CHANNEL] [--telemetry-every N] [--wait-s X] [--rules FILE] "
-     "[--phase-table FILE] [--force-map FILE] [--law-table FILE] [--seed N] [--noise-mg X] "
+     "[--pulses FILE] [--force-map FILE] [--law-table FILE] [--seed N] [--noise-mg X] "
      "[--dt-us N] "
      "[--trace FILE] "
      "[--columns NAME,NAME...] [--every N] [--repeat N]",
      quiesce::cmd_run},
     {"scenario-check", "FILE", quiesce::cmd_scenario_check},
+    {"table-check", "--file FILE [--board FILE]", quiesce::cmd_table_check},
     {"uart-rate", "--image ELF --echo-image ELF [--exchanges N]", quiesce::cmd_uart_rate},
 };
 

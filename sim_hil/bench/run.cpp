@@ -5,8 +5,8 @@
 #include <deque>
 
 #include "fault_injector.h"
-#include "input_error.h"
 #include "senses.h"
+#include "start.h"
 
 namespace quiesce {
 
@@ -113,13 +113,7 @@ std::int64_t RunSetup::tick_count() const {
 
 RunTiming run_scenario(const RunSetup &setup, ControllerLink &link,
                        const std::vector<TickObserver *> &observers) {
-    if (!link.start(setup.board(), setup.params)) {
-        throw InputError("the controller on target " + link.target() +
-                         (setup.rig
-                              ? " refuses its parameters or its board; is it built for as many "
-                                "sensors and dampers?"
-                              : " refuses its parameters"));
-    }
+    start_controller(link, setup.board(), setup.params, setup.tables);
     Loop loop(setup, link);
     const std::int64_t ticks = setup.tick_count();
     const auto start = std::chrono::steady_clock::now();

@@ -19,6 +19,7 @@ struct RunSetup {
     Scenario scenario;
     std::optional<Rig> rig; ///< none: the plant's one sensor and one damper, as parameters say
     quiesce_params_t params;
+    Tables tables; ///< of the controller, those of them that ship left out
     std::uint64_t seed;
     bool wants_report = false;  ///< what the law reports, in every tick
     bool wants_picture = false; ///< what the controller makes of its sensors, in every tick
@@ -59,8 +60,8 @@ struct RunTiming {
     double realtime_factor; ///< simulated time / wall_s
 };
 
-/// Starts the link and runs the whole scenario. Throws InputError when the target refuses the
-/// parameters or fails, or when the plant leaves its model's range.
+/// Starts the link and runs the whole scenario. Throws InputError when the target refuses what it
+/// is started with or fails, or when the plant leaves its model's range.
 RunTiming run_scenario(const RunSetup &setup, ControllerLink &link,
                        const std::vector<TickObserver *> &observers);
 

@@ -6,6 +6,7 @@
 #include "input_error.h"
 #include "param_options.h"
 #include "plant_file.h"
+#include "start.h"
 #include "table_file.h"
 
 namespace quiesce {
@@ -40,8 +41,8 @@ void apply_overrides(const Arguments &arguments, RunSetup &setup) {
 } // namespace
 
 void require_base(const Scenario &scenario, const PlantModel &plant) {
-    if (moves_base(scenario) && plant.structure.base_participation.isZero(0.0)) {
-        throw InputError("scenario " + scenario.name + ": a record shakes the base, but plant " +
+    if (moves_base(scenario, plant.shaker) && plant.structure.base_participation.isZero(0.0)) {
+        throw InputError("scenario " + scenario.name + ": it shakes the base, but plant " +
                          plant.name + " has no base_participation to feel it with");
     }
 }
@@ -53,9 +54,13 @@ const std::vector<std::string> &run_option_names() {
 }
 
 const std::vector<std::string> &target_option_names() {
-    static const std::vector<std::string> names = {
-        "target",    "image",     "plugin", "rules",           "phase-table",
-        "force-map", "law-table", "can",    "telemetry-every", "wait-s"};
+    static const std::vector<std::string> names = {"target", "image",           "plugin",
+                                                   "can",    "telemetry-every", "wait-s"};
+    return names;
+}
+
+const std::vector<std::string> &table_option_names() {
+    static const std::vector<std::string> names = {"rules", "pulses", "law-table", "force-map"};
     return names;
 }
 
@@ -136,20 +141,20 @@ RunSetup run_setup(const Arguments &arguments) {
     return setup;
 }
 
-void require_tables(const Arguments &arguments, const quiesce_board_t *board,
-                    const quiesce_params_t &params) {
-    require_tables(board, params, arguments.text("law-table").value_or(""),
-                   arguments.text("force-map").value_or(""));
+Tables tables_from(const Arguments &arguments, const quiesce_board_t *board,
+                   const quiesce_params_t &params) {
+    const auto file = [&arguments](const char *option) {
+        return arguments.text(option).value_or("");
+    };
+    const TableFiles files = {file("rules"), file("pulses"), file("law-table"), file("force-map")};
+    require_tables(board, params, files);
+    return tables_for(board, params, load_tables(files));
 }
 
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments) {
     LinkOptions options;
     options.image_path = arguments.text("image").value_or("");
     options.plugin_path = arguments.text("plugin").value_or("");
-    options.rules_path = arguments.text("rules").value_or("");
-    options.phase_table_path = arguments.text("phase-table").value_or("");
-    options.force_map_path = arguments.text("force-map").value_or("");
-    options.law_table_path = arguments.text("law-table").value_or("");
     options.can_channel = arguments.text("can").value_or("");
     options.telemetry_every_ticks = arguments.integer("telemetry-every", 1, UINT16_MAX);
     options.greeting_time_s = arguments.number("wait-s", 0.1, 3600.0);

@@ -12,9 +12,10 @@
 
 namespace quiesce {
 
-/// Option names: run_setup reads the first list, target_link the second.
+/// Option names: run_setup reads the first list, target_link the second, tables_from the third.
 const std::vector<std::string> &run_option_names();
 const std::vector<std::string> &target_option_names();
+const std::vector<std::string> &table_option_names();
 
 /// Concatenation of option lists.
 std::vector<std::string> options(std::initializer_list<std::vector<std::string>> lists);
@@ -31,10 +32,11 @@ quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base);
 /// The same for a board, which takes the place of some of them: those are refused.
 quiesce_params_t params_for_board(const Arguments &arguments, quiesce_params_t base);
 
-/// Throws InputError where the law of these parameters, or its tracker, is given a table that it
-/// refuses, or lacks one.
-void require_tables(const Arguments &arguments, const quiesce_board_t *board,
-                    const quiesce_params_t &params);
+/// Tables for a controller with this board (null: none) and these parameters. Throws InputError
+/// where a file holds no table of its option, or the law or its tracker refuses --law-table or
+/// --force-map, or lacks one.
+Tables tables_from(const Arguments &arguments, const quiesce_board_t *board,
+                   const quiesce_params_t &params);
 
 /// The link that the target options describe; the host without --target.
 std::unique_ptr<ControllerLink> target_link(const Arguments &arguments);

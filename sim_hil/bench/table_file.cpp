@@ -1,248 +1,108 @@
 #include "table_file.h"
 
-#include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <memory>
+#include <array>
+#include <cstdio>
 
+#include "board_crc.h"
 #include "input_error.h"
 #include "param_options.h"
+#include "table_container.h"
+#include "table_verdict.h"
 
 namespace quiesce {
 
 namespace {
 
-const char *reason(quiesce_table_verdict_t verdict) {
-    switch (verdict) {
-    case QUIESCE_TABLE_OK:
-        return "accepted";
-    case QUIESCE_TABLE_SIZE:
-        return "it is shorter than it says, or too long";
-    case QUIESCE_TABLE_MAGIC:
-        return "it is not a table for this law, or one of another version";
-    case QUIESCE_TABLE_CRC:
-        return "its checksum is wrong: it is damaged";
-    case QUIESCE_TABLE_SHAPE:
-        return "its numbers of inputs, outputs, rules or points are out of range";
-    case QUIESCE_TABLE_CELL:
-        return "a membership is out of range";
-    case QUIESCE_TABLE_RULE:
-        return "a rule names what is not there";
-    case QUIESCE_TABLE_OUTPUT:
-        return "a term is out of range";
-    case QUIESCE_TABLE_FIT:
-        return "the controller's rules have two inputs, frequency in uHz and RMS acceleration in "
-               "um/s2, and one output, current in mA; compile them with --controller";
-    case QUIESCE_TABLE_POINT:
-        return "its frequencies do not rise, or a floor is above its level; a force map's axes do "
-               "not rise from below 0 to above it (currents: from 0 to 20 A at most), or its force "
-               "does not grow with the current";
+void require_ok(quiesce_table_verdict_t verdict, const std::string &file, const TableWords &words) {
+    if (verdict != QUIESCE_TABLE_OK) {
+        throw InputError(file + ": the controller refuses the table: " + reason_of(verdict, words));
     }
-    return "unknown reason";
 }
 
-/// A table in a text file, for messages.
-struct TextTable {
-    const char *name;
-    const char *writer;
-};
-
-std::uint32_t word_of(const std::string &text, const std::string &place, const TextTable &table) {
-    std::size_t used = 0;
-    unsigned long value = 0;
-    try {
-        value = std::stoul(text, &used, 16);
-    } catch (const std::exception &) {
-        used = 0;
-    }
-    if (used != text.size() || text.empty() || text[0] == '-' || value > UINT32_MAX) {
-        throw InputError(place + ": '" + text.substr(0, 20) +
-                         "' is no 32-bit hexadecimal number; " + table.writer +
-                         " writes such files");
-    }
-    return static_cast<std::uint32_t>(value);
-}
-
-constexpr std::size_t kWordBytes = 4;
-constexpr const char *kRefused = "the controller refuses the table: ";
-
-std::uint32_t word_at(const std::vector<char> &bytes, std::size_t offset) {
-    std::uint32_t word = 0;
-    for (std::size_t i = 0; i < kWordBytes; ++i) {
-        word |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[offset + i]))
-                << (8U * i);
-    }
-    return word;
-}
-
-std::vector<std::uint32_t> text_words(const std::string &file, const TextTable &table) {
-    std::ifstream stream(file);
-    if (!stream) {
-        throw InputError(file + ": cannot be read");
-    }
-    std::vector<std::uint32_t> words;
-    std::string text;
-    while (stream >> text) {
-        const std::string place = file + ", word " + std::to_string(words.size() + 1);
-        words.push_back(word_of(text, place, table));
-    }
-    if (words.empty()) {
-        throw InputError(file + ": holds no words of a " + table.name);
-    }
-    return words;
-}
-
-/// The controller's reason, in words of the laws that are tables.
-const char *reason_of_form(quiesce_table_verdict_t verdict) {
-    if (verdict == QUIESCE_TABLE_FIT) {
-        return "it needs a signal or a damper that this board does not have, or is made for "
-               "another "
-               "tick_rate_Hz (quiesce law show says what it needs, quiesce board show what there "
-               "is)";
-    }
-    if (verdict == QUIESCE_TABLE_SHAPE) {
-        return "its numbers of states, inputs, rows, sections, signs, terms, layers or units are "
-               "out of "
-               "range, or it takes too long for a tick";
-    }
-    return verdict == QUIESCE_TABLE_POINT
-               ? "a coefficient, limit, band, power or current is out of range"
-               : reason(verdict);
-}
-
-/// What a controller with this law says of them.
-void try_table(const std::string &file, std::int32_t law, const std::vector<std::uint32_t> &words) {
+TableWords load_of_law(const std::string &file, std::int32_t law) {
+    TableWords words = read_table(file).words;
     quiesce_params_t params;
     quiesce_params_default(&params);
     params.law = law;
-    const auto controller = std::make_unique<quiesce_t>();
-    quiesce_init(controller.get(), &params);
-    try {
-        use_table(*controller, words);
-    } catch (const InputError &error) {
-        throw InputError(file + ": " + error.what());
+    require_ok(use_table(*controller_with(nullptr, params), words), file, words);
+    return words;
+}
+
+TableWords load_of_tracker(const std::string &file) {
+    TableWords words = read_table(file).words;
+    const auto count = static_cast<std::uint32_t>(words.size());
+    quiesce_owner_t owner = QUIESCE_OF_LAW;
+    (void)quiesce_table_kind(words.front(), &owner);
+    require_ok(owner == QUIESCE_OF_TRACKER ? quiesce_table_check(words.data(), count)
+                                           : QUIESCE_TABLE_MAGIC,
+               file, words);
+    return words;
+}
+
+std::string hex(std::uint32_t crc) {
+    std::array<char, 11> text{};
+    std::snprintf(text.data(), text.size(), "0x%08x", static_cast<unsigned>(crc));
+    return text.data();
+}
+
+void require_board(const quiesce_board_t &board, const std::string &file) {
+    const std::uint32_t made_for = read_table(file).board;
+    const std::uint32_t own = board_crc32(board);
+    if (made_for != 0 && made_for != own) {
+        throw InputError(file + ": made for board " + hex(made_for) + ", and this is board " +
+                         hex(own) +
+                         "; make it anew, or say that it fits with `quiesce table stamp`");
     }
+}
+
+/// The words that it uses from then on: they live as long as it.
+TableWords require_accepted(quiesce_t &controller, const std::string &file) {
+    TableWords words = read_table(file).words;
+    require_ok(use_table(controller, words), file, words);
+    return words;
 }
 
 } // namespace
 
-void use_table(quiesce_t &controller, const std::vector<std::uint32_t> &words) {
-    const quiesce_table_verdict_t verdict =
-        quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
-    if (verdict != QUIESCE_TABLE_OK) {
-        throw InputError(kRefused + std::string(reason(verdict)));
+std::vector<TableWords> load_tables(const TableFiles &files) {
+    std::vector<TableWords> tables;
+    if (!files.rules.empty()) {
+        tables.push_back(load_of_law(files.rules, QUIESCE_LAW_FUZZY));
     }
-}
-
-std::vector<std::uint32_t> load_rules(const std::string &file) {
-    std::vector<std::uint32_t> words =
-        text_words(file, {"rule table", "quiesce rules compile --words"});
-    try_table(file, QUIESCE_LAW_FUZZY, words);
-    return words;
-}
-
-namespace {
-
-/// First words of trackers' tables that are no maps; require_tables asks the tracker itself.
-constexpr std::uint32_t kOtherTrackers[] = {0x314E5451, 0x314B4251}; // network, bank
-
-bool is_of_other_tracker(const std::vector<std::uint32_t> &words) {
-    return std::find(std::begin(kOtherTrackers), std::end(kOtherTrackers), words[0]) !=
-           std::end(kOtherTrackers);
-}
-
-} // namespace
-
-std::vector<std::uint32_t> load_force_map(const std::string &file) {
-    std::vector<std::uint32_t> words = text_words(file, {"force map", "quiesce identify inverse"});
-    if (is_of_other_tracker(words)) {
-        return words;
+    if (!files.pulses.empty()) {
+        tables.push_back(load_of_law(files.pulses, QUIESCE_LAW_PHASE));
     }
-    const quiesce_table_verdict_t verdict =
-        quiesce_tracker_table_check(words.data(), static_cast<std::uint32_t>(words.size()));
-    if (verdict != QUIESCE_TABLE_OK) {
-        throw InputError(file + ": " + kRefused + reason(verdict));
+    if (!files.law.empty()) {
+        tables.push_back(read_table(files.law).words);
     }
-    return words;
-}
-
-std::vector<std::uint32_t> load_law_table(const std::string &file) {
-    return text_words(file, {"law's table", "quiesce law make"});
-}
-
-namespace {
-
-/// Returns the words: the controller reads them from now on.
-std::vector<std::uint32_t> require_accepted_table(quiesce_t &controller, const std::string &file) {
-    std::vector<std::uint32_t> words = load_law_table(file);
-    const quiesce_table_verdict_t verdict =
-        quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
-    if (verdict != QUIESCE_TABLE_OK) {
-        throw InputError(file + ": " + kRefused + reason_of_form(verdict));
+    if (!files.tracker.empty()) {
+        tables.push_back(load_of_tracker(files.tracker));
     }
-    return words;
+    return tables;
 }
-
-/// A map or bank that is good in itself: of this board's dampers and strokes, of this tick rate.
-void require_served_map(quiesce_t &controller, const std::string &file) {
-    const std::vector<std::uint32_t> words = load_force_map(file);
-    const quiesce_table_verdict_t verdict =
-        quiesce_table_use(&controller, words.data(), static_cast<std::uint32_t>(words.size()));
-    if (verdict == QUIESCE_TABLE_FIT && !is_of_other_tracker(words)) {
-        throw InputError(file + ": the controller refuses the map: it is of more dampers than this "
-                                "board has, or over a stroke that no sensor tells (quiesce board "
-                                "show), or a bank for another tick_rate_Hz");
-    }
-    if (verdict != QUIESCE_TABLE_OK) {
-        throw InputError(file + ": " + kRefused + reason_of_form(verdict));
-    }
-}
-
-} // namespace
 
 void require_tables(const quiesce_board_t *board, const quiesce_params_t &params,
-                    const std::string &law_table, const std::string &force_map) {
-    const auto controller = std::make_unique<quiesce_t>();
-    if (board != nullptr) {
-        quiesce_init_board(controller.get(), board, &params);
-    } else {
-        quiesce_init(controller.get(), &params);
+                    const TableFiles &files) {
+    for (const std::string *file : {&files.rules, &files.pulses, &files.law, &files.tracker}) {
+        if (board != nullptr && !file->empty()) {
+            require_board(*board, *file);
+        }
     }
-    std::vector<std::uint32_t> used;
-    if (!law_table.empty()) {
-        used = require_accepted_table(*controller, law_table);
-    }
+    const auto controller = controller_with(board, params);
+    const TableWords law =
+        files.law.empty() ? TableWords() : require_accepted(*controller, files.law);
     const char *lacking = quiesce_lacks_table(controller.get());
     if (lacking != nullptr && law_label(params) == lacking) {
         throw InputError("law " + std::string(lacking) +
                          " works with a table: --law-table FILE (quiesce law make)");
     }
-    if (lacking != nullptr && force_map.empty()) {
+    if (lacking != nullptr && files.tracker.empty()) {
         throw InputError("tracker " + std::string(lacking) +
                          " works with a damper's map: --force-map FILE (quiesce identify inverse)");
     }
     if (lacking != nullptr) {
-        require_served_map(*controller, force_map);
+        (void)require_accepted(*controller, files.tracker);
     }
-}
-
-std::vector<std::uint32_t> load_pulses(const std::string &file) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)),
-                                  std::istreambuf_iterator<char>());
-    if (!stream || bytes.empty()) {
-        throw InputError(file + ": cannot be read, or is empty");
-    }
-    if (bytes.size() % kWordBytes != 0) {
-        throw InputError(file + ": " + std::to_string(bytes.size()) +
-                         " bytes are no whole 32-bit words; quiesce tune writes such files");
-    }
-    std::vector<std::uint32_t> words;
-    for (std::size_t offset = 0; offset < bytes.size(); offset += kWordBytes) {
-        words.push_back(word_at(bytes, offset));
-    }
-    try_table(file, QUIESCE_LAW_PHASE, words);
-    return words;
 }
 
 } // namespace quiesce

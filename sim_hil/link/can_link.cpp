@@ -13,16 +13,15 @@ const char *const kSilenceHint = "; is quiesced --lockstep running at the other 
 CanLink::CanLink(std::unique_ptr<FrameChannel> channel, const CanLinkOptions &options)
     : channel_(std::move(channel)),
       client_(*channel_, {options.telemetry, options.answer_time, kSilenceHint}),
-      greeting_time_(options.greeting_time),
-      is_complete_(options.telemetry.every_ticks == kFullTelemetry.every_ticks &&
-                   options.telemetry.frames == kFullTelemetry.frames) {}
+      greeting_time_(options.greeting_time), is_complete_(options.telemetry.is_full()) {}
 
-bool CanLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
+StartAnswer CanLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
+                           const Tables &tables) {
     if (!is_greeted_) {
         client_.greet(greeting_time_);
         is_greeted_ = true;
     }
-    return client_.start(board, params);
+    return client_.start(board, params, tables);
 }
 
 void CanLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {

@@ -23,7 +23,8 @@ class CanLink final : public ControllerLink {
     std::string target() const override { return "linux"; }
 
     /// The first start waits for the target.
-    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
+    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                      const Tables &tables) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     bool is_complete() const override { return is_complete_; }
     bool has_picture() const override { return false; }

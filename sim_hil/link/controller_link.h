@@ -2,10 +2,12 @@
 #ifndef QUIESCE_CONTROLLER_LINK_H
 #define QUIESCE_CONTROLLER_LINK_H
 
+#include <array>
 #include <bitset>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "firmware.h"
 
@@ -23,6 +25,17 @@ struct InstructionCounts {
 /// One bit for each 32-bit word of lockstep_reply_t, in memory order.
 using ReplyWords = std::bitset<sizeof(lockstep_reply_t) / sizeof(std::uint32_t)>;
 
+/// Words of the law's table and of its tracker's, by LOCKSTEP_x_TABLE; empty where there is none.
+using Tables = std::array<std::vector<std::uint32_t>, LOCKSTEP_TABLES>;
+
+/// What a controller says to its start.
+struct StartAnswer {
+    bool is_accepted;
+    lockstep_refusal_t table{}; ///< that it refuses; where none, parameters or board are refused
+
+    explicit operator bool() const { return is_accepted; }
+};
+
 /// One stimulus in, one control tick, one reply out. Not thread-safe.
 /// Every function throws InputError when the target cannot be reached or stops answering.
 class ControllerLink {
@@ -33,9 +46,10 @@ class ControllerLink {
     virtual std::string target() const = 0;
 
     /// (Re)starts the controller from rest. board: what is wired to it; null: as the parameters
-    /// say. Returns false iff it refuses one of them; the controller then stays in its latched
-    /// fault state and still answers. May be called again for a new run.
-    virtual bool start(const quiesce_board_t *board, const quiesce_params_t &params) = 0;
+    /// say. tables: instead of those that ship. Where one of them is refused the controller stays
+    /// in its latched fault state and still answers. May be called again for a new run.
+    virtual StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                              const Tables &tables) = 0;
 
     /// One control tick. Writes all of reply, 0 where nothing was asked for. Only after start.
     virtual void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) = 0;

@@ -14,7 +14,6 @@ namespace quiesce {
 
 namespace {
 
-constexpr std::int32_t kMax24Bit = 0x7FFFFF;
 constexpr std::uint8_t kSequenceMask = 15;
 
 /// Pause between two questions for the status.
@@ -44,28 +43,10 @@ ReplyWords command_words() {
     return words;
 }
 
-can_frame_t make_frame(std::uint32_t id, std::uint32_t length) {
-    can_frame_t frame{};
-    frame.id = id;
-    frame.length = static_cast<std::uint8_t>(length);
-    return frame;
-}
-
 std::string message_name(std::uint32_t id) {
     char text[16];
     std::snprintf(text, sizeof text, "0x%03X", static_cast<unsigned>(id));
     return text;
-}
-
-void require_24_bit(std::int32_t value, const char *name) {
-    if (value < -kMax24Bit - 1 || value > kMax24Bit) {
-        throw InputError(std::string(name) + " " + std::to_string(value) +
-                         ": does not fit the 24 bits that it has in its CAN message");
-    }
-}
-
-bool has_flag(const lockstep_stimulus_t &stimulus, std::uint32_t flag) {
-    return (stimulus.flags & flag) != 0;
 }
 
 bool is_lockstep(const can_frame_t &frame) {
@@ -77,16 +58,6 @@ bool is_telemetry(const can_frame_t &frame) {
     return frame.id >= QUIESCE_CAN_TELEMETRY_FIRST_ID &&
            frame.id < QUIESCE_CAN_TELEMETRY_FIRST_ID + QUIESCE_CAN_TELEMETRY_WORDS &&
            frame.length == kWord;
-}
-
-can_frame_t param_write(std::uint16_t index, std::int32_t value) {
-    quiesce_can_lockstep_param_write_t write{};
-    write.param_index = index;
-    write.param_value = value;
-    can_frame_t frame = make_frame(QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_FRAME_ID,
-                                   QUIESCE_CAN_LOCKSTEP_PARAM_WRITE_LENGTH);
-    quiesce_can_lockstep_param_write_pack(frame.data, &write, sizeof frame.data);
-    return frame;
 }
 
 quiesce_can_lockstep_param_ack_t unpack_ack(const can_frame_t &frame) {
@@ -144,14 +115,14 @@ void LockstepClient::pass_fence() {
     fail("the target answers, but not what it is asked" + options_.silence_hint);
 }
 
-bool LockstepClient::start(const quiesce_board_t *board, const quiesce_params_t &params) {
-    for (std::uint32_t index = 0; index < QUIESCE_PARAM_COUNT; ++index) {
-        std::int32_t value = 0;
-        quiesce_param_get(&params, index, &value);
-        write_parameter(index, value);
-    }
+StartAnswer LockstepClient::start(const quiesce_board_t *board, const quiesce_params_t &params,
+                                  const Tables &tables) {
+    write_params(params);
     if (board != nullptr) {
         write_board(*board);
+    }
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        write_table(LOCKSTEP_CAN_TABLE_INDEX + LOCKSTEP_CAN_TABLE_INDICES * i, tables[i]);
     }
     send_control(board != nullptr ? QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_BOARD_CHOICE
                                   : QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_CHOICE);
@@ -163,21 +134,41 @@ bool LockstepClient::start(const quiesce_board_t *board, const quiesce_params_t 
     sequence_ = 0;
     reply_ = lockstep_reply_t{};
     refused_index_ = status.refused_index;
-    return status.param_is_refused == 0 && status.board_is_refused == 0;
+    if (status.table_verdict != QUIESCE_TABLE_OK) {
+        if (status.refused_index >= LOCKSTEP_TABLES) {
+            fail("refuses a table that there is not; rebuild it");
+        }
+        return {false, {status.table_verdict, status.refused_index}};
+    }
+    return {status.param_is_refused == 0 && status.board_is_refused == 0};
+}
+
+void LockstepClient::write_params(const quiesce_params_t &params) {
+    std::vector<std::int32_t> values(QUIESCE_PARAM_COUNT);
+    for (std::uint32_t i = 0; i < values.size(); ++i) {
+        quiesce_param_get(&params, i, &values[i]);
+    }
+    write_values(0, values);
 }
 
 void LockstepClient::write_board(const quiesce_board_t &board) {
-    std::array<std::int32_t, LOCKSTEP_CAN_BOARD_WORDS> words;
+    std::vector<std::int32_t> words(LOCKSTEP_CAN_BOARD_WORDS);
     std::memcpy(words.data(), &board, sizeof board);
-    for (std::uint32_t i = 0; i < words.size(); ++i) {
-        write_parameter(LOCKSTEP_CAN_BOARD_INDEX + i, words[i]);
-    }
+    write_values(LOCKSTEP_CAN_BOARD_INDEX, words);
+}
+
+/// Of one that is too long as many words as there is room for: the target says so by their number.
+void LockstepClient::write_table(std::size_t first_index, const std::vector<std::uint32_t> &table) {
+    const std::size_t count = std::min<std::size_t>(table.size(), QUIESCE_TABLE_WORDS);
+    const auto end = table.begin() + static_cast<std::ptrdiff_t>(count);
+    write_values(first_index, {table.begin(), end});
+    write_values(first_index + LOCKSTEP_CAN_TABLE_COUNT, {static_cast<std::int32_t>(table.size())});
 }
 
 void LockstepClient::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {
     static const ReplyWords kCommandWords = command_words();
     std::array<can_frame_t, kMaxBurstFrames> frames;
-    const std::size_t count = put_stimulus(stimulus, frames.data());
+    const std::size_t count = put_stimulus(stimulus, sequence_, frames.data());
     send(frames.data(), count);
     received_ = kCommandWords;
     std::size_t telemetry_frames = 0;
@@ -189,7 +180,7 @@ void LockstepClient::exchange(const lockstep_stimulus_t &stimulus, lockstep_repl
         }
         if (frame.id == QUIESCE_CAN_LOCKSTEP_COMMAND_FRAME_ID) {
             take_command(frame);
-            if (!has_flag(stimulus, LOCKSTEP_REPORT)) {
+            if ((stimulus.flags & LOCKSTEP_REPORT) == 0) {
                 forget_report();
             }
             reply = reply_;
@@ -245,24 +236,35 @@ can_frame_t LockstepClient::receive_message(std::uint32_t id, std::uint8_t lengt
     return frame;
 }
 
-void LockstepClient::write_parameter(std::uint32_t index, std::int32_t value) {
-    const can_frame_t write = param_write(static_cast<std::uint16_t>(index), value);
-    send(&write, 1);
+/// Of indices one after the other, a burst of frames at a time: the target answers each in turn.
+void LockstepClient::write_values(std::size_t first_index,
+                                  const std::vector<std::int32_t> &values) {
+    std::array<can_frame_t, kMaxBurstFrames> frames;
+    for (std::size_t sent = 0; sent < values.size();) {
+        const std::size_t count = std::min(frames.size(), values.size() - sent);
+        for (std::size_t i = 0; i < count; ++i) {
+            frames[i] =
+                param_write(static_cast<std::uint16_t>(first_index + sent + i), values[sent + i]);
+        }
+        send(frames.data(), count);
+        for (const std::size_t end = sent + count; sent < end; ++sent) {
+            require_stored(first_index + sent, values[sent]);
+        }
+    }
+}
+
+void LockstepClient::require_stored(std::size_t index, std::int32_t value) {
     const auto ack = unpack_ack(receive_message(QUIESCE_CAN_LOCKSTEP_PARAM_ACK_FRAME_ID,
                                                 QUIESCE_CAN_LOCKSTEP_PARAM_ACK_LENGTH));
     if (ack.is_stored == 0 || ack.param_index != index || ack.param_value != value) {
-        fail("the target does not store parameter " + std::to_string(index) + "; rebuild it");
+        fail("the target does not store " +
+             std::string(index < LOCKSTEP_CAN_BOARD_INDEX ? "parameter " : "word ") +
+             std::to_string(index) + "; rebuild it");
     }
 }
 
 void LockstepClient::send_control(std::uint8_t operation) {
-    quiesce_can_lockstep_control_t message{};
-    message.operation = operation;
-    message.telemetry_frames = options_.telemetry.frames;
-    message.telemetry_every_ticks = options_.telemetry.every_ticks;
-    can_frame_t frame =
-        make_frame(QUIESCE_CAN_LOCKSTEP_CONTROL_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CONTROL_LENGTH);
-    quiesce_can_lockstep_control_pack(frame.data, &message, sizeof frame.data);
+    const can_frame_t frame = control_frame(operation, options_.telemetry);
     send(&frame, 1);
 }
 
@@ -272,65 +274,6 @@ quiesce_can_lockstep_status_t LockstepClient::receive_status() {
     quiesce_can_lockstep_status_t status{};
     quiesce_can_lockstep_status_unpack(&status, answer.data, answer.length);
     return status;
-}
-
-can_frame_t LockstepClient::current_frame(const lockstep_stimulus_t &stimulus,
-                                          std::uint8_t damper) const {
-    require_24_bit(stimulus.current_meas_mA[damper], "current_meas_mA");
-    quiesce_can_lockstep_current_t current{};
-    current.current_meas_mA = stimulus.current_meas_mA[damper];
-    current.damper_number = damper;
-    current.sequence = sequence_;
-    can_frame_t frame =
-        make_frame(QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_CURRENT_LENGTH);
-    quiesce_can_lockstep_current_pack(frame.data, &current, sizeof frame.data);
-    return frame;
-}
-
-can_frame_t LockstepClient::sensor_frame(const lockstep_stimulus_t &stimulus,
-                                         std::uint8_t number) const {
-    require_24_bit(stimulus.counts[number], "counts");
-    quiesce_can_lockstep_sensor_t sensor{};
-    sensor.sample_counts = stimulus.counts[number];
-    sensor.sensor_number = number;
-    sensor.sequence = sequence_;
-    can_frame_t frame =
-        make_frame(QUIESCE_CAN_LOCKSTEP_SENSOR_FRAME_ID, QUIESCE_CAN_LOCKSTEP_SENSOR_LENGTH);
-    quiesce_can_lockstep_sensor_pack(frame.data, &sensor, sizeof frame.data);
-    return frame;
-}
-
-can_frame_t LockstepClient::stimulus_frame(const lockstep_stimulus_t &stimulus) const {
-    require_24_bit(stimulus.counts[0], "counts");
-    quiesce_can_lockstep_stimulus_t message{};
-    message.accel_counts = stimulus.counts[0];
-    message.accel_is_fresh = has_flag(stimulus, LOCKSTEP_FRESH);
-    message.enable = has_flag(stimulus, LOCKSTEP_ENABLE);
-    message.estop = has_flag(stimulus, LOCKSTEP_ESTOP);
-    message.fault_reset = has_flag(stimulus, LOCKSTEP_FAULT_RESET);
-    message.sequence = sequence_;
-    can_frame_t frame =
-        make_frame(QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_LENGTH);
-    quiesce_can_lockstep_stimulus_pack(frame.data, &message, sizeof frame.data);
-    return frame;
-}
-
-/// Returns the number of frames: what belongs to a stimulus goes before it.
-std::size_t LockstepClient::put_stimulus(const lockstep_stimulus_t &stimulus,
-                                         can_frame_t *frames) const {
-    std::size_t count = 0;
-    for (std::uint8_t i = 0; i < QUIESCE_MAX_DAMPERS; ++i) {
-        if (has_flag(stimulus, LOCKSTEP_HAS_CURRENT << i)) {
-            frames[count++] = current_frame(stimulus, i);
-        }
-    }
-    for (std::uint8_t i = 1; i < QUIESCE_MAX_SENSORS; ++i) {
-        if (has_flag(stimulus, LOCKSTEP_FRESH << i)) {
-            frames[count++] = sensor_frame(stimulus, i);
-        }
-    }
-    frames[count++] = stimulus_frame(stimulus);
-    return count;
 }
 
 void LockstepClient::set_enabled(std::uint32_t damper, bool is_enabled) {

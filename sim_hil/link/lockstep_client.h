@@ -10,17 +10,9 @@
 
 #include "controller_link.h"
 #include "frame_channel.h"
+#include "lockstep_frames.h"
 
 namespace quiesce {
-
-/// How much telemetry the target sends: `frames` words in a burst, a burst every `every_ticks`.
-struct TelemetryRate {
-    std::uint16_t every_ticks;
-    std::uint8_t frames;
-};
-
-/// Every word after every tick: replies are complete, as over the other links.
-constexpr TelemetryRate kFullTelemetry{1, QUIESCE_CAN_TELEMETRY_WORDS};
 
 struct LockstepClientOptions {
     TelemetryRate telemetry = kFullTelemetry;
@@ -47,9 +39,10 @@ class LockstepClient {
     /// than the bench, or that an earlier bench has left in mid-tick.
     void greet(std::chrono::milliseconds time);
 
-    /// Writes every parameter by its index, and the words of the board where there is one (null:
-    /// none), then starts. Returns false iff one is refused.
-    bool start(const quiesce_board_t *board, const quiesce_params_t &params);
+    /// Writes every parameter by its index, the words of the board where there is one (null: none)
+    /// and those of the tables, then starts.
+    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                      const Tables &tables);
 
     /// One tick. With less than full telemetry reply holds, of each word, the last value received;
     /// state, fault and command come every tick in any case. Throws InputError, too, where a value
@@ -59,7 +52,7 @@ class LockstepClient {
     /// Tells the target to end.
     void stop();
 
-    /// Index of the parameter that the last start refused. Only where it returned false.
+    /// Index of the parameter that the last start refused.
     std::uint32_t refused_index() const { return refused_index_; }
 
     /// Words that the last exchange brought.
@@ -74,12 +67,11 @@ class LockstepClient {
     quiesce_can_lockstep_status_t receive_status();
     void await_status(std::chrono::milliseconds time);
     void pass_fence();
-    void write_parameter(std::uint32_t index, std::int32_t value);
-    std::size_t put_stimulus(const lockstep_stimulus_t &stimulus, can_frame_t *frames) const;
-    can_frame_t current_frame(const lockstep_stimulus_t &stimulus, std::uint8_t damper) const;
-    can_frame_t sensor_frame(const lockstep_stimulus_t &stimulus, std::uint8_t number) const;
-    can_frame_t stimulus_frame(const lockstep_stimulus_t &stimulus) const;
+    void write_params(const quiesce_params_t &params);
     void write_board(const quiesce_board_t &board);
+    void write_table(std::size_t first_index, const std::vector<std::uint32_t> &table);
+    void write_values(std::size_t first_index, const std::vector<std::int32_t> &values);
+    void require_stored(std::size_t index, std::int32_t value);
     void set_enabled(std::uint32_t damper, bool is_enabled);
     void take_damper(const can_frame_t &frame);
     void take_command(const can_frame_t &frame);

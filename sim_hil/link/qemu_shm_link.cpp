@@ -1,5 +1,6 @@
 #include "qemu_shm_link.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <sys/mman.h>
 #include <system_error>
@@ -65,14 +66,20 @@ QemuShmLink::QemuShmLink(const QemuOptions &options)
       process_(options.image_path, qemu_arguments(mailbox_, counter_),
                inherited(mailbox_, counter_)) {}
 
-bool QemuShmLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
+StartAnswer QemuShmLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
+                               const Tables &tables) {
     mailbox_->params = params;
     mailbox_->has_board = board != nullptr ? 1u : 0u;
     mailbox_->board = board != nullptr ? *board : quiesce_board_t{};
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const std::size_t count = std::min<std::size_t>(tables[i].size(), QUIESCE_TABLE_WORDS);
+        mailbox_->table_words[i] = static_cast<std::uint32_t>(tables[i].size());
+        std::copy_n(tables[i].begin(), count, mailbox_->table[i]);
+    }
     mailbox_->reply = lockstep_reply_t{};
     request(MAILBOX_START);
     check_layout();
-    return mailbox_->status == 1u;
+    return {mailbox_->status == 1u, mailbox_->refused};
 }
 
 void QemuShmLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {

@@ -31,7 +31,8 @@ class QemuShmLink final : public ControllerLink {
     explicit QemuShmLink(const QemuOptions &options);
 
     std::string target() const override { return "mps2"; }
-    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
+    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                      const Tables &tables) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     std::optional<InstructionCounts> finish() override;
 

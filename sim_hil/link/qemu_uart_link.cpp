@@ -4,14 +4,16 @@ namespace quiesce {
 
 QemuUartLink::QemuUartLink(const QemuOptions &options, TelemetryRate telemetry)
     : uart_(options), channel_(uart_),
-      client_(channel_, {telemetry, options.answer_time, kUartSilenceHint}) {}
+      client_(channel_, {telemetry, options.answer_time, kUartSilenceHint}),
+      is_complete_(telemetry.is_full()) {}
 
-bool QemuUartLink::start(const quiesce_board_t *board, const quiesce_params_t &params) {
+StartAnswer QemuUartLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
+                                const Tables &tables) {
     if (!is_greeted_) {
         uart_.await_greeting();
         is_greeted_ = true;
     }
-    return client_.start(board, params);
+    return client_.start(board, params, tables);
 }
 
 void QemuUartLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {

@@ -14,8 +14,10 @@ class QemuUartLink final : public ControllerLink {
     QemuUartLink(const QemuOptions &options, TelemetryRate telemetry);
 
     std::string target() const override { return "mps2-uart"; }
-    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override;
+    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                      const Tables &tables) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
+    bool is_complete() const override { return is_complete_; }
     bool has_picture() const override { return false; }
     ReplyWords received() const override { return client_.received(); }
     std::optional<InstructionCounts> finish() override;
@@ -29,6 +31,7 @@ class QemuUartLink final : public ControllerLink {
     QemuUart uart_;
     SlcanChannel channel_;
     LockstepClient client_;
+    bool is_complete_;
     bool is_greeted_ = false;
 };
 

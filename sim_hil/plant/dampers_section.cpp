@@ -67,10 +67,21 @@ Eigen::VectorXd shape_of(const PlantModel &model, const std::string &name) {
     return Eigen::VectorXd::Zero(model.structure.mode_count());
 }
 
+double read_ratio(TomlTable &section) {
+    return section.number("ratio", {0.01, 100.0, "-"}, 1.0);
+}
+
+/// [damper], where the structure says.
+PlantDamper read_only(Shared &shared, TomlTable section, const Eigen::VectorXd &at_damper) {
+    const double ratio = read_ratio(section);
+    return read_one(shared, section, std::nullopt,
+                    {kOnlyDamper, nullptr, ratio * at_damper, {}, ratio});
+}
+
 PlantDamper read_joined(Shared &shared, TomlTable &section, const std::vector<std::string> &taken) {
     PlantDamper damper{};
     damper.name = read_name(section, taken);
-    damper.ratio = section.number("ratio", {0.01, 100.0, "-"}, 1.0);
+    damper.ratio = read_ratio(section);
     damper.stroke = damper.ratio * read_stroke(section, shared.model);
     std::optional<TomlTable> coil = section.optional_table("coil");
     return read_one(shared, section, std::move(coil), std::move(damper));
@@ -124,8 +135,7 @@ void read_dampers(TomlTable &root, const std::string &plant_file, const Eigen::V
     if (has_damper_ends(root)) {
         model.dampers = read_several(shared);
     } else {
-        model.dampers = {read_one(shared, root.table("damper"), std::nullopt,
-                                  {kOnlyDamper, nullptr, at_damper, {}})};
+        model.dampers = {read_only(shared, root.table("damper"), at_damper)};
     }
 }
 

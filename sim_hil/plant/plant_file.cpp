@@ -21,9 +21,14 @@ CurrentDriverParams read_driver(TomlTable section) {
     return params;
 }
 
-ShakerParams read_shaker(TomlTable section) {
+ShakerParams read_shaker(TomlTable section, const Structure &structure) {
     ShakerParams params{};
-    params.gain_N_V = section.number("gain_N_V", {-1e6, 1e6, "N/V"});
+    params.moves_base = section.has("gain_m_s2_V");
+    params.gain_per_V = params.moves_base ? section.number("gain_m_s2_V", {-1e6, 1e6, "m/s2 per V"})
+                                          : section.number("gain_N_V", {-1e6, 1e6, "N/V"});
+    if (params.moves_base && structure.base_participation.isZero(0.0)) {
+        section.fail("gain_m_s2_V", "the structure has no base_participation to feel it with");
+    }
     params.drive_V = section.number("drive_V", {0.0, 1e6, "V"});
     params.ref_freq_Hz = section.number("ref_freq_Hz", {1e-3, 1e5, "Hz"}, 10.0);
     params.corner_Hz = section.number("corner_Hz", {0.0, 1e5, "Hz, 0: flat"}, 0.0);
@@ -65,7 +70,7 @@ PlantModel load_plant(const std::string &file) {
     model.driver = read_driver(root.table("driver"));
     read_dampers(root, file, section.at_damper, model);
     read_mounts(root, model);
-    model.shaker = read_shaker(root.table("shaker"));
+    model.shaker = read_shaker(root.table("shaker"), model.structure);
     read_sensors(root, file, model);
     model.max_step_s = read_max_step_s(root, model);
     root.reject_unknown_keys();

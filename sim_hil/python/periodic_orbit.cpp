@@ -52,18 +52,18 @@ PeriodicOrbit::PeriodicOrbit(const PlantModel &model, const OrbitCase &orbit_cas
       steps_(orbit_grid(model, orbit_case)),
       step_s_(1.0 / (orbit_case.freq_Hz * static_cast<double>(steps_))),
       half_step_coil_(model.dampers[0].coil, 0.5 * step_s_), rk4_(equations_.state_count()),
-      force_N_(2 * steps_ + 1), coil_A_(2 * steps_ + 1) {
+      shaking_(2 * steps_ + 1), coil_A_(2 * steps_ + 1) {
     require_one_damper(model);
     if (equations_.is_sampled()) {
         throw InputError("the plant's damper model runs at a sample time of its own, so its motion "
                          "has no periodic solution; choose a model without delays");
     }
-    ShakerParams shaker = model.shaker;
-    shaker.drive_V = orbit_case.drive_V;
-    const double amplitude_N = Shaker(shaker).amplitude_N(orbit_case.freq_Hz);
-    for (std::size_t i = 0; i < force_N_.size(); ++i) {
+    const Shaker shaker(model.shaker);
+    const double amplitude = shaker.amplitude(orbit_case.freq_Hz, orbit_case.drive_V);
+    for (std::size_t i = 0; i < shaking_.size(); ++i) {
         const double cycles = static_cast<double>(i) / static_cast<double>(2 * steps_);
-        force_N_[i] = amplitude_N * std::sin(kTwoPi * cycles);
+        shaking_[i] =
+            shaker.sample(amplitude * std::sin(kTwoPi * cycles), orbit_case.freq_Hz, cycles);
     }
 }
 
@@ -97,14 +97,16 @@ PeriodicOrbit::Period PeriodicOrbit::run(const Eigen::VectorXd &start) {
     std::vector<double> k1(y.size());
     const Eigen::Map<const Eigen::VectorXd> state(y.data(), start.size());
     for (std::size_t k = 0; k < steps_; ++k) {
-        const double *force_N = &force_N_[2 * k];
+        const ExcitationSample *shaking = &shaking_[2 * k];
         const double *coil_A = &coil_A_[2 * k];
-        equations_.rates(force_N[0], {coil_A[0]}, y, k1);
+        const double base_m_s2 = shaking[0].base_accel_m_s2;
+        equations_.rates(shaking[0].force_N, {coil_A[0]}, y, k1, base_m_s2);
         out.disp_m[static_cast<Eigen::Index>(k)] = equations_.displacement_m(y);
-        out.accel_m_s2[static_cast<Eigen::Index>(k)] = equations_.accel_m_s2(k1);
+        out.accel_m_s2[static_cast<Eigen::Index>(k)] = equations_.accel_m_s2(k1, base_m_s2);
         rk4_.step(y, k1, step_s_,
                   [&](int at, const std::vector<double> &from, std::vector<double> &rates) {
-                      equations_.rates(force_N[at], {coil_A[at]}, from, rates);
+                      equations_.rates(shaking[at].force_N, {coil_A[at]}, from, rates,
+                                       shaking[at].base_accel_m_s2);
                   });
         out.largest = out.largest.cwiseMax(state.cwiseAbs());
     }

@@ -1,5 +1,5 @@
-/// The periodic motion of a plant under a sinusoidal force and a periodic driver output, and how it
-/// changes with that output.
+/// The periodic motion of a plant under a sinusoidal force, or acceleration of its base, and a
+/// periodic driver output, and how it changes with that output.
 ///
 /// The coil's periodic current is found first: it does not depend on the motion. The state y at
 /// theta = 0 then solves P(y) = y, P being one period of classical Runge-Kutta, by Newton's method
@@ -15,6 +15,7 @@
 #include "coil.h"
 #include "equations.h"
 #include "rk4.h"
+#include "segment.h"
 
 namespace quiesce {
 
@@ -88,7 +89,7 @@ class PeriodicOrbit {
     double step_s_;
     Coil half_step_coil_;
     Rk4 rk4_;
-    std::vector<double> force_N_; ///< at every half step, 2 steps_ + 1
+    std::vector<ExcitationSample> shaking_; ///< at every half step, 2 steps_ + 1
     std::vector<double> command_A_;
     std::vector<double> coil_A_; ///< likewise
     Eigen::VectorXd start_;

@@ -47,8 +47,8 @@ void quiesce_plant_get_mode(const quiesce_plant *plant, int mode, quiesce_plant_
             structure.at_sensor[mode]};
 }
 
-double quiesce_plant_force_N_V(const quiesce_plant *plant, double freq_Hz) {
+double quiesce_plant_shaker_per_V(const quiesce_plant *plant, double freq_Hz) {
     quiesce::ShakerParams shaker = plant->model.shaker;
     shaker.drive_V = 1.0;
-    return quiesce::Shaker(shaker).amplitude_N(freq_Hz);
+    return quiesce::Shaker(shaker).amplitude(freq_Hz);
 }

@@ -40,10 +40,10 @@ void quiesce_plant_free(quiesce_plant *plant);
 void quiesce_plant_get_facts(const quiesce_plant *plant, quiesce_plant_facts *facts);
 /// 0 <= mode < mode_count.
 void quiesce_plant_get_mode(const quiesce_plant *plant, int mode, quiesce_plant_mode *out);
-/// Force amplitude of the shaker for 1 V.
-double quiesce_plant_force_N_V(const quiesce_plant *plant, double freq_Hz);
+/// Amplitude of what the shaker gives for 1 V: N, or m/s2 where it moves the base.
+double quiesce_plant_shaker_per_V(const quiesce_plant *plant, double freq_Hz);
 
-/// Periodic motion under the force drive_V g(f) sin(theta), theta = 2 pi freq_Hz t, and a driver
+/// Periodic motion under the shaker's drive_V g(f) sin(theta), theta = 2 pi freq_Hz t, and a driver
 /// output that is constant in each of `intervals` equal parts of half a period of the excitation
 /// (covers_period 0; repeated in the second half) or of the whole period (covers_period 1).
 /// Continuous in time: no control ticks, no rounding of the current.

@@ -32,8 +32,8 @@ class TickSegment final : public Segment {
         const double amplitude_V =
             drive_.amplitude_V[at] + part * (drive_.amplitude_V[next] - drive_.amplitude_V[at]);
         const double freq_Hz = std::abs(slope) * drive_.tick_rate_Hz;
-        return {amplitude_V * shaker_.amplitude_N(freq_Hz) * std::sin(kTwoPi * cycles), freq_Hz,
-                start_cycles + cycles, 0.0};
+        return shaker_.sample(amplitude_V * shaker_.amplitude(freq_Hz) * std::sin(kTwoPi * cycles),
+                              freq_Hz, start_cycles + cycles);
     }
 
   private:

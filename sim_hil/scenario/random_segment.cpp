@@ -56,19 +56,18 @@ double RandomSegment::repeat_s(const RandomParams &params) {
     return std::max(params.least_repeat_s, kFewestLines / (params.high_Hz - params.low_Hz));
 }
 
-RandomSegment::RandomSegment(const ShakerParams &shaker_params, const RandomParams &params) {
+RandomSegment::RandomSegment(const ShakerParams &shaker_params, const RandomParams &params)
+    : shaker_(shaker_params) {
     const double period_s = repeat_s(params);
     const std::size_t count = power_of_two_from(kPointsPerCycle * params.high_Hz * period_s);
-    const Shaker shaker(shaker_params);
     const Lines lines = random_lines(params, period_s);
-    // The real part of the transform is the force, the imaginary part its slope.
+    // The real part of the transform is the value, the imaginary part its slope.
     std::vector<Complex> spectrum(count);
     for (std::size_t i = 0; i < lines.values.size(); ++i) {
         const std::size_t line = lines.first + i;
         const double freq_Hz = static_cast<double>(line) / period_s;
         const double turn = kTwoPi * static_cast<double>(line) / static_cast<double>(count);
-        const Complex half =
-            0.5 * shaker.amplitude_N(freq_Hz, params.drive_rms_V) * lines.values[i];
+        const Complex half = 0.5 * shaker_.amplitude(freq_Hz, params.drive_rms_V) * lines.values[i];
         spectrum[line] = half * (1.0 - turn);
         spectrum[count - line] = std::conj(half) * (1.0 + turn);
     }
@@ -90,11 +89,11 @@ ExcitationSample RandomSegment::sample(double time_s, double start_cycles) const
     const Point &from = table_[index];
     const Point &to = table_[(index + 1) & (table_.size() - 1)];
     const double u = at - floor;
-    const double rise = to.force_N - from.force_N;
-    const double force_N =
-        from.force_N + u * (from.slope_N + u * (3.0 * rise - 2.0 * from.slope_N - to.slope_N +
-                                                u * (from.slope_N + to.slope_N - 2.0 * rise)));
-    return {force_N, 0.0, start_cycles, 0.0};
+    const double rise = to.value - from.value;
+    const double value =
+        from.value + u * (from.slope + u * (3.0 * rise - 2.0 * from.slope - to.slope +
+                                            u * (from.slope + to.slope - 2.0 * rise)));
+    return shaker_.sample(value, 0.0, start_cycles);
 }
 
 } // namespace quiesce

@@ -1,4 +1,4 @@
-/// Band-limited Gaussian force, the same for the same seed.
+/// Band-limited Gaussian force, or acceleration of the base, the same for the same seed.
 ///
 /// The drive is a sum of sines on the whole multiples of 1/repeat_s from low_Hz to high_Hz; each
 /// has a Gaussian sine and cosine part, so amplitudes and phases are random. It is scaled so that
@@ -32,19 +32,20 @@ class RandomSegment final : public Segment {
     /// What high_Hz * repeat_s may be at most: the table takes up to 2 KB a cycle.
     static constexpr double kMostCycles = 1e5;
 
-    /// When the force repeats itself.
+    /// When it repeats itself.
     static double repeat_s(const RandomParams &params);
 
-    RandomSegment(const ShakerParams &shaker, const RandomParams &params);
+    RandomSegment(const ShakerParams &shaker_params, const RandomParams &params);
 
     ExcitationSample sample(double time_s, double start_cycles) const override;
 
   private:
     struct Point {
-        double force_N;
-        double slope_N; ///< change of the force over one grid step, by its derivative
+        double value; ///< N or m/s2
+        double slope; ///< its change over one grid step, by its derivative
     };
 
+    Shaker shaker_;
     double points_per_s_;
     std::vector<Point> table_; ///< one period
 };

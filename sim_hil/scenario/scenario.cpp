@@ -130,9 +130,12 @@ Scenario load_scenario(const std::string &file) {
     return scenario;
 }
 
-bool moves_base(const Scenario &scenario) {
+bool moves_base(const Scenario &scenario, const ShakerParams &shaker) {
     return std::any_of(scenario.segments.begin(), scenario.segments.end(),
-                       [](const SegmentSpec &segment) { return segment.moves_base; });
+                       [&](const SegmentSpec &segment) {
+                           return segment.by == ShakenBy::base ||
+                                  (segment.by == ShakenBy::shaker && shaker.moves_base);
+                       });
 }
 
 Excitation make_excitation(const Scenario &scenario, const ShakerParams &shaker) {

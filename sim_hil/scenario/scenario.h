@@ -67,8 +67,8 @@ struct Scenario {
 /// keys). Throws InputError naming file, line, key, what is wrong and what is allowed.
 Scenario load_scenario(const std::string &file);
 
-/// Some segment shakes the base.
-bool moves_base(const Scenario &scenario);
+/// Some segment shakes the base: by itself, or through a shaker that does.
+bool moves_base(const Scenario &scenario, const ShakerParams &shaker);
 
 /// The scenario's excitation on this shaker.
 Excitation make_excitation(const Scenario &scenario, const ShakerParams &shaker);

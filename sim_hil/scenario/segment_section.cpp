@@ -42,8 +42,8 @@ std::string text(const Parts &...parts) {
 
 SegmentSpec read_sine(TomlTable &section, const Context &context) {
     const double freq_Hz = section.number("freq_Hz", kFrequency);
-    return {text("sine, ", freq_Hz, " Hz"), read_open_duration_s(section, context), false,
-            [freq_Hz](const ShakerParams &shaker) {
+    return {text("sine, ", freq_Hz, " Hz"), read_open_duration_s(section, context),
+            ShakenBy::shaker, [freq_Hz](const ShakerParams &shaker) {
                 return std::make_unique<SineSegment>(shaker, freq_Hz);
             }};
 }
@@ -52,7 +52,7 @@ SegmentSpec read_chirp(TomlTable &section, const Context & /*context*/) {
     const double start_Hz = section.number("freq_Hz", kFrequency);
     const double end_Hz = section.number("end_freq_Hz", kFrequency);
     const double duration_s = section.number("duration_s", kDuration);
-    return {text("chirp, ", start_Hz, " Hz to ", end_Hz, " Hz"), duration_s, false,
+    return {text("chirp, ", start_Hz, " Hz to ", end_Hz, " Hz"), duration_s, ShakenBy::shaker,
             [=](const ShakerParams &shaker) {
                 return std::make_unique<ChirpSegment>(shaker, start_Hz, end_Hz, duration_s);
             }};
@@ -87,8 +87,8 @@ std::string summary_of(const char *kind, const std::vector<Tone> &tones, const c
 
 SegmentSpec read_tones(TomlTable &section, const Context &context) {
     const std::vector<Tone> tones = read_tone_tables(section, "drive_V", kDrive);
-    return {summary_of("tones", tones, "V"), read_open_duration_s(section, context), false,
-            [tones](const ShakerParams &shaker) {
+    return {summary_of("tones", tones, "V"), read_open_duration_s(section, context),
+            ShakenBy::shaker, [tones](const ShakerParams &shaker) {
                 return std::make_unique<TonesSegment>(shaker, tones);
             }};
 }
@@ -99,8 +99,8 @@ SegmentSpec read_base_tones(TomlTable &section, const Context &context) {
     for (const Tone &tone : tones) {
         lines.push_back({tone.freq_Hz, tone.size, tone.phase_deg / 360.0});
     }
-    return {summary_of("base tones", tones, "m/s2"), read_open_duration_s(section, context), true,
-            [lines](const ShakerParams & /*shaker*/) {
+    return {summary_of("base tones", tones, "m/s2"), read_open_duration_s(section, context),
+            ShakenBy::base, [lines](const ShakerParams & /*shaker*/) {
                 return std::make_unique<BaseTonesSegment>(lines);
             }};
 }
@@ -122,7 +122,7 @@ SegmentSpec read_random(TomlTable &section, const Context & /*context*/) {
     }
     return {text("random, ", params.low_Hz, " .. ", params.high_Hz, " Hz at ", params.drive_rms_V,
                  " V RMS, seed ", params.seed),
-            params.least_repeat_s, false, [params](const ShakerParams &shaker) {
+            params.least_repeat_s, ShakenBy::shaker, [params](const ShakerParams &shaker) {
                 return std::make_unique<RandomSegment>(shaker, params);
             }};
 }
@@ -134,7 +134,7 @@ SegmentSpec read_impulse(TomlTable &section, const Context &context) {
     if (pulse_s > duration_s) {
         section.fail("pulse_s", "expected no more than duration_s");
     }
-    return {text("impulse, ", impulse_N_s, " N s in ", pulse_s, " s"), duration_s, false,
+    return {text("impulse, ", impulse_N_s, " N s in ", pulse_s, " s"), duration_s, ShakenBy::force,
             [=](const ShakerParams & /*shaker*/) {
                 return std::make_unique<ImpulseSegment>(impulse_N_s, pulse_s);
             }};
@@ -172,7 +172,7 @@ SegmentSpec read_record(TomlTable &section, const Context &context) {
     }
     const auto points = load_record(file, time_column, accel_column, scale_m_s2);
     const double length_s = (points.back().time_s - points.front().time_s) / time_scale;
-    return {text("base acceleration from ", file, ", ", length_s, " s"), duration_s, true,
+    return {text("base acceleration from ", file, ", ", length_s, " s"), duration_s, ShakenBy::base,
             [=](const ShakerParams & /*shaker*/) {
                 return std::make_unique<RecordSegment>(points, gain, time_scale);
             }};

@@ -12,10 +12,17 @@
 
 namespace quiesce {
 
+/// What a segment acts through.
+enum class ShakenBy {
+    shaker, ///< the plant's, on the structure or below its base
+    force,  ///< a force of its own at the shaker's place
+    base,   ///< an acceleration of the base of its own
+};
+
 struct SegmentSpec {
     std::string summary; ///< for people
     double duration_s;
-    bool moves_base;
+    ShakenBy by;
     std::function<std::unique_ptr<Segment>(const ShakerParams &shaker)> make;
 };
 

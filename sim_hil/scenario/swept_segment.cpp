@@ -14,7 +14,7 @@ ExcitationSample SweptSegment::sample(double time_s, double start_cycles) const 
     const double freq = freq_Hz(time_s);
     const double cycles = start_cycles + phase_cycles(time_s);
     const double turn = cycles - std::floor(cycles);
-    return {shaker_.amplitude_N(freq) * std::sin(kTwoPi * turn), freq, cycles, 0.0};
+    return shaker_.sample(shaker_.amplitude(freq) * std::sin(kTwoPi * turn), freq, cycles);
 }
 
 } // namespace quiesce

@@ -2,16 +2,16 @@
 
 namespace quiesce {
 
-TonesSegment::TonesSegment(const ShakerParams &shaker_params, const std::vector<Tone> &tones) {
-    const Shaker shaker(shaker_params);
+TonesSegment::TonesSegment(const ShakerParams &shaker_params, const std::vector<Tone> &tones)
+    : shaker_(shaker_params) {
     for (const Tone &tone : tones) {
         lines_.push_back(
-            {tone.freq_Hz, shaker.amplitude_N(tone.freq_Hz, tone.size), tone.phase_deg / 360.0});
+            {tone.freq_Hz, shaker_.amplitude(tone.freq_Hz, tone.size), tone.phase_deg / 360.0});
     }
 }
 
 ExcitationSample TonesSegment::sample(double time_s, double start_cycles) const {
-    return {sum_of_tones(lines_, time_s), 0.0, start_cycles, 0.0};
+    return shaker_.sample(sum_of_tones(lines_, time_s), 0.0, start_cycles);
 }
 
 } // namespace quiesce

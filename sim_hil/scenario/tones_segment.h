@@ -1,6 +1,6 @@
 /// Several sines at once, each through the shaker's roll-off:
 ///
-///   force = sum of drive_V g(f) sin(2 pi f t + phase)
+///   force, or acceleration of the base = sum of drive_V g(f) sin(2 pi f t + phase)
 #ifndef QUIESCE_TONES_SEGMENT_H
 #define QUIESCE_TONES_SEGMENT_H
 
@@ -20,12 +20,13 @@ struct Tone {
 
 class TonesSegment final : public Segment {
   public:
-    TonesSegment(const ShakerParams &shaker, const std::vector<Tone> &tones);
+    TonesSegment(const ShakerParams &shaker_params, const std::vector<Tone> &tones);
 
     ExcitationSample sample(double time_s, double start_cycles) const override;
 
   private:
-    std::vector<ToneLine> lines_; ///< amplitudes in N
+    Shaker shaker_;
+    std::vector<ToneLine> lines_; ///< amplitudes in N or m/s2
 };
 
 } // namespace quiesce

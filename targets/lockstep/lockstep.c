@@ -2,11 +2,45 @@
 
 #include <stddef.h>
 
-bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
-                    const quiesce_params_t *params) {
-    server->in = (quiesce_in_t){0};
+static bool start(lockstep_t *server, const quiesce_board_t *board,
+                  const quiesce_params_t *params) {
     return board == NULL ? quiesce_init(&server->controller, params)
                          : quiesce_init_board(&server->controller, board, params);
+}
+
+static quiesce_table_verdict_t use(lockstep_t *server, const lockstep_table_t *table) {
+    if (table->count == 0) {
+        return QUIESCE_TABLE_OK;
+    }
+    return table->count <= QUIESCE_TABLE_WORDS
+               ? quiesce_table_use(&server->controller, table->words, table->count)
+               : QUIESCE_TABLE_SIZE;
+}
+
+// One after the other, until one is refused.
+static bool use_tables(lockstep_t *server, const lockstep_table_t *tables) {
+    server->refused = (lockstep_refusal_t){QUIESCE_TABLE_OK, LOCKSTEP_LAW_TABLE};
+    for (uint32_t i = 0; tables != NULL && i < LOCKSTEP_TABLES; i++) {
+        const quiesce_table_verdict_t verdict = use(server, &tables[i]);
+        if (verdict != QUIESCE_TABLE_OK) {
+            server->refused = (lockstep_refusal_t){(uint32_t)verdict, i};
+            return false;
+        }
+    }
+    return true;
+}
+
+bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
+                    const quiesce_params_t *params, const lockstep_table_t *tables) {
+    server->in = (quiesce_in_t){0};
+    const bool is_accepted = start(server, board, params);
+    if (use_tables(server, is_accepted ? tables : NULL)) {
+        return is_accepted;
+    }
+    quiesce_params_t refused = *params; // else what ships ran in the place of what was asked for
+    refused.tick_rate_Hz = 0;
+    (void)start(server, board, &refused);
+    return false;
 }
 
 static void take(quiesce_in_t *in, const lockstep_stimulus_t *stimulus) {

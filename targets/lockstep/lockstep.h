@@ -38,17 +38,34 @@ typedef struct {
     quiesce_picture_t picture;
 } lockstep_reply_t;
 
+/// Tables that a start may bring, in the order of their use.
+enum { LOCKSTEP_LAW_TABLE, LOCKSTEP_TRACKER_TABLE, LOCKSTEP_TABLES };
+
+/// Words of the caller, which must not change before the next start.
+typedef struct {
+    const uint32_t *words;
+    uint32_t count; ///< 0: there is none; more than QUIESCE_TABLE_WORDS are refused unread
+} lockstep_table_t;
+
+/// The table that a start refused. Words only.
+typedef struct {
+    uint32_t verdict; ///< quiesce_table_verdict_t; OK: it refused none
+    uint32_t table;   ///< LOCKSTEP_LAW_TABLE or LOCKSTEP_TRACKER_TABLE
+} lockstep_refusal_t;
+
 typedef struct {
     quiesce_t controller;
-    quiesce_in_t in;   ///< of the last tick
-    quiesce_out_t out; ///< of the last tick
+    lockstep_refusal_t refused; ///< by the last start
+    quiesce_in_t in;            ///< of the last tick
+    quiesce_out_t out;          ///< of the last tick
 } lockstep_t;
 
-/// (Re)starts the controller from rest. board: NULL where the parameters say what is wired. Returns
-/// false iff a parameter or the board is refused, or the law lacks a signal; the controller is then
-/// in its latched fault state and keeps commanding the safe current.
+/// (Re)starts the controller from rest. board: NULL where the parameters say what is wired. tables:
+/// LOCKSTEP_TABLES of them; NULL: none, the law has what ships. Returns false iff a parameter, the
+/// board or a table is refused, or the law lacks a signal; the controller is then in its latched
+/// fault state and keeps commanding the safe current.
 bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
-                    const quiesce_params_t *params);
+                    const quiesce_params_t *params, const lockstep_table_t *tables);
 
 /// One control tick.
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out);

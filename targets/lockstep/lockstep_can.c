@@ -7,6 +7,7 @@ _Static_assert(offsetof(lockstep_reply_t, picture) - offsetof(lockstep_reply_t, 
                    4u * QUIESCE_CAN_TELEMETRY_WORDS,
                "quiesce.dbc has one telemetry message a word");
 _Static_assert(QUIESCE_PARAM_COUNT <= UINT8_MAX, "indices fit LockstepStatus");
+_Static_assert(QUIESCE_TABLE_WORDS <= LOCKSTEP_CAN_TABLE_COUNT, "words have indices of their own");
 
 static void count_up(uint16_t *counter) {
     if (*counter < UINT16_MAX) {
@@ -24,6 +25,7 @@ static void put_status(const lockstep_can_t *self, can_frame_t *out) {
         .is_started = self->is_started,
         .param_is_refused = self->param_is_refused,
         .board_is_refused = self->board_is_refused,
+        .table_verdict = (uint8_t)self->server.refused.verdict,
         .refused_index = self->refused_index,
         .param_count = QUIESCE_PARAM_COUNT,
         .telemetry_words = QUIESCE_CAN_TELEMETRY_WORDS,
@@ -37,15 +39,30 @@ static void put_status(const lockstep_can_t *self, can_frame_t *out) {
     (void)quiesce_can_lockstep_status_pack(out->data, &status, sizeof out->data);
 }
 
+// What the last start of the server refused: one thing at the most.
+static void note_refusal(lockstep_can_t *self, bool is_accepted) {
+    const lockstep_refusal_t *table = &self->server.refused;
+    const bool table_is_refused = table->verdict != QUIESCE_TABLE_OK;
+    quiesce_param_error_t error = {0};
+    self->param_is_refused = !quiesce_params_check(&self->params, &error);
+    self->board_is_refused = !is_accepted && !self->param_is_refused && !table_is_refused;
+    self->refused_index = (uint8_t)(table_is_refused ? table->table : error.index);
+}
+
+static bool start_server(lockstep_can_t *self, const quiesce_board_t *board) {
+    lockstep_table_t tables[LOCKSTEP_TABLES];
+    for (uint32_t i = 0; i < LOCKSTEP_TABLES; i++) {
+        tables[i] = (lockstep_table_t){self->table[i], self->table_words[i]};
+    }
+    const bool is_accepted = lockstep_start(&self->server, board, &self->params, tables);
+    note_refusal(self, is_accepted);
+    return is_accepted;
+}
+
 static void start(lockstep_can_t *self, const struct quiesce_can_lockstep_control_t *control) {
     const bool has_board =
         control->operation == QUIESCE_CAN_LOCKSTEP_CONTROL_OPERATION_START_BOARD_CHOICE;
-    quiesce_param_error_t error;
-    self->param_is_refused = !quiesce_params_check(&self->params, &error);
-    self->refused_index = self->param_is_refused ? (uint8_t)error.index : 0u;
-    const bool is_accepted =
-        lockstep_start(&self->server, has_board ? &self->board : NULL, &self->params);
-    self->board_is_refused = !is_accepted && !self->param_is_refused;
+    const bool is_accepted = start_server(self, has_board ? &self->board : NULL);
     self->dampers = has_board && is_accepted ? (uint32_t)self->board.dampers : 1u;
     self->telemetry_every_ticks = control->telemetry_every_ticks;
     self->telemetry_frames = control->telemetry_frames;
@@ -80,17 +97,40 @@ static uint32_t handle_control(lockstep_can_t *self, const can_frame_t *frame, c
     return 1;
 }
 
-// A parameter, or a word of the board.
-static bool store(lockstep_can_t *self, uint32_t index, int32_t value) {
-    if (index < LOCKSTEP_CAN_BOARD_INDEX) {
-        return quiesce_param_set(&self->params, index, value);
-    }
-    const uint32_t word = index - LOCKSTEP_CAN_BOARD_INDEX;
+static bool store_board_word(lockstep_can_t *self, uint32_t word, int32_t value) {
     if (word >= LOCKSTEP_CAN_BOARD_WORDS) {
         return false;
     }
     memcpy((uint8_t *)&self->board + sizeof value * word, &value, sizeof value);
     return true;
+}
+
+// Ends the run, whose controller may have the table in use.
+static bool store_table_word(lockstep_can_t *self, uint32_t table, uint32_t word, int32_t value) {
+    if (table >= LOCKSTEP_TABLES ||
+        (word >= QUIESCE_TABLE_WORDS && word != LOCKSTEP_CAN_TABLE_COUNT)) {
+        return false;
+    }
+    self->is_started = false;
+    if (word == LOCKSTEP_CAN_TABLE_COUNT) {
+        self->table_words[table] = (uint32_t)value;
+    } else {
+        self->table[table][word] = (uint32_t)value;
+    }
+    return true;
+}
+
+// A parameter, a word of the board or of a table.
+static bool store(lockstep_can_t *self, uint32_t index, int32_t value) {
+    if (index < LOCKSTEP_CAN_BOARD_INDEX) {
+        return quiesce_param_set(&self->params, index, value);
+    }
+    if (index < LOCKSTEP_CAN_TABLE_INDEX) {
+        return store_board_word(self, index - LOCKSTEP_CAN_BOARD_INDEX, value);
+    }
+    const uint32_t word = index - LOCKSTEP_CAN_TABLE_INDEX;
+    return store_table_word(self, word / LOCKSTEP_CAN_TABLE_INDICES,
+                            word % LOCKSTEP_CAN_TABLE_INDICES, value);
 }
 
 static uint32_t handle_param_write(lockstep_can_t *self, const can_frame_t *frame,

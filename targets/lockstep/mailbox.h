@@ -12,7 +12,7 @@
 #define MAILBOX_BASE 0x21000000u
 #define MAILBOX_BYTES (16u * 1024u * 1024u)
 
-#define MAILBOX_START 1u ///< params, board -> status 1 accepted, 0 refused
+#define MAILBOX_START 1u ///< params, board, tables -> status 1 accepted, 0 refused; what
 #define MAILBOX_STEP 2u  ///< stimulus -> reply
 #define MAILBOX_STOP 3u  ///< stack_used_bytes; the image ends
 
@@ -28,6 +28,9 @@ typedef struct {
     quiesce_params_t params;
     uint32_t has_board; ///< 0: the parameters say what is wired
     quiesce_board_t board;
+    lockstep_refusal_t refused;                           ///< by the last start
+    uint32_t table_words[LOCKSTEP_TABLES];                ///< 0: there is none
+    uint32_t table[LOCKSTEP_TABLES][QUIESCE_TABLE_WORDS]; ///< in use until the next start
 } mailbox_t;
 
 #endif

@@ -1,12 +1,15 @@
 // The controller with its CAN interface, free-running: SLCAN frames on UART0, the tick from the
 // timer, acceleration and measured current from other nodes' frames, the demand as a frame. Nobody
 // waits for the host: what it does not read in time is dropped and counted. What is wired to what
-// comes from a board that is linked in (QUIESCE_BOARD), else from parameters.
+// comes from a board that is linked in (QUIESCE_BOARD), else from parameters. Parameters, tables
+// and what was learnt are used again after a power-up where they were saved (kept.h).
 //
 // After a fault of the processor (fault.h) it starts anew, in a latched fault, and stays there
 // until the operator acknowledges.
 #include "fault.h"
+#include "kept.h"
 #include "node.h"
+#include "shipped.h"
 #include "slcan.h"
 #include "tick_mps2.h"
 #include "uart_mps2.h"
@@ -38,6 +41,7 @@ typedef struct {
 
 typedef struct {
     node_t node;
+    kept_t kept;
     hal_tick_t tick;
     hal_uart_t uart;
     slcan_decoder_t decoder;
@@ -117,7 +121,7 @@ static void say_farewell(board_t *board) {
 }
 
 static void run_tick(board_t *board, uint32_t ticks) {
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     const uint32_t begin = board->tick.timer->value;
     board->inputs.ticks_elapsed = ticks;
     board->inputs.overruns += ticks - 1u;
@@ -135,22 +139,63 @@ static void run_tick(board_t *board, uint32_t ticks) {
     }
 }
 
-int main(void) {
+// With the parameters that were saved, where they are accepted. No others raise the ceiling of the
+// current that ships.
+static void start_node(board_t *board) {
     static const node_sources_t sources = {.enable = NODE_ENABLE_CAN,
                                            .sensors_on_bus = (1u << QUIESCE_SENSORS) - 1u};
-    static board_t board;
+    node_t *const node = &board->node;
+    quiesce_params_t shipped;
     quiesce_params_t params;
+    quiesce_params_default(&shipped);
+    kept_open(&board->kept, WIRING, &shipped);
+    if (!kept_read_params(&board->kept, &params) || !node_init(node, WIRING, &params, sources)) {
+        (void)node_init(node, WIRING, &shipped, sources);
+    }
+    if (node->board == NULL) {
+        node->most_mA = shipped.max_current_mA;
+    }
+    node_use_store(node, kept_store, &board->kept);
+}
+
+// What was learnt comes last: it is of the law's table.
+static void find_tables(board_t *board) {
+    static const keeper_record_t records[] = {KEEPER_LAW_TABLE, KEEPER_TRACKER_TABLE,
+                                              KEEPER_LEARNT};
+    for (uint32_t i = 0; shipped_tables[i] != NULL; i++) {
+        (void)node_ship(&board->node, shipped_tables[i]);
+    }
+    for (uint32_t i = 0; i < sizeof records / sizeof records[0]; i++) {
+        const uint32_t count = kept_read(&board->kept, records[i]);
+        const table_found_t found = {.record = records[i],
+                                     .source = TABLE_FROM_STORE,
+                                     .words = board->kept.words,
+                                     .count = count,
+                                     .writes = kept_writes(&board->kept, records[i])};
+        (void)node_found(&board->node, &found);
+    }
+}
+
+static void store_waiting(board_t *board) {
+    const hal_nvm_progress_t progress = kept_work(&board->kept);
+    if (progress == HAL_NVM_DONE || progress == HAL_NVM_FAILED) {
+        node_stored(&board->node, progress == HAL_NVM_DONE);
+    }
+}
+
+int main(void) {
+    static board_t board;
 
     board.tick.timer = CMSDK_TIMER0;
     uart_mps2_open(&board.uart, CMSDK_UART0, UART_BAUD);
     slcan_decoder_init(&board.decoder);
-    quiesce_params_default(&params);
-    (void)node_init(&board.node, WIRING, &params, sources);
+    start_node(&board);
     board.is_after_fault = fault_is_recorded();
     board.inputs.estop = board.is_after_fault;
     if (board.is_after_fault) {
         say_farewell(&board);
     }
+    find_tables(&board);
     quiesce_watch(&board.node.controller, NODE_WATCHES, program_begin,
                   ((uintptr_t)program_end - (uintptr_t)program_begin) / sizeof(uint32_t));
     use_rate(&board);
@@ -161,5 +206,6 @@ int main(void) {
         }
         receive_waiting(&board);
         send_waiting(&board);
+        store_waiting(&board);
     }
 }

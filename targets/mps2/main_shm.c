@@ -24,15 +24,23 @@ static void wait_for_request(const mailbox_t *box) {
     }
 }
 
+static void start(mailbox_t *box, lockstep_t *server) {
+    const lockstep_table_t tables[LOCKSTEP_TABLES] = {
+        {box->table[LOCKSTEP_LAW_TABLE], box->table_words[LOCKSTEP_LAW_TABLE]},
+        {box->table[LOCKSTEP_TRACKER_TABLE], box->table_words[LOCKSTEP_TRACKER_TABLE]},
+    };
+    const quiesce_board_t *board = box->has_board != 0 ? &box->board : NULL;
+    box->status = lockstep_start(server, board, &box->params, tables) ? 1u : 0u;
+    box->refused = server->refused;
+}
+
 static void serve(mailbox_t *box, lockstep_t *server) {
     switch (box->operation) {
     case MAILBOX_STEP:
         lockstep_exchange(server, &box->stimulus, &box->reply);
         break;
     case MAILBOX_START:
-        box->status = lockstep_start(server, box->has_board != 0 ? &box->board : NULL, &box->params)
-                          ? 1u
-                          : 0u;
+        start(box, server);
         break;
     case MAILBOX_STOP:
         box->stack_used_bytes = stack_high_water_bytes();

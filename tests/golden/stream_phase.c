@@ -63,8 +63,12 @@ static void swap_table(stream_t *self) {
     damaged[draw_below(&self->seed, GOLDEN_PULSES_WORDS)] ^= 1u << draw_below(&self->seed, 32);
     static const uint32_t *const tables[] = {golden_pulses, NULL, damaged};
     const uint32_t *words = tables[draw_below(&self->seed, 3)];
-    const quiesce_table_verdict_t verdict =
-        quiesce_table_use(&self->controller, words, GOLDEN_PULSES_WORDS);
+    quiesce_table_verdict_t verdict = QUIESCE_TABLE_OK;
+    if (words != NULL) {
+        verdict = quiesce_table_use(&self->controller, words, GOLDEN_PULSES_WORDS);
+    } else {
+        (void)quiesce_table_drop(&self->controller, QUIESCE_OF_LAW);
+    }
     // The number that it had in the first recording.
     record_word(&self->record, verdict == QUIESCE_TABLE_POINT ? 5u : (uint32_t)verdict);
 }

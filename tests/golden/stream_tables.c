@@ -68,7 +68,7 @@ static void surface_case(stream_t *self) {
     for (int32_t freq_uHz = 0; freq_uHz <= 26000000; freq_uHz += 233333) {
         for (int32_t rms_um_s2 = 0; rms_um_s2 <= 520000; rms_um_s2 += 7777) {
             uint32_t fired = 0;
-            const int32_t current_mA = quiesce_rules_current_mA(freq_uHz, rms_um_s2, &fired);
+            const int32_t current_mA = quiesce_rules_current_mA(NULL, freq_uHz, rms_um_s2, &fired);
             record_word(&self->record, (uint32_t)current_mA);
             record_word(&self->record, fired);
         }

@@ -10,7 +10,8 @@ import hashlib
 import sys
 from pathlib import Path
 
-from quiesce.tune.phase_table import law_words, read_law
+from quiesce.tune.phase_table import read_law
+from quiesce.tune.phase_words import law_words
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -34,7 +35,7 @@ def header(name: str, words: list[int], head: str) -> str:
 
 #include <stdint.h>
 
-/// For phase_table_check(): the words of a phase_table_t.
+/// The words of a phase_table_t, as a table of pulses (table.h).
 extern const uint32_t {name}_table[{len(words)}];
 
 #endif

@@ -4,6 +4,7 @@
 #   bench    quiesce_bench on this machine     images   what it drives in the emulator
 #   plant    the library of quiesce.plant      linux    the Linux controller
 #   dampers  the module of quiesce.damper          trust    what its benchmark abuses and mutates
+#   tables   what its benchmark loads tables into
 
 # needs_of COMMAND [ACTION] ...: of `quiesce`; nothing where it starts without a build. A command
 # that is not here needs nothing: `quiesce` refuses what it does not know.
@@ -16,7 +17,9 @@ needs_of() {
     "compare "*) needs_of_compare "$@" ;;
     "law make" | "law rules" | "law fit") echo bench ;;
     "law "*) ;;
-    "sweep "*) echo bench plant ;;
+    "table check" | "table stamp") echo bench ;;
+    "table "*) ;;
+    "new "* | "sweep "*) echo bench plant ;;
     "identify plan") ;;
     "identify "*) echo dampers ;;
     "tune law") echo bench ;;
@@ -51,6 +54,7 @@ needs_of_benchmark() {
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
     trust) echo bench images trust ;;
+    tables) echo bench plant dampers images linux tables ;;
     *) echo bench plant dampers ;;
     esac
 }
@@ -64,6 +68,7 @@ needs_build() {
         plant) host+=(quiesce_plant) ;;
         dampers) host+=(quiesce_dampers) ;;
         linux) host+=(quiesced) ;;
+        tables) host+=(table_node) mps2+=(quiesce_mps2_node) ;;
         trust) host+=(all trust_programs) mps2+=(all) ;;
         images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
         esac

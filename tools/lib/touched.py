@@ -21,6 +21,7 @@ AREAS = (
     ("firmware/comm/", "comm"),
     ("firmware/", "firmware"),
     ("hal/linux/", "linux"),
+    ("hal/records/", "hal"),
     ("targets/linux/", "linux"),
     ("targets/lockstep/", "comm"),
     ("sim_hil/board/", "board"),
@@ -39,7 +40,7 @@ PYTHON_TESTS = {
     "cli": ("gates/test_bad_input.py",),
     "engine": ("hil/test_hil.py",),
     "optimum": ("tune/test_control_bound.py",),
-    "plant": ("damper/test_plant_dampers.py",),
+    "plant": ("plant", "damper/test_plant_dampers.py"),
     "report": ("damper/test_damper_report.py",),
 }
 SCRIPTS = (

@@ -61,10 +61,10 @@ static uint64_t needs(const uint32_t *words, uint32_t i) {
     return (VIEW_STROKE | VIEW_STROKE_VELOCITY) << i;
 }
 
-static const sections_kind_t sections = {FRICTION_MAGIC, size, is_good, needs};
+static const sections_kind_t sections = {size, is_good, needs};
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    return sections_check(&sections, words, count);
+static quiesce_table_verdict_t check(const uint32_t *words) {
+    return sections_check(&sections, words);
 }
 
 static uint64_t needs_of_table(const uint32_t *words) {
@@ -122,8 +122,13 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
     }
 }
 
-static const law_table_kind_t friction = {
-    .magic = FRICTION_MAGIC, .check = check, .needs = needs_of_table};
+static const table_kind_t friction = {
+    .name = "friction",
+    .magic = FRICTION_MAGIC,
+    .least_words = SECTIONS_FIRST,
+    .check = check,
+    .needs = needs_of_table,
+};
 
 extern const law_t law_friction;
 const law_t law_friction = {

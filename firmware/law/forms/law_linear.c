@@ -84,13 +84,8 @@ static bool are_points_good(const linear_table_t *table) {
     return are_good;
 }
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
+static quiesce_table_verdict_t check(const uint32_t *words) {
     const linear_table_t *table = as_table(words);
-    const quiesce_table_verdict_t verdict =
-        table_check_head(words, count, LINEAR_MAGIC, HEADER_WORDS - TABLE_HEAD_WORDS);
-    if (verdict != QUIESCE_TABLE_OK) {
-        return verdict;
-    }
     if (!has_shape(table)) {
         return QUIESCE_TABLE_SHAPE;
     }
@@ -155,8 +150,14 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
     word[1] = largest >> 20;
 }
 
-static const law_table_kind_t system = {
-    .magic = LINEAR_MAGIC, .check = check, .needs = needs, .rate_Hz = rate_Hz};
+static const table_kind_t system = {
+    .name = "linear",
+    .magic = LINEAR_MAGIC,
+    .least_words = HEADER_WORDS,
+    .check = check,
+    .needs = needs,
+    .rate_Hz = rate_Hz,
+};
 
 extern const law_t law_linear;
 const law_t law_linear = {

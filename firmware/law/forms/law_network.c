@@ -32,10 +32,10 @@ static uint64_t needs(const uint32_t *section, uint32_t damper) {
     return bits;
 }
 
-static const sections_kind_t sections = {NETWORK_MAGIC, network_size, is_good, needs};
+static const sections_kind_t sections = {network_size, is_good, needs};
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    return network_table_check(&sections, words, count);
+static quiesce_table_verdict_t check(const uint32_t *words) {
+    return network_table_check(&sections, words);
 }
 
 static uint64_t needs_of_table(const uint32_t *words) {
@@ -57,8 +57,10 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
     return true;
 }
 
-static const law_table_kind_t networks = {
+static const table_kind_t networks = {
+    .name = "network",
     .magic = NETWORK_MAGIC,
+    .least_words = SECTIONS_FIRST,
     .check = check,
     .needs = needs_of_table,
     .rate_Hz = network_table_rate_Hz,

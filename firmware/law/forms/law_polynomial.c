@@ -86,10 +86,10 @@ static uint64_t needs(const uint32_t *words, uint32_t i) {
     return bits;
 }
 
-static const sections_kind_t sections = {POLYNOMIAL_MAGIC, size, is_good, needs};
+static const sections_kind_t sections = {size, is_good, needs};
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    return sections_check(&sections, words, count);
+static quiesce_table_verdict_t check(const uint32_t *words) {
+    return sections_check(&sections, words);
 }
 
 static uint64_t needs_of_table(const uint32_t *words) {
@@ -136,8 +136,13 @@ static bool step(void *state, const law_setup_t *setup, const view_t *view, law_
     return true;
 }
 
-static const law_table_kind_t terms = {
-    .magic = POLYNOMIAL_MAGIC, .check = check, .needs = needs_of_table};
+static const table_kind_t terms = {
+    .name = "polynomial",
+    .magic = POLYNOMIAL_MAGIC,
+    .least_words = SECTIONS_FIRST,
+    .check = check,
+    .needs = needs_of_table,
+};
 
 extern const law_t law_polynomial;
 const law_t law_polynomial = {.name = "polynomial", .kind = &terms, .step = step};

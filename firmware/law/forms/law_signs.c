@@ -90,10 +90,10 @@ static uint64_t needs(const uint32_t *words, uint32_t i) {
     return view_inputs_need(section->input, section->inputs);
 }
 
-static const sections_kind_t sections = {SIGNS_MAGIC, size, is_good, needs};
+static const sections_kind_t sections = {size, is_good, needs};
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    return sections_check(&sections, words, count);
+static quiesce_table_verdict_t check(const uint32_t *words) {
+    return sections_check(&sections, words);
 }
 
 static uint64_t needs_of_table(const uint32_t *words) {
@@ -150,8 +150,13 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
     }
 }
 
-static const law_table_kind_t patterns = {
-    .magic = SIGNS_MAGIC, .check = check, .needs = needs_of_table};
+static const table_kind_t patterns = {
+    .name = "signs",
+    .magic = SIGNS_MAGIC,
+    .least_words = SECTIONS_FIRST,
+    .check = check,
+    .needs = needs_of_table,
+};
 
 extern const law_t law_signs;
 const law_t law_signs = {

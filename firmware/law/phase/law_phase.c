@@ -24,15 +24,12 @@ static const phase_table_t *table_of(const law_setup_t *setup) {
     return (const phase_table_t *)(const void *)setup->table;
 }
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    const phase_table_verdict_t verdict = phase_table_check(words, count);
-    return verdict == PHASE_TABLE_POINT ? QUIESCE_TABLE_POINT : (quiesce_table_verdict_t)verdict;
-}
-
-static const law_table_kind_t pulses = {
+static const table_kind_t pulses = {
+    .name = "pulses",
     .magic = PHASE_TABLE_MAGIC,
+    .least_words = PHASE_TABLE_HEADER_WORDS,
     .shipped = plant_pulses_table,
-    .check = check,
+    .check = phase_table_check,
 };
 
 static const quiesce_word_t reports[QUIESCE_REPORT_WORDS] = {

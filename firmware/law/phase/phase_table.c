@@ -2,12 +2,11 @@
 
 #include <stddef.h>
 
-#include "crc32.h"
-
-enum { HEADER_WORDS = 5, POINT_WORDS = 4, LONGEST_RAMP_q16 = 32767 };
+enum { POINT_WORDS = 4, LONGEST_RAMP_q16 = 32767 };
 
 _Static_assert(sizeof(phase_point_t) == 4u * POINT_WORDS, "words on the wire");
-_Static_assert(offsetof(phase_table_t, point) == 4u * HEADER_WORDS, "words on the wire");
+_Static_assert(offsetof(phase_table_t, point) == 4u * PHASE_TABLE_HEADER_WORDS,
+               "words on the wire");
 
 static bool are_points_good(const phase_point_t *points, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
@@ -28,32 +27,20 @@ static bool has_shape(const phase_table_t *table) {
         }
         points += table->points[i];
     }
-    return table->words == HEADER_WORDS + POINT_WORDS * points;
+    return table->words == PHASE_TABLE_HEADER_WORDS + POINT_WORDS * points;
 }
 
-phase_table_verdict_t phase_table_check(const uint32_t *words, uint32_t count) {
+quiesce_table_verdict_t phase_table_check(const uint32_t *words) {
     const phase_table_t *table = (const phase_table_t *)(const void *)words;
-    if (count < HEADER_WORDS || count > PHASE_TABLE_MAX_WORDS) {
-        return PHASE_TABLE_SIZE;
-    }
-    if (table->magic != PHASE_TABLE_MAGIC) {
-        return PHASE_TABLE_MAGIC_WRONG;
-    }
-    if (table->words != count) {
-        return PHASE_TABLE_SIZE;
-    }
-    if (crc32_words(&words[2], count - 2u) != table->crc) {
-        return PHASE_TABLE_CRC;
-    }
     if (!has_shape(table)) {
-        return PHASE_TABLE_SHAPE;
+        return QUIESCE_TABLE_SHAPE;
     }
     for (uint32_t i = 0; i < PHASE_TABLE_SETTINGS; i++) {
         if (!are_points_good(phase_table_points(table, i), table->points[i])) {
-            return PHASE_TABLE_POINT;
+            return QUIESCE_TABLE_POINT;
         }
     }
-    return PHASE_TABLE_OK;
+    return QUIESCE_TABLE_OK;
 }
 
 const phase_point_t *phase_table_points(const phase_table_t *table, uint32_t setting) {

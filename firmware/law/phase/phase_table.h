@@ -8,12 +8,15 @@
 #define PHASE_TABLE_H
 
 #include "fixq.h"
+#include "table.h"
 
 #define PHASE_TABLE_MAGIC UINT32_C(0x31485051)
 #define PHASE_TABLE_SETTINGS 2u
 #define PHASE_TABLE_MIN_POINTS 2u
 #define PHASE_TABLE_MAX_POINTS 64u
-#define PHASE_TABLE_MAX_WORDS (5u + 4u * PHASE_TABLE_SETTINGS * PHASE_TABLE_MAX_POINTS)
+#define PHASE_TABLE_HEADER_WORDS 5u
+#define PHASE_TABLE_MAX_WORDS                                                                      \
+    (PHASE_TABLE_HEADER_WORDS + 4u * PHASE_TABLE_SETTINGS * PHASE_TABLE_MAX_POINTS)
 #define PHASE_WIDTH_ALL 65535u ///< no gap: one current throughout
 
 typedef struct {
@@ -36,18 +39,9 @@ typedef struct {
     phase_point_t point[];      ///< of the first setting, then of the next one, rising freq_mHz
 } phase_table_t;
 
-typedef enum {
-    PHASE_TABLE_OK = 0,
-    PHASE_TABLE_SIZE = 1,
-    PHASE_TABLE_MAGIC_WRONG = 2,
-    PHASE_TABLE_CRC = 3,
-    PHASE_TABLE_SHAPE = 4, ///< numbers of points
-    PHASE_TABLE_POINT =
-        5, ///< frequencies that do not rise, a floor above its level, a ramp too long
-} phase_table_verdict_t;
-
-/// Whether count words are a table; nothing else reads a table that has not passed.
-phase_table_verdict_t phase_table_check(const uint32_t *words, uint32_t count);
+/// Of words with a good head. SHAPE: numbers of points; POINT: frequencies that do not rise, a
+/// floor above its level, a ramp too long. Nothing else reads a table that has not passed.
+quiesce_table_verdict_t phase_table_check(const uint32_t *words);
 
 /// Points of a setting.
 const phase_point_t *phase_table_points(const phase_table_t *table, uint32_t setting);

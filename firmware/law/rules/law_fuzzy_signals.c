@@ -83,10 +83,13 @@ static uint32_t size(const uint32_t *words, uint32_t left) {
     return has_shape ? words_in(section) : 0;
 }
 
+// Their own CRC is not summed: that of the whole table, found right, covers them.
 static bool are_rules_good(const section_t *section) {
     const fuzzy_table_t *rules = rules_of(section, NULL);
-    return rules == NULL || (fuzzy_table_check(rules, section->rule_words) == FUZZY_TABLE_OK &&
-                             rules->size_words == section->rule_words);
+    return rules == NULL ||
+           (section->rule_words >= FUZZY_HEADER_WORDS && rules->magic == FUZZY_MAGIC &&
+            rules->size_words == section->rule_words &&
+            fuzzy_table_check_summed(rules) == FUZZY_TABLE_OK);
 }
 
 static bool is_good(const uint32_t *words) {
@@ -113,7 +116,7 @@ static uint64_t needs(const uint32_t *words, uint32_t i) {
     return bits;
 }
 
-static const sections_kind_t sections = {FUZZY_SIGNALS_MAGIC, size, is_good, needs};
+static const sections_kind_t sections = {size, is_good, needs};
 
 // Whether each section of a checked table has rules, and they are of its shape.
 static bool do_rules_fit(const uint32_t *words) {
@@ -130,8 +133,8 @@ static bool do_rules_fit(const uint32_t *words) {
     return true;
 }
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
-    const quiesce_table_verdict_t verdict = sections_check(&sections, words, count);
+static quiesce_table_verdict_t check(const uint32_t *words) {
+    const quiesce_table_verdict_t verdict = sections_check(&sections, words);
     if (verdict != QUIESCE_TABLE_OK) {
         return verdict;
     }
@@ -201,8 +204,13 @@ static void report(const void *state, const law_setup_t *setup, int32_t word[]) 
     }
 }
 
-static const law_table_kind_t rules_over_signals = {
-    .magic = FUZZY_SIGNALS_MAGIC, .check = check, .needs = needs_of_table};
+static const table_kind_t rules_over_signals = {
+    .name = "rules_on_signals",
+    .magic = FUZZY_SIGNALS_MAGIC,
+    .least_words = SECTIONS_FIRST,
+    .check = check,
+    .needs = needs_of_table,
+};
 
 extern const law_t law_fuzzy_signals;
 const law_t law_fuzzy_signals = {

@@ -14,9 +14,9 @@ static const fuzzy_table_t *as_table(const uint32_t *words) {
     return (const fuzzy_table_t *)(const void *)words;
 }
 
-static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
+static quiesce_table_verdict_t check(const uint32_t *words) {
     const fuzzy_table_t *table = as_table(words);
-    const fuzzy_verdict_t verdict = fuzzy_table_check(table, count);
+    const fuzzy_verdict_t verdict = fuzzy_table_check_summed(table);
     if (verdict != FUZZY_TABLE_OK) {
         return (quiesce_table_verdict_t)verdict;
     }
@@ -25,8 +25,10 @@ static quiesce_table_verdict_t check(const uint32_t *words, uint32_t count) {
     return fits ? QUIESCE_TABLE_OK : QUIESCE_TABLE_FIT;
 }
 
-const law_table_kind_t rule_base_kind = {
+const table_kind_t rule_base_kind = {
+    .name = "rules",
     .magic = FUZZY_MAGIC,
+    .least_words = FUZZY_HEADER_WORDS,
     .shipped = plant_rules_table,
     .check = check,
 };

@@ -11,7 +11,7 @@
 #define RULE_BASE_INPUTS 2u
 
 /// Tables that fuzzy_table_check accepts and that have these inputs and one output.
-extern const law_table_kind_t rule_base_kind;
+extern const table_kind_t rule_base_kind;
 
 /// Words of a report: QUIESCE_REPORT_WORDS of them.
 extern const quiesce_word_t rule_base_reports[];

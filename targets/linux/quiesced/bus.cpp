@@ -15,11 +15,11 @@ constexpr std::array<std::uint32_t, 5> kLockstepIds = {
     QUIESCE_CAN_LOCKSTEP_CURRENT_FRAME_ID, QUIESCE_CAN_LOCKSTEP_STIMULUS_FRAME_ID,
     QUIESCE_CAN_LOCKSTEP_SENSOR_FRAME_ID};
 
-/// What can_node_receive takes.
+/// What node_receive takes.
 std::vector<std::uint32_t> controller_ids() {
-    std::vector<std::uint32_t> ids = {QUIESCE_CAN_EMERGENCY_STOP_FRAME_ID,
-                                      QUIESCE_CAN_OPERATOR_COMMAND_FRAME_ID,
-                                      QUIESCE_CAN_SERVICE_REQUEST_FRAME_ID};
+    std::vector<std::uint32_t> ids = {
+        QUIESCE_CAN_EMERGENCY_STOP_FRAME_ID, QUIESCE_CAN_OPERATOR_COMMAND_FRAME_ID,
+        QUIESCE_CAN_SERVICE_REQUEST_FRAME_ID, QUIESCE_CAN_TABLE_DATA_FRAME_ID};
     for (std::uint32_t i = 0; i < QUIESCE_SENSORS; ++i) {
         ids.push_back(QUIESCE_CAN_ACCEL_SAMPLE_FRAME_ID + i);
     }

@@ -1,5 +1,5 @@
 /// How full the CAN bus of a configuration is, by the longest frames (worst-case bit stuffing) of
-/// everything that comes by the clock: `quiesce can load` has the same figures.
+/// everything that comes by the clock: `quiesce can bus-load` has the same figures.
 #ifndef QUIESCED_BUS_LOAD_H
 #define QUIESCED_BUS_LOAD_H
 

@@ -14,7 +14,9 @@
 #include "input_error.h"
 #include "instance_lock.h"
 #include "line_finder.h"
+#include "names.h"
 #include "read_config.h"
+#include "start_tables.h"
 #include "state_store.h"
 #include "wiring_text.h"
 
@@ -160,6 +162,9 @@ void note_state(const Config &config) {
     if (!what.empty()) {
         note(what);
     }
+    for (const std::string &line : find_tables(config).notes) {
+        note(line);
+    }
     (void)FaultStore(folder).load(what);
     if (!what.empty()) {
         note(what);
@@ -169,6 +174,17 @@ void note_state(const Config &config) {
         note_access("log.to",
                     is_there ? config.log.to : fs::path(config.log.to).parent_path().string(),
                     W_OK);
+    }
+}
+
+void print_tables(const Config &config, const ConfiguredTables &tables) {
+    for (const quiesce_owner_t owner : kOwners) {
+        const TableWords &words = tables[owner];
+        if (!words.empty()) {
+            (void)std::printf("%s: %s, %zu words, CRC %08x: %s\n", road_name(owner),
+                              quiesce_table_kind(words.front(), nullptr), words.size(),
+                              static_cast<unsigned>(crc_of(words)), config.tables[owner].c_str());
+        }
     }
 }
 
@@ -192,14 +208,18 @@ int check(const std::string &config_file) {
         return 2;
     }
     const Config &config = reading.config;
+    ConfiguredTables tables;
     try {
         refuse_shared_outputs(config);
+        tables = load_tables(config, config.wiring());
+        require_fit(tables, config, config.wiring(), config.params);
     } catch (const quiesce::InputError &error) {
         (void)std::printf("%s: %s\n", config_file.c_str(), error.what());
         return 2;
     }
     (void)std::printf("%s: every key is right\n", config_file.c_str());
     (void)std::printf("%s", wiring_text(config).c_str());
+    print_tables(config, tables);
     if (config.can) {
         note_can(*config.can);
     }

@@ -1,5 +1,7 @@
 #include "config.h"
 
+#include <filesystem>
+
 namespace quiesced {
 
 gpio_spec_t LineConfig::spec() const {
@@ -8,6 +10,10 @@ gpio_spec_t LineConfig::spec() const {
     spec.is_active_low = is_active_low;
     spec.bias = static_cast<decltype(spec.bias)>(bias);
     return spec;
+}
+
+std::string Config::beside(const std::string &named) const {
+    return (std::filesystem::path(file).parent_path() / named).string();
 }
 
 std::uint32_t Config::sensors_on_bus() const {

@@ -3,6 +3,7 @@
 #ifndef QUIESCED_CONFIG_H
 #define QUIESCED_CONFIG_H
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,6 +13,10 @@
 #include "firmware.h"
 
 namespace quiesced {
+
+using TableWords = std::vector<std::uint32_t>;
+inline constexpr std::array<quiesce_owner_t, QUIESCE_TABLE_OWNERS> kOwners = {QUIESCE_OF_LAW,
+                                                                              QUIESCE_OF_TRACKER};
 
 struct LoopConfig {
     int priority = 80; ///< SCHED_FIFO, 0: normal scheduling
@@ -133,10 +138,13 @@ struct Config {
     std::optional<WatchdogConfig> watchdog;
     StateConfig state;
     LogConfig log;
-    quiesce_params_t params{}; ///< defaults, and what [parameters] says
+    std::array<std::string, QUIESCE_TABLE_OWNERS> tables; ///< files by quiesce_owner_t, "": none
+    quiesce_params_t params{};                            ///< defaults, and what [parameters] says
 
     /// Null without a board.
     const quiesce_board_t *wiring() const { return board ? &board->board.board : nullptr; }
+    /// A file that it names, relative to its folder.
+    std::string beside(const std::string &named) const;
     /// Bit i: sensor i.
     std::uint32_t sensors_on_bus() const;
 };

@@ -24,6 +24,16 @@ struct FaultEvent {
     std::uint32_t times;  ///< since the start, saturating
 };
 
+/// A table, or what was learnt, for the status file.
+struct RoadStatus {
+    std::uint32_t magic; ///< of what is in use, 0: nothing is
+    std::uint32_t crc;
+    std::uint32_t source; ///< table_source_t
+    std::uint32_t stored_crc;
+    std::uint32_t writes;
+    quiesce_table_verdict_t refusal; ///< of the last attempt
+};
+
 /// What the status file shows, taken at the end of a tick.
 struct Snapshot {
     static constexpr std::size_t kFaults = 8;
@@ -45,6 +55,7 @@ struct Snapshot {
     can_bus_counters_t bus;
     std::uint32_t tx_shed; ///< of bus.tx_dropped: telemetry, and what newer frames replaced
     can_node_counters_t node;
+    std::array<RoadStatus, ROADS> roads;
     std::array<FaultEvent, kFaults> faults; ///< the newest first
     std::uint32_t log_dropped;
 };
@@ -60,7 +71,19 @@ struct Peripherals {
     Replaceable<Line> data_ready_input;
 };
 
-/// How a request to store parameters went.
+/// Words on their way from one thread to the other.
+struct Words {
+    std::uint32_t count;
+    std::array<std::uint32_t, QUIESCE_TABLE_WORDS> words;
+};
+
+/// A record that is to be stored; of 0 words: forgotten.
+struct StoreOrder {
+    keeper_record_t record;
+    Words of;
+};
+
+/// How that went.
 enum class StoreResult : int { none, stored, failed };
 
 struct Exchange {
@@ -80,8 +103,7 @@ struct Exchange {
 
     // To the other thread.
     Mailbox<Snapshot> snapshot;
-    Mailbox<quiesce_learnt_t> learnt;
-    Mailbox<quiesce_params_t> to_store;
+    Mailbox<StoreOrder> to_store;
     Mailbox<KeptRecord> record;          ///< after each change of it
     Mailbox<quiesce_params_t> in_effect; ///< after each restart with others
     /// To be kept until it is acknowledged, QUIESCE_FAULT_NONE: nothing; before the start: what an
@@ -92,6 +114,9 @@ struct Exchange {
     std::atomic<bool> snapshot_is_wanted{false};
     std::atomic<StoreResult> store_result{StoreResult::none};
     Mailbox<quiesce_params_t> new_params;
+    /// By quiesce_owner_t; of 0 words: back to the one that ships. After new_params, where both are
+    /// put.
+    std::array<Mailbox<Words>, QUIESCE_TABLE_OWNERS> new_tables;
 
     /// The loop's, or null. The other thread calls nothing but can_bus_recover. Set it before both
     /// start.

@@ -56,6 +56,8 @@ void FrameSender::take(const can_frame_t &frame) {
     const std::uint32_t message = message_of(frame);
     if (message == QUIESCE_CAN_AT_SERVICE_REPLY) {
         append(replies_, frame);
+    } else if (message == QUIESCE_CAN_AT_TABLE_FLOW) {
+        append(flow_, frame);
     } else if (message == QUIESCE_CAN_AT_FAULT_FREEZE) {
         append(pages_, frame);
     } else if (message < QUIESCE_CAN_MESSAGES) {
@@ -64,7 +66,7 @@ void FrameSender::take(const can_frame_t &frame) {
 }
 
 bool FrameSender::has_left_over() const {
-    return replies_.count > 0 || pages_.count > 0 ||
+    return replies_.count > 0 || flow_.count > 0 || pages_.count > 0 ||
            std::any_of(slots_.begin(), slots_.end(), [](const Slot &slot) { return slot.waits; });
 }
 
@@ -115,6 +117,7 @@ std::int64_t FrameSender::send(Sink sink, void *context, const can_frame_t *fram
     send_demands(way, now_ns, is_congested);
     send_slot(way, QUIESCE_CAN_AT_STATUS);
     send_row(way, replies_);
+    send_row(way, flow_);
     send_row(way, pages_);
     send_demands(way, now_ns, false);
     for (const std::uint32_t message : kTelemetry) {

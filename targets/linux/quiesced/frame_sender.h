@@ -1,13 +1,13 @@
 /// What leaves when the bus or the line does not take all: a demand before everything that reports,
-/// telemetry last. Of each cyclic message only the newest frame waits; replies and pages of the
-/// freeze frame wait in a row.
+/// telemetry last. Of each cyclic message only the newest frame waits; replies, frames of a table's
+/// transfer and pages of the freeze frame wait in rows.
 ///
 /// As long as everything leaves, frames go in the order of their classes: demands, Status, replies,
-/// freeze frame, telemetry. While something still waits from the tick before, a demand that says
-/// what the last one said goes behind the freeze frame until that is kRepeatEvery_ns ago, so that a
-/// line which demands alone would fill carries the others, too. A change of state or of the output
-/// stage always goes first. Telemetry is shed in the order FaultRecord, RawSample, SpectrumPeak2 ..
-/// 0, LawState, Motion, and what comes every second.
+/// transfer, freeze frame, telemetry. While something still waits from the tick before, a demand
+/// that says what the last one said goes behind the freeze frame until that is kRepeatEvery_ns ago,
+/// so that a line which demands alone would fill carries the others, too. A change of state or of
+/// the output stage always goes first. Telemetry is shed in the order FaultRecord, RawSample,
+/// SpectrumPeak2 .. 0, LawState, Motion, and what comes every second.
 #ifndef QUIESCED_FRAME_SENDER_H
 #define QUIESCED_FRAME_SENDER_H
 
@@ -75,6 +75,7 @@ class FrameSender {
     std::array<Slot, QUIESCE_CAN_MESSAGES> slots_{};
     std::array<Demand, QUIESCE_MAX_DAMPERS> demands_{};
     Row<4> replies_{};
+    Row<8> flow_{};   ///< TableFlow
     Row<12> pages_{}; ///< two freeze frames
     SendCounters counters_{};
 };

@@ -14,8 +14,7 @@ namespace quiesced {
 namespace {
 
 constexpr int kMaxReceived = 64; // frames a tick; the rest waits for the next one
-constexpr std::uint32_t kLearntEvery_s = 60;
-constexpr int kFarewells = 3; // one might be lost
+constexpr int kFarewells = 3;    // one might be lost
 constexpr int kFarewellPause_ms = 2;
 constexpr int kFarewellPatience_ms = 200; // well below the least timeout of a watchdog
 constexpr int kLastAttempts = 1000;       // a millisecond apart
@@ -24,17 +23,16 @@ constexpr int kLastAttempts = 1000;       // a millisecond apart
 
 Loop::Loop(const Config &config, const quiesce_params_t &params, Exchange &exchange,
            TickSource &source, can_bus_t *bus, watchdog_t *watchdog)
-    : config_(config), exchange_(exchange), log_(exchange.log), bus_(bus), latch_(exchange),
-      board_(config, exchange, bus, watchdog), source_(source), changes_(exchange.log) {
+    : config_(config), exchange_(exchange), log_(exchange.log), bus_(bus), tables_(node_, exchange),
+      latch_(exchange), board_(config, exchange, bus, watchdog), source_(source),
+      changes_(exchange.log) {
     use_axes(
         node_init(&node_, config.wiring(), &params, {config.enable_from, config.sensors_on_bus()}));
     if (config.wiring() == nullptr) {
         node_.most_mA = config.params.max_current_mA;
     }
     write_commands();
-    node_.store = store;
-    node_.store_context = this;
-    node_.store_is_slow = true;
+    tables_.connect();
 }
 
 /// As the board says, or the parameters, unless they are refused.
@@ -74,49 +72,9 @@ void Loop::restart(const quiesce_params_t &params) {
     write_commands();
 }
 
-/// Called every tick until it is answered.
-bool Loop::store(void *self, const quiesce_params_t *params) {
-    auto &loop = *static_cast<Loop *>(self);
-    if (!loop.store_is_pending_ && loop.exchange_.to_store.put(*params)) {
-        loop.store_is_pending_ = true;
-        loop.restarts_at_store_ = loop.node_.restarts;
-        loop.exchange_.wake();
-    }
-    return true;
-}
-
-/// A disk that took too long may answer when another request is worked on, or for parameters that
-/// are no longer in effect: then it is asked again.
-void Loop::answer_store() {
-    const StoreResult result = exchange_.store_result.exchange(StoreResult::none);
-    if (!store_is_pending_ || result == StoreResult::none) {
-        return;
-    }
-    store_is_pending_ = false;
-    if (can_node_task(&node_.can) == CAN_NODE_SAVE && restarts_at_store_ == node_.restarts) {
-        can_node_answer(&node_.can,
-                        result == StoreResult::stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED, 0);
-    }
-}
-
-void Loop::use_learnt(const quiesce_learnt_t &learnt) {
-    quiesce_learnt_t known;
-    if (!quiesce_learnt_save(&node_.controller, &known)) { // a law that learns nothing
-        return;
-    }
-    const bool is_used = quiesce_learnt_load(&node_.controller, &learnt);
-    log_.log(LogLevel::info,
-             is_used ? "what was learnt before is used"
-                     : "what was learnt before belongs to another law, table or setting");
-}
-
 bool Loop::use_record(const KeptRecord &record) {
     return record.is_held == 0 ||
            fault_record_load(&node_.can.record, record.words.data(), record.is_acknowledged != 0);
-}
-
-void Loop::keep_learnt() {
-    has_learnt_ = quiesce_learnt_save(&node_.controller, &learnt_);
 }
 
 /// What the node does not know: what the board can do.
@@ -124,7 +82,6 @@ void Loop::prepare_apply() {
     if (can_node_task(&node_.can) != CAN_NODE_APPLY) {
         return;
     }
-    keep_learnt();
     const std::optional<Misfit> misfit = find_misfit(config_, *can_node_staged(&node_.can));
     if (misfit && latched_fault(node_) == QUIESCE_FAULT_NONE) {
         can_node_answer(&node_.can, CAN_NODE_CONTRADICTION, misfit->index);
@@ -143,7 +100,6 @@ void Loop::use_params(const quiesce_params_t &params) {
     } else if (quiesce_is_armed(&node_.controller)) {
         use_live(params);
     } else {
-        keep_learnt();
         node_.most_mA =
             std::max(node_.most_mA, params.max_current_mA); // who may raise it: the file
         restart(params);
@@ -192,9 +148,6 @@ void Loop::after_restart() {
         source_.change_rate(rate_Hz);
         board_.use_rate(rate_Hz);
     }
-    if (has_learnt_) {
-        use_learnt(learnt_);
-    }
 }
 
 void Loop::receive() {
@@ -217,7 +170,7 @@ bool Loop::is_safe_command() const {
 }
 
 void Loop::send() {
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     const std::uint32_t count = node_frames(&node_, frames);
     std::int64_t demand_ns = 0;
     if (bus_ != nullptr) {
@@ -252,6 +205,7 @@ Snapshot Loop::snapshot() const {
         snapshot.bus.tx_dropped = unsent.answers + snapshot.tx_shed;
     }
     snapshot.node = *can_node_counters(&node_.can);
+    snapshot.roads = tables_.status();
     snapshot.faults = changes_.faults();
     snapshot.log_dropped = log_.dropped();
     return snapshot;
@@ -260,13 +214,6 @@ Snapshot Loop::snapshot() const {
 void Loop::put_snapshot() {
     if (exchange_.snapshot.put(snapshot())) {
         exchange_.wake();
-    }
-}
-
-void Loop::put_learnt() {
-    keep_learnt();
-    if (has_learnt_) {
-        (void)exchange_.learnt.put(learnt_);
     }
 }
 
@@ -299,15 +246,12 @@ void Loop::report(std::int64_t now_ns) {
     changes_.overruns(source_.timing().overruns, lost_.last(), now_ns);
     put_params();
     (void)put_record();
+    tables_.tell();
     if (bus_ != nullptr) {
         changes_.bus(bus_);
     }
     if (exchange_.snapshot_is_wanted.exchange(false)) {
         put_snapshot();
-    }
-    if (is_due_each_second() && ++learnt_age_s_ >= kLearntEvery_s) {
-        learnt_age_s_ = 0;
-        put_learnt();
     }
 }
 
@@ -322,7 +266,7 @@ void Loop::tick(std::uint32_t elapsed) {
     count_lost(elapsed);
     take_new_params();
     receive();
-    answer_store();
+    tables_.take();
     prepare_apply();
     node_inputs_t inputs = board_.read(axes_, elapsed, source_.timing());
     inputs.unsent = sender_.counters().unsent;
@@ -405,13 +349,8 @@ void Loop::put_last() {
     for (int i = 0; i < kLastAttempts && !put_record(); ++i) {
         sleep_ms(1);
     }
-    keep_learnt();
-    bool is_put = !has_learnt_;
-    for (int i = 0; i < kLastAttempts && !is_put; ++i) {
-        is_put = exchange_.learnt.put(learnt_);
-        sleep_ms(is_put ? 0 : 1);
-    }
-    is_put = false;
+    tables_.store_last();
+    bool is_put = false;
     for (int i = 0; i < kLastAttempts && !is_put; ++i) {
         is_put = exchange_.snapshot.put(snapshot());
         sleep_ms(is_put ? 0 : 1);

@@ -11,6 +11,7 @@
 #include "change_log.h"
 #include "fault_latch.h"
 #include "frame_sender.h"
+#include "loop_tables.h"
 #include "tick_source.h"
 
 namespace quiesced {
@@ -25,8 +26,8 @@ class Loop {
     Loop(const Loop &) = delete;
     Loop &operator=(const Loop &) = delete;
 
-    /// Puts back what law phase has learnt, and logs whether it is used.
-    void use_learnt(const quiesce_learnt_t &learnt);
+    /// Puts back tables and what was learnt, before the first tick.
+    void use_tables(const StartTables &start) { tables_.use(start); }
 
     /// Puts back the fault record of an earlier run. Returns false iff it is none of this version.
     bool use_record(const KeptRecord &record);
@@ -49,8 +50,6 @@ class Loop {
     void take_new_params();
     void use_live(const quiesce_params_t &params);
     void use_params(const quiesce_params_t &params);
-    void answer_store();
-    void keep_learnt();
     void prepare_apply();
     void after_change();
     void after_restart();
@@ -58,7 +57,6 @@ class Loop {
     void report(std::int64_t now_ns);
     Snapshot snapshot() const;
     void put_snapshot();
-    void put_learnt();
     void put_params();
     void leave();
     bool say_farewell();
@@ -72,8 +70,6 @@ class Loop {
         return exchange_.ticks.load() % std::max(1U, rate_Hz_ / kRefreshes_Hz) == 0;
     }
 
-    static bool store(void *self, const quiesce_params_t *params);
-
     const Config &config_;
     Exchange &exchange_;
     LogRing &log_;
@@ -81,6 +77,7 @@ class Loop {
 
     node_t node_{};
     Axes axes_{};
+    LoopTables tables_;
     FaultLatch latch_;
     Board board_;
     TickSource &source_;
@@ -91,13 +88,8 @@ class Loop {
     std::uint32_t rate_Hz_ = 0;
     std::uint32_t restarts_ = 0;
     std::uint32_t retunes_ = 0;
-    std::uint32_t learnt_age_s_ = 0;
-    bool store_is_pending_ = false;
-    std::uint32_t restarts_at_store_ = 0; ///< when it was asked for
     bool has_new_params_ = false;         ///< that the other thread does not know yet
     std::uint32_t record_generation_ = 0; ///< that the other thread has
-    quiesce_learnt_t learnt_{};
-    bool has_learnt_ = false;
 };
 
 } // namespace quiesced

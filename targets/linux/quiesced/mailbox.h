@@ -35,6 +35,10 @@ class Mailbox {
         return true;
     }
 
+    /// Receiver, who drops it later: until then it stays as it is. Null: there is none.
+    const Value *look() const { return is_full() ? &value_ : nullptr; }
+    void drop() { is_full_.store(false, std::memory_order_release); }
+
   private:
     Value value_{};
     std::atomic<bool> is_full_{false};

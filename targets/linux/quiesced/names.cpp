@@ -55,6 +55,39 @@ const char *output_name(CurrentOutput output) {
     return names[static_cast<std::size_t>(output)];
 }
 
+const char *owner_name(quiesce_owner_t owner) {
+    return owner == QUIESCE_OF_LAW ? "law" : "tracker";
+}
+
+const char *road_name(std::uint32_t road) {
+    constexpr std::array<const char *, ROADS> names = {"the law's table", "the tracker's table",
+                                                       "what was learnt"};
+    return name_in(names, road);
+}
+
+const char *table_source_name(std::uint32_t source) {
+    constexpr std::array<const char *, 5> names = {"none", "ships", "can", "stored",
+                                                   "configuration"};
+    return name_in(names, source);
+}
+
+const char *verdict_text(quiesce_table_verdict_t verdict) {
+    constexpr std::array<const char *, QUIESCE_TABLE_BOARD + 1> texts = {
+        "accepted",
+        "shorter than it says, or too long",
+        "not a table that this law or tracker works with, or one of another version",
+        "its checksum is wrong: it is damaged",
+        "its numbers of inputs, outputs, rules, points or parts are out of range",
+        "a membership is out of range",
+        "a rule names what is not there",
+        "a term is out of range",
+        "made for another tick_rate_Hz, or for signals or dampers that are not there",
+        "its points do not rise, or a coefficient, limit, band, power or current is out of range",
+        "made for another board",
+    };
+    return name_in(texts, verdict);
+}
+
 const char *version() {
     return QUIESCED_VERSION(QUIESCE_VERSION_MAJOR, QUIESCE_VERSION_MINOR, QUIESCE_VERSION_PATCH);
 }

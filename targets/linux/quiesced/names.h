@@ -17,6 +17,12 @@ const char *bus_state_name(can_bus_state_t state);
 /// As the configuration has them.
 const char *source_name(SensorSource source);
 const char *output_name(CurrentOutput output);
+const char *owner_name(quiesce_owner_t owner); ///< of [tables]
+
+/// "the law's table", .. by road; where it came from; why one is refused.
+const char *road_name(std::uint32_t road);
+const char *table_source_name(std::uint32_t source);
+const char *verdict_text(quiesce_table_verdict_t verdict);
 
 /// "0.1.0"
 const char *version();

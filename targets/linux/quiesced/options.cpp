@@ -20,7 +20,8 @@ const char *const kUsage =
     "  --ticks N      end after N control ticks\n"
     "  --version, --help\n"
     "\n"
-    "SIGTERM and SIGINT end it, SIGHUP rereads [parameters], SIGUSR1 writes the status file.\n"
+    "SIGTERM and SIGINT end it, SIGHUP rereads [parameters] and [tables],\n"
+    "SIGUSR1 writes the status file.\n"
     "Exit code: 0, 1 where --make-safe could not do all, 2 where it cannot start or the\n"
     "configuration is wrong.\n";
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "board_fit.h"
+#include "names.h"
 #include "parameter_section.h"
 #include "section.h"
 #include "wiring.h"
@@ -115,6 +116,15 @@ void read_log(Section &section, LogConfig &log) {
     }
 }
 
+/// Of what the files hold nothing is known here: --make-safe does without them.
+void read_tables(Section &section, Config &config) {
+    for (const quiesce_owner_t owner : kOwners) {
+        std::string named;
+        section.text(owner_name(owner), named);
+        config.tables[owner] = named.empty() ? "" : config.beside(named);
+    }
+}
+
 /// What needs [can] without having it; "": nothing.
 std::string bus_user(const Section &root, const Config &config) {
     for (const SensorConfig &sensor : config.sensors) {
@@ -189,6 +199,7 @@ void read_root(Section &root, Needs needs, const std::string &board_file, Config
     });
     with_section(root, "state", false, [&](Section &s) { read_state(s, config.state); });
     with_section(root, "log", false, [&](Section &s) { read_log(s, config.log); });
+    with_section(root, "tables", false, [&](Section &s) { read_tables(s, config); });
     with_section(root, "parameters", false,
                  [&](Section &s) { config.params = read_parameters(s, has_board(root)); });
     root.end();

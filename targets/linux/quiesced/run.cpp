@@ -152,8 +152,7 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const StateStore store(config.state.folder);
     std::string params_note;
     const quiesce_params_t params = start_params(config, store, params_note);
-    std::string learnt_note;
-    const auto learnt = store.load_learnt(learnt_note);
+    const StartTables tables = find_tables(config);
     std::string fault_note;
     FaultStore faults(config.state.folder);
     exchange->latched_fault.store(start_faults(faults, fault_note));
@@ -167,7 +166,7 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const Bus bus = config.can ? open_bus(*config.can, BusUse::controller) : nullptr;
     keep_config(read, params, exchange->log);
     exchange->bus = bus.get();
-    const Service service(config, *exchange, faults, records, caretaker, sink);
+    const Service service(config, tables.configured, *exchange, faults, records, caretaker, sink);
     become_realtime(config.loop);
     // Last, because it cannot always be stopped again.
     const Watchdog watchdog = config.watchdog ? open_watchdog(*config.watchdog) : nullptr;
@@ -177,13 +176,13 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     log_start(config, params, exchange->log);
     log_scheduling(config.loop, exchange->log);
     log_note(params_note, exchange->log);
-    log_note(learnt_note, exchange->log);
+    for (const std::string &note : tables.notes) {
+        log_note(note, exchange->log);
+    }
     log_kept_fault(fault_note, exchange->log);
     log_note(record_note, exchange->log);
     use_record(*loop, record, exchange->log);
-    if (learnt) {
-        loop->use_learnt(*learnt);
-    }
+    loop->use_tables(tables);
     loop->run(ticks);
     return 0;
 }

@@ -1,5 +1,6 @@
 #include "service.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 
@@ -45,12 +46,13 @@ void Trouble::note(const std::string &error, LogSink &sink) {
     }
 }
 
-Service::Service(const Config &config, Exchange &exchange, FaultStore &faults, RecordStore &records,
-                 Caretaker &caretaker, LogSink &sink)
+Service::Service(const Config &config, const ConfiguredTables &tables, Exchange &exchange,
+                 FaultStore &faults, RecordStore &records, Caretaker &caretaker, LogSink &sink)
     : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
-      faults_(faults), records_(records), caretaker_(caretaker), kept_(config.state.folder),
-      manager_(exchange.manager), configured_(config.params),
-      stored_fault_(exchange.latched_fault.load()), thread_([this] { run(); }) {}
+      tables_(config.state.folder), faults_(faults), records_(records), caretaker_(caretaker),
+      kept_(config.state.folder), manager_(exchange.manager), configured_(config.params),
+      configured_tables_(tables), stored_fault_(exchange.latched_fault.load()),
+      thread_([this] { run(); }) {}
 
 Service::~Service() {
     exchange_.loop_has_ended.store(true);
@@ -85,7 +87,7 @@ void Service::work(std::int64_t now_ns) {
         can_bus_recover(exchange_.bus);
     }
     keep_params();
-    store_params();
+    store_words();
     if (take_reload_request()) {
         reload();
     }
@@ -133,31 +135,82 @@ void Service::reload() {
         if (const std::optional<Misfit> misfit = find_misfit(config_, params)) {
             throw quiesce::InputError(misfit->reason.data());
         }
-        if (!exchange_.new_params.put(params)) {
-            sink_.write(LogLevel::error, "parameters stay: the last reload is not through yet");
-            return;
+        const ConfiguredTables tables = load_tables(fresh, config_.wiring());
+        require_fit(changed_of(tables), fresh, config_.wiring(), params);
+        if (!is_taken()) {
+            throw quiesce::InputError("the last reload is not through yet");
         }
+        hand_over(params, tables);
         configured_ = fresh.params;
     } catch (const quiesce::InputError &error) {
-        sink_.write(LogLevel::error, std::string("parameters stay: ") + error.what());
+        sink_.write(LogLevel::error, std::string("parameters and tables stay: ") + error.what());
     }
 }
 
+/// Those that are others than before.
+ConfiguredTables Service::changed_of(ConfiguredTables tables) const {
+    for (const quiesce_owner_t owner : kOwners) {
+        if (tables[owner] == configured_tables_[owner]) {
+            tables[owner].clear();
+        }
+    }
+    return tables;
+}
+
+/// Parameters first: a table may be of their law.
+void Service::hand_over(const quiesce_params_t &params, const ConfiguredTables &tables) {
+    (void)exchange_.new_params.put(params);
+    for (const quiesce_owner_t owner : kOwners) {
+        if (tables[owner] != configured_tables_[owner]) {
+            Words words{static_cast<std::uint32_t>(tables[owner].size()), {}};
+            std::copy(tables[owner].begin(), tables[owner].end(), words.words.begin());
+            (void)exchange_.new_tables[owner].put(words);
+        }
+    }
+    configured_tables_ = tables;
+}
+
+/// Whether the loop has taken all of the last reload.
+bool Service::is_taken() const {
+    return !exchange_.new_params.is_full() &&
+           std::none_of(exchange_.new_tables.begin(), exchange_.new_tables.end(),
+                        [](const auto &table) { return table.is_full(); });
+}
+
 void Service::finish_reload() {
-    if (is_reloading_ && !exchange_.new_params.is_full()) {
+    if (is_reloading_ && is_taken()) {
         is_reloading_ = false;
         manager_.send("READY=1");
     }
 }
 
-void Service::store_params() {
-    quiesce_params_t params;
-    if (!exchange_.to_store.take(params)) {
+std::string Service::store(const StoreOrder &order) {
+    const Words &of = order.of;
+    if (order.record == KEEPER_PARAMS) {
+        quiesce_params_t params{};
+        std::memcpy(&params, of.words.data(), sizeof params);
+        return store_.save_params(configured_, params);
+    }
+    const std::uint32_t road = road_of(order.record);
+    const std::uint32_t configured =
+        road < QUIESCE_TABLE_OWNERS ? crc_of(configured_tables_[road]) : 0;
+    return tables_.save(order.record, {configured, table_file_board(config_.wiring())},
+                        of.words.data(), of.count);
+}
+
+void Service::store_words() {
+    const StoreOrder *order = exchange_.to_store.look();
+    if (order == nullptr) {
         return;
     }
-    const std::string error = store_.save_params(configured_, params);
+    const std::string error = store(*order);
+    const char *what =
+        order->record == KEEPER_PARAMS ? "parameters" : road_name(road_of(order->record));
+    const char *done = order->of.count == 0 ? "forgotten: " : "saved: ";
+    exchange_.to_store.drop();
     sink_.write(error.empty() ? LogLevel::info : LogLevel::error,
-                error.empty() ? "parameters saved" : "parameters not saved: " + error);
+                error.empty() ? done + std::string(what)
+                              : std::string("not saved: ") + what + ": " + error);
     exchange_.store_result.store(error.empty() ? StoreResult::stored : StoreResult::failed);
 }
 
@@ -210,22 +263,7 @@ void Service::keep_params() {
     }
 }
 
-/// Spares the disk what it has already.
-void Service::store_learnt() {
-    quiesce_learnt_t learnt;
-    if (!exchange_.learnt.take(learnt) ||
-        (stored_learnt_ && std::memcmp(&*stored_learnt_, &learnt, sizeof learnt) == 0)) {
-        return;
-    }
-    const std::string error = store_.save_learnt(learnt);
-    learnt_trouble_.note(error, sink_);
-    if (error.empty()) {
-        stored_learnt_ = learnt;
-    }
-}
-
 void Service::write_files() {
-    store_learnt();
     if (exchange_.snapshot.take(last_)) {
         status_trouble_.note(replace_file(store_.status_file(), status_json(config_, last_)),
                              sink_);
@@ -285,7 +323,7 @@ void Service::say_last_words() {
     store_fault(monotonic_ns());
     store_record(monotonic_ns());
     drain_log();
-    store_params();
+    store_words();
     keep_params();
     write_files();
     if (last_.ticks > 0) {

@@ -13,6 +13,7 @@
 #include "kept_config.h"
 #include "log_sink.h"
 #include "record_store.h"
+#include "start_tables.h"
 #include "state_store.h"
 
 namespace quiesced {
@@ -33,8 +34,9 @@ class Service {
   public:
     /// Starts the thread. Make it before the calling thread becomes a real-time thread. Everything
     /// that it is given must outlive it.
-    Service(const Config &config, Exchange &exchange, FaultStore &faults, RecordStore &records,
-            Caretaker &caretaker, LogSink &sink);
+    /// tables: of the start.
+    Service(const Config &config, const ConfiguredTables &tables, Exchange &exchange,
+            FaultStore &faults, RecordStore &records, Caretaker &caretaker, LogSink &sink);
     Service(const Service &) = delete;
     Service &operator=(const Service &) = delete;
 
@@ -48,10 +50,13 @@ class Service {
     void drain_log();
     void reload();
     void finish_reload();
+    bool is_taken() const;
+    ConfiguredTables changed_of(ConfiguredTables tables) const;
+    void hand_over(const quiesce_params_t &params, const ConfiguredTables &tables);
     void look_after_devices();
     void write_files();
-    void store_learnt();
-    void store_params();
+    void store_words();
+    std::string store(const StoreOrder &order);
     void store_fault(std::int64_t now_ns);
     void store_record(std::int64_t now_ns);
     void keep_params();
@@ -62,18 +67,18 @@ class Service {
     Exchange &exchange_;
     LogSink &sink_;
     StateStore store_;
+    TableStore tables_;
     FaultStore &faults_;
     RecordStore &records_;
     Caretaker &caretaker_;
     KeptConfig kept_;
     const Notifier &manager_;
-    quiesce_params_t configured_; ///< what [parameters] says, last time that it was read
+    quiesce_params_t configured_;        ///< what [parameters] says, last time that it was read
+    ConfiguredTables configured_tables_; ///< likewise of [tables]
 
     Snapshot last_{};
-    std::uint32_t stored_fault_;                    ///< as on the disk
-    std::optional<quiesce_learnt_t> stored_learnt_; ///< by this run
+    std::uint32_t stored_fault_; ///< as on the disk
     Trouble status_trouble_{"status file"};
-    Trouble learnt_trouble_{"what was learnt"};
     Trouble fault_trouble_{"latched fault"};
     Trouble record_trouble_{"fault record"};
     Trouble params_trouble_{"parameters for --make-safe"};

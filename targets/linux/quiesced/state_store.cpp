@@ -5,7 +5,6 @@ namespace quiesced {
 namespace {
 
 constexpr const char *kParamKind = "param";
-constexpr const char *kLearntKind = "learnt";
 constexpr std::uint32_t kVersion = 1;
 
 /// On the disk: of another number of parameters is of another length, and damaged.
@@ -50,29 +49,6 @@ std::string StateStore::save_params(const quiesce_params_t &configured,
     const SavedParams saved = {can_node_param_hash(&configured), params};
     linux_error_t error{};
     return nvm_file_write(params_file().c_str(), kParamKind, kVersion, &saved, sizeof saved, &error)
-               ? ""
-               : error.text;
-}
-
-std::optional<quiesce_learnt_t> StateStore::load_learnt(std::string &note) const {
-    quiesce_learnt_t learnt{};
-    linux_error_t error{};
-    note.clear();
-    const nvm_verdict_t verdict =
-        nvm_file_read(learnt_file().c_str(), kLearntKind, kVersion, &learnt, sizeof learnt, &error);
-    if (verdict == NVM_OK) {
-        return learnt;
-    }
-    if (verdict != NVM_MISSING) {
-        note = std::string("what was learnt is not used: ") + error.text;
-    }
-    return std::nullopt;
-}
-
-std::string StateStore::save_learnt(const quiesce_learnt_t &learnt) {
-    linux_error_t error{};
-    return nvm_file_write(learnt_file().c_str(), kLearntKind, kVersion, &learnt, sizeof learnt,
-                          &error)
                ? ""
                : error.text;
 }

@@ -1,9 +1,8 @@
-/// What outlives the program, as files of the state folder: parameters saved over CAN and what the
-/// law has learnt. All of it blocks on the disk: never call it from the control loop.
+/// Parameters saved over CAN, which outlive the program as a file of the state folder. All of it
+/// blocks on the disk: never call it from the control loop.
 #ifndef QUIESCED_STATE_STORE_H
 #define QUIESCED_STATE_STORE_H
 
-#include <optional>
 #include <string>
 
 #include "firmware.h"
@@ -22,12 +21,7 @@ class StateStore {
     /// Returns why it failed; empty: saved.
     std::string save_params(const quiesce_params_t &configured, const quiesce_params_t &params);
 
-    /// Nothing where there is none; *note says why where it is damaged.
-    std::optional<quiesce_learnt_t> load_learnt(std::string &note) const;
-    std::string save_learnt(const quiesce_learnt_t &learnt);
-
     std::string params_file() const { return folder_ + "/parameters.bin"; }
-    std::string learnt_file() const { return folder_ + "/learnt.bin"; }
     std::string status_file() const { return folder_ + "/state.json"; }
 
   private:

@@ -83,6 +83,28 @@ void put_dampers(std::ostream &out, const Config &config, const Snapshot &snapsh
     out << "\n  ],\n";
 }
 
+std::string kind_json(const RoadStatus &road) {
+    const char *kind = quiesce_table_kind(road.magic, nullptr);
+    const char *name = road.magic == TABLE_FILE_LEARNT ? "learnt" : kind;
+    return name != nullptr ? quoted(name) : "null";
+}
+
+void put_tables(std::ostream &out, const Snapshot &snapshot) {
+    constexpr std::array<const char *, ROADS> names = {"law", "tracker", "learnt"};
+    out << "  \"tables\": {";
+    for (std::size_t i = 0; i < ROADS; ++i) {
+        const RoadStatus &road = snapshot.roads[i];
+        const bool is_refused = road.refusal != QUIESCE_TABLE_OK;
+        out << (i == 0 ? "\n" : ",\n") << "    " << quoted(names[i])
+            << ": {\"kind\": " << kind_json(road) << ", \"crc\": " << road.crc << ", \"source\": \""
+            << table_source_name(road.source) << "\", \"stored_crc\": " << road.stored_crc
+            << ", \"writes\": " << road.writes
+            << ", \"refusal\": " << (is_refused ? quoted(verdict_text(road.refusal)) : "null")
+            << "}";
+    }
+    out << "\n  },\n";
+}
+
 void put_faults(std::ostream &out, const Snapshot &snapshot) {
     out << "  \"last_faults\": [";
     const char *separator = "";
@@ -146,6 +168,7 @@ std::string status_json(const Config &config, const Snapshot &snapshot) {
     put_control(out, snapshot);
     put_sensors(out, config, snapshot);
     put_dampers(out, config, snapshot);
+    put_tables(out, snapshot);
     put_faults(out, snapshot);
     put_loop(out, snapshot);
     put_bus(out, snapshot);

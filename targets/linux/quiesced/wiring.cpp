@@ -1,7 +1,6 @@
 #include "wiring.h"
 
 #include <algorithm>
-#include <filesystem>
 
 namespace quiesced {
 
@@ -247,11 +246,6 @@ std::vector<std::vector<std::string>> missing_signals(const quiesce::BoardFile &
     return out;
 }
 
-/// Relative to the folder of the configuration.
-std::string beside(const std::string &config_file, const std::string &file) {
-    return (std::filesystem::path(config_file).parent_path() / file).string();
-}
-
 void read_board(Section &root, const std::string &board_file, Config &config) {
     root.read("board", true, [&] {
         Section section(root.table().table("board"), root.problems());
@@ -259,7 +253,7 @@ void read_board(Section &root, const std::string &board_file, Config &config) {
         section.text("file", file, true);
         section.end();
         if (!file.empty()) {
-            file = board_file.empty() ? beside(config.file, file) : board_file;
+            file = board_file.empty() ? config.beside(file) : board_file;
             quiesce::BoardFile board = quiesce::load_board(file);
             auto missing = missing_signals(board);
             config.board = {file, std::move(board), std::move(missing)};

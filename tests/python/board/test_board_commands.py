@@ -40,7 +40,9 @@ def rows(text: str) -> dict[str, list[str]]:
 def test_show_tells_sensors_dampers_signals_and_laws(quiesce) -> None:
     text = quiesce("board", "show", GOOD).stdout
     shown = rows(text)
-    assert text.startswith("every_key: bodies floor, roof; tracked roof_accel; bus 0.5 ms\n")
+    assert text.startswith(
+        "every_key: bodies floor, roof; tracked roof_accel; bus 0.5 ms; CRC-32 0x"
+    )
     assert shown["floor_accel"] == [
         "acceleration", "floor, x", "-57.751 um/s2", "-484.4 .. 484.5 m/s2", "4 ms", "20 ms",
         "stuck 300 ms, noise < 3, lost > 40 %", "1.5 ms, corner 0.25 Hz",

@@ -2,9 +2,10 @@
 // 1 kHz, with SLCAN on a file descriptor. Runs until its input ends or SIGTERM. Where its reader is
 // slow it waits, so that a busy machine loses no frames; the ticks that it missed do not come.
 //
-// can_peer FD [--drop N] [--corrupt N] [--no-store] [--silent] [--idle]
+// can_peer FD [--drop N] [--corrupt N] [--no-store] [--store FOLDER] [--silent] [--idle]
 //   --drop N     the bus loses every Nth frame
 //   --corrupt N  every Nth frame has a bit flipped
+//   --store DIR  records are files in it, which the next start finds
 //   --silent     answers no requests
 //   --idle       the operator lets go
 #include <errno.h>
@@ -30,7 +31,8 @@ typedef struct {
     unsigned drop;
     unsigned corrupt;
     bool has_store;
-    bool is_idle; // the operator lets go
+    const char *store; // folder, NULL: records are forgotten
+    bool is_idle;      // the operator lets go
     bool is_silent;
     unsigned sent;
     can_unsent_t unsent;
@@ -45,9 +47,39 @@ static void end(int number) {
     stop = 1;
 }
 
-static bool keep(void *context, const quiesce_params_t *params) {
-    (void)params;
-    return ((const peer_t *)context)->has_store;
+static FILE *open_record(const peer_t *peer, keeper_record_t record, const char *mode) {
+    char name[512];
+    (void)snprintf(name, sizeof name, "%s/record%d", peer->store, (int)record);
+    return fopen(name, mode);
+}
+
+static keeper_answer_t keep(void *context, keeper_record_t record, const uint32_t *words,
+                            uint32_t count) {
+    const peer_t *peer = context;
+    if (!peer->has_store || peer->store == NULL) {
+        return peer->has_store ? KEEPER_DONE : KEEPER_FAILED;
+    }
+    FILE *file = open_record(peer, record, "wb");
+    const bool is_kept = file != NULL && fwrite(words, sizeof *words, count, file) == count;
+    return file != NULL && fclose(file) == 0 && is_kept ? KEEPER_DONE : KEEPER_FAILED;
+}
+
+// What an earlier run has kept: one write each.
+static void find(peer_t *peer, keeper_record_t record) {
+    static uint32_t words[QUIESCE_TABLE_WORDS];
+    FILE *file = peer->store != NULL ? open_record(peer, record, "rb") : NULL;
+    if (file == NULL) {
+        return;
+    }
+    const table_found_t found = {
+        .record = record,
+        .source = TABLE_FROM_STORE,
+        .words = words,
+        .count = (uint32_t)fread(words, sizeof *words, QUIESCE_TABLE_WORDS, file),
+        .writes = 1,
+    };
+    (void)fclose(file);
+    (void)node_found(&peer->node, &found);
 }
 
 static void receive(peer_t *peer) {
@@ -101,7 +133,7 @@ static void tick(peer_t *peer, unsigned number) {
         .work_us = 20,
         .unsent = peer->unsent,
     };
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     const uint32_t count = node_tick(&peer->node, &inputs, frames);
     for (uint32_t i = 0; i < count; i++) {
         send_frame(peer, &frames[i]);
@@ -136,13 +168,18 @@ static void run(peer_t *peer) {
     }
 }
 
-static unsigned option(int argc, char **argv, const char *name) {
+static const char *word(int argc, char **argv, const char *name) {
     for (int i = 2; i + 1 < argc; i++) {
         if (strcmp(argv[i], name) == 0) {
-            return (unsigned)strtoul(argv[i + 1], NULL, 10);
+            return argv[i + 1];
         }
     }
-    return 0;
+    return NULL;
+}
+
+static unsigned option(int argc, char **argv, const char *name) {
+    const char *text = word(argc, argv, name);
+    return text != NULL ? (unsigned)strtoul(text, NULL, 10) : 0;
 }
 
 static bool flag(int argc, char **argv, const char *name) {
@@ -163,6 +200,7 @@ int main(int argc, char **argv) {
     peer.drop = option(argc, argv, "--drop");
     peer.corrupt = option(argc, argv, "--corrupt");
     peer.has_store = !flag(argc, argv, "--no-store");
+    peer.store = word(argc, argv, "--store");
     peer.is_idle = flag(argc, argv, "--idle");
     peer.is_silent = flag(argc, argv, "--silent");
     (void)signal(SIGTERM, end);
@@ -172,8 +210,10 @@ int main(int argc, char **argv) {
     if (!node_init(&peer.node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
         return 1;
     }
-    peer.node.store = keep;
-    peer.node.store_context = &peer;
+    node_use_store(&peer.node, keep, &peer);
+    find(&peer, KEEPER_LAW_TABLE);
+    find(&peer, KEEPER_TRACKER_TABLE);
+    find(&peer, KEEPER_LEARNT);
     run(&peer);
     return 0;
 }

@@ -499,7 +499,7 @@ def test_an_absent_package_is_named(
     monkeypatch.setitem(sys.modules, "cantools", None)
     load.cache_clear()
     try:
-        assert main(["can", "load"]) == 2
+        assert main(["can", "bus-load"]) == 2
     finally:
         load.cache_clear()
     assert "package cantools is not installed" in capsys.readouterr().err
@@ -528,6 +528,13 @@ def test_list_says_why(quiesce) -> None:
         "stop",
         "freeze",
         "load",
+        "tables",
+        "revert",
+        "fetch",
+        "save-learnt",
+        "restore-learnt",
+        "forget-learnt",
+        "bus-load",
     ],
 )
 def test_every_action_has_help_with_examples(

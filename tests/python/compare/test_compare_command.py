@@ -26,7 +26,7 @@ RIG = ["--rig", "two_storeys", "--accel-column", "acc_g", "--scale-to", "0.5"]
 
 
 def test_laws_stand_beside_constants_in_all_files(quiesce, quake: Path, tmp_path: Path) -> None:
-    table = tmp_path / "sky.words"
+    table = tmp_path / "sky.table"
     board = DATA / "boards/three_storeys_1996.toml"
     assert quiesce("law", "make", "skyhook_on_off", "--board", board, "-o", table).returncode == 0
     law = f"signs:table={table},as=sky"
@@ -80,7 +80,7 @@ BAD = [
     (["--rig", "two_storeys", "--board", "x.toml"], "give it or them"),
     ([*RIG, "--law", "nothing"], "no law 'nothing'"),
     ([*RIG, "--law", "fuzzy:rules"], "expected key=value"),
-    ([*RIG, "--law", "signs:table=none.words"], "there is no file none.words"),
+    ([*RIG, "--law", "signs:table=none.table"], "there is no file none.table"),
     ([*RIG, "--law", "fuzzy", "--law", "fuzzy"], "two are called 'fuzzy'"),
     ([*RIG, "--law", "fuzzy:nothing=1"], "nothing"),
     ([*RIG, "--law", "linear"], "law linear works with a table"),

@@ -22,12 +22,12 @@ from quiesce.damper.bank.table import (
 )
 from quiesce.damper.data.record import Record
 from quiesce.damper.inverse import forces_by
-from quiesce.damper.inverses.banked import BankInverse, read_words
+from quiesce.damper.inverses.banked import BankInverse, read_table
 from quiesce.damper.learned.model import silent
 from quiesce.damper.simulate import simulator_of_file
 from quiesce.law.forms.network import DEMAND
 from quiesce.law.signal import BY_NAME
-from quiesce.law.words import read_file
+from quiesce.table.file import read_words
 from quiesce_benchmarks.laws.firmware_laws import Tracker, tracker_verdict
 
 pytestmark = pytest.mark.usefixtures("build")
@@ -170,10 +170,10 @@ def test_the_command_writes_a_bank_and_reads_it_back(
     assert main([*asked, "--method", "bank"]) == 0
     said = capsys.readouterr().out
     assert "tracker bank reads it" in said and "not fitted to" in said
-    inverse = read_words(tmp_path / "bank.words")
+    inverse = read_table(tmp_path / "bank.table")
     assert inverse.max_current_A == 1.5
-    assert main([*asked, "--read", str(tmp_path / "bank.words")]) == 0
-    assert "bank.words" in capsys.readouterr().out
+    assert main([*asked, "--read", str(tmp_path / "bank.table")]) == 0
+    assert "bank.table" in capsys.readouterr().out
     demand = demand_of(1)
     half = replace(
         demand,
@@ -188,22 +188,22 @@ def test_the_command_writes_a_bank_and_reads_it_back(
 
 
 def test_words_of_several_dampers_are_no_inverse(tmp_path: Path) -> None:
-    file = tmp_path / "two.words"
-    file.write_text(BankInverse(bank_words([small_bank(), small_bank()])).to_text())
+    file = tmp_path / "two.table"
+    file.write_bytes(BankInverse(bank_words([small_bank(), small_bank()])).to_bytes())
     with pytest.raises(UsageError, match="2 dampers"):
-        read_words(file)
+        read_table(file)
 
 
 def test_banks_of_several_dampers_are_made_one(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    files = [tmp_path / "a.words", tmp_path / "b.words", tmp_path / "slow.words"]
+    files = [tmp_path / "a.table", tmp_path / "b.table", tmp_path / "slow.table"]
     banks = [small_bank(), replace(small_bank(), lead_um_s=0), replace(small_bank(), rate_Hz=500)]
     for file, bank in zip(files, banks, strict=True):
-        file.write_text(BankInverse(bank_words([bank])).to_text())
+        file.write_bytes(BankInverse(bank_words([bank])).to_bytes())
     asked = ["identify", "inverse", "--out", str(tmp_path)]
     assert main([*asked, *map(str, files[:2])]) == 0
-    assert banks_of_words(read_file(tmp_path / "bank.words")) == tuple(banks[:2])
+    assert banks_of_words(read_words(tmp_path / "bank.table")) == tuple(banks[:2])
     assert main([*asked, *map(str, files)]) == 2
     assert "different tick rates" in capsys.readouterr().err
     assert main([*asked, *map(str, [files[0]] * 5)]) == 2

@@ -27,6 +27,7 @@ from quiesce.damper.inverse import (
 )
 from quiesce.damper.model_file import DamperModel, read_model
 from quiesce.damper.simulate import simulator
+from quiesce.table.file import read_words
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -202,19 +203,19 @@ def test_command_writes_map_forces_and_plot(tmp_path: Path, capsys) -> None:
     assert max(float(row["current_A"]) for row in rows) < 2.1
     assert (tmp_path / "out/forces.csv").stat().st_size > 1000
     assert (tmp_path / "out/inverse.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
-    words = (tmp_path / "out/map.words").read_text(encoding="utf-8").split()
-    assert int(words[0], 16) == MAGIC and int(words[2], 16) == len(words)
+    words = read_words(tmp_path / "out/map.table")
+    assert words[0] == MAGIC and words[2] == len(words)
 
 
 def test_command_without_a_map_says_why_and_leaves_none(tmp_path: Path, capsys) -> None:
     constant = write(tmp_path / "damper.toml", dissipative_tanh(c_N_s_m=600.0, alpha_N=300.0))
     (tmp_path / "out").mkdir()
-    (tmp_path / "out/map.words").write_text("of another damper")
+    (tmp_path / "out/map.table").write_text("of another damper")
     assert act(cli_inverse, constant, "--max-current-A", "1", "--out", tmp_path / "out") == 0
     told = capsys.readouterr().out
     assert "no map for a controller: the current changes the force by 0 mN" in told
-    assert "map.words" not in told
-    assert not (tmp_path / "out/map.words").exists()
+    assert "map.table" not in told
+    assert not (tmp_path / "out/map.table").exists()
 
 
 def test_command_tells_the_range_as_json(tmp_path: Path, capsys) -> None:

@@ -26,6 +26,7 @@ from quiesce.damper.force_map import (
 from quiesce.damper.inverse import STROKE, VELOCITY, Axis, Monotone, SteadyForces, monotone_range
 from quiesce.damper.simulate import simulator_of_file
 from quiesce.law.sections import MOST_SECTIONS
+from quiesce.table.file import read_words
 
 pytestmark = pytest.mark.usefixtures("build")
 
@@ -173,8 +174,8 @@ def test_what_a_controller_cannot_hold_is_refused() -> None:
     currents = [float(i) for i in np.linspace(0.0, 1.0, MAX_CURRENTS)]
     forces = [[10.0 + 10.0 * i for i in currents] for _ in speeds]
     large = map_words(made(speeds, currents, forces))
-    with pytest.raises(ValueError, match="1130 words; a controller takes 1024"):
-        joined([large, large])
+    with pytest.raises(ValueError, match="2256 words, 9024 bytes; a controller takes 2048 words"):
+        joined([large, large, large, large])
 
 
 def test_command_joins_maps(tmp_path: Path, capsys) -> None:
@@ -186,12 +187,11 @@ def test_command_joins_maps(tmp_path: Path, capsys) -> None:
         assert main(["identify", "inverse", file, *options, "--out", str(tmp_path / name)]) == 0
     told = capsys.readouterr().out
     assert "where the motion turns" in told and "at every stroke" in told
-    files = [str(tmp_path / f"{name}/map.words") for name in "ab"]
+    files = [str(tmp_path / f"{name}/map.table") for name in "ab"]
     assert main(["identify", "inverse", *files, "--out", str(tmp_path / "both")]) == 0
     told = capsys.readouterr().out
     assert "damper 1: over velocity, 0 .. 1.5 A\ndamper 2: over stroke, 0 .. 2 A\n" in told
-    words = (tmp_path / "both/map.words").read_text(encoding="utf-8").split()
-    assert len(maps_of_words([int(word, 16) for word in words])) == 2
+    assert len(maps_of_words(read_words(tmp_path / "both/map.table"))) == 2
 
 
 @pytest.mark.parametrize(
@@ -200,11 +200,11 @@ def test_command_joins_maps(tmp_path: Path, capsys) -> None:
         ([], "made one with --out"),
         (["--json", "--out", "x"], "no other option"),
         (["--method", "ffn", "--out", "x"], "no other option"),
-        (["--out", "x"], "a.words: expected hexadecimal numbers, one a line"),
+        (["--out", "x"], "a.table: not a table file"),
     ],
 )
 def test_command_joins_nothing_else(options: list[str], why: str, tmp_path: Path, capsys) -> None:
-    file = tmp_path / "a.words"
+    file = tmp_path / "a.table"
     file.write_text("0xzz\n", encoding="utf-8")
     assert main(["identify", "inverse", str(file), *options]) == 2
     assert why in capsys.readouterr().err

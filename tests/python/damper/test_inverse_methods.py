@@ -6,6 +6,7 @@ import datetime
 import json
 import subprocess
 import tomllib
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -21,7 +22,7 @@ from quiesce.cli.identify import inverse as cli_inverse
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import is_number, whole
 from quiesce.damper.example import EXAMPLE
-from quiesce.damper.force_map import MAGIC, maps_of_words
+from quiesce.damper.force_map import maps_of_words
 from quiesce.damper.inverse import InverseByInterpolation, forces_at
 from quiesce.damper.inverses import (
     feed_forward,
@@ -53,6 +54,7 @@ from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.recurrent import Settings as RecurrentSettings
 from quiesce.damper.learned.sampled import sampled_rows, series_of
 from quiesce.damper.simulate import simulator
+from quiesce.table.file import table_bytes
 
 pytestmark = pytest.mark.usefixtures("build")
 MOST_A = 2.0
@@ -256,7 +258,8 @@ def test_a_free_runs_error_is_within_its_limits() -> None:
 @pytest.fixture(scope="module")
 def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     library = tmp_path_factory.mktemp("force_map") / "force_map.so"
-    sources = ["track/force_map.c", "base/sections.c", "base/table.c", "base/crc32.c"]
+    sources = ["track/track_inverse.c", "track/force_map.c"]
+    sources += ["base/sections.c", "base/table.c", "base/crc32.c"]
     folders = ["include", "base", "track"]
     subprocess.run(
         ["cc", "-std=c11", "-O1", "-shared", "-fPIC", "-o", library]
@@ -269,11 +272,24 @@ def firmware(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     return found
 
 
+class Tracker(ctypes.Structure):
+    """The first of a track_t (firmware/track/track.h)."""
+
+    _fields_ = [("name", ctypes.c_char_p), ("needs", ctypes.c_uint64), ("kind", ctypes.c_void_p)]
+
+
+def verdict(firmware: ctypes.CDLL, words: Sequence[int]) -> int:
+    """What table_check says of them as a map."""
+    kind = Tracker.in_dll(firmware, "track_inverse").kind
+    raw = (ctypes.c_uint32 * len(words))(*words)
+    return firmware.table_check(ctypes.c_void_p(kind), raw, len(words))
+
+
 @pytest.mark.parametrize("name", ["map", "ffn", "anfis"])
 def test_a_map_is_read_as_the_firmware_reads_it(name: str, firmware: ctypes.CDLL) -> None:
     inverse = made(name) if name == "map" else compiled(made(name))
     words = (ctypes.c_uint32 * len(inverse.words))(*inverse.words)
-    assert firmware.quiesce_force_map_check(words, len(inverse.words)) == 0
+    assert verdict(firmware, inverse.words) == 0
     rng = np.random.default_rng(4)
     demand = two_tones().rows(0, 800)
     velocity_um_s = rng.integers(-400_000, 400_000, 800)
@@ -404,15 +420,14 @@ def test_words_that_the_firmware_refuses_are_refused(firmware: ctypes.CDLL, tmp_
         for k in (1, 2, 3, 4, 5, 6, 7, 7 + n, 7 + n + 1, len(good) - 1)
     ]
     for words in broken:
-        raw = (ctypes.c_uint32 * len(words))(*words)
-        assert firmware.quiesce_force_map_check(raw, len(words)) != 0
+        assert verdict(firmware, words) != 0
         with pytest.raises(ValueError, match=".") as caught:
             maps_of_words(words)
         assert "\n" not in str(caught.value)
-    file = tmp_path / "map.words"
-    for text in ("0xzz\n", "", f"0x{MAGIC:08x}\n"):
-        file.write_text(text, encoding="utf-8")
-        with pytest.raises(UsageError, match="map.words"):
+    file = tmp_path / "map.table"
+    for data in (b"0xzz\n", b"", table_bytes(good)[:-1], table_bytes(broken[0])):
+        file.write_bytes(data)
+        with pytest.raises(UsageError, match="map.table"):
             read_inverse(file)
 
 
@@ -427,11 +442,11 @@ def test_command_makes_compares_writes_and_reads_back(tmp_path: Path, capsys) ->
     told = capsys.readouterr().out
     assert "tracker inverse reads it" in told and "ideal" in told and "constant" in told
     assert {one.name for one in out.iterdir()} == {
-        "map.words", "inverse_steps.toml", "inverse.html"
+        "map.table", "inverse_steps.toml", "inverse.html"
     }  # fmt: skip
     page = (out / "inverse.html").read_text(encoding="utf-8")
     assert page.count("<img") == 4 and "steps" in page
-    read = ("--read", out / "inverse_steps.toml", "--read", out / "map.words", "--json")
+    read = ("--read", out / "inverse_steps.toml", "--read", out / "map.table", "--json")
     assert act(cli_inverse, file, "--max-current-A", "2", *read) == 0
     found = json.loads(capsys.readouterr().out)
     assert [one["method"] for one in found["inverses"]] == ["steps", "map"]

@@ -50,6 +50,7 @@ PLANTED_IN_C = [
     ("firmware/sense/rms.c", '#include "nowhere.h"', "rms.c includes nowhere.h"),
     ("hal/include/hal/accel.h", '#include "quiesce.h"', "accel.h includes quiesce.h"),
     ("hal/mps2/stack.c", '#include "supervisor.h"', "stack.c includes supervisor.h"),
+    ("hal/records/nvm_records.c", '#include "nvm_mps2.h"', "includes nvm_mps2.h"),
     ("hal/linux/gpio.h", '#include "uart_mps2.h"', "gpio.h includes uart_mps2.h"),
     ("sim_hil/bench/run.cpp", '#include "tracker.h"', "run.cpp includes tracker.h"),
     ("sim_hil/bench/run.cpp", '#include "quiesce.h"', "run.cpp includes quiesce.h"),

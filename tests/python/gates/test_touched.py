@@ -31,6 +31,7 @@ def test_a_block_of_the_firmware_brings_the_tests_that_see_it() -> None:
     [
         ("firmware/comm/slcan.c", "unit unit/comm tests/unit/comm/all ."),
         ("hal/linux/watchdog.c", "unit unit/linux tests/unit/linux/all ."),
+        ("hal/records/nvm_records.c", "unit unit/hal tests/unit/hal/all ."),
         ("tests/unit/plant/test_plant.cpp", "unit unit/plant tests/unit/plant/all ."),
         ("sim_hil/board/board_file.cpp", "unit unit/board tests/unit/board/all ."),
         ("sim_hil/plant/actuator.cpp", "unit unit/plant tests/unit/plant/all ."),

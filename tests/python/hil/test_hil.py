@@ -143,7 +143,7 @@ def test_committed_results_are_those_of_this_firmware(metrics) -> None:
 
 
 def test_metrics_have_the_agreed_shape(metrics) -> None:
-    assert list(metrics) == ["runs", "published", "trace_equal", "realtime_factor"]
+    assert list(metrics) == ["runs", "published", "trace_equal", "realtime_factor", "warnings"]
     for run in metrics["runs"]:
         check_types(run, RUN_TYPES)
         assert run["law"] in laws.names()

@@ -59,7 +59,7 @@ def test_passive_peaks_are_the_published_ones(build: Path, scenario: Path, law: 
 
 
 def made(quiesce, folder: Path, recipe: str, *settings: str) -> Path:
-    file = folder / f"{recipe}.words"
+    file = folder / f"{recipe}.table"
     options = [word for one in settings for word in ("--set", one)]
     result = quiesce(
         "law", "make", recipe, "--board", BOARD, "--plant", PLANT, "-o", file, *options
@@ -84,10 +84,10 @@ def test_clipped_optimal_is_better_than_both_currents(
 def test_a_table_is_refused_at_another_rate(
     build: Path, scenario: Path, quiesce, tmp_path: Path
 ) -> None:
-    file = tmp_path / "half.words"
+    file = tmp_path / "half.table"
     words = ["--board", BOARD, "--plant", PLANT, "--rate", "500", "-o", file]
     assert quiesce("law", "make", "clipped_optimal", *words).returncode == 0
-    assert "made for 500 ticks" in quiesce("law", "show", file).stdout
+    assert "made for 500 ticks" in quiesce("table", "show", file).stdout
     bench = [build / "host/sim_hil/quiesce_bench", "run", "--scenario", scenario]
     bench += ["--law", "linear", "--law-table", file, "--set", "tracker=compare"]
     refused = subprocess.run(list(map(str, bench)), capture_output=True, text=True, check=False)

@@ -10,11 +10,12 @@ from conftest import ROOT
 from quiesce.base.errors import UsageError
 from quiesce.engine.bench import Bench
 from quiesce.law.forms.fuzzy_signals import FuzzySignalsTable
-from quiesce.law.forms.rule_words import read_rules
 from quiesce.law.from_rules import read_source, sources_of, table_of_rules
 from quiesce.law.rig import LawRig, load_rig
 from quiesce.law.tables import table_of_words
 from quiesce.rules.formats.files import read_text
+from quiesce.rules.integers.rule_words import read_rules
+from quiesce.table.file import read_words
 from quiesce_benchmarks.laws.firmware_laws import demands, verdict
 
 BOARDS = ROOT / "sim_hil/data/boards"
@@ -226,7 +227,7 @@ CHANGES = [
 def test_bad_files_are_one_line(
     quiesce, tmp_path: Path, text: str, kind: str, options: list[str], message: str
 ) -> None:
-    file, out = tmp_path / f"mine.{kind}", tmp_path / "x.words"
+    file, out = tmp_path / f"mine.{kind}", tmp_path / "x.table"
     file.write_text(text)
     result = quiesce("law", "rules", file, "--board", BOARD, *options, "-o", out)
     assert result.returncode == 2
@@ -271,15 +272,15 @@ def test_rules_in_words_are_checked() -> None:
 
 
 def test_a_file_of_ones_own_runs_and_is_compared(quiesce, tmp_path: Path) -> None:
-    rules, table = tmp_path / "mine.fis", tmp_path / "mine.words"
+    rules, table = tmp_path / "mine.fis", tmp_path / "mine.table"
     rules.write_text(FIS)
     options = ["--board", BOARD, "--map", "vel=1000 velocity of third", "-o", table]
     made = json.loads(quiesce("law", "rules", rules, *options, "--json").stdout)
     assert made["law"] == "fuzzy_signals" and made["rules"] == 4
-    assert made["notes"] and made["words"] == len(table.read_text().split())
+    assert made["notes"] and made["words"] == len(read_words(table))
     text = quiesce("law", "rules", rules, *options).stdout
     assert text.startswith("lines: ") and "--law fuzzy_signals --law-table" in text
-    shown = " ".join(quiesce("law", "show", table).stdout.split())
+    shown = " ".join(quiesce("table", "show", table).stdout.split())
     assert "0.25 A +2 A per m/s of 1 +1.5 A per m/s of 2" in shown and "weight 0.5" in shown
     t = np.arange(0, 2, 0.01)
     quake = tmp_path / "quake.csv"

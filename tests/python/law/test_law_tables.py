@@ -14,7 +14,7 @@ from quiesce.law.recipe import make, values_of
 from quiesce.law.recipes import RECIPES, find
 from quiesce.law.rig import LawRig, load_rig
 from quiesce.law.tables import FORMS, Table, table_of_words
-from quiesce.law.words import opened, sealed
+from quiesce.table.words import opened, sealed
 from quiesce_benchmarks.laws.firmware_laws import verdict
 
 DATA = ROOT / "sim_hil/data"

@@ -25,8 +25,6 @@ from quiesce.law.forms.network import (
 )
 from quiesce.law.rig import LawRig, load_rig
 from quiesce.law.signal import BY_NAME, Signal, signal
-from quiesce.law.tables import read_table
-from quiesce.law.words import file_text, opened, read_file, sealed
 from quiesce.network.dense import Network
 from quiesce.network.integers import dense_layer, of_dense, output_of, radial_layer
 from quiesce.network.layers import Dense, Layers
@@ -38,6 +36,8 @@ from quiesce.network.radial import (
     gaussians,
     with_centres,
 )
+from quiesce.table.file import read_words, table_bytes
+from quiesce.table.words import opened, sealed
 from quiesce_benchmarks.laws.firmware_laws import (
     NetworkTracker,
     demands,
@@ -286,7 +286,7 @@ def test_the_command_writes_what_the_firmware_takes(
 ) -> None:
     x, part = samples(400)
     rows = np.column_stack([x * (0.004, 0.2), 2.0 * part])
-    file, out = tmp_path / "samples.csv", tmp_path / "net.words"
+    file, out = tmp_path / "samples.csv", tmp_path / "net.table"
     np.savetxt(file, rows, delimiter=",", header="x_m,v_m_s,i_A", comments="")
     inputs = ",".join(
         f"{told}={name}" for told, name in zip(STROKES, ("x_m", "v_m_s"), strict=True)
@@ -294,18 +294,19 @@ def test_the_command_writes_what_the_firmware_takes(
     words = ["law", "fit", str(file), "--board", str(ROOT / BOARD), "--inputs", inputs]
     assert main([*words, "--output", "i_A", "--kind", "radial", "-o", str(out)]) == 0
     assert "radial: " in capsys.readouterr().out
-    assert verdict("network", read_file(out)) == 0
-    assert main(["law", "show", str(out)]) == 0
+    assert verdict("network", read_words(out)) == 0
+    assert main(["table", "show", str(out)]) == 0
     assert "stroke of damper 1" in capsys.readouterr().out
     assert main([*words, "--output", "j_A", "-o", str(out)]) == 2
     assert "no column 'j_A'; there are: x_m, v_m_s, i_A" in capsys.readouterr().err
 
 
-def test_a_trackers_network_is_shown(tmp_path: Path) -> None:
-    file = tmp_path / "network.words"
-    file.write_text(file_text(NetworkTrackTable((track_section(),)).words()))
-    text = described(read_table(file))
-    assert text.startswith("tracker network; dampers 1")
+def test_a_trackers_network_is_shown(tmp_path: Path, capsys) -> None:
+    file = tmp_path / "network.table"
+    file.write_bytes(table_bytes(NetworkTrackTable((track_section(),)).words()))
+    assert main(["table", "show", str(file)]) == 0
+    text = capsys.readouterr().out
+    assert "tracker network; dampers 1" in text
     assert "demand of damper 1" in text and "slower than 20 mm/s it counts as that fast" in text
 
 

@@ -70,7 +70,7 @@ def test_save_that_fails_is_answered(quiesced: Quiesced) -> None:
     (quiesced.state / "parameters.bin").mkdir()
     assert peer.request("SAVE").signals["result"] == STORE_FAILED
     assert quiesced.stop() == 0
-    assert "parameters not saved: " in quiesced.log_text()
+    assert "not saved: parameters: " in quiesced.log_text()
 
 
 def test_what_was_learnt_outlives_a_restart(quiesced: Quiesced) -> None:

@@ -117,7 +117,7 @@ def test_modal_mass_scales_forces_and_nothing_else(nominal: FoundPlant, tmp_path
     heavy = find_plant(nominal.recording.file, tmp_path / "out", modal_mass_kg=4.0, tell=quiet)
     light, found = Plant(nominal.plant_file), Plant(heavy.plant_file)
     assert found.modes[0].at_sensor == pytest.approx(0.5)
-    assert found.force_N_V(10.0) == pytest.approx(4.0 * light.force_N_V(10.0), rel=1e-3)
+    assert found.shaker_per_V(10.0) == pytest.approx(4.0 * light.shaker_per_V(10.0), rel=1e-3)
     tables = [read_plant_data(file) for file in (nominal.plant_file, heavy.plant_file)]
     forces = [
         force_on_mode1(table, mode.at_damper)

@@ -1,22 +1,24 @@
 """Law files of the phase law: read, written, compiled to words, refused."""
 
+import re
 import struct
 import zlib
+from dataclasses import astuple
 
 import pytest
 from conftest import ROOT
 from quiesce.base.errors import UsageError
+from quiesce.table.kinds import PULSES
+from quiesce.table.words import sealed
 from quiesce.tune.phase_table import (
-    POINT_WORDS,
     SETTINGS,
     PhaseLaw,
     Point,
     interpolated,
-    law_bytes,
     law_text,
-    law_words,
     read_law,
 )
+from quiesce.tune.phase_words import POINT_WORDS, described_pulses, law_of_words, law_words
 
 LAW_FILE = ROOT / "firmware/plants/squeeze_2012/pulses.phase.toml"
 POINTS = (Point(4.0, 170.0, 80.0, 5000, 0, 0.5), Point(6.0, 10.0, 100.0, 4000, 200, 1.0))
@@ -37,7 +39,7 @@ def test_law_reads_as_it_was_written(law_file):
 def test_words_have_the_layout_that_the_firmware_reads():
     words = law_words(LAW)
     assert words[0] == int.from_bytes(b"QPH1", "little")
-    assert words[1] == zlib.crc32(law_bytes(LAW)[8:])
+    assert words[1] == zlib.crc32(struct.pack(f"<{len(words) - 2}I", *words[2:]))
     assert words[2] == len(words) == 5 + POINT_WORDS * 4
     assert words[3] == 2 | 2 << 16
     assert words[4] == 5000
@@ -45,7 +47,23 @@ def test_words_have_the_layout_that_the_firmware_reads():
     assert words[6] == round(170 / 180 * 65536) | round(80 / 180 * 65536) << 16
     assert words[7] == 0 | 128 << 16
     assert words[7 + POINT_WORDS] == 200 | 256 << 16
-    assert law_bytes(LAW) == struct.pack(f"<{len(words)}I", *words)
+
+
+def test_words_read_as_they_were_written():
+    again = law_of_words(law_words(LAW))
+    assert again.unlock_current_mA == LAW.unlock_current_mA
+    for name in SETTINGS:
+        for one, other in zip(again.settings[name], LAW.settings[name], strict=True):
+            assert astuple(one) == pytest.approx(astuple(other), abs=0.002)
+    assert law_words(again) == law_words(LAW)
+    assert "10.00 deg  100.00 deg  4 A  0.2 A" in re.sub(" {2,}", "  ", described_pulses(again))
+
+
+@pytest.mark.parametrize("sizes", [1 | 3 << 16, 65 | 2 << 16, 2 | 3 << 16, 2 | 2 << 16])
+def test_words_of_other_sizes_are_refused(sizes):
+    words = [sizes, 5000, *law_words(LAW)[5:-1]]
+    with pytest.raises(ValueError, match="a setting has 2 .. 64|ends before all of its parts"):
+        law_of_words(sealed(PULSES.magic, words))
 
 
 def test_full_width_is_the_largest_word():

@@ -75,7 +75,7 @@ def tuned(build, tmp_path_factory) -> tuple[Path, dict]:
 
 def test_all_files_are_written(tuned) -> None:
     folder, data = tuned
-    expected = {"one_mode.phase.toml", "one_mode.phase.bin", "one_mode.set", "report.html"}
+    expected = {"one_mode.phase.toml", "one_mode.phase.table", "one_mode.set", "report.html"}
     assert expected <= set(data["files"])
     assert all((folder / name).stat().st_size > 0 for name in data["files"])
     page = (folder / "report.html").read_text(encoding="utf-8")
@@ -117,14 +117,14 @@ def run_bench(folder: Path, table: Path) -> dict:
     scenario = folder / "scenario.toml"
     scenario.write_text(sine_text(write_one_mode(folder), 8.0, 8.0), encoding="utf-8")
     options = ("--set", "adapt=off", "--set", "phase_setting=displacement")
-    words = ("--scenario", str(scenario), "--law", "phase", "--phase-table", str(table), *options)
+    words = ("--scenario", str(scenario), "--law", "phase", "--pulses", str(table), *options)
     return Bench().json("run", *words)
 
 
 def test_bench_takes_the_words_and_does_what_the_table_promises(tuned, tmp_path: Path) -> None:
     folder, data = tuned
     row = data["frequencies"][0]
-    figures = run_bench(tmp_path, folder / "one_mode.phase.bin")
+    figures = run_bench(tmp_path, folder / "one_mode.phase.table")
     reduction_pct = 100.0 * (1.0 - figures["amp_um"] / data_amp_um(folder))
     promised_pct = row["settings"]["displacement"]["amp_red_pct"]
     assert reduction_pct == pytest.approx(promised_pct, abs=0.7)
@@ -147,9 +147,9 @@ def data_amp_um(folder: Path) -> float:
     ids=["a word short", "a byte short", "empty", "magic", "a bit"],
 )
 def test_bench_refuses_damaged_words(tuned, tmp_path: Path, damage) -> None:
-    table = tmp_path / "law.bin"
-    table.write_bytes(damage((tuned[0] / "one_mode.phase.bin").read_bytes()))
-    with pytest.raises(UsageError, match="law.bin"):
+    table = tmp_path / "law.table"
+    table.write_bytes(damage((tuned[0] / "one_mode.phase.table").read_bytes()))
+    with pytest.raises(UsageError, match="law.table"):
         run_bench(tmp_path, table)
 
 

@@ -50,7 +50,7 @@ def test_what_is_found_is_in_all_files_and_runs(quiesce, quake: Path, tmp_path: 
     page = (out / "tune.html").read_text()
     assert page.count("<img") == 2 and "sky_N_s_m" in page and data["command"] in page
     # The table that was written is the one that was tried.
-    label = f"linear:table={out / 'skyhook.words'},tracker=proportional,as=tuned,"
+    label = f"linear:table={out / 'skyhook.table'},tracker=proportional,as=tuned,"
     label += f"tracker_gain_mA_kN={settings['parameters']['tracker_gain_mA_kN']}"
     told = quiesce("compare", *RIG, "--record", quake, "--law", label, "--json")
     cells = {one["law"]: one for one in json.loads(told.stdout)["cells"]}
@@ -95,7 +95,7 @@ def test_an_interrupted_one_keeps_what_it_found_and_goes_on(
     assert "interrupted; the same command goes on" in told
     before = trial_lines(out)
     assert 4 <= len(before) < 24
-    assert (out / "skyhook_on_off.words").is_file()
+    assert (out / "skyhook_on_off.table").is_file()
     # A line that was being written is dropped.
     with (out / "trials.jsonl").open("a") as file:
         file.write('{"values": {"on_A"')
@@ -128,7 +128,7 @@ def test_a_store_of_another_kind_is_refused(quiesce, quake: Path, tmp_path: Path
 BAD = [
     (["nothing"], "no recipe 'nothing'; there are: "),
     (["skyhook"], "needs a damper's map, --map FILE"),
-    (["skyhook", "--map", "none.words"], "there is no file none.words"),
+    (["skyhook", "--map", "none.table"], "there is no file none.table"),
     (["add", "--tracker", "compare"], "add demands currents; it has no tracker"),
     ([*TRACKED, "--fix", "nothing=1"], "neither a setting of the recipe (sky_N_s_m, limit_N)"),
     ([*TRACKED, "--fix", "sky_N_s_m=-1"], "expected a number in 0 .. 1e+06"),

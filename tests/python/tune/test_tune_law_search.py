@@ -15,7 +15,7 @@ from quiesce.tune.gains.space import TRACKER_GAIN, space_of
 RIG = LawRig(
     "rig", ("body",), (Damper("damper", 0, None, 2000),), frozenset(),
     {"force of damper": 3000.0, "stroke of damper": 0.03, "stroke velocity of damper": 0.5},
-    1000, None,
+    1000, None, 0,
 )  # fmt: skip
 
 

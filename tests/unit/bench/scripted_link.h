@@ -17,8 +17,9 @@ class ScriptedLink final : public ControllerLink {
     explicit ScriptedLink(Script script) : script_(std::move(script)) {}
 
     std::string target() const override { return "scripted"; }
-    bool start(const quiesce_board_t * /*board*/, const quiesce_params_t & /*params*/) override {
-        return true;
+    StartAnswer start(const quiesce_board_t * /*board*/, const quiesce_params_t & /*params*/,
+                      const Tables & /*tables*/) override {
+        return {true};
     }
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override {
         reply = lockstep_reply_t{};

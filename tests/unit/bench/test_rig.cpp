@@ -284,8 +284,9 @@ TEST(Rig, noise_of_the_plant_is_before_that_of_the_sensors_file) {
 class TwoCurrents final : public quiesce::ControllerLink {
   public:
     std::string target() const override { return "two"; }
-    bool start(const quiesce_board_t *board, const quiesce_params_t & /*params*/) override {
-        return board != nullptr;
+    quiesce::StartAnswer start(const quiesce_board_t *board, const quiesce_params_t & /*params*/,
+                               const quiesce::Tables & /*tables*/) override {
+        return {board != nullptr};
     }
     void exchange(const lockstep_stimulus_t & /*in*/, lockstep_reply_t &reply) override {
         reply = lockstep_reply_t{};

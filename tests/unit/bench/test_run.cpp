@@ -104,9 +104,10 @@ TEST(Run, a_disabled_driver_gives_no_current) {
     class Disabled final : public quiesce::ControllerLink {
       public:
         std::string target() const override { return "disabled"; }
-        bool start(const quiesce_board_t * /*board*/,
-                   const quiesce_params_t & /*params*/) override {
-            return true;
+        quiesce::StartAnswer start(const quiesce_board_t * /*board*/,
+                                   const quiesce_params_t & /*params*/,
+                                   const quiesce::Tables & /*tables*/) override {
+            return {true};
         }
         void exchange(const lockstep_stimulus_t & /*in*/, lockstep_reply_t &reply) override {
             reply = lockstep_reply_t{};

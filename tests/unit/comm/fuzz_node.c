@@ -69,7 +69,7 @@ static void tick(uint8_t flags) {
         .sensor = {{.counts = (int32_t)(flags * 2654435761u) >> 8, .is_fresh = (flags & 4u) != 0}},
         .ticks_elapsed = 1u + (flags >> 6) % 3u,
     };
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     const uint32_t count = node_tick(&node, &board, frames);
     require(count <= MOST_FRAMES);
     for (uint32_t i = 0; i < count; i++) {

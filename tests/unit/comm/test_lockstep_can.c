@@ -103,7 +103,7 @@ static void test_replies_equal_the_server_called_directly(void) {
     static lockstep_t direct;
     quiesce_params_t params;
     quiesce_params_default(&params);
-    TEST_ASSERT_TRUE(lockstep_start(&direct, NULL, &params));
+    TEST_ASSERT_TRUE(lockstep_start(&direct, NULL, &params, NULL));
     (void)start(0, 0);
     uint32_t seed = 5;
     for (uint32_t tick = 0; tick < 500; tick++) {

@@ -20,7 +20,7 @@ static node_t node;
 static driver_t driver;
 static quiesce_params_t params;
 static node_inputs_t board;
-static can_frame_t frames[CAN_NODE_MAX_FRAMES];
+static can_frame_t frames[NODE_MAX_FRAMES];
 static uint32_t frame_count;
 static uint32_t seed;
 static uint8_t operator_alive;
@@ -508,7 +508,7 @@ static void test_task_hands_parameters_over_before_anything_restarts(void) {
 
 static void test_tick_is_all_three_parts(void) {
     static node_t other;
-    can_frame_t others[CAN_NODE_MAX_FRAMES];
+    can_frame_t others[NODE_MAX_FRAMES];
     run(2000);
     stage_and_apply();
     memcpy(&other, &node, sizeof node);
@@ -537,22 +537,26 @@ typedef struct {
     quiesce_params_t stored;
     uint32_t calls;
     bool is_full;
+    bool is_slow;
 } store_t;
 
-static bool store(void *context, const quiesce_params_t *stored) {
+static keeper_answer_t store(void *context, keeper_record_t record, const uint32_t *words,
+                             uint32_t count) {
     store_t *const self = context;
+    TEST_ASSERT_EQUAL(KEEPER_PARAMS, record);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_PARAM_COUNT, count);
     self->calls++;
-    if (!self->is_full) {
-        self->stored = *stored;
+    if (self->is_full) {
+        return KEEPER_FAILED;
     }
-    return !self->is_full;
+    memcpy(&self->stored, words, sizeof self->stored);
+    return self->is_slow ? KEEPER_BEGUN : KEEPER_DONE;
 }
 
 static void test_save_stores_what_is_in_effect(void) {
     store_t kept = {.is_full = true};
     TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, ask(OP(SAVE), 0, 0).result);
-    node.store = store;
-    node.store_context = &kept;
+    node_use_store(&node, store, &kept);
     TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, ask(OP(SAVE), 0, 0).result);
     kept.is_full = false;
     (void)ask(OP(STAGE), INDEX_OF(slew_mA_s), 5000);
@@ -565,23 +569,42 @@ static void test_save_stores_what_is_in_effect(void) {
 }
 
 static void test_slow_store_is_answered_by_its_owner(void) {
-    store_t kept = {.is_full = false};
+    store_t kept = {.is_slow = true};
     struct quiesce_can_service_reply_t reply;
-    node.store = store;
-    node.store_context = &kept;
-    node.store_is_slow = true;
+    node_use_store(&node, store, &kept);
     receive(make_request(OP(SAVE), 0, 0, 3));
     for (uint32_t i = 0; i < 50; i++) {
         run(1);
         TEST_ASSERT_NOT_EQUAL(QUIESCE_CAN_SERVICE_REPLY_FRAME_ID, frames[frame_count - 1u].id);
     }
-    TEST_ASSERT_EQUAL_UINT32(50, kept.calls);
-    can_node_answer(&node.can, CAN_NODE_STORE_FAILED, 0);
+    TEST_ASSERT_EQUAL_UINT32(1, kept.calls);
+    node_stored(&node, false);
     run(1);
     TEST_ASSERT_EQUAL_HEX32(QUIESCE_CAN_SERVICE_REPLY_FRAME_ID, frames[frame_count - 1u].id);
     (void)quiesce_can_service_reply_unpack(&reply, frames[frame_count - 1u].data, 8);
     TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, reply.result);
-    TEST_ASSERT_EQUAL_UINT32(50, kept.calls);
+    TEST_ASSERT_EQUAL_UINT32(1, kept.calls);
+}
+
+// Its outcome is of what was asked then, not of the request that came since.
+static void test_a_store_that_answers_too_late_answers_nobody(void) {
+    store_t kept = {.is_slow = true};
+    struct quiesce_can_service_reply_t reply;
+    node_use_store(&node, store, &kept);
+    receive(make_request(OP(SAVE), 0, 0, 3));
+    run(CAN_SERVICE_SAVE_MS + 5u);
+    receive(make_request(OP(SAVE), 0, 0, 4));
+    run(5);
+    TEST_ASSERT_EQUAL_UINT32(1, kept.calls); // the memory is at it still
+    node_stored(&node, true);
+    run(5);
+    TEST_ASSERT_EQUAL_UINT32(2, kept.calls);
+    node_stored(&node, false);
+    run(1);
+    (void)quiesce_can_service_reply_unpack(&reply, frames[frame_count - 1u].data, 8);
+    TEST_ASSERT_EQUAL_UINT8(4, reply.alive);
+    TEST_ASSERT_EQUAL(CAN_NODE_STORE_FAILED, reply.result);
+    TEST_ASSERT_EQUAL_UINT32(1, node.tables.keeper.kept[KEEPER_PARAMS].writes);
 }
 
 static void test_leaving_switches_the_output_off(void) {
@@ -623,6 +646,7 @@ int main(void) {
     RUN_TEST(test_tick_is_all_three_parts);
     RUN_TEST(test_save_stores_what_is_in_effect);
     RUN_TEST(test_slow_store_is_answered_by_its_owner);
+    RUN_TEST(test_a_store_that_answers_too_late_answers_nobody);
     RUN_TEST(test_leaving_switches_the_output_off);
     RUN_TEST(test_lost_ticks_reach_the_controller);
     return UNITY_END();

@@ -19,7 +19,7 @@ static node_t node;
 static quiesce_params_t params;
 static quiesce_board_t wiring;
 static node_inputs_t board;
-static can_frame_t frames[CAN_NODE_MAX_FRAMES];
+static can_frame_t frames[NODE_MAX_FRAMES];
 static uint32_t frame_count;
 static uint32_t seed;
 
@@ -121,7 +121,7 @@ static void test_every_damper_has_its_demand_in_every_tick(void) {
     check_currents(safe_mA, false); // until the first tick
     for (uint32_t i = 0; i < 3000; i++) {
         run(1);
-        TEST_ASSERT_LESS_OR_EQUAL_UINT32(CAN_NODE_MAX_FRAMES, frame_count);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(NODE_MAX_FRAMES, frame_count);
         check_demands(i);
         for (uint32_t k = 1; k < frame_count; k++) {
             TEST_ASSERT_TRUE(is_well_made(&frames[k]) && frames[k].id > frames[k - 1u].id);

@@ -67,7 +67,7 @@ static copy_t raw_table(bytes_t *bytes, uint32_t magic) {
 }
 
 // One from here, or the one that ships; no words: none.
-static copy_t good_table(const law_table_kind_t *kind) {
+static copy_t good_table(const table_kind_t *kind) {
     const law_words_t good = law_words_of(kind->magic);
     if (good.words != NULL) {
         return new_copy(good.words, good.count);
@@ -81,7 +81,8 @@ static void damage(bytes_t *bytes, copy_t table, copy_t map) {
         const uint32_t place = take(bytes, 2);
         const uint32_t value = take(bytes, 4);
         const copy_t copy = (place & OF_MAP << 8) != 0 || table.count == 0 ? map : table;
-        copy.words[TABLE_HEAD_WORDS + place % 1024u % (copy.count - TABLE_HEAD_WORDS)] ^= value;
+        copy.words[TABLE_HEAD_WORDS +
+                   place % QUIESCE_TABLE_WORDS % (copy.count - TABLE_HEAD_WORDS)] ^= value;
     }
 }
 
@@ -110,7 +111,7 @@ static int32_t number_of_trackers(void) {
     return count;
 }
 
-static copy_t table_of(bytes_t *bytes, const law_table_kind_t *kind, bool is_raw) {
+static copy_t table_of(bytes_t *bytes, const table_kind_t *kind, bool is_raw) {
     if (kind == NULL) {
         return (copy_t){NULL, 0};
     }

@@ -115,7 +115,7 @@ static uint32_t run_case(lockstep_t *server, uint32_t number) {
     quiesce_params_t params;
     stretch_t stretch = {0};
     draw_params(&seed, number, &params);
-    (void)lockstep_start(server, NULL, &params);
+    (void)lockstep_start(server, NULL, &params, NULL);
     for (uint32_t tick = 0; tick < TICKS; tick++, stretch.left_ticks--) {
         if (stretch.left_ticks == 0) {
             stretch = draw_stretch(&seed);
@@ -168,7 +168,7 @@ static int run_file(lockstep_t *server, const char *path) {
     digest_t digest = {WORD_CRC_START};
     quiesce_params_t params;
     quiesce_params_default(&params);
-    (void)lockstep_start(server, NULL, &params);
+    (void)lockstep_start(server, NULL, &params, NULL);
     lockstep_stimulus_t in = {.flags = LOCKSTEP_FRESH}; // the edge of enable arms
     while (read_count(file, &in.counts[0])) {
         lockstep_reply_t reply;

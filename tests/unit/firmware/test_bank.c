@@ -87,7 +87,7 @@ static int32_t current(int32_t demand_mN) {
 }
 
 static quiesce_table_verdict_t verdict_of(uint32_t count) {
-    return force_bank_check(words, count);
+    return quiesce_table_check(words, count);
 }
 
 void setUp(void) {
@@ -354,7 +354,7 @@ static void test_the_controller_refuses_another_rate_and_steps_it_each_tick(void
     expect(QUIESCE_TABLE_OK, RATE, 500);
     TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_FIT, quiesce_table_use(&controller, words, WORDS));
     make_bank();
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_tracker_table_check(words, WORDS));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_check(words, WORDS));
     TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, words, WORDS));
     quiesce_in_t in = {0};
     for (uint32_t t = 0; t < 1100u; t++) {

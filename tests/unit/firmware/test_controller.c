@@ -17,7 +17,7 @@ static void start(void) {
     flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE;
     time_ticks = 0;
     noise_seed = 1;
-    TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params));
+    TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params, NULL));
 }
 
 void setUp(void) {
@@ -102,7 +102,7 @@ static void test_lock_does_not_leave_the_band(void) {
 static void test_refused_parameter_latches_and_keeps_the_safe_current(void) {
     params.safe_current_mA = 400;
     params.law = 99;
-    TEST_ASSERT_FALSE(lockstep_start(&server, NULL, &params));
+    TEST_ASSERT_FALSE(lockstep_start(&server, NULL, &params, NULL));
     flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE | LOCKSTEP_FAULT_RESET;
     vibrate(10000, 600);
     assert_state(QUIESCE_STATE_FAULT, QUIESCE_FAULT_PARAMETER);
@@ -320,7 +320,7 @@ static void test_two_controllers_do_not_share_state(void) {
     static lockstep_reply_t other_reply;
     params.law = QUIESCE_LAW_FUZZY;
     start();
-    TEST_ASSERT_TRUE(lockstep_start(&other, NULL, &params));
+    TEST_ASSERT_TRUE(lockstep_start(&other, NULL, &params, NULL));
     for (uint32_t i = 0; i < 1500; i++) {
         vibrate(10000, 1);
         const lockstep_stimulus_t in = {flags, {signal_sine(5195, 20000, i, 1000)}, {0}};
@@ -377,7 +377,7 @@ static void test_every_accepted_extreme_runs(void) {
             params.current_check = (int32_t)(k % 2);
             quiesce_param_set(&params, i / 2, i % 2 ? info->max : info->min);
             if (quiesce_params_check(&params, NULL)) {
-                TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params));
+                TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params, NULL));
                 run_wildly(700);
             }
         }
@@ -399,7 +399,7 @@ static void test_all_parameters_at_their_ends_together_run(void) {
         params.current_error_mA = 10;
         params.safe_current_mA = 0;
         params.unlock_current_mA = 0;
-        TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params));
+        TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params, NULL));
         run_wildly(20000);
     }
 }

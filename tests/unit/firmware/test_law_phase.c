@@ -34,7 +34,7 @@ static void set_lock(bool is_on) {
 
 static void start(void) {
     pulse_words_make(words, displacement, POINTS, balanced, POINTS);
-    TEST_ASSERT_EQUAL(PHASE_TABLE_OK, phase_table_check(words, words[2]));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, table_check(law_phase.kind, words, words[2]));
     setup.table = words;
     memset(&state, 0, sizeof state);
     law_phase.init(&state, &setup);

@@ -135,7 +135,7 @@ static void put_input(int32_t signal) {
 static quiesce_table_verdict_t verdict_of(bool of_law) {
     words[TABLE_WORDS] = count;
     words[TABLE_CRC] = crc32_words(&words[TABLE_WORDS], count - TABLE_WORDS);
-    return of_law ? law_network.kind->check(words, count) : track_network.kind->check(words, count);
+    return table_check(of_law ? law_network.kind : track_network.kind, words, count);
 }
 
 static void expect_good(bool of_law) {

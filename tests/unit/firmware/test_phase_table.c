@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "law.h"
 #include "plant_pulses.h"
 #include "pulse_words.h"
 #include "unity.h"
@@ -22,6 +23,8 @@ static const phase_point_t fast_points[] = {
 static uint32_t words[PHASE_TABLE_MAX_WORDS + 8u];
 static uint32_t count;
 
+extern const law_t law_phase;
+
 void setUp(void) {
     count = pulse_words_make(words, slow_points, 3, fast_points, 2);
 }
@@ -35,14 +38,14 @@ static uint32_t random_u32(void) {
 
 // In front of the end of memory that is known to belong to them: a word too far is seen by
 // AddressSanitizer.
-static phase_table_verdict_t verdict_of(uint32_t length) {
+static quiesce_table_verdict_t verdict_of(uint32_t length) {
     static uint32_t memory[PHASE_TABLE_MAX_WORDS + 8u];
     uint32_t *end = memory + sizeof memory / sizeof memory[0];
     memcpy(end - length, words, length * sizeof words[0]);
-    return phase_table_check(end - length, length);
+    return table_check(law_phase.kind, end - length, length);
 }
 
-static phase_table_verdict_t sealed_verdict(void) {
+static quiesce_table_verdict_t sealed_verdict(void) {
     pulse_words_seal(words, count);
     return verdict_of(count);
 }
@@ -54,7 +57,7 @@ static phase_point_t *point(uint32_t index) {
 // --- the check
 
 static void test_phase_table_that_is_good(void) {
-    TEST_ASSERT_EQUAL(PHASE_TABLE_OK, verdict_of(count));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, verdict_of(count));
     const phase_table_t *table = (const phase_table_t *)(const void *)words;
     TEST_ASSERT_EQUAL_UINT32(5000, table->unlock_current_mA);
     TEST_ASSERT_EQUAL_MEMORY(slow_points, phase_table_points(table, 0), sizeof slow_points);
@@ -63,7 +66,7 @@ static void test_phase_table_that_is_good(void) {
 
 static void test_phase_table_shipped_is_good_and_small(void) {
     const uint32_t shipped = sizeof plant_pulses_table / sizeof plant_pulses_table[0];
-    TEST_ASSERT_EQUAL(PHASE_TABLE_OK, phase_table_check(plant_pulses_table, shipped));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, table_check(law_phase.kind, plant_pulses_table, shipped));
     TEST_ASSERT_LESS_OR_EQUAL_UINT32(2048, sizeof plant_pulses_table);
 }
 
@@ -81,36 +84,36 @@ static void test_phase_table_with_fewest_and_most_points(void) {
     const uint32_t good[][2] = {{few, few}, {few, most}, {most, few}, {most, most}};
     for (uint32_t i = 0; i < 4u; i++) {
         make_steps(good[i][0], good[i][1]);
-        TEST_ASSERT_EQUAL(PHASE_TABLE_OK, verdict_of(count));
+        TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, verdict_of(count));
     }
     TEST_ASSERT_EQUAL_UINT32(PHASE_TABLE_MAX_WORDS, count);
     const uint32_t bad[][2] = {{few, most + 1u}, {most + 1u, few}, {few, few - 1u}, {0, most}};
     for (uint32_t i = 0; i < 4u; i++) {
         make_steps(bad[i][0], bad[i][1]);
-        TEST_ASSERT_EQUAL(PHASE_TABLE_SHAPE, verdict_of(count));
+        TEST_ASSERT_EQUAL(QUIESCE_TABLE_SHAPE, verdict_of(count));
     }
-    make_steps(most, most + 1u); // more words than any table has
-    TEST_ASSERT_EQUAL(PHASE_TABLE_SIZE, verdict_of(count));
+    make_steps(most, most + 1u); // more words than any table of pulses has
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_SHAPE, verdict_of(count));
 }
 
 static void test_phase_table_cut_short_or_too_long(void) {
     for (uint32_t length = 0; length < sizeof words / sizeof words[0]; length++) {
         if (length != count) {
-            TEST_ASSERT_EQUAL(PHASE_TABLE_SIZE, verdict_of(length));
+            TEST_ASSERT_EQUAL(QUIESCE_TABLE_SIZE, verdict_of(length));
         }
     }
-    TEST_ASSERT_EQUAL(PHASE_TABLE_SIZE, phase_table_check(NULL, 0));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_SIZE, table_check(law_phase.kind, NULL, 0));
     words[2]++;
-    TEST_ASSERT_EQUAL(PHASE_TABLE_SIZE, sealed_verdict());
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_SIZE, sealed_verdict());
     words[2] = UINT32_MAX;
-    TEST_ASSERT_EQUAL(PHASE_TABLE_SIZE, sealed_verdict());
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_SIZE, sealed_verdict());
 }
 
 static void test_phase_table_of_another_kind(void) {
     words[0] ^= 1u;
-    TEST_ASSERT_EQUAL(PHASE_TABLE_MAGIC_WRONG, sealed_verdict());
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_MAGIC, sealed_verdict());
     words[0] = 0x51504831u; // bytes exchanged
-    TEST_ASSERT_EQUAL(PHASE_TABLE_MAGIC_WRONG, sealed_verdict());
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_MAGIC, sealed_verdict());
 }
 
 static void test_phase_table_with_numbers_of_points_that_do_not_fit(void) {
@@ -118,50 +121,50 @@ static void test_phase_table_with_numbers_of_points_that_do_not_fit(void) {
         0, 3, 2u << 16, 0xFFFFFFFFu, 4u | 2u << 16, 3u | 1u << 16, 3u | 3u << 16, 65539u * 2u};
     for (uint32_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++) {
         words[3] = shapes[i];
-        TEST_ASSERT_EQUAL(PHASE_TABLE_SHAPE, sealed_verdict());
+        TEST_ASSERT_EQUAL(QUIESCE_TABLE_SHAPE, sealed_verdict());
     }
     words[3] = 2u | 3u << 16; // as many in total: now points that do not rise
-    TEST_ASSERT_EQUAL(PHASE_TABLE_POINT, sealed_verdict());
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_POINT, sealed_verdict());
 }
 
 static void test_phase_table_with_bad_points(void) {
     for (uint32_t i = 0; i < 5u; i++) {
         setUp();
         point(i)->floor_mA = (uint16_t)(point(i)->level_mA + 1u); // the last one wraps: 0, good
-        TEST_ASSERT_EQUAL(i == 4u ? PHASE_TABLE_OK : PHASE_TABLE_POINT, sealed_verdict());
+        TEST_ASSERT_EQUAL(i == 4u ? QUIESCE_TABLE_OK : QUIESCE_TABLE_POINT, sealed_verdict());
     }
     setUp();
     point(4)->level_mA = 65534;
-    TEST_ASSERT_EQUAL(PHASE_TABLE_POINT, sealed_verdict());
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_POINT, sealed_verdict());
     for (uint32_t i = 0; i < 5u; i++) {
         setUp();
         point(i)->ramp_q16 = 32767;
-        TEST_ASSERT_EQUAL(PHASE_TABLE_OK, sealed_verdict());
+        TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, sealed_verdict());
         point(i)->ramp_q16 = 32768;
-        TEST_ASSERT_EQUAL(PHASE_TABLE_POINT, sealed_verdict());
+        TEST_ASSERT_EQUAL(QUIESCE_TABLE_POINT, sealed_verdict());
     }
     const uint32_t later[] = {1, 2, 4};
     for (uint32_t i = 0; i < 3u; i++) {
         setUp();
         point(later[i])->freq_mHz = point(later[i] - 1u)->freq_mHz;
-        TEST_ASSERT_EQUAL(PHASE_TABLE_POINT, sealed_verdict());
+        TEST_ASSERT_EQUAL(QUIESCE_TABLE_POINT, sealed_verdict());
         point(later[i])->freq_mHz--;
-        TEST_ASSERT_EQUAL(PHASE_TABLE_POINT, sealed_verdict());
+        TEST_ASSERT_EQUAL(QUIESCE_TABLE_POINT, sealed_verdict());
     }
 }
 
 static void test_phase_table_with_any_bit_flipped_is_refused(void) {
     for (uint32_t bit = 0; bit < 32u * count; bit++) {
         words[bit / 32u] ^= 1u << bit % 32u;
-        const phase_table_verdict_t verdict = verdict_of(count);
+        const quiesce_table_verdict_t verdict = verdict_of(count);
         const uint32_t word = bit / 32u;
-        TEST_ASSERT_EQUAL(word == 0   ? PHASE_TABLE_MAGIC_WRONG
-                          : word == 2 ? PHASE_TABLE_SIZE
-                                      : PHASE_TABLE_CRC,
+        TEST_ASSERT_EQUAL(word == 0   ? QUIESCE_TABLE_MAGIC
+                          : word == 2 ? QUIESCE_TABLE_SIZE
+                                      : QUIESCE_TABLE_CRC,
                           verdict);
         words[bit / 32u] ^= 1u << bit % 32u;
     }
-    TEST_ASSERT_EQUAL(PHASE_TABLE_OK, verdict_of(count));
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_OK, verdict_of(count));
 }
 
 static void flip_some_bits(void) {
@@ -179,7 +182,7 @@ static void test_phase_table_with_many_bits_flipped_is_refused(void) {
                               words[0] == PHASE_TABLE_MAGIC && words[2] == count &&
                               words[3] == (3u | 2u << 16) && words[4] == 5000u &&
                               crc32_words(&words[2], count - 2u) == words[1],
-                          verdict_of(count) == PHASE_TABLE_OK);
+                          verdict_of(count) == QUIESCE_TABLE_OK);
     }
 }
 
@@ -202,15 +205,15 @@ static void test_phase_table_of_any_content_is_judged_right(void) {
         words[0] = PHASE_TABLE_MAGIC;
         words[2] = count;
         words[3] = random_u32() % 4u == 0 ? words[3] : 3u | 2u << 16;
-        const phase_table_verdict_t verdict = sealed_verdict();
+        const quiesce_table_verdict_t verdict = sealed_verdict();
         const phase_table_t *table = (const phase_table_t *)(const void *)words;
         const bool has_shape = table->points[0] + table->points[1] == 5 && table->points[0] >= 2 &&
                                table->points[1] >= 2;
         const bool is_good = has_shape && are_points_good(point(0), table->points[0]) &&
                              are_points_good(point(table->points[0]), table->points[1]);
-        const phase_table_verdict_t expected = !has_shape ? PHASE_TABLE_SHAPE
-                                               : is_good  ? PHASE_TABLE_OK
-                                                          : PHASE_TABLE_POINT;
+        const quiesce_table_verdict_t expected = !has_shape ? QUIESCE_TABLE_SHAPE
+                                                 : is_good  ? QUIESCE_TABLE_OK
+                                                            : QUIESCE_TABLE_POINT;
         TEST_ASSERT_EQUAL(expected, verdict);
         passed += is_good ? 1u : 0u;
     }

@@ -96,7 +96,7 @@ static int32_t inverse(int32_t velocity_um_s, int32_t demand_mN) {
 }
 
 static void test_track_inverse_of_a_plain_map(void) {
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_force_map_check(map, make_plain_map()));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_check(map, make_plain_map()));
     static const struct {
         int32_t velocity, demand, current;
     } cases[] = {
@@ -138,7 +138,7 @@ static void test_track_inverse_takes_the_least_current_of_a_flat_map(void) {
     static const int32_t current[] = {0, 1000, 2000, 3000};
     static const int32_t force[] = {-5, -5, -900, -900, 7, 7, 7, 7, 5, 5, 900, 900};
     TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK,
-                          quiesce_force_map_check(map, make_map(velocity, 3, current, 4, force)));
+                          quiesce_table_check(map, make_map(velocity, 3, current, 4, force)));
     TEST_ASSERT_EQUAL_INT32(0, inverse(1000, 5));
     TEST_ASSERT_EQUAL_INT32(1001, inverse(1000, 6));
     TEST_ASSERT_EQUAL_INT32(2000, inverse(1000, 900));
@@ -197,7 +197,7 @@ static void make_random_map(void) {
         make_forces(&force[i * m], m, (velocity[i] > 0) - (velocity[i] < 0));
     }
     const uint32_t count = make_map(velocity, n, current, m, force);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_force_map_check(map, count));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_check(map, count));
 }
 
 static int32_t value_of(uint32_t place) {
@@ -303,7 +303,7 @@ static uint32_t add_spring(void) {
     memcpy(&map[count], section, sizeof section);
     map[3]++;
     seal(count + sizeof section / sizeof *section);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_force_map_check(map, map[2]));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_check(map, map[2]));
     return map[2];
 }
 
@@ -354,33 +354,32 @@ static void test_track_a_map_that_is_cut_or_longer_is_refused(void) {
     const uint32_t count = add_spring();
     for (uint32_t words = first + 1u; words < count; words++) {
         seal(words);
-        TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SHAPE, quiesce_force_map_check(map, words));
+        TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SHAPE, quiesce_table_check(map, words));
     }
     map[count] = 0;
     seal(count + 1u);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SHAPE, quiesce_force_map_check(map, count + 1u));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SHAPE, quiesce_table_check(map, count + 1u));
     seal(count);
     map[first] = QUIESCE_SENSE_TEMPERATURE;
     seal(count);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_POINT, quiesce_force_map_check(map, count));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_POINT, quiesce_table_check(map, count));
 }
 
 static void assert_refused(quiesce_table_verdict_t verdict, uint32_t place, int32_t value) {
     const uint32_t count = make_plain_map();
     map[place] = (uint32_t)value;
     map[1] = crc32_words(&map[2], count - 2u);
-    TEST_ASSERT_EQUAL_INT(verdict, quiesce_force_map_check(map, count));
+    TEST_ASSERT_EQUAL_INT(verdict, quiesce_table_check(map, count));
 }
 
 static void test_track_malformed_maps_are_refused(void) {
     const uint32_t count = make_plain_map();
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_force_map_check(map, HEADER - 1u));
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_force_map_check(map, count - 1u));
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_force_map_check(map, count + 1u));
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE,
-                          quiesce_force_map_check(map, QUIESCE_TABLE_WORDS + 1u));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_table_check(map, HEADER - 1u));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_table_check(map, count - 1u));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_table_check(map, count + 1u));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_table_check(map, QUIESCE_TABLE_WORDS + 1u));
     map[count - 1u] ^= 1u;
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_CRC, quiesce_force_map_check(map, count));
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_CRC, quiesce_table_check(map, count));
     enum {
         PLACES = SECTION + 1,
         CURRENTS,
@@ -434,8 +433,7 @@ static void test_track_malformed_maps_are_refused(void) {
     static const int32_t one_way[] = {1, 2};
     static const int32_t current[] = {0, 1000};
     static const int32_t force[] = {1, 2, 1, 2};
-    TEST_ASSERT_EQUAL_INT(point,
-                          quiesce_force_map_check(map, make_map(one_way, 2, current, 2, force)));
+    TEST_ASSERT_EQUAL_INT(point, quiesce_table_check(map, make_map(one_way, 2, current, 2, force)));
     // The ends of every range.
     assert_refused(QUIESCE_TABLE_OK, VELOCITY, -VIEW_LIMIT);
     assert_refused(QUIESCE_TABLE_OK, CURRENT + 2, QUIESCE_HIGHEST_CURRENT_mA);
@@ -554,7 +552,7 @@ static void test_track_without_a_map_the_law_is_blind(void) {
     use_plain_map();
     run(1000, 1000);
     assert_current(1000, 800);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_drop(&controller, map[0]));
+    TEST_ASSERT_TRUE(quiesce_table_drop(&controller, QUIESCE_OF_TRACKER));
     for (uint32_t t = 0; t < 100u; t++) {
         assert_current(1000, UNLOCK_mA);
     }
@@ -579,34 +577,27 @@ static void make_law_table(uint32_t force_mN) {
     law_table[1] = crc32_words(&law_table[2], 2);
 }
 
-static void fill(quiesce_table_store_t *store, const uint32_t *words, uint32_t count) {
-    quiesce_table_store_init(store);
-    TEST_ASSERT_TRUE(quiesce_table_store_write(store, 0, words, count));
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_store_commit(store, &controller));
-}
-
-static void test_track_reverting_one_kind_leaves_the_other(void) {
-    static quiesce_table_store_t of_law;
-    static quiesce_table_store_t of_map;
+static void test_track_dropping_one_table_leaves_the_other(void) {
     start();
     make_law_table(60000);
-    fill(&of_law, law_table, 4);
-    fill(&of_map, map, map[2]);
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, law_table, 4));
+    use_plain_map();
     run(1000, 1000);
     assert_current(1000, 1000);
-    quiesce_table_store_revert(&of_map, &controller);
+    TEST_ASSERT_TRUE(quiesce_table_drop(&controller, QUIESCE_OF_TRACKER));
+    TEST_ASSERT_NULL(quiesce_table_in_use(&controller, QUIESCE_OF_TRACKER));
     run(200, 1000);
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_FAULT_LAW_BLIND, out.telemetry.fault);
     use_plain_map();
     run(1000, 1000);
     assert_current(1000, 1000); // the law's own table was there all the time
-    quiesce_table_store_revert(&of_law, &controller);
+    TEST_ASSERT_TRUE(quiesce_table_drop(&controller, QUIESCE_OF_LAW));
     assert_current(1000, 800);
-    quiesce_table_store_revert(&of_law, &controller); // nothing is left to go back to
+    TEST_ASSERT_TRUE(quiesce_table_drop(&controller, QUIESCE_OF_LAW)); // what ships, again
     assert_current(1000, 800);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_use(&controller, NULL, 0));
-    assert_current(1000, 800);
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_MAGIC, quiesce_table_drop(&controller, 1));
+    TEST_ASSERT_EQUAL_PTR(law_constant_force.kind->shipped,
+                          quiesce_table_in_use(&controller, QUIESCE_OF_LAW));
+    TEST_ASSERT_EQUAL_PTR(map, quiesce_table_in_use(&controller, QUIESCE_OF_TRACKER));
 }
 
 static void test_track_tables_of_law_and_tracker_go_to_their_own(void) {
@@ -634,24 +625,8 @@ static void test_track_tables_of_law_and_tracker_go_to_their_own(void) {
     params.tracker = QUIESCE_TRACKER_COMPARE;
     make_board(QUIESCE_SENSE_FORCE);
     start();
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_SIZE, quiesce_table_use(&controller, map, map[2]));
-}
-
-static void test_track_a_store_holds_one_kind(void) {
-    static quiesce_table_store_t store;
-    start();
-    quiesce_table_store_init(&store);
-    const uint32_t count = make_plain_map();
-    TEST_ASSERT_TRUE(quiesce_table_store_write(&store, 0, map, count));
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_OK, quiesce_table_store_commit(&store, &controller));
-    run(1000, 1000);
-    assert_current(1000, 800);
-    make_law_table(60000);
-    TEST_ASSERT_TRUE(quiesce_table_store_write(&store, 0, law_table, 4));
-    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_MAGIC, quiesce_table_store_commit(&store, &controller));
-    assert_current(1000, 800);
-    quiesce_table_store_revert(&store, &controller);
-    assert_current(1000, UNLOCK_mA); // no map ships
+    TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_MAGIC, quiesce_table_use(&controller, map, map[2]));
+    TEST_ASSERT_FALSE(quiesce_table_drop(&controller, QUIESCE_OF_TRACKER));
 }
 
 static void test_track_force_is_compared(void) {
@@ -765,9 +740,8 @@ int main(void) {
     RUN_TEST(test_track_no_other_tracker_is_known);
     RUN_TEST(test_track_a_force_becomes_a_current);
     RUN_TEST(test_track_without_a_map_the_law_is_blind);
-    RUN_TEST(test_track_reverting_one_kind_leaves_the_other);
+    RUN_TEST(test_track_dropping_one_table_leaves_the_other);
     RUN_TEST(test_track_tables_of_law_and_tracker_go_to_their_own);
-    RUN_TEST(test_track_a_store_holds_one_kind);
     RUN_TEST(test_track_force_is_compared);
     RUN_TEST(test_track_a_force_against_its_damper_is_a_fault);
     RUN_TEST(test_track_what_a_tracker_needs_and_is_not_there_is_named);

@@ -18,6 +18,7 @@ namespace quiesce {
 
 const std::string kShmImage = QUIESCE_IMAGES "/quiesce_mps2_shm.elf";
 const std::string kLargestImage = QUIESCE_IMAGES "/quiesce_mps2_shm_8x4.elf";
+const std::string kLargestUartImage = QUIESCE_IMAGES "/quiesce_mps2_uart_8x4.elf";
 const std::string kUartImage = QUIESCE_IMAGES "/quiesce_mps2_uart.elf";
 const std::string kEchoImage = QUIESCE_IMAGES "/uart_echo.elf";
 

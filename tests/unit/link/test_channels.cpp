@@ -37,7 +37,7 @@ void expect_equal_to_host(const std::string &channel) {
     CanLink link(open_channel(channel), {});
     InProcessLink host;
     ComparingLink comparing(host, link);
-    ASSERT_TRUE(comparing.start(nullptr, default_params()));
+    ASSERT_TRUE(comparing.start(nullptr, default_params(), {}));
     lockstep_reply_t reply;
     for (std::uint32_t tick = 0; tick < 200; ++tick) {
         comparing.exchange(varied_stimulus(tick), reply);

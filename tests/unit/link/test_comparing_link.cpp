@@ -15,10 +15,12 @@ class FaultyLink final : public ControllerLink {
     FaultyLink(int run, int tick, std::size_t word) : bad_run_(run), bad_tick_(tick), word_(word) {}
 
     std::string target() const override { return "faulty"; }
-    bool start(const quiesce_board_t *board, const quiesce_params_t &params) override {
+    StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
+                      const Tables &tables) override {
         ++run_;
         tick_ = 0;
-        return host_.start(board, params) && accepts;
+        const StartAnswer answer = host_.start(board, params, tables);
+        return accepts ? answer : StartAnswer{false, {refused_table, 0}};
     }
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override {
         host_.exchange(stimulus, reply);
@@ -29,6 +31,7 @@ class FaultyLink final : public ControllerLink {
     std::optional<InstructionCounts> finish() override { return std::nullopt; }
 
     bool accepts = true;
+    std::uint32_t refused_table = QUIESCE_TABLE_OK;
 
   private:
     InProcessLink host_;
@@ -41,7 +44,7 @@ class FaultyLink final : public ControllerLink {
 
 void run_twice(ComparingLink &link) {
     for (int run = 0; run < 2; ++run) {
-        link.start(nullptr, default_params());
+        link.start(nullptr, default_params(), {});
         for (std::uint32_t tick = 0; tick < 100; ++tick) {
             lockstep_reply_t reply;
             link.exchange(varied_stimulus(tick), reply);
@@ -76,8 +79,8 @@ TEST(comparing_link, the_plant_sees_the_reference) {
     FaultyLink faulty(0, 0, 0);
     ComparingLink link(host, faulty);
     lockstep_reply_t expected, actual;
-    link.start(nullptr, default_params());
-    alone.start(nullptr, default_params());
+    link.start(nullptr, default_params(), {});
+    alone.start(nullptr, default_params(), {});
     link.exchange(varied_stimulus(0), actual);
     alone.exchange(varied_stimulus(0), expected);
     EXPECT_EQ(std::memcmp(&expected, &actual, sizeof expected), 0);
@@ -88,7 +91,19 @@ TEST(comparing_link, disagreement_on_parameters_is_an_error) {
     FaultyLink faulty(0, 0, 0);
     faulty.accepts = false;
     ComparingLink link(host, faulty);
-    expect_contains(error_of([&] { link.start(nullptr, default_params()); }), "disagree");
+    expect_contains(error_of([&] { link.start(nullptr, default_params(), {}); }), "disagree");
+}
+
+TEST(comparing_link, disagreement_on_why_a_table_is_refused_is_an_error) {
+    const Tables tables = {{std::vector<std::uint32_t>(20, 7), {}}};
+    InProcessLink host;
+    FaultyLink faulty(0, 0, 0);
+    ComparingLink link(host, faulty);
+    EXPECT_EQ(link.start(nullptr, default_params(), tables).table.verdict,
+              std::uint32_t{QUIESCE_TABLE_SIZE});
+    faulty.accepts = false;
+    faulty.refused_table = QUIESCE_TABLE_CRC;
+    expect_contains(error_of([&] { link.start(nullptr, default_params(), tables); }), "disagree");
 }
 
 } // namespace

@@ -15,7 +15,7 @@ lockstep_stimulus_t plain_stimulus(std::uint32_t tick) {
 InstructionCounts counts_of(const QemuOptions &options, std::uint32_t ticks) {
     QemuShmLink target(options);
     lockstep_reply_t reply;
-    target.start(nullptr, default_params());
+    target.start(nullptr, default_params(), {});
     for (std::uint32_t tick = 0; tick < ticks; ++tick) {
         target.exchange(plain_stimulus(tick), reply);
     }
@@ -46,7 +46,7 @@ TEST(instruction_counter, whole_blocks_give_the_count_of_single_instructions) {
 TEST(instruction_counter, both_links_count_the_same_tick) {
     QemuUartLink uart(options_for(kUartImage), {0, 0});
     lockstep_reply_t reply;
-    uart.start(nullptr, default_params());
+    uart.start(nullptr, default_params(), {});
     for (std::uint32_t tick = 0; tick < 300; ++tick) {
         uart.exchange(plain_stimulus(tick), reply);
     }
@@ -58,14 +58,14 @@ TEST(instruction_counter, both_links_count_the_same_tick) {
 
 TEST(instruction_counter, no_tick_means_no_count) {
     QemuShmLink target(options_for(kShmImage));
-    target.start(nullptr, default_params());
+    target.start(nullptr, default_params(), {});
     EXPECT_FALSE(target.finish());
 }
 
 TEST(instruction_counter, none_switches_it_off) {
     QemuShmLink target(uncounted(kShmImage));
     lockstep_reply_t reply;
-    target.start(nullptr, default_params());
+    target.start(nullptr, default_params(), {});
     target.exchange(varied_stimulus(0), reply);
     EXPECT_FALSE(target.finish());
 }

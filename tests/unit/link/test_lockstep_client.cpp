@@ -57,7 +57,7 @@ std::string error_on_third_tick(const Tamper &tamper) {
                                                            : std::optional<std::string>("");
         },
         impatient_options());
-    rig.link->start(nullptr, default_params());
+    rig.link->start(nullptr, default_params(), {});
     lockstep_reply_t reply;
     rig.link->exchange(varied_stimulus(0), reply);
     rig.link->exchange(varied_stimulus(1), reply);
@@ -67,7 +67,7 @@ std::string error_on_third_tick(const Tamper &tamper) {
 void expect_equal_to_host(CanLink &link, const std::string &rubbish_name = "") {
     InProcessLink host;
     ComparingLink comparing(host, link);
-    ASSERT_TRUE(comparing.start(nullptr, default_params())) << rubbish_name;
+    ASSERT_TRUE(comparing.start(nullptr, default_params(), {})) << rubbish_name;
     lockstep_reply_t reply;
     for (std::uint32_t tick = 1600; tick < 1900; ++tick) { // estop and reset are in here
         comparing.exchange(varied_stimulus(tick), reply);
@@ -89,7 +89,7 @@ TEST(lockstep_client, eight_sensors_and_four_dampers_equal_the_host) {
     const Rig rig;
     InProcessLink host;
     ComparingLink comparing(host, *rig.link);
-    ASSERT_TRUE(comparing.start(&board, default_params()));
+    ASSERT_TRUE(comparing.start(&board, default_params(), {}));
     lockstep_reply_t reply;
     for (std::uint32_t tick = 1000; tick < 1900; ++tick) {
         comparing.exchange(varied_stimulus(tick), reply);
@@ -106,7 +106,7 @@ TEST(lockstep_client, refused_board_is_refused_on_both_sides) {
     const Rig rig;
     InProcessLink host;
     ComparingLink comparing(host, *rig.link);
-    EXPECT_FALSE(comparing.start(&board, default_params()));
+    EXPECT_FALSE(comparing.start(&board, default_params(), {}));
 }
 
 TEST(lockstep_client, less_telemetry_says_which_words_are_of_this_tick) {
@@ -116,7 +116,7 @@ TEST(lockstep_client, less_telemetry_says_which_words_are_of_this_tick) {
     EXPECT_FALSE(rig.link->is_complete());
     InProcessLink host;
     ComparingLink comparing(host, *rig.link);
-    comparing.start(nullptr, default_params());
+    comparing.start(nullptr, default_params(), {});
     lockstep_reply_t reply;
     for (std::uint32_t tick = 0; tick < 100; ++tick) {
         comparing.exchange(varied_stimulus(tick), reply);
@@ -135,7 +135,7 @@ TEST(lockstep_client, refused_parameter_is_named_by_its_index) {
     const LockstepPeer peer(std::move(ends.second));
     const auto channel = channel_on(std::move(ends.first));
     LockstepClient client(*channel, {});
-    EXPECT_FALSE(client.start(nullptr, params));
+    EXPECT_FALSE(client.start(nullptr, params, {}));
     EXPECT_EQ(client.refused_index(), error.index);
 }
 
@@ -170,7 +170,7 @@ TEST(lockstep_client, what_an_earlier_bench_left_under_way_does_not_disturb) {
     {
         const auto channel = channel_on(std::move(ends.first));
         LockstepClient earlier(*channel, {});
-        ASSERT_TRUE(earlier.start(nullptr, default_params()));
+        ASSERT_TRUE(earlier.start(nullptr, default_params(), {}));
         lockstep_reply_t reply;
         earlier.exchange(varied_stimulus(0), reply);
         const std::string last = "t60340000001F\rt60140"; // a tick nobody waits for, half a line
@@ -202,7 +202,7 @@ TEST(lockstep_client, rubbish_and_other_traffic_between_the_answers_are_passed_o
 TEST(lockstep_client, nobody_answers) {
     auto ends = socket_pair(SOCK_STREAM);
     CanLink link(channel_on(std::move(ends.first)), impatient_options());
-    EXPECT_EQ(error_of([&] { link.start(nullptr, default_params()); }),
+    EXPECT_EQ(error_of([&] { link.start(nullptr, default_params(), {}); }),
               "line: no target answers within 150 ms; is quiesced --lockstep running at the other "
               "end?");
 }
@@ -273,7 +273,7 @@ TEST(lockstep_client, other_traffic_without_end_is_no_answer) {
     });
     {
         CanLink link(channel_on(std::move(ends.first)), impatient_options());
-        expect_contains(error_of([&] { link.start(nullptr, default_params()); }),
+        expect_contains(error_of([&] { link.start(nullptr, default_params(), {}); }),
                         "no target answers");
         is_over = true;
     }
@@ -287,7 +287,7 @@ TEST(lockstep_client, bench_that_hears_itself) {
         }
         return std::optional<std::string>("");
     });
-    expect_contains(error_of([&] { rig.link->start(nullptr, default_params()); }),
+    expect_contains(error_of([&] { rig.link->start(nullptr, default_params(), {}); }),
                     "line: answers with message 0x601 of 6 bytes instead of 0x609");
 }
 
@@ -298,7 +298,7 @@ TEST(lockstep_client, target_that_was_built_from_other_sources) {
         }
         return std::optional<std::string>("");
     });
-    expect_contains(error_of([&] { rig.link->start(nullptr, default_params()); }),
+    expect_contains(error_of([&] { rig.link->start(nullptr, default_params(), {}); }),
                     "line: the target was built from other sources");
 }
 
@@ -309,7 +309,7 @@ TEST(lockstep_client, target_that_stores_another_value) {
         }
         return std::optional<std::string>("");
     });
-    expect_contains(error_of([&] { rig.link->start(nullptr, default_params()); }),
+    expect_contains(error_of([&] { rig.link->start(nullptr, default_params(), {}); }),
                     "line: the target does not store parameter 0; rebuild it");
 }
 
@@ -326,7 +326,7 @@ TEST(lockstep_client, mismatch_in_a_word_of_the_tick_is_found_and_an_older_word_
         options);
     InProcessLink host;
     ComparingLink comparing(host, *rig.link, Answer::Checked);
-    comparing.start(nullptr, default_params());
+    comparing.start(nullptr, default_params(), {});
     for (std::uint32_t tick = 0; tick < 30; ++tick) {
         lockstep_reply_t reply;
         comparing.exchange(varied_stimulus(tick), reply);
@@ -341,7 +341,7 @@ TEST(lockstep_client, mismatch_in_a_word_of_the_tick_is_found_and_an_older_word_
 TEST(lockstep_client, values_that_do_not_fit_their_signal_are_refused) {
     const Rig rig;
     lockstep_reply_t reply;
-    rig.link->start(nullptr, default_params());
+    rig.link->start(nullptr, default_params(), {});
     expect_contains(error_of([&] {
                         rig.link->exchange({LOCKSTEP_FRESH, {1 << 23}, {0}}, reply);
                     }),

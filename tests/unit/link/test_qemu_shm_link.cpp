@@ -13,8 +13,8 @@ TEST(qemu_shm_link, answers_like_the_host_through_dropout_stop_and_restart) {
     InProcessLink host;
     QemuShmLink target(options_for(kShmImage));
     for (int run = 0; run < 2; ++run) {
-        ASSERT_TRUE(host.start(nullptr, default_params()));
-        ASSERT_TRUE(target.start(nullptr, default_params()));
+        ASSERT_TRUE(host.start(nullptr, default_params(), {}));
+        ASSERT_TRUE(target.start(nullptr, default_params(), {}));
         for (std::uint32_t tick = 0; tick < 2500; ++tick) {
             lockstep_reply_t expected, actual;
             host.exchange(varied_stimulus(tick), expected);
@@ -35,8 +35,8 @@ TEST(qemu_shm_link, eight_sensors_and_four_dampers_answer_like_the_host) {
     for (const std::int32_t law : {QUIESCE_LAW_CONSTANT, QUIESCE_LAW_FUZZY, QUIESCE_LAW_PHASE}) {
         quiesce_params_t params = default_params();
         params.law = law;
-        ASSERT_TRUE(host.start(&board, params));
-        ASSERT_TRUE(target.start(&board, params));
+        ASSERT_TRUE(host.start(&board, params, {}));
+        ASSERT_TRUE(target.start(&board, params, {}));
         for (std::uint32_t tick = 0; tick < 2500; ++tick) {
             lockstep_stimulus_t stimulus = varied_stimulus(tick);
             stimulus.flags |= tick % 7 != 0 ? LOCKSTEP_PICTURE : 0u;
@@ -51,7 +51,7 @@ TEST(qemu_shm_link, eight_sensors_and_four_dampers_answer_like_the_host) {
 TEST(qemu_shm_link, small_build_refuses_a_large_board) {
     const quiesce_board_t board = largest_board();
     QemuShmLink target(uncounted(kShmImage));
-    EXPECT_FALSE(target.start(&board, default_params()));
+    EXPECT_FALSE(target.start(&board, default_params(), {}));
     lockstep_reply_t reply;
     target.exchange(varied_stimulus(1), reply);
     EXPECT_EQ(reply.telemetry.fault, std::uint32_t{QUIESCE_FAULT_PARAMETER});
@@ -64,8 +64,8 @@ TEST(qemu_shm_link, refused_parameter_leaves_it_answering_like_the_host) {
     params.slew_mA_s = -1;
     InProcessLink host;
     QemuShmLink target(options_for(kShmImage));
-    EXPECT_FALSE(host.start(nullptr, params));
-    EXPECT_FALSE(target.start(nullptr, params));
+    EXPECT_FALSE(host.start(nullptr, params, {}));
+    EXPECT_FALSE(target.start(nullptr, params, {}));
     lockstep_reply_t expected, actual;
     host.exchange(varied_stimulus(1), expected);
     target.exchange(varied_stimulus(1), actual);
@@ -76,7 +76,7 @@ TEST(qemu_shm_link, refused_parameter_leaves_it_answering_like_the_host) {
 TEST(qemu_shm_link, stack_use_is_reported_and_far_from_its_end) {
     QemuShmLink target(options_for(kShmImage));
     lockstep_reply_t reply;
-    target.start(nullptr, default_params());
+    target.start(nullptr, default_params(), {});
     for (std::uint32_t tick = 0; tick < 2000; ++tick) {
         target.exchange(varied_stimulus(tick), reply);
     }
@@ -89,15 +89,15 @@ TEST(qemu_shm_link, missing_image_is_named) {
     expect_contains(error_of([] { QemuShmLink(options_for("no/such.elf")); }),
                     "image no/such.elf: cannot be read");
     // Where nothing counts, QEMU itself finds out.
-    const std::string error =
-        error_of([] { QemuShmLink(uncounted("no/such.elf")).start(nullptr, default_params()); });
+    const std::string error = error_of(
+        [] { QemuShmLink(uncounted("no/such.elf")).start(nullptr, default_params(), {}); });
     expect_contains(error, "image no/such.elf: qemu-system-arm ended with code 1: ");
 }
 
 TEST(qemu_shm_link, killed_emulator_is_noticed_at_once) {
     QemuShmLink target(options_for(kShmImage));
     lockstep_reply_t reply;
-    target.start(nullptr, default_params());
+    target.start(nullptr, default_params(), {});
     target.exchange(varied_stimulus(0), reply);
     kill(target.process_id(), SIGKILL);
     const auto start = steady_clock::now();
@@ -112,7 +112,7 @@ TEST(qemu_shm_link, killed_emulator_is_noticed_at_once) {
 
 TEST(qemu_shm_link, image_that_never_answers_is_given_up) {
     QemuShmLink target(impatient(kUartImage));
-    expect_contains(error_of([&] { target.start(nullptr, default_params()); }),
+    expect_contains(error_of([&] { target.start(nullptr, default_params(), {}); }),
                     "no answer within 300 ms");
 }
 
@@ -123,7 +123,7 @@ TEST(qemu_shm_link, halted_emulator_is_given_up_and_still_ended) {
         options.answer_time = std::chrono::milliseconds(2000);
         QemuShmLink target(options);
         lockstep_reply_t reply;
-        target.start(nullptr, default_params());
+        target.start(nullptr, default_params(), {});
         id = target.process_id();
         kill(id, SIGSTOP);
         const std::string error = error_of([&] {

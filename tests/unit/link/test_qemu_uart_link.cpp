@@ -31,8 +31,8 @@ TEST(qemu_uart_link, full_telemetry_answers_like_the_host_through_stop_and_resta
     InProcessLink host;
     QemuUartLink target(options_for(kUartImage), kFullTelemetry);
     for (int run = 0; run < 2; ++run) {
-        ASSERT_TRUE(host.start(nullptr, default_params()));
-        ASSERT_TRUE(target.start(nullptr, default_params()));
+        ASSERT_TRUE(host.start(nullptr, default_params(), {}));
+        ASSERT_TRUE(target.start(nullptr, default_params(), {}));
         for (std::uint32_t tick = 1600; tick < 1900; ++tick) { // estop and reset are in here
             lockstep_reply_t expected, actual;
             host.exchange(varied_stimulus(tick), expected);
@@ -47,8 +47,8 @@ TEST(qemu_uart_link, decimated_telemetry_still_brings_every_command) {
     constexpr std::uint32_t kRound = 10 * QUIESCE_CAN_TELEMETRY_WORDS;
     InProcessLink host;
     QemuUartLink target(options_for(kUartImage), {10, 1});
-    host.start(nullptr, default_params());
-    target.start(nullptr, default_params());
+    host.start(nullptr, default_params(), {});
+    target.start(nullptr, default_params(), {});
     for (std::uint32_t tick = 0; tick < kRound + 200; ++tick) {
         lockstep_reply_t expected, actual;
         host.exchange(varied_stimulus(tick), expected);
@@ -70,8 +70,8 @@ TEST(qemu_uart_link, refused_parameter_is_named_by_its_index) {
     ASSERT_FALSE(quiesce_params_check(&params, &error));
     InProcessLink host;
     QemuUartLink target(options_for(kUartImage), kFullTelemetry);
-    EXPECT_FALSE(host.start(nullptr, params));
-    EXPECT_FALSE(target.start(nullptr, params));
+    EXPECT_FALSE(host.start(nullptr, params, {}));
+    EXPECT_FALSE(target.start(nullptr, params, {}));
     EXPECT_EQ(target.refused_index(), error.index);
     lockstep_reply_t expected, actual;
     host.exchange(varied_stimulus(1), expected);
@@ -82,8 +82,8 @@ TEST(qemu_uart_link, refused_parameter_is_named_by_its_index) {
 TEST(qemu_uart_link, rubbish_on_the_line_does_not_disturb_it) {
     InProcessLink host;
     QemuUartLink target(options_for(kUartImage), kFullTelemetry);
-    host.start(nullptr, default_params());
-    target.start(nullptr, default_params());
+    host.start(nullptr, default_params(), {});
+    target.start(nullptr, default_params(), {});
     for (std::uint32_t tick = 0; tick < 50; ++tick) {
         const std::string rubbish = "\rS6\rt603\rt6034ZZ\r\xFF\xFE\r";
         target.uart().send(reinterpret_cast<const std::uint8_t *>(rubbish.data()), rubbish.size(),
@@ -98,7 +98,7 @@ TEST(qemu_uart_link, rubbish_on_the_line_does_not_disturb_it) {
 TEST(qemu_uart_link, values_that_do_not_fit_their_signal_are_refused) {
     QemuUartLink target(options_for(kUartImage), kFullTelemetry);
     lockstep_reply_t reply;
-    target.start(nullptr, default_params());
+    target.start(nullptr, default_params(), {});
     expect_contains(error_of([&] {
                         target.exchange({LOCKSTEP_FRESH, {1 << 23}, {0}}, reply);
                     }),
@@ -111,14 +111,14 @@ TEST(qemu_uart_link, missing_image_is_named) {
     expect_contains(error_of([] { QemuUartLink(options_for("no/such.elf"), kFullTelemetry); }),
                     "image no/such.elf: cannot be read");
     QemuUartLink target(uncounted("no/such.elf"), kFullTelemetry);
-    expect_contains(error_of([&] { target.start(nullptr, default_params()); }),
+    expect_contains(error_of([&] { target.start(nullptr, default_params(), {}); }),
                     "image no/such.elf: qemu-system-arm ended with code 1: ");
 }
 
 TEST(qemu_uart_link, killed_emulator_is_noticed_at_once) {
     QemuUartLink target(options_for(kUartImage), {0, 0});
     lockstep_reply_t reply;
-    target.start(nullptr, default_params());
+    target.start(nullptr, default_params(), {});
     target.exchange(varied_stimulus(0), reply);
     kill(target.uart().process_id(), SIGKILL);
     const auto start = steady_clock::now();
@@ -133,13 +133,13 @@ TEST(qemu_uart_link, killed_emulator_is_noticed_at_once) {
 
 TEST(qemu_uart_link, image_that_never_answers_is_given_up) {
     QemuUartLink target(impatient(kShmImage), kFullTelemetry);
-    expect_contains(error_of([&] { target.start(nullptr, default_params()); }),
+    expect_contains(error_of([&] { target.start(nullptr, default_params(), {}); }),
                     "no answer within 300 ms");
 }
 
 TEST(qemu_uart_link, image_that_speaks_something_else_is_refused) {
     QemuUartLink target(uncounted(kEchoImage), kFullTelemetry);
-    expect_contains(error_of([&] { target.start(nullptr, default_params()); }),
+    expect_contains(error_of([&] { target.start(nullptr, default_params(), {}); }),
                     "answers with message 0x601 of 6 bytes instead of 0x609");
 }
 

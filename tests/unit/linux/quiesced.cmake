@@ -23,12 +23,13 @@ add_executable(
   quiesced/test_options.cpp
   quiesced/test_record.cpp
   quiesced/test_state.cpp
+  quiesced/test_tables.cpp
   quiesced/test_tick_source.cpp
   quiesced/test_wiring.cpp
   quiesced/test_wiring_safe.cpp
   quiesced/two_storeys.cpp)
 target_link_libraries(test_quiesced PRIVATE can_make quiesced_core quiesce_warnings GTest::gtest_main)
-target_include_directories(test_quiesced PRIVATE quiesced)
+target_include_directories(test_quiesced PRIVATE quiesced ../support)
 target_compile_definitions(
   test_quiesced PRIVATE QUIESCED_EXAMPLE="${CMAKE_SOURCE_DIR}/targets/linux/packaging/quiesced.toml")
 gtest_discover_tests(test_quiesced TEST_PREFIX quiesced. DISCOVERY_MODE PRE_TEST)

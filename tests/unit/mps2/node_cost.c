@@ -25,7 +25,7 @@ typedef struct {
     node_t node;
     node_inputs_t board;
     can_node_tick_t tick;
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
 } rig_t;
 
 static void tick_messages(rig_t *rig) {

@@ -21,16 +21,16 @@ constexpr ShakerParams kUnit = {1.0, 10.0, 0.0, 1.0};
 
 TEST(Shaker, gain_is_exact_at_its_reference_and_rolls_off) {
     const Shaker shaker({2.96, 10.0, 5.4, 0.1});
-    EXPECT_DOUBLE_EQ(shaker.amplitude_N(10.0), 0.296);
+    EXPECT_DOUBLE_EQ(shaker.amplitude(10.0), 0.296);
     const double at_20_N =
         0.296 * std::sqrt((1.0 + std::pow(10.0 / 5.4, 2.0)) / (1.0 + std::pow(20.0 / 5.4, 2.0)));
-    EXPECT_NEAR(shaker.amplitude_N(20.0), at_20_N, 1e-15);
+    EXPECT_NEAR(shaker.amplitude(20.0), at_20_N, 1e-15);
 }
 
 TEST(Shaker, without_corner_is_flat) {
     const Shaker shaker({2.0, 10.0, 0.0, 0.5});
-    EXPECT_EQ(shaker.amplitude_N(1.0), 1.0);
-    EXPECT_EQ(shaker.amplitude_N(1000.0), 1.0);
+    EXPECT_EQ(shaker.amplitude(1.0), 1.0);
+    EXPECT_EQ(shaker.amplitude(1000.0), 1.0);
 }
 
 TEST(Excitation, phase_is_continuous_over_a_frequency_step) {

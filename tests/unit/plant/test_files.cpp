@@ -87,6 +87,8 @@ const Mistake kModesPlantMistakes[] = {
     {"remanence", "rise_s = 0.005", "rise_s = 0.005\nremanence = 0.6",
      "coil.remanence: expected a number in 0 .. 0.5"},
     {"no_drive", "drive_V = 0.10", "", "shaker.drive_V: missing"},
+    {"both_gains", "drive_V = 0.10", "drive_V = 0.10\ngain_m_s2_V = 1.0",
+     "shaker.gain_N_V: unknown key"},
     {"drive_bool", "drive_V = 0.10", "drive_V = true", "shaker.drive_V: expected a number"},
     {"sensor_bits", "bits = 24", "bits = 32", "sensor.bits: expected an integer in 8 .. 24"},
     {"sensor_offset", "noise_mg = 0.5", "offset_counts = 9000000", "sensor.offset_counts:"},

@@ -106,6 +106,12 @@ TEST(PeriodicOrbit, equals_long_runs_with_a_pulse_above_resonance) {
     expect_same_motion(published_plant(), {20.0, 0.1, 25, false}, pulse(25, 3, 20));
 }
 
+TEST(PeriodicOrbit, equals_long_runs_on_a_base_that_moves) {
+    PlantModel model = published_plant();
+    model.shaker = {0.3, 10.0, 0.0, 1.0, true};
+    expect_same_motion(model, {10.0, 1.0, 50, false}, pulse(50, 20, 40));
+}
+
 TEST(PeriodicOrbit, equals_long_runs_with_a_coil_that_falls_slowly) {
     PlantModel model = published_plant();
     model.dampers[0].coil = {0.004, 0.015};
@@ -199,7 +205,7 @@ TEST_F(PlantLibrary, tells_facts_of_the_file) {
     quiesce_plant_get_mode(plant_, 1, &mode);
     EXPECT_NEAR(mode.freq_Hz, 96.0, 1e-9);
     EXPECT_NEAR(mode.damping_ratio, 0.014375, 1e-9);
-    EXPECT_NEAR(quiesce_plant_force_N_V(plant_, 10.0), 2.96, 1e-9);
+    EXPECT_NEAR(quiesce_plant_shaker_per_V(plant_, 10.0), 2.96, 1e-9);
 }
 
 TEST_F(PlantLibrary, figures_follow_from_the_waveforms) {

@@ -242,6 +242,16 @@ TEST(PlaceFile, modes_of_a_plant_with_ends_have_no_damper) {
     EXPECT_EQ(loaded(text).dampers[0].stroke, quiesce::load_plant(kModes).dampers[0].stroke);
 }
 
+TEST(PlaceFile, an_only_damper_may_be_on_a_lever_too) {
+    const std::string text =
+        spoilt(read(kModes), {"", "[damper]\n", "[damper]\nratio = 0.5\n", ""});
+    const quiesce::PlantDamper damper = loaded(text).dampers[0];
+    EXPECT_EQ(damper.ratio, 0.5);
+    EXPECT_EQ(damper.stroke, 0.5 * quiesce::load_plant(kModes).dampers[0].stroke);
+    expect_message(spoilt(text, {"", "0.5\n", "0\n", ""}),
+                   "damper.ratio: expected a number in 0.01", quiesce::load_plant);
+}
+
 TEST(PlaceFile, a_drivers_current_holds_for_the_file_of_every_damper) {
     const std::string text =
         spoilt(read(kTwoStoreys),

@@ -67,7 +67,7 @@ TEST(SegmentFile, tones_random_and_impulse_are_what_it_says) {
     EXPECT_EQ(scenario.segments[0].summary, "random, 4 .. 22 Hz at 0.1 V RMS, seed 7");
     EXPECT_EQ(scenario.segments[1].summary, "impulse, 0.01 N s in 0.02 s");
     EXPECT_EQ(scenario.segments[2].summary, "tones, 5 Hz at 0.1 V + 13 Hz at 0.2 V");
-    EXPECT_FALSE(moves_base(scenario));
+    EXPECT_FALSE(moves_base(scenario, kUnit));
     const quiesce::Excitation excitation = make_excitation(scenario, kUnit);
     EXPECT_NE(excitation.at(3.0).force_N, 0.0);
     EXPECT_NEAR(excitation.at(20.01).force_N, 0.01 * 1.5707963267948966 / 0.02, 1e-9);
@@ -75,11 +75,26 @@ TEST(SegmentFile, tones_random_and_impulse_are_what_it_says) {
     EXPECT_NEAR(excitation.at(22.0).force_N, 0.2, 1e-12) << "the second tone begins at its top";
 }
 
+TEST(SegmentFile, a_shaker_below_the_base_moves_it_but_not_by_blows) {
+    constexpr quiesce::ShakerParams kTable = {1.0, 10.0, 0.0, 1.0, true};
+    const TemporaryFile file(scenario_text(std::string(kRandom) + kTones));
+    const Scenario scenario = load_scenario(file.path());
+    EXPECT_TRUE(moves_base(scenario, kTable));
+    const quiesce::Excitation on_it = make_excitation(scenario, kUnit);
+    const quiesce::Excitation below = make_excitation(scenario, kTable);
+    for (const double time_s : {3.0, 20.3}) {
+        EXPECT_EQ(below.at(time_s).force_N, 0.0);
+        EXPECT_EQ(below.at(time_s).base_accel_m_s2, on_it.at(time_s).force_N);
+    }
+    const TemporaryFile blow(scenario_text(kImpulse));
+    EXPECT_FALSE(moves_base(load_scenario(blow.path()), kTable));
+}
+
 TEST(SegmentFile, base_tones_move_the_base) {
     const TemporaryFile file(scenario_text(kBaseTones));
     const Scenario scenario = load_scenario(file.path());
     EXPECT_EQ(scenario.segments[0].summary, "base tones, 10 Hz at 3 m/s2 + 40 Hz at 0.5 m/s2");
-    EXPECT_TRUE(moves_base(scenario));
+    EXPECT_TRUE(moves_base(scenario, kUnit));
     const quiesce::Excitation excitation = make_excitation(scenario, kUnit);
     EXPECT_NEAR(excitation.at(0.0).base_accel_m_s2, 0.5, 1e-12);
     EXPECT_NEAR(excitation.at(0.025).base_accel_m_s2, 3.0 + 0.5, 1e-12);
@@ -146,7 +161,7 @@ TEST(RecordFile, beside_the_scenario_is_scaled_and_sped_up) {
     const TemporaryFile file(
         record_text(file_name(csv), "scale_m_s2 = 9.80665\ngain = 0.5\ntime_scale = 2\n"));
     const Scenario scenario = load_scenario(file.path());
-    EXPECT_TRUE(moves_base(scenario));
+    EXPECT_TRUE(moves_base(scenario, kUnit));
     const quiesce::Excitation excitation = make_excitation(scenario, kUnit);
     EXPECT_NEAR(excitation.at(0.0).base_accel_m_s2, 0.05 * 9.80665, 1e-12);
     EXPECT_NEAR(excitation.at(0.25).base_accel_m_s2, -0.05 * 9.80665, 1e-12);

@@ -46,8 +46,8 @@ TEST(TonesSegment, one_tone_is_the_sine_of_the_same_drive) {
 TEST(TonesSegment, tones_superpose_with_their_own_drive_and_phase) {
     const TonesSegment both(kShaker, {{5.0, 0.1, 0.0}, {13.0, 0.3, 90.0}});
     const TonesSegment first(kShaker, {{5.0, 0.1, 0.0}});
-    const double second_N = Shaker(kShaker).amplitude_N(13.0, 0.3);
-    EXPECT_NEAR(second_N, 3.0 * Shaker(kShaker).amplitude_N(13.0), 1e-15);
+    const double second_N = Shaker(kShaker).amplitude(13.0, 0.3);
+    EXPECT_NEAR(second_N, 3.0 * Shaker(kShaker).amplitude(13.0), 1e-15);
     for (double time_s = 0.0; time_s < 2.0; time_s += 0.00137) {
         ASSERT_NEAR(force_N(both, time_s),
                     force_N(first, time_s) + second_N * std::cos(kTwoPi * 13.0 * time_s), 1e-12);
@@ -83,7 +83,7 @@ std::vector<double> spectrum_V(const Segment &segment, const ShakerParams &shake
     for (std::size_t i = 0; i < count / 2; ++i) {
         const double freq_Hz = static_cast<double>(i) / duration_s;
         out.push_back(2.0 * std::abs(spectrum[i]) / static_cast<double>(count) /
-                      Shaker(shaker).amplitude_N(freq_Hz, 1.0));
+                      Shaker(shaker).amplitude(freq_Hz, 1.0));
     }
     return out;
 }

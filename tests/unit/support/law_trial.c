@@ -143,19 +143,19 @@ void law_trial_look(law_trial_t *self) {
 // ---- what it does -------------------------------------------------------------------------------
 
 static bool take_table(law_trial_t *self, const uint32_t *table, uint32_t count) {
-    const law_table_kind_t *kind = self->law->kind;
+    const table_kind_t *kind = self->law->kind;
     if (kind == NULL) {
         return table == NULL;
     }
     self->setup.table = table != NULL ? table : kind->shipped;
     return self->setup.table != NULL &&
-           (table == NULL || kind->check(table, count) == QUIESCE_TABLE_OK);
+           (table == NULL || table_check(kind, table, count) == QUIESCE_TABLE_OK);
 }
 
 static bool take_map(law_trial_t *self, const uint32_t *map, uint32_t count) {
-    const track_table_kind_t *kind = forces_kind(&self->forces);
+    const table_kind_t *kind = forces_kind(&self->forces);
     self->forces.table = map;
-    return kind == NULL || (map != NULL && kind->check(map, count) == QUIESCE_TABLE_OK);
+    return kind == NULL || (map != NULL && table_check(kind, map, count) == QUIESCE_TABLE_OK);
 }
 
 static void start_guards(law_trial_t *self, const quiesce_params_t *params) {

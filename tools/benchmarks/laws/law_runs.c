@@ -206,7 +206,7 @@ static void copy(uint32_t *to, const uint32_t *from, uint32_t words) {
 
 // The order's, or the one that ships; NULL: the law has none.
 static const uint32_t *table_to_spoil(const law_order_t *order, uint32_t *count) {
-    const law_table_kind_t *kind = law_find(order->params.law)->kind;
+    const table_kind_t *kind = law_find(order->params.law)->kind;
     const uint32_t *own = law_order_table(order);
     const uint32_t *table = own == NULL && kind != NULL ? kind->shipped : own;
     *count = table != NULL ? table[TABLE_WORDS] : 0;

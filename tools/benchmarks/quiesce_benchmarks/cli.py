@@ -19,6 +19,7 @@ from quiesce_benchmarks.laws import benchmark as laws_benchmark
 from quiesce_benchmarks.papers import benchmark as papers_benchmark
 from quiesce_benchmarks.signal import benchmark as signal_benchmark
 from quiesce_benchmarks.sweep import benchmark as sweep_benchmark
+from quiesce_benchmarks.tables import benchmark as tables_benchmark
 from quiesce_benchmarks.trust import benchmark as trust_benchmark
 
 # Each has NAME, HELP, DESCRIPTION, add_options(parser) and measure(args, folder) -> Report, which
@@ -35,6 +36,7 @@ BENCHMARKS = (
     trust_benchmark,
     papers_benchmark,
     laws_benchmark,
+    tables_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,

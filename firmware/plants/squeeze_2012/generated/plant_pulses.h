@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/// For phase_table_check(): the words of a phase_table_t.
+/// The words of a phase_table_t, as a table of pulses (table.h).
 extern const uint32_t plant_pulses_table[301];
 
 #endif

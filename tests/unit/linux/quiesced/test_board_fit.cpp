@@ -196,11 +196,11 @@ TEST_F(BoardFit, reload_refuses_what_the_board_of_the_start_cannot_do) {
         FaultStore faults(folder_.path());
         RecordStore records(folder_.path());
         Caretaker caretaker(file(), folder_.path(), exchange->latched_fault);
-        const Service service(config_, *exchange, faults, records, caretaker, sink);
+        const Service service(config_, {}, *exchange, faults, records, caretaker, sink);
         write_config("tick_rate_Hz = 2000\n"); // right in itself: the default of rate_Hz follows
         EXPECT_TRUE(read_config(file(), Needs::peripherals).problems.empty());
         kill(getpid(), SIGHUP);
-        while (read_text(folder_ / "log").find("parameters stay: ") == std::string::npos) {
+        while (read_text(folder_ / "log").find("tables stay: ") == std::string::npos) {
             std::this_thread::yield();
         }
     }

@@ -1,4 +1,4 @@
-/// The same figures as `quiesce can load` (tests/python/benchmarks/test_can_load.py).
+/// The same figures as `quiesce can bus-load` (tests/python/benchmarks/test_can_bus_load.py).
 #include <gtest/gtest.h>
 
 #include "bus_load.h"

@@ -110,6 +110,15 @@ SensorConfig read_accel(const std::string &accel, const std::string &more) {
     return reading.config.sensors.front();
 }
 
+TEST(Config, tables_are_beside_the_file_and_not_looked_at) {
+    const TemporaryFolder folder;
+    write_text(folder / "q.toml", kBase + "[tables]\nlaw = \"a.table\"\ntracker = \"/b.table\"\n");
+    const ConfigReading reading = read_config(folder / "q.toml", Needs::peripherals);
+    ASSERT_TRUE(reading.problems.empty()) << reading.problems.front();
+    EXPECT_EQ(reading.config.tables[QUIESCE_OF_LAW], folder / "a.table");
+    EXPECT_EQ(reading.config.tables[QUIESCE_OF_TRACKER], "/b.table");
+}
+
 TEST(Config, the_sensor_is_by_default_as_fast_as_the_ticks_that_it_starts) {
     const std::string line = "[gpio]\ndata_ready_input = { line = \"D\" }\n";
     for (const char *rate : {"500", "1000", "2000", "4000"}) {
@@ -174,6 +183,12 @@ const Malformed kMalformed[] = {
      "enable_output = {line = \"a\"}\n",
      "q.toml:10: gpio.enable_output: \"a\" is the line of estop_input; expected another one"},
     {"enable", "[operator]\nenable = \"never\"\n", "q.toml:8: operator.enable: expected one of"},
+    {"tables_key", "[tables]\nrules = \"a.table\"\n",
+     "q.toml:8: tables.rules: unknown key; expected one of: law, tracker"},
+    {"tables_type", "[tables]\nlaw = 3\n", "q.toml:8: tables.law: expected"},
+    {"tables_empty", "[tables]\ntracker = \"\"\n", "q.toml:8: tables.tracker: expected"},
+    {"tables_control", "[tables]\nlaw = \"a\\tb\"\n",
+     "q.toml:8: tables.law: expected a text without control"},
     {"watchdog", "[watchdog]\n", "q.toml:7: watchdog.device: missing"},
     {"timeout", "[watchdog]\ndevice = \"/dev/watchdog\"\ntimeout_s = 0\n",
      "q.toml:9: watchdog.timeout_s: expected"},

@@ -127,7 +127,7 @@ class Rig {
         inputs.ticks_elapsed = 1;
         inputs.sensor[0] = {count_++ % 7, true, false};
         latch->before_tick(inputs);
-        can_frame_t frames[CAN_NODE_MAX_FRAMES];
+        can_frame_t frames[NODE_MAX_FRAMES];
         (void)node_tick(node.get(), &inputs, frames);
         latch->after_tick(*node);
         is_driver_enabled = node->out.damper[0].driver_enable;

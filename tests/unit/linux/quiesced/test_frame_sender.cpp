@@ -128,6 +128,28 @@ TEST(FrameSender, replies_wait_in_their_order_and_what_has_no_room_is_lost) {
     }
 }
 
+TEST(FrameSender, frames_of_a_transfer_wait_in_their_order_behind_replies) {
+    FrameSender sender;
+    Line line(0);
+    for (std::uint32_t i = 0; i < 10; ++i) {
+        (void)send(sender, line, {frame_of(QUIESCE_CAN_AT_TABLE_FLOW, i)});
+    }
+    (void)send(sender, line, {frame_of(QUIESCE_CAN_AT_SERVICE_REPLY)});
+    EXPECT_EQ(sender.counters().unsent.answers, 2U);
+    EXPECT_EQ(sender.counters().unsent.telemetry, 0U);
+    Line idle(64);
+    for (int i = 0; i < 5; ++i) {
+        idle.pass();
+        (void)send(sender, idle, {});
+    }
+    ASSERT_EQ(idle.taken.size(), 9U);
+    EXPECT_EQ(idle.taken[0].id, kReplyId);
+    for (std::uint8_t i = 0; i < 8; ++i) {
+        EXPECT_EQ(idle.taken[i + 1U].id, std::uint32_t{QUIESCE_CAN_TABLE_FLOW_FRAME_ID});
+        EXPECT_EQ(idle.taken[i + 1U].data[0], i);
+    }
+}
+
 TEST(FrameSender, a_change_of_the_output_stage_goes_before_what_waits) {
     FrameSender sender;
     Line line(22);

@@ -20,6 +20,17 @@ TEST(Mailbox, holds_one_value_until_it_is_taken) {
     EXPECT_TRUE(box.put(3));
 }
 
+TEST(Mailbox, what_is_looked_at_stays_until_it_is_dropped) {
+    Mailbox<int> box;
+    EXPECT_EQ(box.look(), nullptr);
+    EXPECT_TRUE(box.put(1));
+    ASSERT_NE(box.look(), nullptr);
+    EXPECT_EQ(*box.look(), 1);
+    EXPECT_FALSE(box.put(2));
+    box.drop();
+    EXPECT_TRUE(box.put(3));
+}
+
 TEST(Mailbox, every_value_arrives_once_between_two_threads) {
     constexpr int count = 100'000;
     Mailbox<int> box;

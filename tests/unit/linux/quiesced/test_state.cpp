@@ -53,26 +53,10 @@ TEST(StateStore, a_damaged_record_is_told_and_left_where_it_is) {
     std::string note;
     for (const char *damage : {"", "short", "QUIESCE but nothing that follows from it"}) {
         write_text(store.params_file(), damage);
-        write_text(store.learnt_file(), damage);
         EXPECT_EQ(store.effective(params_with(1), note).constant_current_mA, 1);
         EXPECT_EQ(note.rfind("saved parameters are not used: ", 0), 0U) << note;
-        EXPECT_FALSE(store.load_learnt(note));
-        EXPECT_NE(note, "");
         EXPECT_EQ(read_text(store.params_file()), damage);
     }
-}
-
-TEST(StateStore, adaptation_comes_back) {
-    const TemporaryFolder folder;
-    StateStore store(folder.path());
-    std::string note;
-    EXPECT_FALSE(store.load_learnt(note));
-    EXPECT_EQ(note, "");
-    quiesce_learnt_t learnt{};
-    learnt.words[7] = 42;
-    ASSERT_EQ(store.save_learnt(learnt), "");
-    ASSERT_TRUE(store.load_learnt(note));
-    EXPECT_EQ(store.load_learnt(note)->words[7], 42U);
 }
 
 TEST(StateStore, a_folder_that_is_gone_is_an_error_not_an_end) {

@@ -28,11 +28,11 @@ static void swap_table(quiesce_t *controller, dice_t *dice) {
         memcpy(damaged, rules->words, rules->count * sizeof damaged[0]);
         damaged[dice_below(dice, rules->count)] ^= 1u << dice_below(dice, 32);
         if (quiesce_table_use(controller, damaged, rules->count) == QUIESCE_TABLE_OK) {
-            (void)quiesce_table_use(controller, NULL, 0);
+            (void)quiesce_table_drop(controller, QUIESCE_OF_LAW);
         }
         break;
     default:
-        (void)quiesce_table_use(controller, NULL, 0);
+        (void)quiesce_table_drop(controller, QUIESCE_OF_LAW);
         break;
     }
 }

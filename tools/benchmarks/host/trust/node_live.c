@@ -80,7 +80,7 @@ static void board_inputs(const quiesce_in_t *in, uint32_t elapsed, node_inputs_t
 // What node_tick does, with a look between its parts: the limits change with the parameters.
 static void tick(scene_t *self, life_t *life) {
     const uint32_t last_tick = self->in.tick;
-    can_frame_t frames[CAN_NODE_MAX_FRAMES];
+    can_frame_t frames[NODE_MAX_FRAMES];
     node_inputs_t inputs;
     storm_tick(&self->storm, &self->node.out, &self->in);
     board_inputs(&self->in, self->in.tick - last_tick, &inputs);

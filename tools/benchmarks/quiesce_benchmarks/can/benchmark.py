@@ -38,13 +38,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def computed_figures() -> tuple[list[Figure], dict[str, float], list[str]]:
     """Figures that follow from the DBC; all loads; tables of the loads and the messages."""
-    from quiesce.can import load
+    from quiesce.can import bus_load
     from quiesce.can.database import load as load_database
 
     database = load_database()
-    totals = load.totals_pct(database, BITRATE)
-    analysis = load.Analysis(load.on_bus(database), BITRATE)
-    _, baud = load.baud_needed(load.slcan_messages(database))
+    totals = bus_load.totals_pct(database, BITRATE)
+    analysis = bus_load.Analysis(bus_load.on_bus(database), BITRATE)
+    _, baud = bus_load.baud_needed(bus_load.slcan_messages(database))
     figures = [
         Figure("bus_load_pct", totals["cyclic"], "%", 34.0, "lower"),
         Figure("bus_load_raw_pct", totals["with_raw"], "%", 62.0, "lower"),
@@ -57,7 +57,7 @@ def computed_figures() -> tuple[list[Figure], dict[str, float], list[str]]:
         bound = "no bound" if response_ms is None else f"{response_ms:.3f}"
         rows.append([stream.message.name, str(stream.bits), str(stream.message.period_ms), bound])
     table = format_table(["message, sensor node too", "bits", "period ms", "response ms"], rows)
-    return figures, totals, [load.totals_table(totals, BITRATE), table]
+    return figures, totals, [bus_load.totals_table(totals, BITRATE), table]
 
 
 def vm_figures(args: argparse.Namespace) -> tuple[dict[str, Any], list[str]]:

@@ -14,7 +14,7 @@ from quiesce_benchmarks.control import broadband, plots
 from quiesce_benchmarks.control import tables as control_tables
 from quiesce_benchmarks.control.cost import Counted
 from quiesce_benchmarks.control.figures import all_figures, context_of
-from quiesce_benchmarks.control.law_file import law_options, table_bytes
+from quiesce_benchmarks.control.law_file import bytes_in_flash, law_options
 from quiesce_benchmarks.control.optima import COMMAND, load_optima
 from quiesce_benchmarks.control.rig import Plant, Rig, make_judged, read_plant
 from quiesce_benchmarks.control.ruler import Ruler
@@ -111,7 +111,7 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
 
 
 def measure_on(rig: Rig, args: argparse.Namespace, folder: Path, data: Path) -> Report:
-    words = table_bytes(args.law, args.table)
+    words = bytes_in_flash(args.law, args.table)
     size = QUICK if args.quick else FULL
     ruler = Ruler(rig.plant, load_optima(args.bounds), size.sweep_Hz)
     missing = broadband.absent_earthquakes(rig, data)

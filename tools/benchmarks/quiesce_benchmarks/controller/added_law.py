@@ -63,10 +63,10 @@ def run_in_bench(clone: Path) -> int:
     # The tests are configured with the rest, and not built.
     run(["cmake", "--preset", "host", f"-DUNITY_DIR={build_folder() / 'deps/unity'}"], clone)
     run(["cmake", "--build", str(build), "--target", "quiesce_bench"], clone)
-    words = clone / "map"
-    run([root() / "tools/quiesce", "identify", "inverse", DAMPER, "--out", str(words)], clone)
+    made = clone / "map"
+    run([root() / "tools/quiesce", "identify", "inverse", DAMPER, "--out", str(made)], clone)
     bench = build / "sim_hil/quiesce_bench"
-    case = ["--scenario", SCENARIO, "--law", NAME, "--force-map", str(words / "map.words")]
+    case = ["--scenario", SCENARIO, "--law", NAME, "--force-map", str(made / "map.table")]
     return int(json.loads(run([bench, "run", *case], clone))["distinct_commands"])
 
 

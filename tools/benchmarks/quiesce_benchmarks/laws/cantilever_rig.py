@@ -22,7 +22,7 @@ from quiesce.damper.simulate import simulator_of_file
 from quiesce.engine.bench import Bench
 from quiesce.law.recipe import Made, Recipe, make
 from quiesce.law.rig import LawRig, load_rig
-from quiesce.law.words import file_text
+from quiesce.table.file import table_bytes
 
 from quiesce_benchmarks.control.measures import reduction_pct
 from quiesce_benchmarks.control.scenarios import NOISE_mg, Scenario, sine
@@ -123,7 +123,7 @@ def make_rig(folder: Path) -> Cantilever:
         (folder / "plant.toml", folder / "plant_with_cell.toml"),
         (folder / "board.toml", folder / "board_with_cell.toml"),
         folder / "structure.toml",
-        folder / "map.words",
+        folder / "map.table",
     )
     for file, content in (
         (made.plants[0], without_cell),
@@ -133,7 +133,7 @@ def make_rig(folder: Path) -> Cantilever:
         (made.structure, matrices(data, body, damper)),
     ):
         file.write_text(tomli_w.dumps(content), encoding="utf-8")
-    made.force_map.write_text(file_text(map_of_film(folder)), encoding="ascii")
+    made.force_map.write_bytes(table_bytes(map_of_film(folder)))
     return made
 
 

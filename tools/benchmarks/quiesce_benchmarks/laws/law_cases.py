@@ -12,7 +12,7 @@ from quiesce.engine.params import parameters
 from quiesce.law.recipe import Made, Recipe
 from quiesce.law.recipes import RECIPES
 from quiesce.law.tables import FORMS
-from quiesce.law.words import read_file
+from quiesce.table.file import read_words
 
 from quiesce_benchmarks.laws import made_up_networks, rigs
 
@@ -84,7 +84,7 @@ def map_words(tracker: str) -> tuple[int, ...]:
     if tracker != "inverse":
         return NO_WORDS
     with tempfile.TemporaryDirectory(prefix="quiesce-laws-") as folder:
-        return tuple(read_file(rigs.map_of(Path(folder), MAP_DAMPER, MAP_MOST_A)))
+        return tuple(read_words(rigs.map_of(Path(folder), MAP_DAMPER, MAP_MOST_A)))
 
 
 def of_recipe(recipe: Recipe) -> list[LawCase]:

@@ -21,7 +21,7 @@ static void put(view_t *view, uint32_t signal, int32_t value) {
 int32_t law_steps(const char *name, const uint32_t *words, uint32_t count, const uint32_t *signals,
                   uint32_t columns, const int32_t *values, uint32_t ticks, int32_t *out) {
     const law_t *law = named(name);
-    const int32_t verdict = (int32_t)law->kind->check(words, count);
+    const int32_t verdict = (int32_t)table_check(law->kind, words, count);
     static uint64_t state[LAW_STATE_BYTES / sizeof(uint64_t)];
     memset(state, 0, sizeof state);
     law_setup_t setup = {.table = words};

@@ -20,7 +20,7 @@ from quiesce.engine.bench import Bench
 from quiesce.law.recipe import Made, make, values_of
 from quiesce.law.recipes import find
 from quiesce.law.rig import LawRig, load_rig
-from quiesce.law.words import file_text
+from quiesce.table.file import table_bytes
 
 BUILDING, CAR, TWO_MASSES = "three_storeys_1996", "quarter_car", "mrd_mre_2014"
 EL_CENTRO = "el_centro_1940_ns"
@@ -62,8 +62,8 @@ def map_of(folder: Path, damper: str, most_A: float) -> Path:
     """Map of a damper that ships, for tracker inverse."""
     model, simulate = simulator_of_file(root() / f"sim_hil/data/dampers/{damper}.toml")
     found = monotone_range(model, most_A, simulate=None if model.is_kernel else simulate)
-    file = folder / "map.words"
-    file.write_text(file_text(map_words(found)), encoding="ascii")
+    file = folder / "map.table"
+    file.write_bytes(table_bytes(map_words(found)))
     return file
 
 
@@ -79,8 +79,8 @@ def compared(
     folder: Path, label: str, table: Made, *settings: str, map_file: Path | None = None
 ) -> ComparedLaw:
     """A law of a recipe, its table in a file of this folder."""
-    file = folder / f"{label.replace(' ', '_')}.words"
-    file.write_text(file_text(table.table.words()), encoding="ascii")
+    file = folder / f"{label.replace(' ', '_')}.table"
+    file.write_bytes(table_bytes(table.table.words()))
     of_map = () if map_file is None else ("--force-map", str(map_file))
     options = [word for one in settings for word in ("--set", one)]
     return ComparedLaw(label, table.table.law, ("--law-table", str(file), *of_map, *options))

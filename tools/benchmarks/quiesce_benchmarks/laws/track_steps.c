@@ -27,7 +27,7 @@ int32_t track_steps(const uint32_t *words, uint32_t count, uint32_t number, void
                     uint32_t ticks, int32_t *out) {
     const track_t *track = tracker_of(words[0]);
     const int32_t verdict =
-        (int32_t)(track == NULL ? QUIESCE_TABLE_MAGIC : track->kind->check(words, count));
+        (int32_t)(track == NULL ? QUIESCE_TABLE_MAGIC : table_check(track->kind, words, count));
     const track_setup_t setup = {NULL, words, number};
     for (uint32_t tick = 0; verdict == 0 && tick < ticks; tick++) {
         view_damper_t damper = {0};

@@ -14,7 +14,7 @@ from quiesce.damper.inverse import STROKE, VELOCITY, Axis, monotone_range
 from quiesce.damper.simulate import simulator_of_file
 from quiesce.engine.bench import Bench
 from quiesce.engine.trace import read_trace
-from quiesce.law.words import file_text
+from quiesce.table.file import table_bytes
 
 from quiesce_benchmarks.laws import rigs
 
@@ -64,8 +64,8 @@ def ratios(values: np.ndarray) -> np.ndarray:
 def map_file(folder: Path) -> Path:
     """Of both dampers."""
     words = joined([_map(DAMPER, DAMPER_A, VELOCITY), _map(MOUNT, MOUNT_A, STROKE)])
-    file = folder / "both.words"
-    file.write_text(file_text(words), encoding="ascii")
+    file = folder / "both.table"
+    file.write_bytes(table_bytes(words))
     return file
 
 

@@ -38,9 +38,9 @@ examples:
       --recipe skyhook_on_off --recipe clipped_optimal:force_1_N2=1e-10 --clairvoyant
   quiesce compare --rig quarter_car --rig two_storeys --road C:72 --recipe sh_add --recipe add
   quiesce compare --rig three_storeys_1996 --record quake.csv --time-scale 5 \\
-      --law signs:table=build/laws/sky.words,as=skyhook --out build/compare
+      --law signs:table=build/laws/sky.table,as=skyhook --out build/compare
   quiesce compare --plant my_plant.toml --board my_board.toml --record quake.at2 --scale-to 3 \\
-      --law linear:table=optimal.words,tracker=compare --law fuzzy --seeds 5
+      --law linear:table=optimal.table,tracker=compare --law fuzzy --seeds 5
 
 Beside the laws stand no current, all current, and the best of nine constant currents, which only
 hindsight knows. Written to --out: compare.html, compare.csv, compare.json, and with --clairvoyant

@@ -5,6 +5,7 @@ import dataclasses
 import json
 import shlex
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,11 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import real_number, whole_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.paths import build_folder, shown
+from quiesce.cli.hil_tables import add_options, find_tables, rerun_words
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, target_options
 from quiesce.engine.linux_target import linux_channel
-from quiesce.hil.metrics import Result, differing_cases, make_rows, metrics_json
+from quiesce.hil.metrics import Result, differing_cases, make_rows, metrics_json, warnings_of
 from quiesce.hil.page import make_page
 from quiesce.hil.picture import plot_picture
 from quiesce.hil.published import load_reference
@@ -23,6 +25,7 @@ from quiesce.hil.rig import rig_rows
 from quiesce.hil.rig_table import rig_text
 from quiesce.hil.rule_surface import rule_surface
 from quiesce.hil.runs import (
+    OVER_CAN,
     ConstantSearch,
     Plan,
     Run,
@@ -38,7 +41,7 @@ STEP = "step_10_20Hz"
 ON_TARGET = ("sine_5Hz", STEP)
 QUICK = ("sine_5Hz", STEP)
 SPEED_LAW = "fuzzy"
-TARGETS = {"all": ["host", "mps2"], "linux": ["host", "linux"]}
+TARGETS = {"all": ["host", "mps2"], **{target: ["host", target] for target in OVER_CAN}}
 TRACE_LAW = "fuzzy"
 TRACE_SEEDS = 5
 QUICK_TRACE_SEEDS = 2
@@ -51,11 +54,17 @@ EPILOG = f"""examples:
   quiesce hil --scenario step_10_20Hz --law fuzzy --law fuzzy_selftune_printed
   quiesce hil --scenario my_scenario.toml --target host
   quiesce hil --scenario sim_hil/data/rigs/two_storeys.toml    a rig: each body, each damper
+  quiesce hil --law fuzzy --rules my_rules.fis --law phase --pulses my_law
+  quiesce hil --scenario my_rig.toml --law friction --law-table mine.table --set tracker=inverse \\
+      --force-map map.table
   quiesce hil --target host --json | python3 -m json.tool
   quiesce hil --target linux --quick           the Linux controller quiesced, started here
   quiesce hil --target linux --can slcan:tcp:localhost:5556      ... in a virtual machine
   quiesce hil --target linux --can slcan:/dev/ttyACM0,bitrate=500000   ... behind an adapter
   quiesce hil --target linux --can socketcan:can0 --telemetry-every 1
+
+A line on stderr, and "warnings" in metrics.json, say where rules or pulses do not cover what a run
+shows.
 
 scenarios: {", ".join((*STEADY, STEP))} (and any .toml file)
 laws:      {", ".join(laws.names())}
@@ -67,9 +76,15 @@ picture.svg. Exit code 1 where the target does not answer bit for bit like the h
 Of a scenario with a board the table and the page show each body and each damper. A law that needs a
 signal which the board lacks is left out, by the signal's name.
 
+Tables go to the laws that take them, on every target: --rules as 'quiesce rules compile
+--controller' makes them, --pulses as 'quiesce tune' does (of its folder the parameters, too),
+--law-table as 'quiesce law', --force-map as 'quiesce identify inverse'. Command traces are then
+compared of a law with a table.
+
 --target linux runs the same scenarios as the image and the host beside it, and drives quiesced
---lockstep, tick by tick, over CAN. Command, state and fault of every tick are compared, all words
-of telemetry every 100 ticks or as --telemetry-every says. Channels: slcan:DEVICE[,baud=N]
+--lockstep, tick by tick, over CAN; mps2-uart the image by the same messages. Command, state and
+fault of every tick are compared, all words of telemetry every 100 ticks or as --telemetry-every
+says. Channels: slcan:DEVICE[,baud=N]
 [,bitrate=N] (serial line, pty, adapter), slcan:unix:PATH, slcan:tcp:HOST:PORT, socketcan:INTERFACE.
 """
 
@@ -93,9 +108,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "tables)",
     )  # fmt: skip
     parser.add_argument(
-        "--target", choices=["host", "mps2", "linux", "all"], default="all",
-        help="this machine, the image in QEMU, the Linux controller over CAN, or all of the first "
-        "two (%(default)s)",
+        "--target", choices=["host", "mps2", "mps2-uart", "linux", "all"], default="all",
+        help="this machine, the image in QEMU, that over its UART, the Linux controller over CAN, "
+        "or all of the first two (%(default)s)",
     )  # fmt: skip
     parser.add_argument(
         "--can", metavar="CHANNEL", help="what leads to quiesced --lockstep (one started here)"
@@ -107,6 +122,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--set", metavar="NAME=VALUE", help="parameter for every law, repeatable", **repeatable
     )
+    add_options(parser)
     parser.add_argument(
         "--seed",
         type=whole_number(0, 2**62 - 1),
@@ -127,21 +143,24 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.set_defaults(run=run)
 
 
-def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
+def make_plan(args: argparse.Namespace, bench: Bench, folder: Path) -> tuple[Plan, Path | None]:
+    """The plan, and the table of the rules that it runs; None: those that ship. folder: for tables
+    that are made."""
     if any(setting.partition("=")[0] == "law" for setting in args.set):
         raise UsageError("--set law=..: every run has a law of its own; --law NAME chooses them")
     chosen = [laws.find(name) for name in dict.fromkeys(args.law)] or list(laws.LAWS)
     if all(law.name != laws.OPEN_LOOP for law in chosen):
         chosen.insert(0, laws.find(laws.OPEN_LOOP))
     default = QUICK if args.quick else (*STEADY, STEP)
-    if args.target in ("mps2", "linux"):
+    if args.target in ("mps2", *OVER_CAN):
         default = ON_TARGET
     names = list(dict.fromkeys(args.scenario)) or list(default)
     loaded = [scenarios.load(bench, name) for name in names]
     options = [] if args.seed is None else ["--seed", str(args.seed)]
     options += [] if args.noise_mg is None else ["--noise-mg", str(args.noise_mg)]
     check_noise(args, loaded)
-    return Plan(
+    tables = find_tables(args, bench, chosen, folder)
+    plan = Plan(
         scenarios=loaded,
         target_scenarios=[s.name for s in loaded] if args.scenario else ON_TARGET,
         laws=chosen,
@@ -150,7 +169,9 @@ def make_plan(args: argparse.Namespace, bench: Bench) -> Plan:
         settings=args.set,
         options=options,
         telemetry_every=telemetry_every(args),
+        tables=tables.options,
     )
+    return plan, tables.rules
 
 
 def check_noise(args: argparse.Namespace, loaded: list[scenarios.Scenario]) -> None:
@@ -163,7 +184,7 @@ def check_noise(args: argparse.Namespace, loaded: list[scenarios.Scenario]) -> N
 
 
 def telemetry_every(args: argparse.Namespace) -> int:
-    if args.target != "linux":
+    if args.target not in OVER_CAN:
         return 1
     return args.telemetry_every or TELEMETRY_EVERY
 
@@ -175,12 +196,13 @@ def say(text: str) -> None:
 def judged(
     bench: Bench, plan: Plan, runs: list[Run], name: str, law: str
 ) -> tuple[scenarios.Scenario, laws.Law]:
-    """What is compared and timed: these; where all that was asked for are rigs, of the first one
-    the law with the most different commands."""
-    if not plan.has_rigs_only:
+    """What is compared and timed: these. Where all that was asked for are rigs, or tables of other
+    laws, the run with the most different commands: of a law with a table, or of the first rig."""
+    if not plan.has_rigs_only and law in (plan.tables or (law,)):
         return scenarios.load(bench, name), laws.find(law)
+    with_table = [run for run in runs if run.case.law.bench_law in plan.tables]
     of_first = [run for run in runs if run.case.scenario is plan.scenarios[0]]
-    chosen = max(of_first, key=lambda run: run.figures["distinct_commands"]).case
+    chosen = max(with_table or of_first, key=lambda run: run.figures["distinct_commands"]).case
     return chosen.scenario, chosen.law
 
 
@@ -201,10 +223,11 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
             scenario,
             law,
             range(first_seed, first_seed + count),
-            plan.options_of(plan.checked_target, scenario),
+            plan,
+            plan.checked_target,
         )
         equal["telemetry_every"] = plan.telemetry_every
-        if plan.has_rigs_only:
+        if scenario.name != scenarios.TRACE_EQUALITY:
             equal["case"] = f"{scenario.name}, {law.label}"
     say("measuring speed, nothing else running")
     speed = measure_speed(bench, *judged(bench, plan, runs, STEP, SPEED_LAW), plan)
@@ -212,8 +235,9 @@ def measure(args: argparse.Namespace, bench: Bench, plan: Plan, runs: list[Run])
         say(f"measuring {UART_EXCHANGES} exchanges over the image's UART and an echo of them")
         uart = measure_uart(bench, UART_EXCHANGES)
     return Result(
-        rows, beside, reference.published, equal, differing_cases(runs), speed, uart, rig_rows(runs)
-    )
+        rows, beside, reference.published, equal, differing_cases(runs), speed, uart,
+        rig_rows(runs), warnings_of(runs),
+    )  # fmt: skip
 
 
 def details_json(result: Result, searches: list[ConstantSearch], runs: list[Run]) -> dict[str, Any]:
@@ -245,6 +269,7 @@ def rerun_command(args: argparse.Namespace) -> str:
     words = ["./tools/hil"]
     for option in ("scenario", "law", "set"):
         words += [word for value in getattr(args, option) for word in (f"--{option}", value)]
+    words += rerun_words(args)
     if args.target != "all":
         words += ["--target", args.target]
     if args.can is not None:
@@ -260,26 +285,26 @@ def rerun_command(args: argparse.Namespace) -> str:
 
 def check_target(args: argparse.Namespace) -> None:
     """Refuses what does not go together, and what cannot run here, before anything runs."""
-    if args.target != "linux":
-        for option in ("can", "telemetry_every"):
-            if getattr(args, option) is not None:
-                raise UsageError(f"--{option.replace('_', '-')} goes with --target linux only")
-    for target in {"host": [], "linux": [], "mps2": ["mps2", "mps2-uart"]}.get(
-        args.target, ["mps2"]
-    ):
+    if args.can is not None and args.target != "linux":
+        raise UsageError("--can goes with --target linux only")
+    if args.telemetry_every is not None and args.target not in OVER_CAN:
+        raise UsageError(f"--telemetry-every goes with --target {' or '.join(OVER_CAN)} only")
+    needed = TARGETS.get(args.target, [args.target])
+    for target in [*needed, *(["mps2-uart"] if args.target == "mps2" else [])]:
         target_options(target)
 
 
 def run(args: argparse.Namespace) -> int:
     bench = Bench()
     check_target(args)
-    plan = make_plan(args, bench)
-    for line in plan.left_out():
-        say(line)
-    if args.target != "linux":
-        return run_plan(args, bench, plan)
-    with linux_channel(args.can) as channel:
-        return run_plan(args, bench, dataclasses.replace(plan, can=channel))
+    with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
+        plan, rules = make_plan(args, bench, Path(folder))
+        for line in plan.left_out():
+            say(line)
+        if args.target != "linux":
+            return run_plan(args, bench, plan, rules)
+        with linux_channel(args.can) as channel:
+            return run_plan(args, bench, dataclasses.replace(plan, can=channel), rules)
 
 
 def tables(result: Result) -> list[str]:
@@ -288,7 +313,7 @@ def tables(result: Result) -> list[str]:
     return [*parts, summary(result)]
 
 
-def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
+def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan, rules: Path | None) -> int:
     runner = Runner(bench, plan)
     out = args.out or build_folder() / "report/hil"
     # Opened before the work, so that a folder that cannot be written is known at once.
@@ -296,7 +321,8 @@ def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
         runs, searches = runner.run_all()
         result = measure(args, bench, runner.plan, runs)
         say("drawing the report")
-        page = make_page(result, runs, searches, rule_surface(bench), rerun_command(args))
+        surface = rule_surface(bench, rules)
+        page = make_page(result, runs, searches, surface, rerun_command(args))
         (staging / "index.html").write_text(page, encoding="utf-8")
         write_json(staging / "metrics.json", metrics_json(result))
         write_json(staging / "details.json", details_json(result, searches, runs))
@@ -308,4 +334,6 @@ def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan) -> int:
     else:
         print(f"\n{table}")
         print(f"report: {shown(out / 'index.html')}\nmetrics: {shown(out / 'metrics.json')}")
+    for one in result.warnings:
+        say(f"quiesce: warning: {one.scenario}, {one.law}: {one.text}")
     return 0 if result.is_equal else EXIT_FAILED

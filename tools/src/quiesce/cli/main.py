@@ -15,13 +15,15 @@ COMMANDS = (
     ("hil", "hil", "the published scenarios in closed loop; table and report"),
     ("replay", "replay", "recorded motion through the firmware"),
     ("record", "record", "the simulated accelerometer's signal as a CSV file"),
+    ("new", "new.command", "plant, board and scenario files of your own structure"),
     ("plant", "plant", "plant files"),
     ("board", "board.command", "board files: sensors, dampers, their places and limits"),
     ("params", "params", "parameters of the controller: unit, range, default"),
     ("chain", "chain", "magnitude and phase of the conditioning"),
     ("rules", "rules.command", "fuzzy rule files"),
     ("compare", "compare", "control laws side by side on recorded ground motions"),
-    ("law", "law.command", "published control laws as tables: list, make, show"),
+    ("law", "law.command", "published control laws as tables: list, make"),
+    ("table", "table.command", "table files: show, check, diff, stamp"),
     ("sweep", "sweep", "excitation and current steps to record, and the plant from a recording"),
     (
         "identify",
@@ -39,11 +41,12 @@ COMMANDS = (
 EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report
   quiesce replay FILE.csv --column acc --unit g a recorded acceleration through the firmware
+  quiesce new plant press --mass 120 --freq 2.9 ..   files of my own structure
   quiesce plant check my_plant.toml             is my own plant file right?
   quiesce board check my_board.toml             and my board of sensors and dampers?
   quiesce params                                every parameter of the controller
   quiesce rules convert FILE.fis --to fcl       a fuzzy rule file in another format
-  quiesce law make skyhook --board my_board.toml -o sky.words   a published law for my board
+  quiesce law make skyhook --board my_board.toml -o sky.table   a published law for my board
   quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
   quiesce identify FILE.csv --model all         damper models from a test rig's recording
   quiesce tune my_plant.toml                    pulses of current for my own plant

@@ -12,7 +12,7 @@ FILES = {
     "table": "--law-table",
     "map": "--force-map",
     "rules": "--rules",
-    "pulses": "--phase-table",
+    "pulses": "--pulses",
 }
 LABEL = "as"
 

@@ -11,7 +11,7 @@ from quiesce.engine.params import parameters
 from quiesce.law.recipe import Recipe, make, values_of
 from quiesce.law.recipes import find
 from quiesce.law.rig import LawRig
-from quiesce.law.words import file_text
+from quiesce.table.file import SUFFIX, table_bytes
 
 MAP, TRACKER, MAPPED = "map", "tracker", "inverse"
 
@@ -30,8 +30,8 @@ class RecipeLaw:
     def law(self, rig: LawRig, folder: Path) -> ComparedLaw:
         """Its table is a file of this folder. UsageError where the rig does not allow it."""
         made = make(self.recipe, rig, values_of(self.recipe, self.settings))
-        file = folder / f"{len(list(folder.iterdir()))}.words"
-        file.write_text(file_text(made.table.words()), encoding="ascii")
+        file = folder / f"{len(list(folder.iterdir()))}{SUFFIX}"
+        file.write_bytes(table_bytes(made.table.words(), rig.board_crc32))
         of_map = () if self.map_file is None else ("--force-map", str(self.map_file))
         options = ("--law-table", str(file), *of_map, *setting_options(self.parameters))
         return ComparedLaw(self.label, made.table.law, options)

@@ -10,9 +10,10 @@ import numpy as np
 
 from quiesce.damper.inverse import AXES, Axis, Monotone, SteadyForces
 from quiesce.law.sections import read_kind, sealed_sections
-from quiesce.law.words import Reader
+from quiesce.table.kinds import MAP
+from quiesce.table.words import Reader
 
-MAGIC = 0x32464D51
+MAGIC = MAP.magic
 SECTION_WORDS = 3
 MAX_CURRENTS = 16
 MAX_PLACES = 32
@@ -97,7 +98,7 @@ def words_of_map(wanted: Map) -> list[int]:
 
 def maps_of_words(words: Sequence[int]) -> tuple[Map, ...]:
     """A section each. ValueError, in one line, for words that the firmware refuses
-    (quiesce_force_map_check)."""
+    (firmware/track/force_map.h)."""
     return tuple(_map_of(section) for section in _sections(words))
 
 

@@ -15,7 +15,7 @@ from quiesce.base.paths import build_folder, shown
 QEMU = "qemu-system-arm"
 IMAGES = {"mps2": "quiesce_mps2_shm.elf", "mps2-uart": "quiesce_mps2_uart.elf"}
 # With a board, which may have more than one sensor and damper.
-BOARD_IMAGES = {"mps2": "quiesce_mps2_shm_8x4.elf"}
+BOARD_IMAGES = {"mps2": "quiesce_mps2_shm_8x4.elf", "mps2-uart": "quiesce_mps2_uart_8x4.elf"}
 ECHO_IMAGE = "uart_echo.elf"
 
 
@@ -43,17 +43,16 @@ def require_emulator() -> None:
         )
 
 
-def target_options(target: str, linux: Sequence[str] = (), has_board: bool = False) -> list[str]:
+def target_options(target: str, more: Sequence[str] = (), has_board: bool = False) -> list[str]:
     """Options of the bench for a target. UsageError where it cannot run here.
 
-    linux: further ones for that target, its channel. has_board: what runs there has one.
+    more: further ones, the target's own. has_board: what runs there has one.
     """
-    if target == "host":
-        return ["--target", "host"]
-    if target == "linux":
-        return ["--target", "linux", *linux]
+    own = ["--target", target, *more]
+    if target not in IMAGES:
+        return own
     require_emulator()
-    return ["--target", target, "--image", str(image(target, has_board))]
+    return [*own, "--image", str(image(target, has_board))]
 
 
 class Bench:

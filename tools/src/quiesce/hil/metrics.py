@@ -59,6 +59,15 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class Warned:
+    """What of a run a law's table does not cover, as the bench says it."""
+
+    scenario: str
+    law: str
+    text: str
+
+
+@dataclass(frozen=True)
 class Result:
     """All that a `quiesce hil` found out."""
 
@@ -70,6 +79,7 @@ class Result:
     realtime_factor: dict[str, float | None]
     uart: dict[str, Any] | None
     rigs: Sequence[RigRow] = ()
+    warnings: Sequence[Warned] = ()
 
     @property
     def plain(self) -> list[tuple[Row, Beside]]:
@@ -167,6 +177,16 @@ def differing_cases(runs: Sequence[Run]) -> list[str]:
     return [name for name, found in checksums.items() if len(found) > 1]
 
 
+def warnings_of(runs: Sequence[Run]) -> list[Warned]:
+    """Of all runs, each once: targets answer alike."""
+    found = [
+        Warned(run.case.scenario.name, run.case.law.name, text)
+        for run in runs
+        for text in run.figures["warnings"]
+    ]
+    return list(dict.fromkeys(found))
+
+
 def published_json(cases: Sequence[Published]) -> list[dict[str, Any]]:
     """metrics.json has one figure an entry: a range becomes two."""
     entries = []
@@ -201,6 +221,7 @@ def metrics_json(result: Result) -> dict[str, Any]:
             name: None if factor is None else round(factor, 2)
             for name, factor in result.realtime_factor.items()
         },
+        "warnings": [asdict(one) for one in result.warnings],
         **({"rigs": [asdict(row) for row in result.rigs]} if result.rigs else {}),
     }
 

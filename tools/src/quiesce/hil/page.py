@@ -61,6 +61,7 @@ def result_cards(result: Result) -> str:
     names = {
         "host": "real time: closed loop here",
         "mps2": "real time: the image in QEMU",
+        "mps2-uart": "real time: the image over its UART",
         "linux": "real time: quiesced over CAN",
     }
     for target, factor in result.realtime_factor.items():
@@ -204,7 +205,7 @@ def figures(
         ),
         section(
             "Rule surface and the cells that were visited",
-            "The shipped rule base, evaluated by the firmware.",
+            "The rule base of the fuzzy law, evaluated by the firmware.",
             image(plot_surface(surface, runs), "current over frequency and RMS acceleration"),
         ),
         section(

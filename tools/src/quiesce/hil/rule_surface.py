@@ -1,6 +1,7 @@
-"""The shipped rule base as a surface, from the firmware itself by way of the bench."""
+"""A rule base as a surface, from the firmware itself by way of the bench."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -15,8 +16,9 @@ class RuleSurface:
     current_A: np.ndarray  # [rms, freq]
 
 
-def rule_surface(bench: Bench) -> RuleSurface:
-    data = bench.json("fuzzy-surface")
+def rule_surface(bench: Bench, table: Path | None = None) -> RuleSurface:
+    """Of the rules that ship, or of a table file's."""
+    data = bench.json("fuzzy-surface", *(("--rules", str(table)) if table else ()))
     freq_Hz, rms_m_s2 = np.array(data["freq_Hz"]), np.array(data["rms_m_s2"])
     current_A = np.array(data["current_A"])
     return RuleSurface(freq_Hz, rms_m_s2, current_A.reshape(len(freq_Hz), len(rms_m_s2)).T)

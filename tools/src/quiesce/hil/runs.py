@@ -2,7 +2,7 @@
 
 import tempfile
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
@@ -17,6 +17,7 @@ from quiesce.engine.pool import run_all
 from quiesce.engine.scenarios import Scenario
 from quiesce.engine.trace import Trace, read_trace
 
+OVER_CAN = ("linux", "mps2-uart")  # targets that speak CAN messages
 CONSTANT_STEP_mA = 500
 QUICK_CONSTANT_STEP_mA = 2500
 TRACE_COLUMNS = [
@@ -91,7 +92,9 @@ class Plan:
     settings: Sequence[str] = ()
     options: Sequence[str] = field(default_factory=list)  # seed, noise: passed to every run
     can: str | None = None  # channel of the target linux
-    telemetry_every: int = 1  # ticks between two bursts of all words, target linux
+    telemetry_every: int = 1  # ticks between two bursts of all words, targets OVER_CAN
+    # Of the bench by its name of a law: the law's own tables, and parameters that go with them.
+    tables: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
     @property
     def constant_step_mA(self) -> int:
@@ -107,10 +110,15 @@ class Plan:
         return all(scenario.board is not None for scenario in self.scenarios)
 
     def options_of(self, target: str, scenario: Scenario) -> list[str]:
-        linux = ["--telemetry-every", str(self.telemetry_every)]
-        return target_options(
-            target, [*linux, "--can", self.can] if self.can else [], scenario.board is not None
-        )
+        more = ["--telemetry-every", str(self.telemetry_every)] if target in OVER_CAN else []
+        more += ["--can", self.can] if target == "linux" and self.can else []
+        return target_options(target, more, scenario.board is not None)
+
+    def law_options(self, law: Law) -> list[str]:
+        return [
+            "--law", law.bench_law, *self.tables.get(law.bench_law, ()),
+            *setting_options([*self.settings, *law.settings]),
+        ]  # fmt: skip
 
     def laws_on(self, target: str) -> list[Law]:
         """The quick plan runs on the image what tells most: the fuzzy law, and what it needs."""
@@ -170,9 +178,8 @@ class Runner:
 
     def _options(self, scenario: Scenario, law: Law, settings: Sequence[str]) -> list[str]:
         return [
-            "--scenario", str(scenario.file), "--law", law.bench_law,
-            *setting_options([*self.plan.settings, *law.settings, *settings]),
-            *self.plan.options,
+            "--scenario", str(scenario.file), *self.plan.law_options(law),
+            *setting_options(settings), *self.plan.options,
         ]  # fmt: skip
 
     def _search(self, scenario: Scenario, progress: Progress) -> ConstantSearch:
@@ -230,22 +237,22 @@ def measure_speed(
 ) -> dict[str, float | None]:
     """Real-time factor of the closed loop, nothing else running here: the best of some repeats."""
     is_quick = plan.is_quick
-    repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 5, "linux": 1}
+    repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 5}
     factors: dict[str, float | None] = {"host": None, "mps2": None}
     for target in plan.targets:
-        options = ["--scenario", str(scenario.file), "--law", law.bench_law]
-        options += ["--repeat", str(repeats[target]), *plan.options_of(target, scenario)]
+        options = ["--scenario", str(scenario.file), *plan.law_options(law)]
+        options += ["--repeat", str(repeats.get(target, 1)), *plan.options_of(target, scenario)]
         factors[target] = bench.json("run", *options)["realtime_factor"]
     return factors
 
 
 def compare_traces(
-    bench: Bench, scenario: Scenario, law: Law, seeds: Sequence[int], target: Sequence[str]
+    bench: Bench, scenario: Scenario, law: Law, seeds: Sequence[int], plan: Plan, target: str
 ) -> dict[str, Any]:
-    """Every word of every reply that the target sends, against the host. target: its options."""
-    options = ["--scenario", str(scenario.file), "--law", law.bench_law]
-    options += [*setting_options(law.settings), "--seeds", ",".join(map(str, seeds))]
-    return bench.json("compare", *options, *target)
+    """Every word of every reply that the target sends, against the host."""
+    options = ["--scenario", str(scenario.file), *plan.law_options(law)]
+    options += ["--seeds", ",".join(map(str, seeds)), *plan.options_of(target, scenario)]
+    return bench.json("compare", *options)
 
 
 def measure_uart(bench: Bench, exchanges: int) -> dict[str, Any]:

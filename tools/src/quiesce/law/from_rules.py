@@ -15,10 +15,10 @@ from quiesce.law.forms.fuzzy_signals import (
     ONE_mA_Q8,
     Slope,
 )
-from quiesce.law.forms.rule_words import read_rules
 from quiesce.law.rig import LawRig
 from quiesce.law.signal import BY_NAME, Input
 from quiesce.rules.integers.compile import compile_base
+from quiesce.rules.integers.rule_words import read_rules
 from quiesce.rules.integers.table import table_words
 from quiesce.rules.model import RuleBase, Singleton
 

@@ -28,6 +28,7 @@ class LawRig:
     ranges: dict[str, float]  # of measured signals: what their sensors reach, SI
     rate_Hz: int
     structure_file: Path | None
+    board_crc32: int  # of its words: what tables name it by
 
     def input(self, quantity: str, at: int) -> Input:
         """UsageError where the board has no such signal. Limited by its sensor, if it has one."""
@@ -55,7 +56,10 @@ def load_rig(bench: Bench, board: Path, plant: Path | None, rate_Hz: int) -> Law
         for one in data["dampers"]
     )
     ranges = dict(_range_of(one) for one in data["sensors"])
-    return LawRig(data["name"], bodies, dampers, frozenset(data["signals"]), ranges, rate_Hz, plant)
+    return LawRig(
+        data["name"], bodies, dampers, frozenset(data["signals"]), ranges, rate_Hz, plant,
+        data["crc32"],
+    )  # fmt: skip
 
 
 def _end(name: str, bodies: tuple[str, ...]) -> int | None:

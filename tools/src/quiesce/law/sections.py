@@ -10,7 +10,7 @@ from typing import ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 
 from quiesce.law.signal import Input, Signal
-from quiesce.law.words import Reader, opened, sealed
+from quiesce.table.words import Reader, opened, sealed
 
 MOST_SECTIONS = 4
 

@@ -5,7 +5,7 @@ firmware/base/view_signal.h describes their words.
 
 from dataclasses import dataclass
 
-from quiesce.law.words import Reader
+from quiesce.table.words import Reader
 
 LIMIT = 2**30 - 1  # of a value, and of one that is shifted
 MOST_SHIFT = 29

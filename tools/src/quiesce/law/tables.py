@@ -1,10 +1,7 @@
 """Tables of all kinds that a law is made of, by their first word."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
-from quiesce.base.errors import UsageError
-from quiesce.base.paths import shown
 from quiesce.law.forms import friction, fuzzy_signals, linear, network, polynomial, signs
 from quiesce.law.forms.friction import FrictionTable
 from quiesce.law.forms.fuzzy_signals import FuzzySignalsTable
@@ -12,7 +9,6 @@ from quiesce.law.forms.linear import LinearTable
 from quiesce.law.forms.network import NetworkTable
 from quiesce.law.forms.polynomial import PolynomialTable
 from quiesce.law.forms.signs import SignsTable
-from quiesce.law.words import read_file
 
 Table = (
     LinearTable | SignsTable | FrictionTable | PolynomialTable | FuzzySignalsTable | NetworkTable
@@ -31,16 +27,3 @@ def table_of_words(words: Sequence[int]) -> Table:
         begins = f"begins with 0x{words[0]:08x}" if words else "is empty"
         raise ValueError(f"it {begins}; tables of laws begin with: {known}")
     return form.read(words)
-
-
-def read_table(file: Path) -> Table:
-    """Of a law, or of tracker network. UsageError, in one line, where it is not one."""
-    words = read_file(file)
-    try:
-        return (
-            network.read_tracker(words)
-            if words[:1] == [network.TRACK_MAGIC]
-            else table_of_words(words)
-        )
-    except ValueError as error:
-        raise UsageError(f"{shown(file)}: {error}")

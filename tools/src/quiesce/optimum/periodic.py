@@ -96,6 +96,12 @@ class Orbit:
     disp_per_A: Floats | None  # [grid, n], where sensitivities were asked for
     accel_per_A: Floats | None  # [grid, n]
 
+    @property
+    def tracked_deg(self) -> float:
+        """Phase of the displacement as the controller knows it, from the accelerometer: opposite to
+        the acceleration's. On a base that moves that is the motion in space."""
+        return self.accel_phase_deg - 180.0
+
 
 @dataclass(frozen=True)
 class Drive:

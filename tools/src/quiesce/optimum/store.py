@@ -4,6 +4,7 @@ Each result is stored as it arrives, under a key of the plant's content, frequen
 the file already holds is not computed again.
 """
 
+import copy
 import hashlib
 import json
 import tempfile
@@ -25,7 +26,7 @@ from quiesce.plant.variant import Variant, read_plant_data, write_variant
 
 SCHEMA = "quiesce-bounds"
 SETTINGS = {"intervals": INTERVALS, "starts": STARTS}
-MATTERS = ("structure", "damper", "driver", "coil", "shaker", "integration")
+MATTERS = ("structure", "place", "mount", "damper", "driver", "coil", "shaker", "integration")
 
 
 @dataclass(frozen=True)
@@ -47,15 +48,23 @@ GOALS = {"amp": AMP, "accel": ACCEL, "no_worse": NO_WORSE}
 
 def plant_hash(data: dict[str, Any]) -> str:
     """Of what decides a plant's steady state under the shaker, but for the drive."""
-    parts = {key: dict(data[key]) for key in MATTERS if key in data}
+    parts = {key: copy.deepcopy(data[key]) for key in MATTERS if key in data}
     parts["shaker"].pop("drive_V", None)
     parts["driver"].pop("bits", None)
-    modes = parts["structure"].get("mode", [])
-    kept = [{k: v for k, v in mode.items() if k != "base_participation"} for mode in modes]
-    parts["structure"] = {k: v for k, v in parts["structure"].items() if "base" not in k}
-    parts["structure"]["mode"] = kept
+    if "mount" not in parts:
+        parts.pop("place", None)
+    parts["structure"].setdefault("mode", [])
+    if "gain_m_s2_V" not in parts["shaker"]:
+        _without_base(parts["structure"])
     text = json.dumps(parts, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _without_base(structure: dict[str, Any]) -> None:
+    """What a force does is the same however the structure would move with its base."""
+    structure.pop("base", None)
+    for mode in structure["mode"]:
+        mode.pop("base_participation", None)
 
 
 def case_key(plant: Path, freq_Hz: float, drive_V: float | None = None) -> str:

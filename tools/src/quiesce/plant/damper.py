@@ -37,6 +37,7 @@ def with_own_damper(data: dict[str, Any], folder: Path) -> dict[str, Any]:
         raise UsageError(f"{shown(file)}: not a TOML file: {one_line(error)}") from None
     coil = {"coil": damper["coil"]} if "coil" in damper else {}
     own = {key: damper[key] for key in DAMPER_KEYS if key in damper}
+    own |= {key: data["damper"][key] for key in ("ratio",) if key in data["damper"]}
     return {**coil, **data, "damper": own}
 
 

@@ -62,8 +62,8 @@ def library() -> ctypes.CDLL:
     lib.quiesce_plant_get_facts.restype = None
     lib.quiesce_plant_get_mode.argtypes = [c_void_p, c_int, POINTER(_Mode)]
     lib.quiesce_plant_get_mode.restype = None
-    lib.quiesce_plant_force_N_V.argtypes = [c_void_p, c_double]
-    lib.quiesce_plant_force_N_V.restype = c_double
+    lib.quiesce_plant_shaker_per_V.argtypes = [c_void_p, c_double]
+    lib.quiesce_plant_shaker_per_V.restype = c_double
     return lib
 
 
@@ -93,6 +93,7 @@ class Plant:
         self.max_current_A = facts.max_current_A
         self.drive_V = facts.drive_V
         self.max_step_s = facts.max_step_s
+        self.safe_step_s = facts.safe_step_s
         self.rise_s = facts.rise_s
         self.fall_s = facts.fall_s
         self.driver_bits = facts.driver_bits
@@ -103,9 +104,9 @@ class Plant:
         self._lib.quiesce_plant_get_mode(self.handle, index, ctypes.byref(mode))
         return Mode(*(getattr(mode, name) for name, _ in _Mode._fields_))
 
-    def force_N_V(self, freq_Hz: float) -> float:
-        """Force amplitude of the shaker for 1 V."""
-        return self._lib.quiesce_plant_force_N_V(self.handle, freq_Hz)
+    def shaker_per_V(self, freq_Hz: float) -> float:
+        """Amplitude of the shaker for 1 V: N, or m/s2 where it moves the base."""
+        return self._lib.quiesce_plant_shaker_per_V(self.handle, freq_Hz)
 
     def __reduce__(self) -> tuple[type["Plant"], tuple[Path]]:
         return Plant, (self.file,)

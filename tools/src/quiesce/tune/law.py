@@ -3,11 +3,13 @@
 import math
 import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
 from quiesce.optimum.goal import Reference
 from quiesce.optimum.periodic import Orbit
 from quiesce.plant.library import Mode, Plant
@@ -134,6 +136,18 @@ def parameters(plant: Plant, law: PhaseLaw) -> dict[str, int | str]:
 
 def setting_words(values: dict[str, int | str]) -> str:
     return " ".join(f"--set {name}={value}" for name, value in values.items())
+
+
+def read_settings(file: Path) -> list[str]:
+    """NAME=VALUE of each, but for the law, from a file of setting_words. UsageError where it is
+    none."""
+    try:
+        words = file.read_text(encoding="utf-8", errors="replace").split()
+    except OSError as error:
+        raise UsageError(f"{shown(file)}: {error.strerror}; quiesce tune writes it")
+    if set(words[::2]) != {"--set"} or not all("=" in word for word in words[1::2]):
+        raise UsageError(f"{shown(file)}: expected --set NAME=VALUE .., as quiesce tune writes it")
+    return [word for word in words[1::2] if not word.startswith("law=")]
 
 
 def slowest_decay_s(modes: tuple[Mode, ...], to_Hz: float) -> float:

@@ -1,20 +1,12 @@
-"""Law files of the phase law (*.phase.toml), and the words that the firmware loads.
+"""Law files of the phase law (*.phase.toml).
 
 A law has two settings, each a table of pulses over frequency. In a period of 180 degrees of the
 displacement's phase (x ~ cos), the command is level_mA within width_deg around centre_deg, else
 floor_mA. Between points the firmware interpolates all four linearly, the centre the shorter way
 round; outside the first and last point it uses those.
-
-Words (uint32): magic; CRC-32 of all words after it as little-endian bytes; number of words; points
-of the first setting | points of the second << 16; unlock_current_mA; then four for each point:
-freq_mHz | level_mA << 16, centre | width << 16 in 1/65536 of half a turn (a width of 65535 is all
-of it), floor_mA | accel weight << 16 in 1/256, accel shape in
-1/16384 | ramp << 16 in 1/65536 of half a turn.
 """
 
-import struct
 import tomllib
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -26,12 +18,8 @@ from quiesce.base.paths import shown
 SCHEMA = "quiesce-phase-law"
 VERSION = 1
 SETTINGS = ("displacement", "balanced")
-MAGIC = 0x31485051  # "QPH1"
-HEADER_WORDS = 5
-POINT_WORDS = 4
 FEWEST_POINTS, MOST_POINTS = 2, 64
 MOST_MA = 65_000
-HALF_TURN = 65_536
 
 
 @dataclass(frozen=True)
@@ -196,36 +184,6 @@ def _point_text(point: Point) -> str:
         f"width_deg = {point.width_deg:.2f}, level_mA = {point.level_mA}, "
         f"floor_mA = {point.floor_mA}, accel_weight = {point.accel_weight:.3f}, "
         f"accel_shape = {point.accel_shape:.4f}, ramp_deg = {point.ramp_deg:.2f} }}"
-    )
-
-
-def law_words(law: PhaseLaw) -> list[int]:
-    """What the firmware loads."""
-    tables = [law.settings[name] for name in SETTINGS]
-    points = [point for table in tables for point in table]
-    after = [
-        HEADER_WORDS + POINT_WORDS * len(points),
-        len(tables[0]) | len(tables[1]) << 16,
-        law.unlock_current_mA,
-        *(word for point in points for word in _point_words(point)),
-    ]
-    return [MAGIC, zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after]
-
-
-def law_bytes(law: PhaseLaw) -> bytes:
-    """The words, little-endian."""
-    words = law_words(law)
-    return struct.pack(f"<{len(words)}I", *words)
-
-
-def _point_words(point: Point) -> tuple[int, ...]:
-    centre = round(point.centre_deg / 180.0 * HALF_TURN) % HALF_TURN
-    width = min(round(point.width_deg / 180.0 * HALF_TURN), HALF_TURN - 1)
-    return (
-        round(1e3 * point.freq_Hz) | point.level_mA << 16,
-        centre | width << 16,
-        point.floor_mA | round(256 * point.accel_weight) << 16,
-        round(16384 * point.accel_shape) | round(point.ramp_deg / 180.0 * HALF_TURN) << 16,
     )
 
 

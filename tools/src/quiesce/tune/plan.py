@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from quiesce.base import paths
 from quiesce.base.errors import UsageError
 from quiesce.optimum.bound import INTERVALS, STARTS
 from quiesce.plant.library import Plant
@@ -18,6 +19,7 @@ USUAL_POINTS, QUICK_POINTS = 40, 6
 QUICK_FROM_PART = 0.45  # below it optimisation takes longest
 # What the firmware's tracker reports.
 LOWEST_Hz, HIGHEST_Hz = 1.0, 50.0
+LEAST_MODE_Hz = 0.01  # below it a mode is a structure that is free to move
 ROUND_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 # Where fronts and robustness are shown, in parts of the first mode's frequency.
 SHOWN_PARTS = (0.45, 0.87, 1.3, 1.75)
@@ -80,6 +82,11 @@ def make_plan(
 
 def frequencies(plant: Plant, band: Band, is_quick: bool) -> tuple[float, ...]:
     first_Hz = plant.modes[0].freq_Hz
+    if not first_Hz > LEAST_MODE_Hz and None in (band.from_Hz, band.to_Hz):
+        raise UsageError(
+            f"{paths.shown(plant.file)}: without damper and mounts its first mode is at 0 Hz, "
+            "which tells no band: name it, --from-Hz and --to-Hz"
+        )
     from_part = QUICK_FROM_PART if is_quick else FROM_PART
     points = QUICK_POINTS if is_quick else USUAL_POINTS
     low_Hz = band.from_Hz if band.from_Hz is not None else max(LOWEST_Hz, from_part * first_Hz)

@@ -1,7 +1,7 @@
 """One pulse of current for each half period of the vibration: how to shape it best.
 
 Inside optimisation a pulse has a phase of the excitation, theta; the tables hold phases of the
-displacement's fundamental, psi = theta + its phase.
+displacement's fundamental as the accelerometer tells it, psi = theta + its phase.
 """
 
 from dataclasses import dataclass, replace
@@ -122,10 +122,10 @@ def tracked(drive: Drive, pulse: Pulse, start: Floats | None = None) -> Orbit:
     """
     theta_deg, step_deg, miss_deg = 0.0, 0.0, np.inf
     orbit = solve(drive, command_of(drive, pulse), start=start)
-    theta_deg = -orbit.disp_phase_deg
+    theta_deg = -orbit.tracked_deg
     for _ in range(60):
         orbit = solve(drive, command_of(drive, pulse.moved(theta_deg)), start=orbit.state)
-        last_deg, miss_deg = miss_deg, _turned(-orbit.disp_phase_deg - theta_deg)
+        last_deg, miss_deg = miss_deg, _turned(-orbit.tracked_deg - theta_deg)
         if abs(miss_deg) < 1e-4:
             return orbit
         slope = (miss_deg - last_deg) / step_deg if step_deg else -1.0

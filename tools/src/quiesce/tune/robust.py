@@ -13,8 +13,10 @@ from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.trace import Trace, read_trace
 from quiesce.plant.library import Plant
 from quiesce.plant.variant import Variant
+from quiesce.table.file import table_bytes
 from quiesce.tune.law import setting_figures
-from quiesce.tune.phase_table import SETTINGS, PhaseLaw, law_bytes
+from quiesce.tune.phase_table import SETTINGS, PhaseLaw
+from quiesce.tune.phase_words import law_words
 from quiesce.tune.plan import TunePlan
 from quiesce.tune.store import TuneStore
 from quiesce.tune.work import VariantWork, variant_plant
@@ -40,11 +42,11 @@ class ClosedLoop:
     """The firmware with a law file, on a plant, in the bench."""
 
     def __init__(self, law: PhaseLaw, settings: list[str], folder: Path) -> None:
-        """settings: NAME=VALUE. folder: for the law's words."""
+        """settings: NAME=VALUE. folder: for the law's table."""
         self.bench = Bench()
-        words = folder / "law.words"
-        words.write_bytes(law_bytes(law))
-        self._options = ["--phase-table", str(words), *setting_options(settings)]
+        table = folder / "law.table"
+        table.write_bytes(table_bytes(law_words(law)))
+        self._options = ["--pulses", str(table), *setting_options(settings)]
 
     def run(self, plant: Path, freq_Hz: float, duration_s: float, law: str, *more: str) -> Any:
         """The bench's figures over the last 2 s. more: options."""

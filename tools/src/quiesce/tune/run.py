@@ -19,11 +19,13 @@ from quiesce.plant.library import Plant
 from quiesce.plant.variant import read_plant_data
 from quiesce.plant_id.find import PLANT_NAME, find_plant
 from quiesce.report.plot_style import svg_of
+from quiesce.table.file import SUFFIX, table_bytes
 from quiesce.tune import plots
 from quiesce.tune.cycle import Cycle, cycles
 from quiesce.tune.law import file_stem, make_law, parameters, rows, setting_words
 from quiesce.tune.page import Tuned, make_page, text
-from quiesce.tune.phase_table import PhaseLaw, law_bytes, law_text
+from quiesce.tune.phase_table import PhaseLaw, law_text
+from quiesce.tune.phase_words import law_words
 from quiesce.tune.plan import Band, TunePlan, chosen_settings, make_plan
 from quiesce.tune.robust import Cell, ClosedLoop, cells
 from quiesce.tune.setting import Setting
@@ -179,7 +181,7 @@ def closed_loop(
 
 def write_law_files(folder: Path, stem: str, law: PhaseLaw, values: dict[str, int | str]) -> None:
     (folder / f"{stem}.phase.toml").write_text(law_text(law), encoding="utf-8")
-    (folder / f"{stem}.phase.bin").write_bytes(law_bytes(law))
+    (folder / f"{stem}.phase{SUFFIX}").write_bytes(table_bytes(law_words(law)))
     (folder / f"{stem}.set").write_text(setting_words(values) + "\n", encoding="utf-8")
 
 

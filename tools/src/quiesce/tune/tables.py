@@ -78,7 +78,7 @@ def _keeps_limits(goal: Goal, candidate: Candidate) -> bool:
 
 def _search(ref: Reference, goal: Goal, has_ramp: bool, weight: float | None) -> list[Candidate]:
     full_A = ref.drive.plant.max_current_A
-    lead_deg = ref.orbit.disp_phase_deg
+    lead_deg = ref.orbit.tracked_deg
     firsts = [Pulse(0.0, 180.0, full_A, 0.0), Pulse(0.0, 180.0, 0.5 * full_A, 0.0)]
     for centre_deg in FIRST_CENTRES_DEG:
         for width_deg in FIRST_WIDTHS_DEG:
@@ -97,7 +97,7 @@ def _candidate(
     pulse, optimum = best_pulse(ref, goal, first, has_ramp)
     orbit = optimum.orbit
     return Candidate(
-        pulse.moved(orbit.disp_phase_deg),
+        pulse.moved(orbit.tracked_deg),
         optimum.cost,
         ref.amp_reduction_pct(orbit),
         ref.accel_reduction_pct(orbit),

@@ -19,7 +19,7 @@ from quiesce.hil.published import Reference, load_reference
 from quiesce.law.recipe import Recipe
 from quiesce.law.recipes import RECIPES
 from quiesce.law.rig import LawRig
-from quiesce.law.words import file_text
+from quiesce.table.file import table_bytes
 
 from quiesce_benchmarks.laws import cantilever_rig as rig
 from quiesce_benchmarks.laws.cantilever_rig import Cantilever, Control, Outcome
@@ -140,7 +140,7 @@ def control_of(
 ) -> Control:  # fmt: skip
     """Its table in that file. UsageError where the rig or the settings do not allow it."""
     found, needs_cell = rig.made_for(rigs, recipe, values)
-    file.write_text(file_text(found.table.words()), encoding="ascii")
+    file.write_bytes(table_bytes(found.table.words()))
     tracker = [f"tracker={recipe.tracker}"] if recipe.tracker else []
     of_map = ["--force-map", str(made.force_map)] if recipe.tracker == MAP else []
     options = ["--law-table", str(file), *of_map, *setting_options([*tracker, *settings])]
@@ -154,7 +154,7 @@ def of_recipe(
     best: tuple[float, Control, tuple[Outcome, ...], dict[str, float]] | None = None
     refused = ""
     for number, values in enumerate(trials(recipe, HERE, THERE, count, seed)):
-        file = runs.made.structure.parent / f"{recipe.name}_{number}.words"
+        file = runs.made.structure.parent / f"{recipe.name}_{number}.table"
         gain = gain_of(recipe, number, seed)
         try:
             control = control_of(recipe, runs.made, rigs, values, gain, file)

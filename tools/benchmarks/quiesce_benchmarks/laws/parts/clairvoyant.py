@@ -17,8 +17,8 @@ from quiesce.compare.table import laws_of, means
 from quiesce.damper.force_map import Map, words_of_map
 from quiesce.damper.inverse import VELOCITY
 from quiesce.law.recipes import find
-from quiesce.law.words import file_text
 from quiesce.optimum.waveform import Effort as Search
+from quiesce.table.file import table_bytes
 
 from quiesce_benchmarks.laws import rigs
 from quiesce_benchmarks.part import Effort, Measured
@@ -120,8 +120,8 @@ def car(effort: Effort, folder: Path) -> list[Cell]:
 
 def comfort_laws(folder: Path) -> list[ComparedLaw]:
     usual = rigs.map_of(folder, DAMPER, MOST_A)
-    late = folder / "late.words"
-    late.write_text(file_text(words_of_map(late_map())), encoding="ascii")
+    late = folder / "late.table"
+    late.write_bytes(table_bytes(words_of_map(late_map())))
     return [
         rigs.compared(folder, "SH-ADD", rigs.made(rigs.CAR, "sh_add", {})),
         rigs.compared(folder, "skyhook", rigs.made(rigs.CAR, "skyhook", {}), map_file=usual),

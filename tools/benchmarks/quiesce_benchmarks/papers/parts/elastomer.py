@@ -43,7 +43,7 @@ def stiffness_N_m(plant: Plant, current_A: float) -> float:
     taken off."""
     freq_Hz = 2.0
     orbit = solve(drive(plant, freq_Hz), current_A)
-    force_N = plant.drive_V * plant.force_N_V(freq_Hz)
+    force_N = plant.drive_V * plant.shaker_per_V(freq_Hz)
     dynamic = force_N / orbit.disp_fundamental_m * np.exp(1j * np.radians(-orbit.disp_phase_deg))
     # F = drive sin(theta), x = X cos(theta + phase): turned by a quarter.
     spring = dynamic * np.exp(-0.5j * np.pi) + mount.MASS_kg * (2.0 * np.pi * freq_Hz) ** 2
@@ -62,7 +62,7 @@ def plant_at(folder: Path, freq_Hz: float) -> Plant:
 def gain_m_N(plant: Plant, current_A: float, freq_Hz: float) -> float:
     """Receptance of the simulated mount: displacement per force."""
     orbit = solve(drive(plant, freq_Hz), current_A)
-    return orbit.disp_fundamental_m / (plant.drive_V * plant.force_N_V(freq_Hz))
+    return orbit.disp_fundamental_m / (plant.drive_V * plant.shaker_per_V(freq_Hz))
 
 
 def stiffness_table(found: dict[float, float], base_MPa: float) -> str:

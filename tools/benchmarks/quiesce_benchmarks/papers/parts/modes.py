@@ -50,7 +50,7 @@ def likeness(a: Floats, b: Floats) -> float:
 def response_m_N(plant: Plant, freq_Hz: float) -> float:
     """Displacement at the sensor per force, without current."""
     orbit = solve(drive(plant, freq_Hz), 0.0)
-    return orbit.disp_fundamental_m / (plant.drive_V * plant.force_N_V(freq_Hz))
+    return orbit.disp_fundamental_m / (plant.drive_V * plant.shaker_per_V(freq_Hz))
 
 
 def peak(plant: Plant, near_Hz: float, points: int) -> tuple[float, float]:

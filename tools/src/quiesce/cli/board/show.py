@@ -156,7 +156,7 @@ def described(board: Board) -> str:
     head = (
         f"{board['name']}: bodies {', '.join(board['bodies'])}; "
         f"tracked {board['sensors'][board['tracked']]['name']}; "
-        f"bus {time_text(board['bus_latency_us'])}"
+        f"bus {time_text(board['bus_latency_us'])}; CRC-32 0x{board['crc32']:08x}"
     )
     return "\n\n".join([head, *tables])
 

@@ -5,8 +5,11 @@ from collections.abc import Callable
 
 from quiesce.base.errors import UsageError
 from quiesce.cli.can import (
+    bus_load,
     check,
     decode,
+    fetch,
+    forget_learnt,
     freeze,
     get,
     list,
@@ -14,8 +17,12 @@ from quiesce.cli.can import (
     monitor,
     record,
     replay,
+    restore_learnt,
+    revert,
+    save_learnt,
     set,
     stop,
+    tables,
 )
 
 # Import name and package.
@@ -25,6 +32,7 @@ PACKAGES = {
     "asammdf": "asammdf",
     "serial": "pyserial",
     "msgpack": "msgpack",
+    "isotp": "can-isotp",
 }
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
@@ -40,6 +48,13 @@ ACTIONS = (
     stop,
     freeze,
     load,
+    tables,
+    revert,
+    fetch,
+    save_learnt,
+    restore_learnt,
+    forget_learnt,
+    bus_load,
 )
 
 EPILOG = """examples:
@@ -50,6 +65,7 @@ EPILOG = """examples:
   quiesce can set law=phase --save --bus slcan:socket://127.0.0.1:5556
   quiesce can stop --bus socketcan:can0
   quiesce can freeze --bus socketcan:can0
+  quiesce can load rules mine.fis --bus socketcan:can0
 
 The messages are those of firmware/comm/quiesce.dbc; docs/howto/use-can-tools.md has an example of
 each. 'quiesce can ACTION --help' has the options of one.

@@ -1,163 +1,143 @@
-"""`quiesce can load`: bus load and worst-case response times, computed from the DBC."""
+"""`quiesce can load KIND FILE`: a table into a controller at work."""
 
 import argparse
 import json
+import time
+from pathlib import Path
 from typing import Any
 
-from quiesce.base.errors import UsageError
-from quiesce.base.table import format_table
-from quiesce.cli.can.options import add_database_option, database_of
+from quiesce.base.errors import BenchFailure
+from quiesce.base.paths import shown
+from quiesce.can.roads import LEARNT
+from quiesce.cli.can.bus_options import add_bus_options
+from quiesce.cli.can.table_options import add_json, opened, step
+from quiesce.cli.can.table_sources import WORDS, Table, table_of
 
 EPILOG = """examples:
-  quiesce can load
-  quiesce can load --bitrate 250000 --sensor-node
-  quiesce can load --sensors 1 --dampers 2
-  quiesce can load --errors-per-s 10 --jitter-ms 0.1 --json
+  quiesce can load rules mine.fis --bus socketcan:can0
+  quiesce can load pulses build/tune/mine --save --bus slcan:/dev/ttyACM0
+  quiesce can load law clipped.table --dry-run --bus socketcan:can0
+  quiesce can load tracker damper.table --bus socketcan:can0
 
-Longest frames (worst-case bit stuffing), each message at its least period: its cycle time, or for
-services the least time between two. 'response' is from the event to the frame's last bit, when
-everything is queued in the worst phase (Davis et al. 2007). '> period': a message may wait for
-longer than its own period and needs a queue in its sender.
+KIND: rules (a rule file .fis, .fll or .fcl, compiled for the controller, or a table), pulses (what
+'quiesce tune' wrote: its folder, the NAME.phase.toml in it, or a table), law (any table of a law),
+tracker (map, bank or network of a damper), learnt (what 'quiesce can fetch learnt' wrote). A
+table's file is named .table.
+
+The table is sent whole, checked by the controller, then used from one tick to the next, also while
+it runs; the slew limits what the current does then. What is refused changes nothing. --dry-run asks
+for the verdict alone. Without --save the next start has what it had.
+Exit codes: 1 the controller refused or did not answer, 2 no such table, nothing was sent.
 """
-
-
-MOST_SENSORS, MOST_DAMPERS = 8, 4  # that the interface has messages for
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "load",
-        help="bus load and worst-case response times",
-        description="Bus load and worst-case response times, computed from the DBC.",
+        help="a table: rules, pulses, a damper's map, ..",
+        description="Load a table into a controller at work: all of it, checked, or nothing.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--bitrate", type=int, default=500_000, metavar="BIT/S", help="(500000)")
-    parser.add_argument(
-        "--sensor-node", action="store_true", help="response times with AccelSample on the bus"
-    )
-    parser.add_argument(
-        "--sensors",
-        type=int,
-        metavar="N",
-        help="sensors on the bus, 0 .. 8, in totals and response times (1 in totals)",
-    )
-    parser.add_argument(
-        "--dampers", type=int, default=1, metavar="N", help="dampers on it, 1 .. 4 (%(default)d)"
-    )
-    parser.add_argument(
-        "--no-raw", action="store_true", help="response times without raw streaming"
-    )
-    parser.add_argument(
-        "--jitter-ms", type=float, default=0.0, metavar="T", help="of the queueing (%(default)g)"
-    )
-    parser.add_argument(
-        "--errors-per-s", type=float, default=0.0, metavar="N", help="bus errors (%(default)g)"
-    )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    add_database_option(parser)
+    parser.add_argument("kind", choices=WORDS, metavar="KIND", help=", ".join(WORDS))
+    parser.add_argument("file", type=Path, metavar="FILE")
+    parser.add_argument("--save", action="store_true", help="use it after the next start, too")
+    parser.add_argument("--dry-run", action="store_true", help="check only, use nothing")
+    add_json(parser)
+    add_bus_options(parser)
     parser.set_defaults(run=run)
 
 
-def check(args: argparse.Namespace) -> None:
-    if not 10_000 <= args.bitrate <= 1_000_000:
-        raise UsageError(f"--bitrate {args.bitrate}: classic CAN has 10000 .. 1000000 bit/s")
-    for option, number, low, high in (
-        ("--sensors", args.sensors, 0, MOST_SENSORS),
-        ("--dampers", args.dampers, 1, MOST_DAMPERS),
-    ):
-        if number is not None and not low <= number <= high:
-            raise UsageError(f"{option} {number}: {low} .. {high}")
-    for option, value in (
-        ("--jitter-ms", args.jitter_ms),
-        ("--errors-per-s", args.errors_per_s),
-    ):
-        if not 0.0 <= value <= 1e6:
-            raise UsageError(f"{option} {value:g}: 0 .. 1000000")
-
-
 def run(args: argparse.Namespace) -> int:
-    check(args)
-    report = computed(args)
+    table = table_of(args.kind, args.file)
+    for note in table.notes:
+        step(f"{shown(args.file)}: {note}")
+    with opened(args) as tables:
+        took_s = put(tables, table, not args.dry_run)
+        is_saved = args.save and not args.dry_run
+        if is_saved:
+            save(tables, table)
+    report = report_of(args, table, took_s, is_saved)
     print(json.dumps(report, indent=1) if args.json else text(report))
     return 0
 
 
-def computed(args: argparse.Namespace) -> dict[str, Any]:
-    from quiesce.can import load
+def put(tables: Any, table: Table, is_to_be_used: bool = True) -> float:
+    """Sends it, has it checked and used. Returns the seconds that took. BenchFailure, with the
+    checker's reason, where it is refused."""
+    from quiesce.can.refusals import why_refused
+    from quiesce.can.tables import CRC, Refused
 
-    database = database_of(args)
-    raw = load.named(database, load.RAW)
-    left_out = raw if args.no_raw else []
-    sensors = args.sensors if args.sensors is not None else int(args.sensor_node)
-    chosen = [one for one in load.on_bus(database, sensors, args.dampers) if one not in left_out]
-    if not chosen:
-        raise UsageError(f"{database.file}: no message has a cycle time (GenMsgCycleTime)")
-    analysis = load.Analysis(chosen, args.bitrate, args.jitter_ms, args.errors_per_s)
-    sent = load.slcan_messages(database, args.dampers)
-    need, baud = load.baud_needed(sent)
-    need_less, baud_less = load.baud_needed([one for one in sent if one not in raw])
-    in_totals = 1 if args.sensors is None else args.sensors
+    road = table.road
+    in_use = tables.info(road, CRC)  # answered by whoever takes tables
+    step(f"road {road} has {in_use:08x}; sending {table.kind.name} {table.crc:08x}")
+    start_s = time.monotonic()
+    try:
+        tables.send(table.data, table.crc)
+        step("checked: the controller takes it")
+        if is_to_be_used:
+            tables.commit(road, table.crc)
+            verify(tables, table)
+            step("in use")
+    except Refused as error:
+        why = why_refused(tables.services, error.verdict, table.kind)
+        raise BenchFailure(f"refused: {why}; nothing was changed")
+    return time.monotonic() - start_s
+
+
+def verify(tables: Any, table: Table) -> None:
+    """What was learnt changes as it learns on: there is nothing to compare."""
+    from quiesce.can.tables import CRC
+
+    if table.road == LEARNT:
+        return
+    crc = tables.info(table.road, CRC)
+    if crc != table.crc:
+        raise BenchFailure(f"the controller says that it uses {crc:08x}, not {table.crc:08x}")
+
+
+def save(tables: Any, table: Table) -> None:
+    from quiesce.can.tables import STORED
+
+    road = table.road
+    try:
+        tables.save(road)
+        stored = tables.info(road, STORED)
+    except BenchFailure as error:
+        raise BenchFailure(f"in use, but not stored for the next start: {error}")
+    if road != LEARNT and stored != table.crc:
+        raise BenchFailure(f"in use, but what is stored for the next start is {stored:08x}")
+
+
+def report_of(
+    args: argparse.Namespace, table: Table, took_s: float, is_saved: bool
+) -> dict[str, Any]:
     return {
-        "bitrate": args.bitrate,
-        "load_pct": load.totals_pct(database, args.bitrate, in_totals, args.dampers),
-        "messages": [row(analysis, index) for index in range(len(analysis.streams))],
-        "slcan": {
-            "bits_per_s": need,
-            "baud": baud,
-            "bits_per_s_without_raw": need_less,
-            "baud_without_raw": baud_less,
-        },
-    }
-
-
-def row(analysis: Any, index: int) -> dict[str, Any]:
-    stream = analysis.streams[index]
-    bits = analysis.response(index)
-    period_ms = stream.message.period_ms
-    response_ms = None if bits is None else 1000.0 * bits / analysis.bitrate
-    return {
-        "name": stream.message.name,
-        "id": stream.message.frame_id,
-        "bytes": stream.message.length,
-        "bits": stream.bits,
-        "period_ms": period_ms,
-        "load_pct": 100.0 * stream.bits / (period_ms * analysis.bitrate / 1000),
-        "response_ms": response_ms,
-        "is_within_period": response_ms is not None and response_ms <= period_ms,
+        "file": shown(args.file),
+        "kind": table.kind.name,
+        "road": table.road,
+        "words": len(table.words),
+        "crc": f"{table.crc:08x}",
+        "took_s": round(took_s, 3),
+        "is_in_use": not args.dry_run,
+        "is_saved": is_saved,
     }
 
 
 def text(report: dict[str, Any]) -> str:
-    from quiesce.can.load import totals_table
-
-    rows = [
-        [
-            one["name"],
-            f"0x{one['id']:03X}",
-            str(one["bytes"]),
-            str(one["bits"]),
-            str(one["period_ms"]),
-            f"{one['load_pct']:.2f}",
-            "no bound" if one["response_ms"] is None else f"{one['response_ms']:.3f}",
-            "" if one["is_within_period"] else "> period",
-        ]
-        for one in report["messages"]
-    ]
-    head = ["message", "id", "bytes", "bits", "period ms", "load %", "response ms", ""]
-    slcan = report["slcan"]
-    return "\n".join(
-        [
-            format_table(head, rows, left=(0, 1, 7)),
-            "",
-            totals_table(report["load_pct"], report["bitrate"]),
-            "",
-            f"SLCAN: a controller on a UART sends {slcan['bits_per_s_without_raw']:.0f} bit/s: "
-            f"{rate_text(slcan['baud_without_raw'])}; with raw streaming "
-            f"{slcan['bits_per_s']:.0f}: {rate_text(slcan['baud'])}",
-        ]
+    head = f"{report['kind']}, {report['words']} words, CRC {report['crc']}"
+    lines = [f"table   {head}, of {report['file']}"]
+    if not report["is_in_use"]:
+        return "\n".join([*lines, "verdict the controller would take it; nothing was changed"])
+    back = "forget-learnt" if report["road"] == LEARNT else f"revert {report['road']}"
+    stored = (
+        "for the next start"
+        if report["is_saved"]
+        else "no: the next start has what it had; --save stores it"
     )
-
-
-def rate_text(baud: int | None) -> str:
-    return "beyond usual rates" if baud is None else f"{baud} baud"
+    lines += [
+        f"in use  on road {report['road']}, after {report['took_s']:.1f} s",
+        f"stored  {stored}",
+        f"back    quiesce can {back}",
+    ]
+    return "\n".join(lines)

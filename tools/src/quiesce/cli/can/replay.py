@@ -18,12 +18,13 @@ EPILOG = """examples:
   quiesce can replay run.asc --only Status,Motion --speed 10 --bus socketcan:can0
 
 Never sends what a controller or a driver would act on, unless --include-commands: CurrentDemand of
-every damper, EmergencyStop, OperatorCommand, ServiceRequest (which may change parameters), what
-sensor nodes and drivers send (AccelSample, SensorSample1 .., CurrentMeasured), lock-step messages
-(0x600 .. 0x6FF). Their ids are those of the shipped DBC; --dbc only names messages for --only.
+every damper, EmergencyStop, OperatorCommand, ServiceRequest and TableData (which may change
+parameters and tables), what sensor nodes and drivers send (AccelSample, SensorSample1 ..,
+CurrentMeasured), lock-step messages (0x600 .. 0x6FF). Their ids are those of the shipped DBC; --dbc
+only names messages for --only.
 """
 
-COMMANDS = ("CurrentDemand", "EmergencyStop", "OperatorCommand", "ServiceRequest")
+COMMANDS = ("CurrentDemand", "EmergencyStop", "OperatorCommand", "ServiceRequest", "TableData")
 # The controller would take what they sent for what is.
 MEASURING = ("Sensor", "Driver")
 LOCKSTEP_IDS = range(FIRST_LOCKSTEP_ID, 0x700)

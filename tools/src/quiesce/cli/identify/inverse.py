@@ -11,6 +11,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.cli.identify import inverse_methods
 from quiesce.cli.identify.help import fill
+from quiesce.table.file import SUFFIX
 
 NAME = "inverse"
 HELP = "the current for a wanted force: check and map, or inverses by several methods"
@@ -18,25 +19,25 @@ EPILOG = """Without --method, the check of a damper file. A control law wants a 
 gives the current. That needs a force that rises with the current: the check says up to which
 current it does, at several velocities in mid-stroke of a sine that has settled. --out writes
 inverse.csv (velocity, force, current, feasible), forces.csv, inverse.svg and, unless the last line
-of the check says why not, map.words: the map that tracker inverse of a controller takes
+of the check says why not, map.table: the map that tracker inverse of a controller takes
 (quiesce_bench run --force-map). Currents saturate where the force is not feasible. Of a spring that
 the current stiffens, such as an elastomer, --over stroke makes the map.
 
-A map of one damper stands for every damper of a controller. With files of words (map.words), one
+A map of one damper stands for every damper of a controller. With table files (map.table), one
 map is made of all of them, the first for the controller's first damper; --out takes it. Likewise of
-banks (bank.words).
+banks (bank.table).
 
 With --method, inverses are made and follow wanted forces (sines, a sweep, band noise) on the
 damper, beside the best constant current and the ideal inverse. Some methods need a damper file,
 others learn from recordings, or from tests made with the damper file. --out writes a file for each
-(map.words, inverse_NAME.toml; --read reads them back), map_NAME.words for those that the tracker
+(map.table, inverse_NAME.toml; --read reads them back), map_NAME.table for those that the tracker
 can have as a map, and inverse.html.
 """
 EXAMPLES = """
 examples:
   quiesce identify inverse damper.toml --max-current-A 2 --out build/inverse
   quiesce identify inverse mount.toml --over stroke --max-current-A 1.78 --out build/mount
-  quiesce identify inverse build/inverse/map.words build/mount/map.words --out build/both
+  quiesce identify inverse build/inverse/map.table build/mount/map.table --out build/both
   quiesce identify inverse damper.toml --method all --out build/inverse
   quiesce identify inverse rig.csv --method ffn,rnn --on damper.toml --out build/inverse
   quiesce identify inverse damper.toml --read build/inverse/inverse_rnn.toml
@@ -50,7 +51,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=Path,
         nargs="+",
         metavar="FILE",
-        help="damper file, recordings (CSV), or maps to be one (words)",
+        help="damper file, recordings (CSV), or maps to be one (.table)",
     )
     parser.add_argument(
         "--max-current-A", type=real_number(1e-6, 1e3, "a current in A"), metavar="A",
@@ -77,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
     from quiesce.damper.inverse import check_amperes
     from quiesce.damper.simulate import simulator_of_file
 
-    if any(file.suffix == ".words" for file in args.files):
+    if any(file.suffix == SUFFIX for file in args.files):
         return join(args)
     is_recording = inverse_methods.is_recording(args.files)
     inverse_methods.check_options(args, is_recording)
@@ -104,11 +105,11 @@ def join(args: argparse.Namespace) -> int:
     from quiesce.damper.report.inverse_text import write_joined
 
     if args.method or args.read or args.json or args.out is None:
-        raise UsageError("maps (words) are made one with --out FOLDER and no other option")
+        raise UsageError("maps (.table) are made one with --out FOLDER and no other option")
     if all(banked.is_bank(file) for file in args.files):
         words = banked.joined(args.files)
-        write_joined(args.out, words, "bank.words")
-        print(f"written: {shown(args.out)}/bank.words, {4 * len(words)} bytes")
+        write_joined(args.out, words, "bank.table")
+        print(f"written: {shown(args.out)}/bank.table, {4 * len(words)} bytes")
         return 0
     try:
         words = joined([read_map(file) for file in args.files])
@@ -117,7 +118,7 @@ def join(args: argparse.Namespace) -> int:
     write_joined(args.out, words)
     for number, one in enumerate(maps_of_words(words), 1):
         print(f"damper {number}: over {one.axis.name}, 0 .. {one.currents_A[-1]:g} A")
-    print(f"written: {shown(args.out)}/map.words, {4 * len(words)} bytes")
+    print(f"written: {shown(args.out)}/map.table, {4 * len(words)} bytes")
     return 0
 
 
@@ -131,7 +132,7 @@ def check(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -
         write_map(args.out, damper, found)
     print(json.dumps(numbers_of(damper, found), indent=1) if args.json else text_of(damper, found))
     if args.out and not args.json:
-        also = ", map.words" if (args.out / "map.words").exists() else ""
+        also = ", map.table" if (args.out / "map.table").exists() else ""
         print(f"\nwritten: {shown(args.out)}/inverse.csv, forces.csv, inverse.svg{also}")
     return 0
 

@@ -13,6 +13,7 @@ from quiesce.base.paths import shown
 from quiesce.base.progress import say
 from quiesce.cli.identify.data_options import add_data_options
 from quiesce.damper.inverses.methods import METHODS, methods_of
+from quiesce.table.file import SUFFIX
 
 SEED = 1
 
@@ -159,18 +160,19 @@ def read_all(files: list[Path]) -> list[Any]:
 
 def write_all(args: argparse.Namespace, inverses: list[Any], found: Any) -> list[str]:
     """Names of the files in args.out."""
-    from quiesce.damper.inverses.methods import file_name, text_of
+    from quiesce.damper.inverses.methods import bytes_of, file_name
     from quiesce.damper.report.tracking import PAGE, page_of
 
-    texts: dict[str, str] = {}
+    made: dict[str, bytes] = {}
     for one in inverses:
         if one.seconds:  # made here
-            texts[file_name(one.method)] = text_of(one.method, one.inverse)
+            made[file_name(one.method)] = bytes_of(one.method, one.inverse)
             if one.own_map is not None:
-                texts[f"map_{one.method}.words"] = one.own_map.to_text()
+                made[f"map_{one.method}{SUFFIX}"] = one.own_map.to_bytes()
     command = "quiesce " + " ".join(sys.argv[1:])
-    texts[PAGE] = page_of(args.files[0].stem, inverses, found, list(texts), command)
+    page = page_of(args.files[0].stem, inverses, found, list(made), command)
+    made[PAGE] = page.encode()
     with output_files(args.out) as staging:
-        for name, text in texts.items():
-            (staging / name).write_text(text, encoding="utf-8")
-    return list(texts)
+        for name, data in made.items():
+            (staging / name).write_bytes(data)
+    return list(made)

@@ -2,16 +2,16 @@
 
 import argparse
 
-from quiesce.cli.law import fit, list, make, rules, show
+from quiesce.cli.law import fit, list, make, rules
 
 # Each has add_parser(subparsers), like the commands; its own parser sets `run`.
-SUBCOMMANDS = (list, show, make, rules, fit)
+SUBCOMMANDS = (list, make, rules, fit)
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "law",
-        description="Published control laws as tables for a controller: made for a board, shown, "
+        description="Published control laws as tables for a controller: made for a board, "
         "run with quiesce_bench run --law-table FILE.",
     )
     actions = parser.add_subparsers(metavar="ACTION", required=True)

@@ -10,14 +10,14 @@ from quiesce.base.paths import shown
 from quiesce.engine.bench import Bench
 from quiesce.law.fit import KINDS, Fit, fit
 from quiesce.law.rig import load_rig
-from quiesce.law.words import file_text
 from quiesce.network.layers import MOST_UNITS
+from quiesce.table.file import table_bytes
 
 EPILOG = """examples:
   quiesce law fit samples.csv --board my_board.toml --output current_A \\
-      --inputs "stroke of brace=x_m,stroke velocity of brace=v_m_s" -o build/laws/net.words
+      --inputs "stroke of brace=x_m,stroke velocity of brace=v_m_s" -o build/laws/net.table
   quiesce law fit samples.csv --board my_board.toml --output i_A --kind rules --units 9 \\
-      --inputs "velocity of third,stroke velocity of brace" -o build/laws/rules.words
+      --inputs "velocity of third,stroke velocity of brace" -o build/laws/rules.table
 
 Imitates whatever made the output of the inputs: another controller, an optimum's waveform. Columns
 are in SI units; an input is a signal of the board, with the name of its column where that is
@@ -85,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
     made = fit(rig, signals, inputs, currents_A, args.kind, args.units, args.seed)
     words = made.table.words()
     with output_files(args.out.parent) as folder:
-        (folder / args.out.name).write_text(file_text(words), encoding="ascii")
+        (folder / args.out.name).write_bytes(table_bytes(words, rig.board_crc32))
     if args.json:
         data = {"law": "network", "kind": args.kind, "words": len(words)}
         errors = {"error_A": made.error_A, "spread_A": made.spread_A}

@@ -10,12 +10,12 @@ from quiesce.engine.bench import Bench
 from quiesce.law.recipe import Made, make, values_of
 from quiesce.law.recipes import find
 from quiesce.law.rig import load_rig
-from quiesce.law.words import file_text
+from quiesce.table.file import table_bytes
 
 EPILOG = """examples:
-  quiesce law make skyhook_on_off --board my_board.toml -o build/laws/skyhook.words
+  quiesce law make skyhook_on_off --board my_board.toml -o build/laws/skyhook.table
   quiesce law make clipped_optimal --board my_board.toml --plant my_plant.toml \\
-      --set force_1_N2=1e-9 -o build/laws/optimal.words
+      --set force_1_N2=1e-9 -o build/laws/optimal.table
 
 The table is for this board: its bodies, dampers and sensors. A law that demands forces runs with a
 tracker: `inverse` with a damper's map (quiesce identify inverse), `compare` or `proportional` with
@@ -79,9 +79,10 @@ def text(made: Made, words: list[int], args: argparse.Namespace) -> str:
 def run(args: argparse.Namespace) -> int:
     recipe = find(args.recipe)
     values = values_of(recipe, args.set)
-    made = make(recipe, load_rig(Bench(), args.board, args.plant, args.rate), values)
+    rig = load_rig(Bench(), args.board, args.plant, args.rate)
+    made = make(recipe, rig, values)
     words = made.table.words()
     with output_files(args.out.parent) as folder:
-        (folder / args.out.name).write_text(file_text(words), encoding="ascii")
+        (folder / args.out.name).write_bytes(table_bytes(words, rig.board_crc32))
     print(json.dumps(as_data(made, words), indent=2) if args.json else text(made, words, args))
     return 0

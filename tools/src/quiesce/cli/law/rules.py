@@ -11,14 +11,14 @@ from quiesce.engine.bench import Bench
 from quiesce.law.forms.fuzzy_signals import FuzzySignalsTable
 from quiesce.law.from_rules import sources_of, table_of_rules
 from quiesce.law.rig import load_rig
-from quiesce.law.words import file_text
 from quiesce.rules.formats.files import MAX_SEGMENTS, read_rules
 from quiesce.rules.model import RuleBase
+from quiesce.table.file import table_bytes
 
 EPILOG = """examples:
-  quiesce law rules my.fis --board my_board.toml --map "vel=velocity of third" -o build/my.words
+  quiesce law rules my.fis --board my_board.toml --map "vel=velocity of third" -o build/my.table
   quiesce law rules my.fcl --board my_board.toml --map "drift=1000 |stroke|" --output-A 0.5 \\
-      -o build/my.words
+      -o build/my.table
 
 FCL, FLL or FIS with one output, a current. A signal is a quantity of the board in SI units:
 acceleration, velocity, displacement (of a body), stroke, stroke velocity, force (of a damper) and
@@ -57,22 +57,23 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
     parser.set_defaults(run=run)
 
 
-def made(args: argparse.Namespace) -> tuple[RuleBase, FuzzySignalsTable, list[int]]:
+def made(args: argparse.Namespace) -> tuple[RuleBase, FuzzySignalsTable, list[int], int]:
+    """With the table's words and the board's CRC-32."""
     if not 1e-6 <= args.output_A <= 1e6:
         raise UsageError(f"--output-A {args.output_A:g}: expected 1e-6 .. 1e6")
     base = read_rules(args.file, args.approximate, first_order=True)
     rig = load_rig(Bench(), args.board, None, 1000)
     try:
         table = table_of_rules(rig, base, sources_of(rig, base, args.map), args.output_A)
-        return base, table, table.words()
+        return base, table, table.words(), rig.board_crc32
     except ValueError as error:
         raise UsageError(f"{shown(args.file)}: {error}")
 
 
 def run(args: argparse.Namespace) -> int:
-    base, table, words = made(args)
+    base, table, words, board = made(args)
     with output_files(args.out.parent) as folder:
-        (folder / args.out.name).write_text(file_text(words), encoding="ascii")
+        (folder / args.out.name).write_bytes(table_bytes(words, board))
     signals = [one.name for one in table.signals()]
     if args.json:
         told = {"rules": len(base.rules), "signals": signals, "law": table.law, "words": len(words)}

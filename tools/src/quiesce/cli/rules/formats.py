@@ -7,12 +7,8 @@ from quiesce.base.errors import UsageError
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.integers.compile import Q15, Q16, compile_base
 from quiesce.rules.integers.compiled import CompiledBase
+from quiesce.rules.integers.controller import compile_for_controller
 from quiesce.rules.model import RuleBase
-
-# The controller's own: frequency in uHz, RMS acceleration in um/s2, current in mA, from files in
-# Hz, m/s2 and A.
-CONTROLLER_INPUTS = (1e-6, 1e-6)
-CONTROLLER_OUTPUTS = (1e-3,)
 
 FORMATS_HELP = """integers:
   Without --lsb an input is q15, 0..32768 over its universe, and an output q16, 0..65536. With
@@ -47,22 +43,11 @@ def compiled_from(args: argparse.Namespace) -> CompiledBase:
     if args.controller:
         if args.lsb:
             raise UsageError("--controller and --lsb exclude each other")
-        require_controller(base)
-        inputs: list[float | str] = list(CONTROLLER_INPUTS)
-        outputs: list[float | str] = list(CONTROLLER_OUTPUTS)
-    else:
-        named = assignments("--lsb", args.lsb, base)
-        inputs = [named.get(variable.name, Q15) for variable in base.inputs]
-        outputs = [named.get(variable.name, Q16) for variable in base.outputs]
+        return compile_for_controller(base, defaults(args, base))
+    named = assignments("--lsb", args.lsb, base)
+    inputs = [named.get(variable.name, Q15) for variable in base.inputs]
+    outputs = [named.get(variable.name, Q16) for variable in base.outputs]
     return compile_base(base, inputs, outputs, defaults(args, base))
-
-
-def require_controller(base: RuleBase) -> None:
-    if len(base.inputs) != 2 or len(base.outputs) != 1:
-        raise UsageError(
-            f"--controller: its rules have two inputs, frequency and RMS acceleration, and one "
-            f"output, current; {base.name} has {len(base.inputs)} and {len(base.outputs)}"
-        )
 
 
 def defaults(args: argparse.Namespace, base: RuleBase) -> dict[str, float]:

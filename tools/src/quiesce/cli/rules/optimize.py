@@ -12,7 +12,7 @@ from pathlib import Path
 from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import build_folder, default_plant, shown
 from quiesce.base.progress import say
 from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
 from quiesce.engine import scenarios
@@ -29,8 +29,9 @@ from quiesce.rules.optimize.objective import OBJECTIVES, Objective, parse_weight
 from quiesce.rules.optimize.report import headline, write_report
 from quiesce.rules.optimize.result import Found, result_json, text_sections
 from quiesce.rules.optimize.run import Limits
-from quiesce.rules.optimize.scenarios import plant_file, steady_scenarios
+from quiesce.rules.optimize.scenarios import SETTLE_s, Steadies, plant_file, steady_scenarios
 from quiesce.rules.optimize.session import Session, Task, start_from_recipe
+from quiesce.rules.optimize.start import start_freqs_Hz
 from quiesce.rules.optimize.state import FILE_NAME, unfinished
 
 STEADY = ("sine_5Hz", "sine_10Hz", "sine_15Hz", "sine_20Hz")
@@ -40,6 +41,7 @@ EPILOG = f"""examples:
   quiesce rules optimize                                  rule table, 5, 10, 15 and 20 Hz, GA
   quiesce rules optimize --freq 4,5,6,7,8,9,10,12 --tune both --method de --generations 60
   quiesce rules optimize --scenario my_scenario.toml --start my_rules.fcl --objective thrifty
+  quiesce rules optimize --plant mine/plant.toml --freq 2,2.9,4 --settle 17 --out mine/rules
   quiesce rules optimize --method nsga2 --objective thrifty
   quiesce rules optimize --resume                         goes on where it was interrupted
 
@@ -47,8 +49,9 @@ The cost is the weighted mean of what is left, in %: displacement amplitude and 
 those at 0 A, mean current of the largest. Objectives set the weights of displacement, acceleration
 and current: {"; ".join(f"{k} {' '.join(f'{w:g}' for w in v)}" for k, v in OBJECTIVES.items())}.
 
-Without --start the search begins at the published recipe: sets at 5, 10, 15 and 20 Hz, the constant
-current of least RMS acceleration at each ('quiesce rules lookup').
+Without --start the search begins at the published recipe: sets at the frequencies of the scenarios
+(of the published plant 5, 10, 15 and 20 Hz), the constant current of least RMS acceleration at each
+('quiesce rules lookup').
 
 Written to build/report/rules_optimize: best.fcl, report.html, report.md, result.json (nsga2: one
 rule file for every point of the front), and during the search state.json. The same seed and options
@@ -153,6 +156,15 @@ def chosen_scenarios(args: argparse.Namespace, bench: Bench, folder: Path) -> li
     return chosen
 
 
+def start_steadies(args: argparse.Namespace, chosen: list[Scenario]) -> Steadies:
+    """What the recipe is made from."""
+    plant = chosen[0].plant_file
+    is_published = plant == default_plant().resolve()
+    drives = drives_V(args.drive) if args.drive and not is_published else [None]
+    freqs_Hz = start_freqs_Hz([scenario.file for scenario in chosen], is_published)
+    return Steadies(plant, freqs_Hz, drives, SETTLE_s if is_published else args.settle)
+
+
 def make_task(args: argparse.Namespace, bench: Bench, folder: Path, pool: Executor) -> Task:
     tune = parse_tune(args.tune)
     weights = parse_weights(args.objective, args.weight)
@@ -161,7 +173,7 @@ def make_task(args: argparse.Namespace, bench: Bench, folder: Path, pool: Execut
     chosen = chosen_scenarios(args, bench, folder)
     max_A = min(driver_max_A(chosen), params["max_current_mA"] / 1000)
     if start is None:
-        start = start_from_recipe(bench, folder, chosen[0].plant_file, max_A, pool)
+        start = start_from_recipe(bench, folder, start_steadies(args, chosen), max_A, pool)
     return Task(
         scenarios=chosen,
         start=start,

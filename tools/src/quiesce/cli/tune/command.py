@@ -27,8 +27,8 @@ examples:
   quiesce tune my_plant.toml --weights balanced=1,2,0.1
   quiesce tune my_plant.toml --accel-limit displacement=120
 
-Writes NAME.phase.toml (the law file), NAME.phase.bin (its words, for 'quiesce_bench run
---phase-table' and for a controller), NAME.set (parameters as --set words), report.html, the
+Writes NAME.phase.toml (the law file), NAME.phase.table (the table, for 'quiesce_bench run
+--pulses' and for a controller), NAME.set (parameters as --set words), report.html, the
 plots, tune.json and work.json (finished pieces: an interrupted run goes on from there).
 
 A law has two settings, 'displacement' and 'balanced'; --weights replaces what one of them wants

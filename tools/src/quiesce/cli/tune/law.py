@@ -27,7 +27,7 @@ EPILOG = """examples:
   quiesce tune law skyhook_on_off --rig three_storeys_1996 --time-scale 5 --scale-to 3.417
   quiesce tune law clipped_optimal --rig three_storeys_1996 --time-scale 5 --scale-to 3.417 \\
       --tracker proportional --search force_1_N2=1e-14:1e-9 --out build/optimal
-  quiesce tune law mixed_hooks --rig quarter_car --road C:72 --road D:54 --map map.words \\
+  quiesce tune law mixed_hooks --rig quarter_car --road C:72 --road D:54 --map map.table \\
       --figure tyre_share
 
 One search for all laws: the first trial is the settings as they come (or as --fix says), a half of
@@ -36,7 +36,7 @@ come from the recipe or from what the board's sensors reach; --search replaces t
 any parameter of the controller, too. A tracker in proportion has its gain searched.
 
 What is minimised is (mean + W x worst) / (1 + W) over the records, of the index of
-`quiesce compare` or of --figure. Written to --out: RECIPE.toml (settings), RECIPE.words (table),
+`quiesce compare` or of --figure. Written to --out: RECIPE.toml (settings), RECIPE.table (table),
 tune.html, tune.json, trials.jsonl. Ctrl-C keeps what was found; the same command goes on from it.
 """
 MOST_TRIALS = 100_000

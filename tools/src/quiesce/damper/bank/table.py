@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.law.sections import read_kind, sealed_sections
-from quiesce.law.words import Reader
+from quiesce.table.kinds import BANK
+from quiesce.table.words import Reader
 
-MAGIC = 0x314B4251
+MAGIC = BANK.magic
 HEAD_WORDS = 6  # of a section
 ELEMENT_WORDS = 3
 MODEL_WORDS = 3

@@ -20,7 +20,7 @@ from quiesce.damper.inverse import forces_by, interpolated
 from quiesce.damper.inverses.demand import TICK_RATE_HZ, Source, in_ticks
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.simulate import simulator
-from quiesce.law.words import file_text, read_file
+from quiesce.table.file import read_words, table_bytes
 
 NAME = "bank"
 TITLE = "models at constant currents, with memory"
@@ -54,8 +54,8 @@ class BankInverse:
     def parameters(self) -> dict[str, Any]:
         return {"words": self.words}
 
-    def to_text(self) -> str:
-        return file_text(self.words)
+    def to_bytes(self) -> bytes:
+        return table_bytes(self.words)
 
     def notes(self) -> list[str]:
         """What a user has to know of it."""
@@ -71,19 +71,19 @@ class BankInverse:
 
 
 def is_bank(file: Path) -> bool:
-    """By its first word. UsageError where it holds no words."""
-    return read_file(file)[:1] == [MAGIC]
+    """By its first word. UsageError where it is no table file."""
+    return read_words(file)[:1] == [MAGIC]
 
 
 def read_banks(file: Path) -> tuple[Bank, ...]:
     """Of one damper or several. UsageError where they are no bank."""
     try:
-        return banks_of_words(read_file(file))
+        return banks_of_words(read_words(file))
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}") from None
 
 
-def read_words(file: Path) -> BankInverse:
+def read_table(file: Path) -> BankInverse:
     """UsageError where they are no bank of one damper."""
     banks = read_banks(file)
     if len(banks) > 1:

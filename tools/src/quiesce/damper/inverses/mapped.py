@@ -17,7 +17,7 @@ from quiesce.damper.inverse import VELOCITY, interpolated, monotone_range
 from quiesce.damper.inverses.demand import Source
 from quiesce.damper.learned.model import Report, silent
 from quiesce.damper.simulate import simulator
-from quiesce.law.words import file_text, read_file
+from quiesce.table.file import read_words, table_bytes
 
 NAME = "map"
 TITLE = "force map of the controller"
@@ -59,13 +59,13 @@ class MapInverse:
     def parameters(self) -> dict[str, Any]:
         return {"words": self.words}
 
-    def to_text(self) -> str:
-        return file_text(self.words)
+    def to_bytes(self) -> bytes:
+        return table_bytes(self.words)
 
 
 def read_map(file: Path) -> list[int]:
     """Words of one damper or several. UsageError where they are no map."""
-    words = read_file(file)
+    words = read_words(file)
     try:
         maps_of_words(words)
     except ValueError as error:
@@ -73,7 +73,7 @@ def read_map(file: Path) -> list[int]:
     return words
 
 
-def read_words(file: Path) -> MapInverse:
+def read_table(file: Path) -> MapInverse:
     """UsageError where they are no map of one damper."""
     words = read_map(file)
     if (count := len(maps_of_words(words))) > 1:

@@ -2,8 +2,8 @@
 
 A method is a module with NAME, TITLE, HELP, TRACKER (what the controller can do with it) and
 make(source, seed, progress), and its place in METHODS; one whose file is TOML has read(keys,
-max_current_A, where), too. The file of the others, a map's and a bank's among them, is the words
-that the controller loads: to_text of the inverse.
+max_current_A, where), too. The file of the others, a map's and a bank's among them, is the table
+that the controller loads: to_bytes of the inverse.
 """
 
 import json
@@ -36,15 +36,13 @@ from quiesce.damper.inverses.keys import number
 from quiesce.damper.inverses.mapped import MapInverse
 from quiesce.damper.inverses.networks import NetworkInverse
 from quiesce.law.forms.network import TRACK_MAGIC
-from quiesce.law.words import read_file
+from quiesce.table.file import SUFFIX, read_words
 
 SCHEMA = "quiesce-inverse-damper"
 VERSION = 2
 METHODS: dict[str, ModuleType] = {
     one.NAME: one for one in (mapped, steps, feed_forward, recurrent, fuzzy, network, svr, banked)
 }
-# Of files that the controller loads as they are.
-SUFFIX = ".words"
 
 
 def methods_of(text: str) -> list[str]:
@@ -56,13 +54,13 @@ def methods_of(text: str) -> list[str]:
     return names
 
 
-def is_words(method: str) -> bool:
+def is_table(method: str) -> bool:
     """Whether its file is what the controller loads."""
     return not hasattr(METHODS[method], "read")
 
 
 def file_name(method: str) -> str:
-    return f"{method}{SUFFIX}" if is_words(method) else f"inverse_{method}.toml"
+    return f"{method}{SUFFIX}" if is_table(method) else f"inverse_{method}.toml"
 
 
 def check_word(table: Mapping[str, Any]) -> int:
@@ -71,9 +69,9 @@ def check_word(table: Mapping[str, Any]) -> int:
     return zlib.crc32(json.dumps(rest, sort_keys=True, default=str).encode())
 
 
-def text_of(method: str, inverse: Inverse) -> str:
+def bytes_of(method: str, inverse: Inverse) -> bytes:
     if isinstance(inverse, MapInverse | BankInverse | NetworkInverse):
-        return inverse.to_text()
+        return inverse.to_bytes()
     table: dict[str, Any] = {
         "schema": SCHEMA,
         "version": VERSION,
@@ -83,28 +81,28 @@ def text_of(method: str, inverse: Inverse) -> str:
     }
     # As TOML gives it back: the word is of what is read.
     table = tomllib.loads(tomli_w.dumps(table))
-    return tomli_w.dumps({"check": check_word(table), **table})
+    return tomli_w.dumps({"check": check_word(table), **table}).encode()
 
 
 def write_inverse(file: Path, method: str, inverse: Inverse) -> None:
     with output_files(file.parent) as staging:
-        (staging / file.name).write_text(text_of(method, inverse), encoding="utf-8")
+        (staging / file.name).write_bytes(bytes_of(method, inverse))
 
 
-def _read_words(file: Path) -> tuple[str, Inverse]:
-    magic = read_file(file)[:1]
+def _read_table(file: Path) -> tuple[str, Inverse]:
+    magic = read_words(file)[:1]
     if magic == [TRACK_MAGIC]:
         # Its words do not say how it was fitted.
         method = svr.NAME if file.stem == svr.NAME else network.NAME
-        return method, networks.read_words(file)
+        return method, networks.read_table(file)
     one = banked if banked.is_bank(file) else mapped
-    return one.NAME, one.read_words(file)
+    return one.NAME, one.read_table(file)
 
 
 def read_inverse(file: Path) -> tuple[str, Inverse]:
     """Method and inverse. UsageError with file and key where it is wrong."""
     if file.suffix == SUFFIX:
-        return _read_words(file)
+        return _read_table(file)
     where = shown(file)
     try:
         table = tomllib.loads(file.read_text(encoding="utf-8"))

@@ -23,8 +23,8 @@ from quiesce.law.forms.network import (
     read_tracker,
 )
 from quiesce.law.signal import BY_NAME, Signal
-from quiesce.law.words import file_text, read_file
 from quiesce.network.layers import Layers
+from quiesce.table.file import read_words, table_bytes
 
 READ_BY = "tracker network reads it"
 _SEEN = {
@@ -57,8 +57,8 @@ class NetworkInverse:
     def parameters(self) -> dict[str, Any]:
         return {"words": self.table.words()}
 
-    def to_text(self) -> str:
-        return file_text(self.table.words())
+    def to_bytes(self) -> bytes:
+        return table_bytes(self.table.words())
 
 
 def inverse_of(
@@ -81,10 +81,10 @@ def inverse_of(
     return inverse
 
 
-def read_words(file: Path) -> NetworkInverse:
+def read_table(file: Path) -> NetworkInverse:
     """UsageError where they are no network of a tracker."""
     try:
-        table = read_tracker(read_file(file))
+        table = read_tracker(read_words(file))
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}") from None
     if any(one.signal.quantity.name not in _KEYS for one in table.sections[0].inputs):

@@ -20,8 +20,8 @@ from quiesce.damper.inverse import (
 )
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.plain import plain
-from quiesce.law.words import file_text
 from quiesce.report.plot_style import pyplot
+from quiesce.table.file import table_bytes
 
 FORCES = 41
 WHERE = {VELOCITY: "in mid-stroke", STROKE: "where the motion turns"}
@@ -117,9 +117,9 @@ def up_to_limit(found: Monotone) -> SteadyForces:
     return replace(forces, currents_A=forces.currents_A[:kept], force_N=forces.force_N[:, :kept])
 
 
-def write_joined(folder: Path, words: Sequence[int], name: str = "map.words") -> None:
+def write_joined(folder: Path, words: Sequence[int], name: str = "map.table") -> None:
     with output_files(folder) as staging:
-        (staging / name).write_text(file_text(words), encoding="utf-8")
+        (staging / name).write_bytes(table_bytes(words))
 
 
 def write_map(folder: Path, damper: DamperModel, found: Monotone) -> None:
@@ -142,10 +142,10 @@ def write_map(folder: Path, damper: DamperModel, found: Monotone) -> None:
         (staging / "forces.csv").write_text("\n".join([*table, ""]), encoding="utf-8")
         plot_forces(staging / "inverse.svg", damper, found)
         if not why_no_map(found):
-            (staging / "map.words").write_text(file_text(map_words(found)), encoding="utf-8")
+            (staging / "map.table").write_bytes(table_bytes(map_words(found)))
     if why_no_map(found):
         # One of a run before must not pass for this damper's.
-        (folder / "map.words").unlink(missing_ok=True)
+        (folder / "map.table").unlink(missing_ok=True)
 
 
 def plot_forces(file: Path, damper: DamperModel, found: Monotone) -> None:

@@ -10,9 +10,10 @@ import numpy as np
 
 from quiesce.law.sections import read_sections, sealed_sections
 from quiesce.law.signal import Signal, signal
-from quiesce.law.words import Reader
+from quiesce.table.kinds import FRICTION
+from quiesce.table.words import Reader
 
-MAGIC = 0x31524651
+MAGIC = FRICTION.magic
 LIMIT = 2**30 - 1
 OUTWARD, BACK = 1, 2
 

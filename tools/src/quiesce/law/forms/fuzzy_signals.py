@@ -8,14 +8,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from quiesce.law.forms.rule_words import MAX_INPUTS, MAX_OUTPUTS, Rules, read_rules
 from quiesce.law.sections import CurrentSections, limited, read_sections, sealed_sections
 from quiesce.law.signal import Input, read_input
-from quiesce.law.words import Reader
+from quiesce.rules.integers.rule_words import MAX_INPUTS, MAX_OUTPUTS, Rules, read_rules
 from quiesce.rules.model import RuleBase
 from quiesce.rules.reference import evaluate
+from quiesce.table.kinds import RULES_ON_SIGNALS
+from quiesce.table.words import Reader
 
-MAGIC = 0x31534651
+MAGIC = RULES_ON_SIGNALS.magic
 MOST_SLOPES = MAX_OUTPUTS - 1
 MOST_SHIFT = 62
 MOST_A = 20.0

@@ -10,9 +10,10 @@ import numpy as np
 
 from quiesce.law.sections import limited
 from quiesce.law.signal import Input, Signal, read_coefficients, read_input
-from quiesce.law.words import Reader, opened, sealed
+from quiesce.table.kinds import LINEAR
+from quiesce.table.words import Reader, opened, sealed
 
-MAGIC = 0x314E4C51
+MAGIC = LINEAR.magic
 MOST_STATES, MOST_INPUTS, MOST_ROWS = 12, 12, 8
 MOST_STATE_SHIFT, MOST_ROW_SHIFT = 46, 62
 LIMIT_mN = 2**30 - 1

@@ -12,7 +12,6 @@ import numpy as np
 
 from quiesce.law.sections import CurrentSections, read_sections
 from quiesce.law.signal import LIMIT, QUANTITIES, Quantity, Signal, signal_of
-from quiesce.law.words import Reader
 from quiesce.network.layers import (
     MOST_INPUTS,
     MOST_LAYERS,
@@ -22,9 +21,11 @@ from quiesce.network.layers import (
     Layers,
     read_layers,
 )
+from quiesce.table.kinds import INVERSE_NETWORK, NETWORK
+from quiesce.table.words import Reader
 
-MAGIC = 0x314E4E51
-TRACK_MAGIC = 0x314E5451
+MAGIC = NETWORK.magic
+TRACK_MAGIC = INVERSE_NETWORK.magic
 MOST_DELAY, MOST_PAST = 8, 12
 MOST_mA = 20000
 DEMAND = Quantity("demand", 64, "N", 1e3, "damper", 1e6)

@@ -10,9 +10,10 @@ import numpy as np
 
 from quiesce.law.sections import CurrentSections, limited, read_sections
 from quiesce.law.signal import Input, read_input
-from quiesce.law.words import Reader
+from quiesce.table.kinds import POLYNOMIAL
+from quiesce.table.words import Reader
 
-MAGIC = 0x314C5051
+MAGIC = POLYNOMIAL.magic
 MOST_INPUTS, MOST_TERMS, MOST_POWER = 4, 16, 3
 MOST_COEFFICIENT = 2**30 - 1
 MOST_A = 20.0

@@ -10,9 +10,10 @@ import numpy as np
 
 from quiesce.law.sections import CurrentSections, limited, read_sections
 from quiesce.law.signal import COEFFICIENT_LIMIT, Input, read_coefficients, read_input
-from quiesce.law.words import Reader
+from quiesce.table.kinds import SIGNS
+from quiesce.table.words import Reader
 
-MAGIC = 0x31475351
+MAGIC = SIGNS.magic
 MOST_INPUTS, MOST_SIGNS, MOST_SHIFT = 6, 4, 40
 MOST_mA = 20000
 

@@ -4,7 +4,6 @@ firmware/fuzzy/fuzzy_table.h has the layout; fuzzy_table_check() there refuses w
 the engine leave its bounds.
 """
 
-import binascii
 import struct
 from collections.abc import Sequence
 from itertools import product
@@ -19,10 +18,10 @@ from quiesce.rules.integers.compiled import (
     pair_of,
 )
 from quiesce.rules.integers.output_shapes import LayerIntegers, Shape, layer_integers
+from quiesce.rules.integers.rule_words import HEADER_WORDS, MAGIC
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM
+from quiesce.table.words import crc_of
 
-MAGIC = 0x31545A46  # "FZT1"
-HEADER_WORDS = 16
 MAX_WORDS = 65535
 MAX_CELLS = 255  # of an input
 GRID_STRIDE = 8
@@ -71,7 +70,7 @@ def table_words(compiled: CompiledBase) -> list[int]:
         twins | first.fraction << 16 | int(compiled.is_for_controller) << 24,
     ]
     rest = [*header, *quick, *body.words]
-    return [MAGIC, crc32(rest), *rest]
+    return [MAGIC, crc_of(rest), *rest]
 
 
 def block_words(compiled: CompiledBase, form: int) -> list[int]:
@@ -120,10 +119,6 @@ def form_of(compiled: CompiledBase) -> int:
         WEIGHTED_MAX: PARTITION_MAX,
         CENTROID: PARTITION_CENTROID,
     }[compiled.outputs[0].method]
-
-
-def crc32(words: Sequence[int]) -> int:
-    return binascii.crc32(struct.pack(f"<{len(words)}I", *words))
 
 
 def padded(words: Sequence[int], count: int) -> list[int]:

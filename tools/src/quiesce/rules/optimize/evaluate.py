@@ -1,7 +1,7 @@
 """What a rule base does to the structure: the controller with it in closed loop, on the bench.
 
-The one place that knows how a rule base reaches the bench: compiled to the words of the run-time
-table, in a file, by its option `run --rules`.
+The one place that knows how a rule base reaches the bench: compiled to a table, in a file, by its
+option `run --rules`.
 """
 
 import hashlib
@@ -9,48 +9,34 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import build_folder
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.laws import CONSTANT_BEST, OPEN_LOOP, find
 from quiesce.engine.scenarios import Scenario, read_toml
-from quiesce.engine.trace import Trace, read_trace
-from quiesce.hil.metrics import mean_current_A
-from quiesce.hil.runs import TRACE_COLUMNS, Case, Run, reduction_pct
-from quiesce.rules.integers.compile import compile_base
-from quiesce.rules.integers.table import table_words
+from quiesce.hil.metrics import excitation_text
+from quiesce.hil.runs import Case, Run, displacement_um, reduction_pct
+from quiesce.rules.integers.controller import controller_file
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize.objective import Outcome, Steady
-
-# A rule base for the controller has Hz and m/s2 in, A out; the controller uHz, um/s2 and mA.
-INPUT_LSB = (1e-6, 1e-6)
-OUTPUT_LSB = (1e-3,)
 
 
 @dataclass(frozen=True)
 class Place:
-    """One steady state of one scenario."""
+    """One window of one scenario."""
 
     scenario: Scenario
     window: int
-    freq_Hz: float
+    freq_Hz: float  # 0: no one frequency
     drive_V: float
-    amp_um: float  # at 0 A
+    amp_um: float  # at 0 A: amplitude of the displacement; its RMS where there is no one frequency
     accel_rms_mm_s2: float  # at 0 A
 
     @property
     def label(self) -> str:
-        return f"{self.scenario.name}, {self.freq_Hz:g} Hz"
-
-
-def require_controller_shape(base: RuleBase) -> None:
-    if len(base.inputs) != 2 or len(base.outputs) != 1:
-        raise UsageError(
-            f"{base.name} has {len(base.inputs)} inputs and {len(base.outputs)} outputs; the "
-            "controller's rules have two inputs, frequency (Hz) and RMS acceleration (m/s2), and "
-            "one output, current (A)"
-        )
+        return f"{self.scenario.name}, {excitation_text(self.freq_Hz)}"
 
 
 def require_bench_option(bench: Bench) -> None:
@@ -92,10 +78,9 @@ class ClosedLoop:
         return ClosedLoop(self._bench, self._scenarios, self._settings, options)
 
     def of_rules(self, base: RuleBase) -> Outcome:
-        words = table_words(compile_base(base, inputs=list(INPUT_LSB), outputs=list(OUTPUT_LSB)))
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
-            file = Path(folder) / "rules"
-            file.write_text("".join(f"0x{word:08x}\n" for word in words), encoding="ascii")
+            file = Path(folder) / "rules.table"
+            file.write_bytes(controller_file(base))
             return self._outcome("fuzzy", ("--rules", str(file)))
 
     def of_constant(self, current_mA: int) -> Outcome:
@@ -106,7 +91,8 @@ class ClosedLoop:
         found: list[Steady] = []
         for at_rest in self._at_rest:
             run = self._run(at_rest.case.scenario, law, options)
-            found += [steady(run, at_rest, i) for i in range(window_count(run))]
+            pairs = zip(run.figures["windows"], at_rest.figures["windows"], strict=True)
+            found += [steady(ours, base) for ours, base in pairs]
         return tuple(found)
 
     def _run(self, scenario: Scenario, law: str, options: Sequence[str] = ()) -> Run:
@@ -114,41 +100,28 @@ class ClosedLoop:
             "--scenario", str(scenario.file), "--law", law, "--target", "host",
             *setting_options(self._settings), *self._options, *options,
         ]  # fmt: skip
-        case = Case(scenario, find(OPEN_LOOP), "host")
-        if len(scenario.windows_s) < 2:
-            return Run(case, self._bench.json("run", *words), {})
-        # The bench gives the mean current of the last window only.
-        with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
-            file = Path(folder) / "trace"
-            figures = self._bench.json("run", *words, "--trace", str(file))
-            trace: Trace = read_trace(file, TRACE_COLUMNS)
-        return Run(case, figures, trace)
-
-
-def window_count(run: Run) -> int:
-    return 2 if run.figures["freq2_hz"] is not None else 1
-
-
-def keys(window: int) -> tuple[str, str, str]:
-    number = "" if window == 0 else "2"
-    return f"freq{number}_hz", f"amp{number}_um", f"accel_rms{number}_mm_s2"
+        return Run(Case(scenario, find(OPEN_LOOP), "host"), self._bench.json("run", *words), {})
 
 
 def places_of(at_rest: Run) -> list[Place]:
     found = []
-    for window in range(window_count(at_rest)):
-        freq_Hz, amp_um, accel_mm_s2 = (at_rest.figures[key] for key in keys(window))
-        if not amp_um or not accel_mm_s2:
+    for number, window in enumerate(at_rest.figures["windows"]):
+        freq_Hz, accel_mm_s2 = window["freq_hz"], window["accel_rms_mm_s2"]
+        if not displacement_um(window) or not accel_mm_s2:
             raise UsageError(
-                f"scenario {at_rest.case.scenario.name} does not vibrate at {freq_Hz:g} Hz with "
-                "0 A; nothing can be reduced there"
+                f"scenario {at_rest.case.scenario.name} does not vibrate at "
+                f"{excitation_text(freq_Hz)} with 0 A; nothing can be reduced there"
             )
         drive_V = at_rest.figures["drive_V"]
-        found.append(Place(at_rest.case.scenario, window, freq_Hz, drive_V, amp_um, accel_mm_s2))
+        found.append(Place(at_rest.case.scenario, number, freq_Hz, drive_V,
+                           displacement_um(window), accel_mm_s2))  # fmt: skip
     return found
 
 
-def steady(run: Run, at_rest: Run, window: int) -> Steady:
-    _, amp, accel = keys(window)
-    reductions = [reduction_pct(run.figures[key], at_rest.figures[key]) for key in (amp, accel)]
-    return Steady(reductions[0] or 0.0, reductions[1] or 0.0, mean_current_A(run, window))
+def steady(ours: dict[str, Any], base: dict[str, Any]) -> Steady:
+    """Of a window, and of the same one at 0 A."""
+    return Steady(
+        reduction_pct(displacement_um(ours), displacement_um(base)) or 0.0,
+        reduction_pct(ours["accel_rms_mm_s2"], base["accel_rms_mm_s2"]) or 0.0,
+        ours["mean_current_A"],
+    )

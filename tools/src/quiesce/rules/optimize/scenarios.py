@@ -1,6 +1,7 @@
 """Scenario files made for a sweep: steady vibration at given frequencies and drive voltages."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from quiesce.base.errors import UsageError, one_line
@@ -11,6 +12,16 @@ from quiesce.engine.scenarios import SCHEMA, Scenario
 
 SETTLE_s, MAX_SETTLE_s, MEASURE_s = 6, 600, 2
 NOISE_mg = 0.5
+
+
+@dataclass(frozen=True)
+class Steadies:
+    """Steady vibration of one plant at every frequency and drive."""
+
+    plant: Path
+    freqs_Hz: Sequence[float]
+    drives_V: Sequence[float | None]  # None: the plant's
+    settle_s: int
 
 
 def plant_file(name: str | None) -> Path:

@@ -12,9 +12,10 @@ import numpy as np
 from quiesce.base.progress import say
 from quiesce.engine.bench import Bench
 from quiesce.engine.scenarios import Scenario
+from quiesce.rules.integers.controller import require_controller_shape
 from quiesce.rules.model import RuleBase
 from quiesce.rules.optimize import state as optimize_state
-from quiesce.rules.optimize.evaluate import ClosedLoop, bench_digest, require_controller_shape
+from quiesce.rules.optimize.evaluate import ClosedLoop, bench_digest
 from quiesce.rules.optimize.genes import Genome, Space, make_space
 from quiesce.rules.optimize.lookup import Sweep, best_constants, sweep
 from quiesce.rules.optimize.methods import NSGA2, Settings, make_search, settings_json
@@ -22,11 +23,11 @@ from quiesce.rules.optimize.nsga2 import fronts
 from quiesce.rules.optimize.objective import Objective, Outcome
 from quiesce.rules.optimize.result import Found, FrontPoint, NoiseCheck
 from quiesce.rules.optimize.run import Limits, Problem, Runner, simplify
-from quiesce.rules.optimize.scenarios import steady_scenarios
-from quiesce.rules.optimize.start import FREQS_Hz, recipe_base
+from quiesce.rules.optimize.scenarios import Steadies, steady_scenarios
+from quiesce.rules.optimize.start import recipe_base
 from quiesce.rules.optimize.state import State
 
-CONSTANT_STEP_mA = 250
+CONSTANT_STEP_mA, FEWEST_STEPS = 250, 8
 CHECK_SEEDS = (101, 102, 103)
 # A gene that changes the cost by less than this (%) goes back to what it was.
 WORTH_pct = 0.005
@@ -50,13 +51,22 @@ class Task:
 
 
 def start_from_recipe(
-    bench: Bench, folder: Path, plant: Path, max_current_A: float, pool: Executor
+    bench: Bench, folder: Path, steady: Steadies, max_current_A: float, pool: Executor
 ) -> RuleBase:
-    """The published recipe on this plant; for the published plant, the rules that ship."""
-    say("start: the published recipe, constant currents swept at 5, 10, 15 and 20 Hz")
-    steady = steady_scenarios(bench, folder, plant, FREQS_Hz, [None])
-    found = sweep(ClosedLoop(bench, steady), round(1000 * max_current_A), CONSTANT_STEP_mA, pool)
+    """The published recipe on a plant; for the published plant, the rules that ship."""
+    freqs = ", ".join(f"{freq_Hz:g}" for freq_Hz in steady.freqs_Hz)
+    say(f"start: the published recipe, constant currents swept at {freqs} Hz")
+    swept = steady_scenarios(
+        bench, folder, steady.plant, steady.freqs_Hz, steady.drives_V, steady.settle_s
+    )
+    top_mA = round(1000 * max_current_A)
+    found = sweep(ClosedLoop(bench, swept), top_mA, constant_step_mA(top_mA), pool)
     return recipe_base(found, "recipe", max_current_A)
+
+
+def constant_step_mA(top_mA: int) -> int:
+    """So that a driver of a small current has several steps, too."""
+    return max(1, min(CONSTANT_STEP_mA, top_mA // FEWEST_STEPS))
 
 
 def file_digest(file: Path) -> str:
@@ -151,7 +161,7 @@ class Session:
     def _sweep(self) -> Sweep:
         say("for comparison: constant currents")
         top_mA = round(1000 * self._task.objective.max_current_A)
-        return sweep(self._loop, top_mA, CONSTANT_STEP_mA, self._pool)
+        return sweep(self._loop, top_mA, constant_step_mA(top_mA), self._pool)
 
     def _checks(self, best: RuleBase) -> list[NoiseCheck]:
         """Start and best under noise that the search has not seen."""

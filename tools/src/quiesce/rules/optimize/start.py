@@ -8,8 +8,12 @@ is the rule base that the controller ships with.
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
 from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.engine.scenarios import read_toml
 from quiesce.rules.model import (
     WEIGHTED_SUM,
     Condition,
@@ -24,6 +28,9 @@ from quiesce.rules.model import (
 from quiesce.rules.optimize.lookup import Sweep, accel_left
 
 FREQS_Hz = (5.0, 10.0, 15.0, 20.0)
+AROUND = (0.5, 1.0, 1.5)  # one frequency
+SPREAD = 4  # sets over a band
+BANDS = ("chirp", "random")
 FREQ_NAMES = {
     2: ("S", "VH"),
     3: ("S", "M", "H"),
@@ -36,6 +43,40 @@ RMS_NAMES = ("S", "M", "H", "VH")
 RMS_SHARES = (1 / 9, 1 / 3, 2 / 3, 1.0)
 TERM_NAMES = ("Z", "S", "M", "L", "VL")
 INFINITE = float("inf")
+
+
+def start_freqs_Hz(files: Sequence[Path], is_published: bool) -> list[float]:
+    """Where the recipe has its sets: at the frequencies of the scenarios, a few of them where they
+    are many, or spread over their bands. is_published: the plant is, and so are its frequencies.
+    UsageError where they have none."""
+    if is_published:
+        return list(FREQS_Hz)
+    segments = [segment for file in files for segment in read_toml(file)["segment"]]
+    own = {float(freq_Hz) for segment in segments for freq_Hz in frequencies_of(segment)}
+    freqs_Hz = sorted(own)
+    if not freqs_Hz:
+        raise UsageError(
+            f"{shown(files[0])} has no frequency for the sets of a rule base to begin with; give "
+            "--start FILE ('quiesce rules lookup --write' makes one), or --freq"
+        )
+    if len(freqs_Hz) == 1:
+        return [part * freqs_Hz[0] for part in AROUND]
+    is_band = any(segment["kind"] in BANDS for segment in segments)
+    if is_band or len(freqs_Hz) > max(FREQ_NAMES):
+        return spread_Hz(freqs_Hz[0], freqs_Hz[-1])
+    return freqs_Hz
+
+
+def frequencies_of(segment: dict[str, Any]) -> list[float]:
+    found = [
+        segment[key] for key in ("freq_Hz", "end_freq_Hz", "low_Hz", "high_Hz") if key in segment
+    ]
+    return found + [tone["freq_Hz"] for tone in segment.get("tone", [])]
+
+
+def spread_Hz(low_Hz: float, high_Hz: float) -> list[float]:
+    gap_Hz = (high_Hz - low_Hz) / (SPREAD - 1)
+    return [float(f"{low_Hz + i * gap_Hz:.4g}") for i in range(SPREAD)]
 
 
 def chain(names: Sequence[str], tops: Sequence[float]) -> tuple[FuzzySet, ...]:

@@ -16,7 +16,7 @@ from quiesce.compare.run import Case, Comparison
 from quiesce.engine.bench import setting_options
 from quiesce.law.recipe import Made, Recipe, make
 from quiesce.law.rig import LawRig
-from quiesce.law.words import file_text
+from quiesce.table.file import SUFFIX, table_bytes
 from quiesce.tune.gains.aim import Runs
 from quiesce.tune.gains.defaults import INDEX
 from quiesce.tune.gains.space import Space
@@ -44,6 +44,10 @@ class Tunable:
         except ValueError as error:
             raise UsageError(f"{self.recipe.name}: {error}")
 
+    def file(self, values: dict[str, float]) -> bytes:
+        """Of the table, for the rig's board. UsageError likewise."""
+        return table_bytes(self.words(values), self.rig.board_crc32)
+
     def parameters(self, values: dict[str, float]) -> dict[str, int | str]:
         """Of the controller, beside the table."""
         tracker = {"tracker": self.tracker} if self.tracker else {}
@@ -52,11 +56,11 @@ class Tunable:
     @contextmanager
     def law(self, values: dict[str, float]) -> Iterator[ComparedLaw]:
         """For the bench; its table is in a file as long as this lasts. UsageError as of `words`."""
-        text = file_text(self.words(values))
+        data = self.file(values)
         settings = [f"{name}={value}" for name, value in self.parameters(values).items()]
         of_map = ("--force-map", str(self.map_file)) if self.map_file else ()
-        with tempfile.NamedTemporaryFile("w", prefix="quiesce-tune-", suffix=".words") as file:
-            file.write(text)
+        with tempfile.NamedTemporaryFile(prefix="quiesce-tune-", suffix=SUFFIX) as file:
+            file.write(data)
             file.flush()
             options = ("--law-table", file.name, *of_map, *setting_options(settings))
             yield ComparedLaw(self.recipe.name, self.made(values).table.law, options)

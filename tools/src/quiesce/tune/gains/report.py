@@ -9,7 +9,7 @@ import tomli_w
 from quiesce.base.atomic import output_files
 from quiesce.base.paths import shown
 from quiesce.base.table import format_table
-from quiesce.law.words import file_text
+from quiesce.table.file import SUFFIX
 from quiesce.tune.gains.aim import Runs
 from quiesce.tune.gains.page import page
 from quiesce.tune.gains.run import Tuned
@@ -76,13 +76,13 @@ def text(tuned: Tuned) -> str:
 
 def names(tuned: Tuned) -> list[str]:
     stem = tuned.order.recipe.name
-    return [f"{stem}.toml", f"{stem}.words", "tune.html", "tune.json"]
+    return [f"{stem}.toml", f"{stem}{SUFFIX}", "tune.html", "tune.json"]
 
 
 def compare_command(tuned: Tuned) -> str:
     """Runs it beside constants."""
     order, best = tuned.order, tuned.best.values
-    words = {"table": shown(order.folder / f"{order.recipe.name}.words")}
+    words = {"table": shown(order.folder / f"{order.recipe.name}{SUFFIX}")}
     words |= {"map": shown(order.map_file)} if order.map_file else {}
     words |= {name: str(value) for name, value in tuned.tunable.parameters(best).items()}
     law = tuned.tunable.made(best).table.law
@@ -128,11 +128,10 @@ def settings_toml(tuned: Tuned) -> str:
 
 def write(tuned: Tuned) -> None:
     """All of `names`, or none."""
-    toml, words, html, json_file = names(tuned)
+    toml, table, html, json_file = names(tuned)
     with output_files(tuned.order.folder) as folder:
         (folder / toml).write_text(settings_toml(tuned), encoding="utf-8")
-        table = tuned.tunable.words(tuned.best.values)
-        (folder / words).write_text(file_text(table), encoding="ascii")
+        (folder / table).write_bytes(tuned.tunable.file(tuned.best.values))
         made = page(tuned, value_rows(tuned), record_rows(tuned), compare_command(tuned))
         (folder / html).write_text(made, encoding="utf-8")
         (folder / json_file).write_text(json.dumps(data_of(tuned), indent=1) + "\n", "utf-8")

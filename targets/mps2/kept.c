@@ -1,0 +1,66 @@
+#include "kept.h"
+
+#include "can_node.h"
+#include "table_file.h"
+
+_Static_assert((uint32_t)KEEPER_RECORDS <= HAL_NVM_RECORDS, "a record for each of the node's");
+_Static_assert(QUIESCE_TABLE_WORDS <= HAL_NVM_MAX_WORDS, "the longest table fits");
+
+void kept_open(kept_t *kept, const quiesce_board_t *board, const quiesce_params_t *shipped) {
+    kept->memory = (hal_nvm_memory_t){.words = (volatile uint32_t *)NVM_MPS2_BASE};
+    kept->shipped_hash = can_node_param_hash(shipped);
+    kept->is_writing = false;
+    (void)nvm_records_open(&kept->nvm, &kept->memory, table_file_board(board));
+}
+
+uint32_t kept_read(kept_t *kept, keeper_record_t record) {
+    uint32_t count;
+    (void)hal_nvm_read(&kept->nvm, (uint32_t)record, kept->words, &count);
+    return count;
+}
+
+uint32_t kept_writes(const kept_t *kept, keeper_record_t record) {
+    return hal_nvm_writes(&kept->nvm, (uint32_t)record);
+}
+
+static void copy(uint32_t *to, const uint32_t *from, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        to[i] = from[i];
+    }
+}
+
+// Parameters come after the hash of those that ship.
+static uint32_t head_words(keeper_record_t record) {
+    return record == KEEPER_PARAMS ? 1u : 0u;
+}
+
+bool kept_read_params(kept_t *kept, quiesce_params_t *params) {
+    if (kept_read(kept, KEEPER_PARAMS) != 1u + QUIESCE_PARAM_COUNT ||
+        kept->words[0] != kept->shipped_hash) {
+        return false;
+    }
+    copy((uint32_t *)(void *)params, &kept->words[1], QUIESCE_PARAM_COUNT);
+    return true;
+}
+
+keeper_answer_t kept_store(void *context, keeper_record_t record, const uint32_t *words,
+                           uint32_t count) {
+    kept_t *const kept = context;
+    const uint32_t head = head_words(record);
+    if (kept->is_writing) {
+        return KEEPER_BUSY;
+    }
+    if (count > HAL_NVM_MAX_WORDS - head) {
+        return KEEPER_FAILED;
+    }
+    kept->words[0] = kept->shipped_hash;
+    copy(&kept->words[head], words, count);
+    kept->is_writing = hal_nvm_begin(&kept->nvm, (uint32_t)record, kept->words, head + count);
+    return kept->is_writing ? KEEPER_BEGUN : KEEPER_FAILED;
+}
+
+hal_nvm_progress_t kept_work(kept_t *kept) {
+    const hal_nvm_progress_t progress = hal_nvm_work(&kept->nvm);
+    kept->is_writing = progress == HAL_NVM_BUSY;
+    return progress;
+}

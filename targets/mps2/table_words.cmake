@@ -1,0 +1,47 @@
+# cmake -DTABLES=a.table;.. -DOUT=file.c -P table_words.cmake: files of tables as words in C, of their
+# heads, too: `shipped_tables`, NULL after the last. Fails with one line where a file is none.
+set(MAGIC 31465451) # "QTF1"
+set(MOST_WORDS 2048)
+set(HEAD_WORDS 4)
+
+# Word 0 .. of hexadecimal digits in the file's order: little-endian.
+function(word out hex place)
+  math(EXPR at "8 * ${place}")
+  string(SUBSTRING "${hex}" ${at} 8 digits)
+  string(REGEX REPLACE "(..)(..)(..)(..)" "\\4\\3\\2\\1" digits "${digits}")
+  set(${out} ${digits} PARENT_SCOPE)
+endfunction()
+
+# The file's digits. Fails unless its size is what its head says.
+function(read_table out file)
+  math(EXPR least "4 * (${HEAD_WORDS} + 4)")
+  math(EXPR most "4 * (${HEAD_WORDS} + ${MOST_WORDS})")
+  file(SIZE "${file}" bytes)
+  if(bytes LESS least OR bytes GREATER most)
+    message(FATAL_ERROR "${file}: is no table: it has ${bytes} bytes, a table ${least} .. ${most}")
+  endif()
+  file(READ "${file}" hex HEX)
+  word(magic "${hex}" 0)
+  if(NOT magic STREQUAL MAGIC)
+    message(FATAL_ERROR "${file}: is no table: it begins with 0x${magic}, not 0x${MAGIC}")
+  endif()
+  word(words "${hex}" 2)
+  math(EXPR expected "4 * (${HEAD_WORDS} + 0x${words})")
+  if(NOT bytes EQUAL expected)
+    message(FATAL_ERROR "${file}: has ${bytes} bytes; its head says ${expected}")
+  endif()
+  set(${out} ${hex} PARENT_SCOPE)
+endfunction()
+
+set(text "// Made by table_words.cmake.\n#include \"shipped.h\"\n\n#include <stddef.h>\n")
+set(names "")
+set(number 0)
+foreach(file IN LISTS TABLES)
+  read_table(hex "${file}")
+  string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1u,\n" words "${hex}")
+  string(APPEND text "\nstatic const uint32_t table_${number}[] = {\n${words}};\n")
+  string(APPEND names "table_${number}, ")
+  math(EXPR number "${number} + 1")
+endforeach()
+string(APPEND text "\nconst uint32_t *const shipped_tables[] = {${names}NULL};\n")
+file(WRITE "${OUT}" "${text}")

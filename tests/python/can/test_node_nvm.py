@@ -1,0 +1,274 @@
+"""What the controller image keeps over a power-up, in a file that QEMU keeps the board's memory in.
+
+A power cut is QEMU's end by SIGKILL at a chosen write to that memory, where its debugger's stub has
+stopped it: what the image has written until then is in the file.
+"""
+
+import random
+import socket
+import struct
+import zlib
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, require
+from quiesce.tune.phase_table import read_law
+from quiesce.tune.phase_words import law_words
+from test_node_image import DEADLINE_S, Rig, param_index, running
+
+# hal/mps2/nvm_mps2.h, hal/records/nvm_records.h
+MEMORY_BASE = 0x21000000
+AREA_BASE = 0x21FE0000
+SLOT_BYTES = 3 * 4096
+MAGIC = 0x304D5651
+HEAD_WORDS = 4
+MOST_WORDS = 2048
+NO_BOARD = 0  # the memory's owner
+
+PARAMS, LAW_TABLE = 0, 1  # records
+LAW, LEARNT = 0, 2  # roads
+INFO_CRC, INFO_STORED_CRC, INFO_SOURCE, INFO_WRITES = 0, 2, 3, 5
+SHIPS, FROM_STORE = 1, 3
+PHASE = 4  # the law
+CURRENT = "constant_current_mA"
+
+
+def slot_base(record: int, slot: int) -> int:
+    return AREA_BASE + (2 * record + slot) * SLOT_BYTES
+
+
+def crc_of(head: Sequence[int], words: Sequence[int]) -> int:
+    covered = (NO_BOARD, *head, *words)
+    return zlib.crc32(struct.pack(f"<{len(covered)}I", *covered))
+
+
+def pulses(unlock_current_mA: int) -> tuple[int, ...]:
+    """A table of the law `phase`: what ships, but for a current."""
+    law = read_law(ROOT / "firmware/plants/squeeze_2012/pulses.phase.toml")
+    return tuple(law_words(replace(law, unlock_current_mA=unlock_current_mA)))
+
+
+class Memory:
+    """The board's memory as a file."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def options(self) -> tuple[str, ...]:
+        """As docs/reference/targets.md has them."""
+        backend = f"memory-backend-file,id=kept,share=on,size=16M,mem-path={self.path}"
+        return ("-object", backend, "-M", "mps2-an386,memory-backend=kept")
+
+    def words(self, address: int, count: int) -> tuple[int, ...]:
+        with self.path.open("rb") as file:
+            file.seek(address - MEMORY_BASE)
+            return struct.unpack(f"<{count}I", file.read(4 * count))
+
+    def write(self, address: int, words: Sequence[int]) -> None:
+        with self.path.open("r+b") as file:
+            file.seek(address - MEMORY_BASE)
+            file.write(struct.pack(f"<{len(words)}I", *words))
+
+    def flip(self, address: int) -> None:
+        self.write(address, [self.words(address, 1)[0] ^ 1])
+
+    def put(self, record: int, words: Sequence[int]) -> None:
+        """In place of what a start finds, or as the first write."""
+        sequence, _ = self.kept(record) or (1, ())
+        head = (sequence, len(words), MAGIC + (record << 24))
+        self.write(self.newest(record), (crc_of(head, words), *head, *words))
+
+    def slot(self, record: int, slot: int) -> tuple[int, tuple[int, ...]] | None:
+        """Number of the write and the record's words; None where the slot is not whole."""
+        crc, sequence, count, magic = self.words(slot_base(record, slot), HEAD_WORDS)
+        if magic != MAGIC + (record << 24) or count > MOST_WORDS:
+            return None
+        words = self.words(slot_base(record, slot) + 4 * HEAD_WORDS, count)
+        is_whole = crc == crc_of((sequence, count, magic), words)
+        return (sequence, words) if is_whole else None
+
+    def kept(self, record: int) -> tuple[int, tuple[int, ...]] | None:
+        """What a start finds."""
+        return max((one for slot in (0, 1) if (one := self.slot(record, slot))), default=None)
+
+    def newest(self, record: int) -> int:
+        """Where its slot begins; the first write goes to slot 1."""
+        kept = self.kept(record)
+        return slot_base(record, int(kept is None or self.slot(record, 1) == kept))
+
+    def spare(self, record: int) -> int:
+        """The other slot."""
+        return 2 * slot_base(record, 0) + SLOT_BYTES - self.newest(record)
+
+
+class Stub:
+    """QEMU's stub for a debugger (the remote protocol of GDB): stops the board at a write."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def options(self) -> tuple[str, ...]:
+        return ("-gdb", f"unix:{self.path},server=on,wait=off")
+
+    @contextmanager
+    def attached(self) -> Iterator["Stub"]:
+        """The board stands still until until_written."""
+        with socket.socket(socket.AF_UNIX) as self.line:
+            self.line.settimeout(DEADLINE_S)
+            self.line.connect(str(self.path))
+            yield self
+
+    def tell(self, text: str, answer: str) -> None:
+        """Passes over packets until the one that begins so."""
+        self.line.sendall(f"+${text}#{sum(text.encode()) % 256:02x}".encode())
+        while not self.packet().startswith(answer):
+            pass
+
+    def packet(self) -> str:
+        text = b""
+        while not (b"$" in text and text[-3:-2] == b"#"):
+            byte = self.line.recv(1)
+            assert byte, "QEMU has ended"
+            text += byte
+        return text[text.index(b"$") + 1 : -3].decode()
+
+    def until_written(self, address: int, times: int) -> None:
+        """The board runs until the word has just been written that often: it stops before a
+        write, which a step then does."""
+        for _ in range(times):
+            self.tell(f"Z2,{address:x},4", "OK")
+            self.tell("c", "T05")
+            self.tell(f"z2,{address:x},4", "OK")
+            self.tell("s", "T05")
+
+
+@pytest.fixture
+def image(build: Path) -> Path:
+    return require(build / "mps2/targets/mps2/quiesce_mps2_node.elf")
+
+
+@pytest.fixture
+def memory(tmp_path: Path) -> Memory:
+    return Memory(tmp_path / "memory")
+
+
+def save_with(rig: Rig, name: str, value: int) -> None:
+    assert rig.ask("STAGE", param_index(name), value)["result"] == "DONE"
+    assert rig.ask("APPLY")["result"] == "DONE"
+    assert rig.ask("SAVE")["result"] == "DONE"
+
+
+def current_of(rig: Rig) -> int:
+    return rig.ask("READ", param_index(CURRENT))["param_value"]
+
+
+def info(rig: Rig, road: int, what: int) -> int:
+    reply = rig.ask("TABLE_INFO", road, what)
+    assert reply["result"] == "DONE"
+    return reply["param_value"] & 0xFFFFFFFF
+
+
+def test_saved_parameters_are_used_after_a_power_up(image: Path, memory: Memory) -> None:
+    with running(image, memory.options()) as rig:
+        shipped = current_of(rig)
+        save_with(rig, CURRENT, 1234)
+    with running(image, memory.options()) as rig:
+        assert current_of(rig) == 1234
+    # Both slots damaged: what ships is used, and others can be saved.
+    for slot in range(2):
+        memory.flip(slot_base(PARAMS, slot) + 40)
+    with running(image, memory.options()) as rig:
+        assert current_of(rig) == shipped
+        save_with(rig, CURRENT, 555)
+    with running(image, memory.options()) as rig:
+        assert current_of(rig) == 555
+
+
+@pytest.mark.slow
+def test_saved_tables_are_used_after_a_power_up(image: Path, memory: Memory) -> None:
+    with running(image, memory.options()) as rig:
+        save_with(rig, "law", PHASE)
+        shipped = info(rig, LAW, INFO_CRC)
+    memory.put(LAW_TABLE, pulses(777))
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == info(rig, LAW, INFO_STORED_CRC) == pulses(777)[1]
+        assert info(rig, LAW, INFO_SOURCE) == FROM_STORE and info(rig, LAW, INFO_WRITES) == 1
+        assert rig.ask("TABLE_SAVE", LAW)["result"] == "DONE"
+        assert rig.ask("TABLE_SAVE", LEARNT)["result"] == "DONE"
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == pulses(777)[1] and info(rig, LAW, INFO_WRITES) >= 2
+        assert rig.ask("LEARNT_RESTORE")["result"] == "DONE"
+        assert rig.ask("TABLE_SHIP", LAW)["result"] == "DONE"
+        assert rig.ask("TABLE_SAVE", LAW)["result"] == "DONE"  # forgets it
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == shipped and info(rig, LAW, INFO_STORED_CRC) == 0
+        assert info(rig, LAW, INFO_SOURCE) == SHIPS and info(rig, LAW, INFO_WRITES) >= 3
+        assert rig.ask("LEARNT_RESTORE")["result"] == "TABLE_REFUSED"  # of the other table
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A record, how it is asked for and saved, and the word that tells it apart."""
+
+    record: int
+    save: str
+    question: tuple[str, int]
+    place: int
+
+
+SUBJECTS = [
+    Subject(PARAMS, "SAVE", ("READ", param_index(CURRENT)), 1 + param_index(CURRENT)),
+    Subject(LAW_TABLE, "TABLE_SAVE", ("TABLE_INFO", LAW), 1),
+]
+# Word of the slot, and the write to it: the first one erases, the second one programs.
+ANY = random.Random(20)
+MOMENTS = [
+    *[(word, 1) for word in (0, 3, ANY.randrange(4, 1024))],
+    *[(word, 2) for word in (4, ANY.randrange(5, 40), 0, 2, 3)],
+]
+
+
+def settled(rig: Rig, operation: str, index: int) -> int:
+    """The answer, once no request is under way: none was asked twice."""
+    while True:
+        asked = rig.alive.get("ServiceRequest", 0)
+        answer = rig.ask(operation, index)["param_value"]
+        if rig.alive["ServiceRequest"] == asked + 1:
+            return answer & 0xFFFFFFFF
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("subject", SUBJECTS, ids=("parameters", "table"))
+def test_power_cut_leaves_the_old_or_the_new(
+    image: Path, memory: Memory, tmp_path: Path, subject: Subject
+) -> None:
+    stub = Stub(tmp_path / "stub")
+    with running(image, memory.options()) as rig:
+        save_with(rig, "law", PHASE)
+    _, params = memory.kept(PARAMS)
+    at = subject.place
+    words = {
+        PARAMS: [(*params[:at], 700 + i, *params[at + 1 :]) for i in range(2)],
+        LAW_TABLE: [pulses(700 + i) for i in range(2)],
+    }[subject.record]
+    memory.put(subject.record, words[0])
+    outcomes = set()
+    for word, times in MOMENTS:
+        with running(image, (*memory.options(), *stub.options())) as rig:
+            _, used = memory.kept(subject.record)
+            assert settled(rig, *subject.question) == used[subject.place]
+            # Behind its back the record becomes the other one, which it replaces.
+            memory.put(subject.record, words[1 - words.index(used)])
+            with stub.attached():
+                rig.send("ServiceRequest", operation=subject.save)
+                stub.until_written(memory.spare(subject.record) + 4 * word, times)
+                rig.cut_power()
+        _, found = memory.kept(subject.record)
+        assert found in words
+        outcomes.add(found == used)
+    with running(image, memory.options()) as rig:
+        assert settled(rig, *subject.question) == found[subject.place]
+    assert outcomes == {False, True}

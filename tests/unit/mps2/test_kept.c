@@ -1,0 +1,126 @@
+// What the node image keeps: which records come back after a power-up, and what the node is
+// answered while one is being written.
+#include "kept.h"
+#include "unity.h"
+
+static kept_t kept;
+static quiesce_params_t shipped;
+static const quiesce_board_t *wired;
+
+// A power-up: only the memory is left.
+static void start(void) {
+    kept = (kept_t){0};
+    kept_open(&kept, wired, &shipped);
+    for (uint32_t i = 0; i < KEEPER_RECORDS; i++) {
+        (void)kept_read(&kept, (keeper_record_t)i);
+    }
+}
+
+void setUp(void) {
+    for (uint32_t i = 0; i < NVM_MPS2_WORDS; i++) {
+        ((volatile uint32_t *)NVM_MPS2_BASE)[i] = 0;
+    }
+    quiesce_params_default(&shipped);
+    wired = NULL;
+    start();
+}
+
+void tearDown(void) {}
+
+static hal_nvm_progress_t work(void) {
+    hal_nvm_progress_t progress = HAL_NVM_BUSY;
+    for (uint32_t i = 0; i < 1000u && progress == HAL_NVM_BUSY; i++) {
+        progress = kept_work(&kept);
+    }
+    return progress;
+}
+
+static void store(keeper_record_t record, const uint32_t *words, uint32_t count) {
+    TEST_ASSERT_EQUAL(KEEPER_BEGUN, kept_store(&kept, record, words, count));
+    TEST_ASSERT_EQUAL(HAL_NVM_DONE, work());
+}
+
+static void store_params(const quiesce_params_t *params) {
+    store(KEEPER_PARAMS, (const uint32_t *)(const void *)params, QUIESCE_PARAM_COUNT);
+}
+
+static void test_parameters_come_back_while_those_that_ship_are_the_same(void) {
+    quiesce_params_t params = shipped;
+    quiesce_params_t back = {0};
+    TEST_ASSERT_FALSE(kept_read_params(&kept, &back));
+    params.constant_current_mA++;
+    store_params(&params);
+    start();
+    TEST_ASSERT_TRUE(kept_read_params(&kept, &back));
+    TEST_ASSERT_EQUAL_MEMORY(&params, &back, sizeof params);
+    shipped.band_low_mHz++;
+    start();
+    TEST_ASSERT_FALSE(kept_read_params(&kept, &back));
+}
+
+static void test_parameters_of_another_number_or_forgotten_are_none(void) {
+    quiesce_params_t back;
+    store(KEEPER_PARAMS, (const uint32_t *)(const void *)&shipped, QUIESCE_PARAM_COUNT - 1u);
+    TEST_ASSERT_FALSE(kept_read_params(&kept, &back));
+    store_params(&shipped);
+    TEST_ASSERT_TRUE(kept_read_params(&kept, &back));
+    store(KEEPER_PARAMS, NULL, 0);
+    TEST_ASSERT_FALSE(kept_read_params(&kept, &back));
+}
+
+static void test_longest_table_comes_back_and_is_forgotten(void) {
+    static uint32_t words[QUIESCE_TABLE_WORDS];
+    words[7] = 7;
+    store(KEEPER_LAW_TABLE, words, QUIESCE_TABLE_WORDS);
+    start();
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_TABLE_WORDS, kept_read(&kept, KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_HEX32_ARRAY(words, kept.words, QUIESCE_TABLE_WORDS);
+    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_TRACKER_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(1, kept_writes(&kept, KEEPER_LAW_TABLE));
+    store(KEEPER_LAW_TABLE, NULL, 0);
+    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(2, kept_writes(&kept, KEEPER_LAW_TABLE));
+}
+
+static void test_table_of_another_board_is_not_used(void) {
+    static quiesce_board_t board;
+    const uint32_t words[4] = {1, 2, 3, 4};
+    store(KEEPER_LAW_TABLE, words, 4);
+    wired = &board;
+    start();
+    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_LAW_TABLE));
+    store(KEEPER_LAW_TABLE, words, 3);
+    start();
+    TEST_ASSERT_EQUAL_UINT32(3, kept_read(&kept, KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(2, kept_writes(&kept, KEEPER_LAW_TABLE));
+}
+
+static void test_too_many_words_fail_at_once(void) {
+    TEST_ASSERT_EQUAL(KEEPER_FAILED,
+                      kept_store(&kept, KEEPER_LAW_TABLE, NULL, HAL_NVM_MAX_WORDS + 1u));
+    TEST_ASSERT_EQUAL(KEEPER_FAILED, kept_store(&kept, KEEPER_PARAMS, NULL, HAL_NVM_MAX_WORDS));
+    TEST_ASSERT_EQUAL(HAL_NVM_IDLE, kept_work(&kept));
+}
+
+static void test_one_at_a_time_with_the_words_of_its_call(void) {
+    uint32_t words[2] = {1, 2};
+    TEST_ASSERT_EQUAL(KEEPER_BEGUN, kept_store(&kept, KEEPER_LEARNT, words, 2));
+    words[1] = 9;
+    TEST_ASSERT_EQUAL(KEEPER_BUSY, kept_store(&kept, KEEPER_LAW_TABLE, words, 2));
+    TEST_ASSERT_EQUAL(HAL_NVM_DONE, work());
+    TEST_ASSERT_EQUAL(HAL_NVM_IDLE, kept_work(&kept)); // told once
+    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(2, kept_read(&kept, KEEPER_LEARNT));
+    TEST_ASSERT_EQUAL_UINT32(2, kept.words[1]);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_parameters_come_back_while_those_that_ship_are_the_same);
+    RUN_TEST(test_parameters_of_another_number_or_forgotten_are_none);
+    RUN_TEST(test_longest_table_comes_back_and_is_forgotten);
+    RUN_TEST(test_table_of_another_board_is_not_used);
+    RUN_TEST(test_too_many_words_fail_at_once);
+    RUN_TEST(test_one_at_a_time_with_the_words_of_its_call);
+    return UNITY_END();
+}

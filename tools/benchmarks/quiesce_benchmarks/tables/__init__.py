@@ -1,0 +1,1 @@
+"""The road of a table: into a controller at work, into its memory, and back."""

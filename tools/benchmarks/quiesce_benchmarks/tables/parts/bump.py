@@ -1,0 +1,76 @@
+"""The current at the moment at which an armed controller takes another table: no step beyond the
+slew limit."""
+
+import tempfile
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from quiesce.base.errors import BenchFailure
+from quiesce.base.table import format_table
+
+from quiesce_benchmarks.part import Effort, Measured
+from quiesce_benchmarks.tables.client import Client, SLEW_mA, client_of
+from quiesce_benchmarks.tables.line import RUNNING
+from quiesce_benchmarks.tables.parts.roads import prepare
+from quiesce_benchmarks.tables.samples import Sample, all_samples
+from quiesce_benchmarks.tables.targets import HostNode, running
+
+TITLE = "bump: the current where an armed controller takes another table"
+FIGURES = (("bump_mA", "mA", 0.0, "lower"),)
+CHANGES, QUICK_CHANGES = 8, 2
+AFTER_TICKS = 500
+
+
+def steps_mA(demands: list[tuple[int, int, int]]) -> list[int]:
+    """From tick to tick. BenchFailure where one is missing or the output was let go."""
+    if any((after[2] - before[2]) % 16 != 1 for before, after in pairwise(demands)):
+        raise BenchFailure("a demand is missing")
+    if any(one[1] not in RUNNING for one in demands):
+        raise BenchFailure("it did not run throughout")
+    return [abs(after[0] - before[0]) for before, after in pairwise(demands)]
+
+
+def change(client: Client, sample: Sample, number: int) -> list[int]:
+    """Steps while a table comes, and after it is used; every fourth time it goes back instead."""
+    line, road = client.line, sample.road
+    begin = len(line.demands) - 1
+    if number % 4 == 3 and road != "learnt":
+        client.tables.revert(road)
+    else:
+        client.use(road, (sample.first, sample.second)[number % 2][0])
+    end = len(line.demands) + AFTER_TICKS
+    line.wait(lambda: len(line.demands) >= end, 10 * AFTER_TICKS, "ticks after a change")
+    return steps_mA(line.demands[begin:])
+
+
+def of_kind(sample: Sample, changes: int) -> dict[str, Any]:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        running(HostNode, Path(folder) / "target") as target,
+        client_of(target.line) as client,
+    ):
+        prepare(client, sample)
+        client.use(sample.road, sample.second[0])
+        client.arm()
+        client.see(sample.second[1])
+        steps = [step for number in range(changes) for step in change(client, sample, number)]
+    return {
+        "kind": sample.name,
+        "changes": changes,
+        "largest_step_mA": max(steps),
+        "beyond_mA": max(0, max(steps) - SLEW_mA),
+    }
+
+
+def measure(effort: Effort) -> Measured:
+    changes = QUICK_CHANGES if effort.is_quick else CHANGES
+    rows = [of_kind(sample, changes) for sample in all_samples()]
+    values: dict[str, float | None] = {"bump_mA": float(max(row["beyond_mA"] for row in rows))}
+    return Measured(values, {"rows": rows, "slew_mA": SLEW_mA}, (table_of(rows),))
+
+
+def table_of(rows: list[dict[str, Any]]) -> str:
+    cells = [[str(value) for value in row.values()] for row in rows]
+    head = ["kind", "changes", "largest step, mA", f"beyond {SLEW_mA} mA a tick"]
+    return format_table(head, cells, (0,))

@@ -1,0 +1,193 @@
+"""Controllers to load tables into: the node as a program of this machine, the image in the emulator
+with its memory in a file, the Linux controller. Each is started, killed and started again on one
+line."""
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import subprocess
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from quiesce.base.errors import BenchFailure, UsageError
+from quiesce.base.paths import build_folder
+from quiesce.engine.bench import ending, require_file
+
+from quiesce_benchmarks.tables.bus import Bus
+from quiesce_benchmarks.tables.line import Line
+
+START_TICKS = 20_000  # for the first frames
+CONNECT_S = 60.0
+# An instruction takes 16 ns of the board's time, which does not run ahead of the clock: 2.5 times
+# its own at 25 MHz.
+ICOUNT = "shift=4,align=on"
+RUN_PRIORITY = 40
+
+
+class Target:
+    """A controller on a line; its records are in `folder`."""
+
+    name: str
+
+    def __init__(self, folder: Path, bus: Bus | None = None) -> None:
+        self.folder = folder
+        self.line = Line(bus)
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def command(self) -> Sequence[str | Path]:
+        raise NotImplementedError
+
+    def connect(self) -> None:
+        """Once it has started, where it does not open the line itself."""
+
+    def start(self) -> None:
+        """Until its first demands."""
+        self.line.restarted()
+        with open(self.folder / "log", "ab") as log:
+            self._process = subprocess.Popen(
+                list(self.command()),
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                process_group=0,
+            )
+        self.connect()
+        self.line.wait(self._has_begun, START_TICKS, f"first demands of {self.name}")
+
+    def _has_begun(self) -> bool:
+        assert self._process is not None
+        if self._process.poll() is not None:
+            last = ((self.folder / "log").read_text(errors="replace").strip() or "nothing").split(
+                "\n"
+            )
+            raise BenchFailure(
+                f"{self.name} ended with {ending(self._process.returncode)}: {last[-1]}"
+            )
+        return len(self.line.demands) >= 3
+
+    def kill(self) -> None:
+        """As a power cut does: it and all that it has started, at once."""
+        process, self._process = self._process, None
+        if process is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+    def restart(self) -> None:
+        self.kill()
+        self.start()
+
+    def signal(self, number: signal.Signals) -> None:
+        assert self._process is not None
+        self._process.send_signal(number)
+
+
+class HostNode(Target):
+    name = "host"
+
+    def command(self) -> Sequence[str | Path]:
+        program = build_folder() / "host/tools/benchmarks/host/tables/table_node"
+        return (require_file(program, "the program"), self.line.target, self.folder)
+
+
+class Mps2Node(Target):
+    name = "mps2"
+
+    @property
+    def memory(self) -> Path:
+        return self.folder / "memory"
+
+    @property
+    def uart(self) -> Path:
+        return self.folder / "uart"
+
+    def start(self) -> None:
+        self.uart.unlink(missing_ok=True)
+        with socket.socket(socket.AF_UNIX) as self._listener:
+            self._listener.settimeout(CONNECT_S)
+            self._listener.bind(str(self.uart))
+            self._listener.listen(1)
+            super().start()
+
+    def connect(self) -> None:
+        try:
+            connection, _ = self._listener.accept()
+        except TimeoutError:
+            raise BenchFailure(f"{self.name} does not connect")
+        connection.setblocking(False)
+        self.line.attach(connection.detach())
+
+    def command(self) -> Sequence[str | Path]:
+        image = build_folder() / "mps2/targets/mps2/quiesce_mps2_node.elf"
+        backend = f"memory-backend-file,id=kept,share=on,size=16M,mem-path={self.memory}"
+        return (
+            "qemu-system-arm", "-object", backend, "-M", "mps2-an386,memory-backend=kept",
+            "-display", "none", "-monitor", "none", "-icount", ICOUNT,
+            "-serial", f"unix:{self.uart}", "-kernel", require_file(image, "the image"),
+        )  # fmt: skip
+
+
+# Its own ticks are real time: with the right to, it goes before everything else here.
+CONFIG = """[loop]
+priority = {priority}
+lock_memory = {locks}
+[can]
+interface = "slcan:{line}"
+[accel]
+source = "can"
+[current]
+output = "can"
+[operator]
+enable = "can"
+[state]
+folder = "{folder}"
+status_s = 1
+[log]
+to = "stderr"
+"""
+
+
+def has_priority() -> bool:
+    return os.geteuid() == 0
+
+
+class Quiesced(Target):
+    name = "linux"
+
+    def command(self) -> Sequence[str | Path]:
+        program = build_folder() / "host/targets/linux/quiesced/quiesced"
+        config = self.folder / "quiesced.toml"
+        config.write_text(
+            CONFIG.format(
+                line=self.line.target,
+                folder=self.folder / "state",
+                priority=RUN_PRIORITY if has_priority() else 0,
+                locks=str(has_priority()).lower(),
+            )
+        )
+        return (require_file(program, "the program"), "--config", config)
+
+    def status(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads((self.folder / "state/state.json").read_text())
+        return found
+
+
+TARGETS: tuple[type[Target], ...] = (HostNode, Mps2Node, Quiesced)
+
+
+@contextlib.contextmanager
+def running(kind: type[Target], folder: Path, bus: Bus | None = None) -> Iterator[Target]:
+    """Started with nothing kept, killed at the end. UsageError where it cannot be had."""
+    folder.mkdir(parents=True)
+    target = kind(folder, bus)
+    with target.line:
+        try:
+            target.start()
+            yield target
+        except FileNotFoundError as error:
+            raise UsageError(f"{error.filename}: not installed")
+        finally:
+            target.kill()

@@ -1,0 +1,1 @@
+"""`quiesce new`: files to begin with."""

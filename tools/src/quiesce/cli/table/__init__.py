@@ -1,0 +1,1 @@
+"""`quiesce table`: table files shown, checked, compared, stamped."""

@@ -1,0 +1,1 @@
+"""Tables of the controller: their words, their kinds, and the one kind of file that they are in."""
