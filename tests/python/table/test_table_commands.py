@@ -17,7 +17,7 @@ from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.integers.table import table_words
 from quiesce.table.file import read_file, read_words, table_bytes
 from quiesce.table.kinds import KINDS, LEARNT, MAP, RULES
-from quiesce.table.words import sealed
+from quiesce.table.words import crc_of, sealed
 from quiesce.tune.phase_table import read_law
 from quiesce.tune.phase_words import law_words
 
@@ -50,6 +50,15 @@ def bank() -> list[int]:
     return bank_words([Bank(1000, 20, 0, 0, (Element(False, 1 << 20, 1000),), models)])
 
 
+def learnt(trims: dict[int, tuple[int, int, int, int]]) -> list[int]:
+    """Words as firmware/law/phase/adapt_store.h has them: trims by the point's number."""
+    owned = [0xAB, 1]
+    for point in range(1, 65):
+        halves = [value % 65536 for value in trims.get(point, (0, 0, 0, 0))]
+        owned += [halves[0] | halves[1] << 16, halves[2] | halves[3] << 16]
+    return sealed(LEARNT.magic, [0x31444151, crc_of(owned), *owned])
+
+
 def write(file: Path, words: list[int], board: int = 0) -> str:
     file.write_bytes(table_bytes(words, board))
     return str(file)
@@ -76,7 +85,18 @@ SHOWN = [
     ("friction", FRICTION.words, ["law friction, demands force", "5000 N/m", "30 N"]),
     ("map", force_map, ["tracker inverse", "velocity m/s 0 A 2 A", "0.1 1 2", "version 2"]),
     ("bank", bank, ["for 1000 ticks a second", "1 A 0.005 N 0 2", "0.9766 1/s 1 mm/s no"]),
-    ("learnt", lambda: sealed(LEARNT.magic, [1, 2]), ["2, what was learnt", "law phase"]),
+    (
+        "learnt",
+        lambda: learnt({7: (-364, 728, -3277, 0), 64: (0, 0, 0, 1)}),
+        [
+            "2, what was learnt",
+            "law phase",
+            "CRC 0x000000ab, setting balanced",
+            "7 -1.00 deg +2.00 deg -10.00 % with",
+            "64 +0.00 deg +0.00 deg +0.00 % without",
+        ],
+    ),
+    ("learnt", lambda: learnt({}), ["nothing yet"]),
 ]
 
 
@@ -139,6 +159,20 @@ def test_a_damaged_table_is_told(tmp_path: Path, capsys, action: str) -> None:
     more = {"diff": [file], "stamp": ["--any"]}.get(action, [])
     code, text = told(capsys, action, file, *more)
     assert code == 2 and "x.table: its CRC-32 is not that of its words: it is damaged" in text
+
+
+@pytest.mark.parametrize(
+    ("place", "text"),
+    [(0, "not what this version's law phase learns"), (1, "has another CRC"), (3, "setting 2")],
+)
+def test_what_was_learnt_is_shown_only_where_it_is_right(
+    tmp_path: Path, capsys, place: int, text: str
+) -> None:
+    values = learnt({3: (1, 2, -3, 0)})[3:]
+    values[place] = 2
+    values[1] = values[1] if place == 1 else crc_of(values[2:])
+    code, told_text = told(capsys, "show", write(tmp_path / "x.table", sealed(LEARNT.magic, values)))
+    assert code == 2 and text in told_text
 
 
 def test_check_has_the_controllers_verdict(build: Path, tmp_path: Path, capsys) -> None:

@@ -50,7 +50,9 @@ def _tracker_network(words: Words) -> str:
 
 
 def _learnt(words: Words) -> str:
-    return "it belongs to the table and the setting with which it was learnt"
+    from quiesce.tune.learnt_words import described_learnt, learnt_of_words
+
+    return described_learnt(learnt_of_words(words))
 
 
 def _law(words: Words) -> str:
