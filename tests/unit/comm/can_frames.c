@@ -3,6 +3,7 @@
 #include "can_make.h"
 #include "can_node.h"
 #include "slcan.h"
+#include "table_link.h"
 
 #include <stdio.h>
 
@@ -86,6 +87,20 @@ static void run(const int32_t *value, uint32_t *seed) {
     }
 }
 
+// The first frame of a table that goes; for the next ones the other side would have to answer.
+static void print_table(uint32_t *seed) {
+    static quiesce_tables_t tables;
+    table_link_t link = {0};
+    can_frame_t frame;
+    uint32_t words[16];
+    fill(words, 16, NULL, seed);
+    words[2] = 16;
+    (void)table_link_send(&link, words, 0);
+    if (table_link_tick(&link, 1, &tables, &frame)) {
+        print_frame(&frame);
+    }
+}
+
 int main(void) {
     static const int32_t ends[] = {INT32_MIN, -1, 0, 1, INT32_MAX};
     quiesce_params_t params;
@@ -103,5 +118,6 @@ int main(void) {
         run(&ends[i], &seed);
     }
     run(NULL, &seed);
+    print_table(&seed);
     return 0;
 }
