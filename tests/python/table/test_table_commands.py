@@ -171,7 +171,9 @@ def test_what_was_learnt_is_shown_only_where_it_is_right(
     values = learnt({3: (1, 2, -3, 0)})[3:]
     values[place] = 2
     values[1] = values[1] if place == 1 else crc_of(values[2:])
-    code, told_text = told(capsys, "show", write(tmp_path / "x.table", sealed(LEARNT.magic, values)))
+    code, told_text = told(
+        capsys, "show", write(tmp_path / "x.table", sealed(LEARNT.magic, values))
+    )
     assert code == 2 and text in told_text
 
 
