@@ -112,6 +112,19 @@ quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_
     return verdict;
 }
 
+bool quiesce_tables_keep(quiesce_tables_t *tables) {
+    const uint32_t *words = tables->words[tables->arrival];
+    quiesce_owner_t owner;
+    if (quiesce_table_check(words, tables->filled) != QUIESCE_TABLE_OK ||
+        quiesce_table_kind(words[TABLE_MAGIC], &owner) == NULL ||
+        tables->of[owner].now != SHIPPED) {
+        return false;
+    }
+    tables->of[owner].now = tables->arrival;
+    free_arrival(tables);
+    return true;
+}
+
 // Returns false iff nobody takes what is there.
 static bool use_room(const quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner,
                      uint32_t room) {
@@ -155,4 +168,9 @@ bool quiesce_tables_is_loaded(const quiesce_tables_t *tables, const quiesce_t *s
                               quiesce_owner_t owner) {
     const uint32_t now = tables->of[owner].now;
     return now != SHIPPED && quiesce_table_in_use(self, owner) == tables->words[now];
+}
+
+bool quiesce_tables_is_waiting(const quiesce_tables_t *tables, const quiesce_t *self,
+                               quiesce_owner_t owner) {
+    return tables->of[owner].now != SHIPPED && !quiesce_tables_is_loaded(tables, self, owner);
 }

@@ -21,6 +21,7 @@ void keeper_stored(keeper_t *self, bool is_stored) {
     if (is_stored) {
         self->kept[record].mark = self->mark;
         self->kept[record].writes = increment_sat_u32(self->kept[record].writes);
+        self->kept[record].state = KEEPER_WHOLE;
     }
     self->under_way = KEEPER_RECORDS;
     self->has_outcome = self->is_awaited;

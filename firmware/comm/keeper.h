@@ -22,6 +22,13 @@ typedef enum {
     KEEPER_BUSY = 3,  ///< ask again in the next tick
 } keeper_answer_t;
 
+/// What a start found of a record.
+typedef enum {
+    KEEPER_WHOLE = 0, ///< what was written last, or nothing was
+    KEEPER_OLDER = 1, ///< one copy is damaged, or was cut off: perhaps it is the one before
+    KEEPER_LOST = 2,  ///< damaged, or another board's: not used
+} keeper_state_t;
+
 /// The target's: replaces a record as a whole or not at all; count 0: there is none from now on.
 /// Returns at once.
 typedef keeper_answer_t (*keeper_store_t)(void *context, keeper_record_t record,
@@ -37,8 +44,9 @@ typedef struct {
     bool has_outcome;
     bool is_stored;
     struct {
-        uint32_t mark;   ///< whoever's who asked for it, such as a CRC; 0: none is kept
-        uint32_t writes; ///< so far, saturating
+        uint32_t mark;        ///< whoever's who asked for it, such as a CRC; 0: none is kept
+        uint32_t writes;      ///< so far, saturating
+        keeper_state_t state; ///< until it is written again
     } kept[KEEPER_RECORDS];
 } keeper_t;
 
@@ -46,6 +54,11 @@ void keeper_init(keeper_t *self);
 
 /// A record that an earlier run has left.
 void keeper_found(keeper_t *self, keeper_record_t record, uint32_t mark, uint32_t writes);
+
+/// How that record was found, where it is not whole.
+static inline void keeper_found_as(keeper_t *self, keeper_record_t record, keeper_state_t state) {
+    self->kept[record].state = state;
+}
 
 /// Has a record stored; ask every tick, with the same words, until it returns true: *is_stored then
 /// says how it went.

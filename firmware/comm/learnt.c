@@ -12,10 +12,10 @@ void learnt_init(learnt_store_t *self) {
 
 bool learnt_take(learnt_t *self, const quiesce_t *controller) {
     quiesce_learnt_t learnt;
-    *self = (learnt_t){{0}};
     if (!quiesce_learnt_save(controller, &learnt)) {
         return false;
     }
+    *self = (learnt_t){{0}};
     self->words[MAGIC] = TABLE_FILE_LEARNT;
     self->words[COUNT] = HEAD_WORDS + learnt.count;
     for (uint32_t i = 0; i < learnt.count; i++) {

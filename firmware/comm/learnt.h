@@ -27,7 +27,8 @@ typedef struct {
 /// Nothing is known.
 void learnt_init(learnt_store_t *self);
 
-/// Takes it out of the law. Returns false iff the law learns nothing. Some 15,000 instructions.
+/// Takes it out of the law. Returns false, and leaves *self as it is, iff the law learns nothing.
+/// Some 15,000 instructions.
 bool learnt_take(learnt_t *self, const quiesce_t *controller);
 
 /// Puts it back. Returns false, and changes nothing, iff it is none or does not belong here.

@@ -54,15 +54,24 @@ static quiesce_table_verdict_t find_learnt(table_service_t *self, quiesce_t *con
                                                               : QUIESCE_TABLE_FIT;
 }
 
-static quiesce_table_verdict_t find_table(table_service_t *self, quiesce_t *controller,
-                                          const table_found_t *found) {
-    return quiesce_tables_write(&self->tables, 0, found->words, found->count)
-               ? quiesce_tables_commit(&self->tables, controller)
-               : QUIESCE_TABLE_SIZE;
-}
-
 static uint32_t road_found(const table_found_t *found) {
     return (uint32_t)found->record - (uint32_t)KEEPER_LAW_TABLE;
+}
+
+// One of another law waits for it: parameters that were applied, but not saved, come back later.
+static quiesce_table_verdict_t find_table(table_service_t *self, quiesce_t *controller,
+                                          const table_found_t *found) {
+    if (!quiesce_tables_write(&self->tables, 0, found->words, found->count)) {
+        return QUIESCE_TABLE_SIZE;
+    }
+    const quiesce_table_verdict_t verdict = quiesce_tables_check(&self->tables, controller);
+    if (verdict == QUIESCE_TABLE_OK) {
+        return quiesce_tables_commit(&self->tables, controller);
+    }
+    if (quiesce_tables_keep(&self->tables)) {
+        self->of[road_found(found)].source = found->source;
+    }
+    return verdict;
 }
 
 static quiesce_table_verdict_t settle(table_service_t *self, const table_found_t *found,
@@ -303,6 +312,8 @@ static uint32_t info_of(const work_t *work, uint32_t road, const uint32_t *words
         return self->board;
     case TABLE_INFO_WRITES:
         return self->keeper.kept[record].writes;
+    case TABLE_INFO_RECORD:
+        return (uint32_t)self->keeper.kept[record].state;
     case TABLE_INFO_REFUSAL:
     default:
         return (uint32_t)self->of[road].refusal;
@@ -391,12 +402,21 @@ void table_service_before_restart(table_service_t *self, const quiesce_t *contro
     (void)learnt_take(&self->learnt.before, controller);
 }
 
+static bool put_back(const learnt_t *learnt, quiesce_t *controller) {
+    return learnt_put(learnt->words, learnt->words[COUNT_WORD], controller);
+}
+
 void table_service_after_restart(table_service_t *self, quiesce_t *controller) {
     const learnt_store_t *learnt = &self->learnt;
-    const bool has_before = learnt_crc(&learnt->before) != 0u;
-    const uint32_t *words = has_before ? learnt->before.words : learnt->kept.words;
     quiesce_tables_resume(&self->tables, controller);
-    (void)learnt_put(words, words[COUNT_WORD], controller);
+    for (uint32_t i = 0; i < QUIESCE_TABLE_OWNERS; i++) {
+        if (quiesce_tables_is_loaded(&self->tables, controller, (quiesce_owner_t)i)) {
+            self->of[i].refusal = QUIESCE_TABLE_OK; // it may have waited
+        }
+    }
+    if (!put_back(&learnt->before, controller)) {
+        (void)put_back(&learnt->kept, controller);
+    }
 }
 
 // Where it has changed it is stored, by and by.

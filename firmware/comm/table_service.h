@@ -30,6 +30,7 @@ enum {
     TABLE_INFO_BOARD = 4,
     TABLE_INFO_WRITES = 5,
     TABLE_INFO_REFUSAL = 6,
+    TABLE_INFO_RECORD = 7, ///< keeper_state_t
     TABLE_INFOS
 };
 
@@ -53,7 +54,9 @@ void table_service_init(table_service_t *self, const quiesce_board_t *board);
 quiesce_table_verdict_t table_service_ship(table_service_t *self, quiesce_t *controller,
                                            const uint32_t *file);
 
-/// What an earlier run or the target's configuration has: used where the controller takes it.
+/// What an earlier run or the target's configuration has: used where the controller takes it. A
+/// good table that law and tracker do not take waits until they do (after other parameters), unless
+/// one of its road is there already.
 typedef struct {
     keeper_record_t record; ///< but KEEPER_PARAMS
     table_source_t source;
@@ -82,7 +85,8 @@ static inline void table_service_rest(table_service_t *self) {
     keeper_give_up(&self->keeper);
 }
 
-/// Around a restart of the controller: what was in use and learnt before is again, where it fits.
+/// Around a restart of the controller: what was in use, has waited or was learnt before is used
+/// where it fits.
 void table_service_before_restart(table_service_t *self, const quiesce_t *controller);
 void table_service_after_restart(table_service_t *self, quiesce_t *controller);
 

@@ -301,6 +301,11 @@ quiesce_table_verdict_t quiesce_tables_check(quiesce_tables_t *tables, const qui
 /// one in use where it is. Call it, like the next two, between steps.
 quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_t *self);
 
+/// What has arrived stays for later, where it is a good table that law and tracker do not take now,
+/// such as an earlier run's with another law: quiesce_tables_resume uses it once they do. Returns
+/// false, and keeps nothing, iff it is no good one, or another one of its owner is there.
+bool quiesce_tables_keep(quiesce_tables_t *tables);
+
 /// Goes back to the table in use before the last commit or unload. Returns false, and changes
 /// nothing, iff that has been done already, there was none, or it is refused by now.
 bool quiesce_tables_revert(quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner);
@@ -316,6 +321,10 @@ void quiesce_tables_resume(const quiesce_tables_t *tables, quiesce_t *self);
 /// Whether the one in use has been loaded, and does not ship.
 bool quiesce_tables_is_loaded(const quiesce_tables_t *tables, const quiesce_t *self,
                               quiesce_owner_t owner);
+
+/// Whether one is there that law and tracker do not take now: the next resume tries it again.
+bool quiesce_tables_is_waiting(const quiesce_tables_t *tables, const quiesce_t *self,
+                               quiesce_owner_t owner);
 
 /// What the law that runs has learnt about the structure, as words to keep over a restart.
 #define QUIESCE_LEARNT_MAX_WORDS 255

@@ -13,9 +13,22 @@ void kept_open(kept_t *kept, const quiesce_board_t *board, const quiesce_params_
     (void)nvm_records_open(&kept->nvm, &kept->memory, table_file_board(board));
 }
 
+static keeper_state_t state_of(hal_nvm_found_t found) {
+    switch (found) {
+    case HAL_NVM_OLDER:
+        return KEEPER_OLDER;
+    case HAL_NVM_LOST:
+        return KEEPER_LOST;
+    case HAL_NVM_NONE:
+    case HAL_NVM_KEPT:
+    default:
+        return KEEPER_WHOLE;
+    }
+}
+
 uint32_t kept_read(kept_t *kept, keeper_record_t record) {
     uint32_t count;
-    (void)hal_nvm_read(&kept->nvm, (uint32_t)record, kept->words, &count);
+    kept->state = state_of(hal_nvm_read(&kept->nvm, (uint32_t)record, kept->words, &count));
     return count;
 }
 

@@ -172,6 +172,7 @@ static void find_tables(board_t *board) {
                                      .words = board->kept.words,
                                      .count = count,
                                      .writes = kept_writes(&board->kept, records[i])};
+        keeper_found_as(&board->node.tables.keeper, records[i], board->kept.state);
         (void)node_found(&board->node, &found);
     }
 }

@@ -32,6 +32,7 @@ struct RoadStatus {
     std::uint32_t stored_crc;
     std::uint32_t writes;
     quiesce_table_verdict_t refusal; ///< of the last attempt
+    keeper_state_t record;
 };
 
 /// What the status file shows, taken at the end of a tick.

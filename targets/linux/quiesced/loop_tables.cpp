@@ -64,13 +64,25 @@ bool LoopTables::use_found(const table_found_t &found) {
 
 void LoopTables::use_road(std::uint32_t road, const StartTables &start) {
     const StoredTable &stored = start.stored[road];
+    keeper_found_as(&node_.tables.keeper, record_of(road), stored.state);
     const bool is_used = use_found(found_of(road, TABLE_FROM_STORE, stored.words, stored.writes));
     if (road == ROAD_LEARNT) {
         if (is_used) {
             exchange_.log.log(LogLevel::info, "what was learnt before is used");
         }
     } else if (!is_used && !start.configured[road].empty()) {
-        (void)use_found(found_of(road, TABLE_FROM_CONFIG, start.configured[road], 0));
+        use_configured(static_cast<quiesce_owner_t>(road), start.configured[road]);
+    }
+}
+
+/// It takes the place of a stored one that would wait for other parameters.
+void LoopTables::use_configured(quiesce_owner_t owner, const TableWords &words) {
+    const bool is_waiting = this->is_waiting(owner);
+    if (use_found(found_of(owner, TABLE_FROM_CONFIG, words, 0)) && is_waiting) {
+        exchange_.log.log(LogLevel::info,
+                          "%s (stored) can be used again: apply and save the parameters that it "
+                          "was made for, then restart",
+                          road_name(owner));
     }
 }
 
@@ -123,8 +135,24 @@ table_source_t LoopTables::source_of(std::uint32_t road) const {
     return is_loaded ? node_.tables.of[road].source : TABLE_SHIPS;
 }
 
+bool LoopTables::is_waiting(quiesce_owner_t owner) const {
+    return quiesce_tables_is_waiting(&node_.tables.tables, &node_.controller, owner);
+}
+
+void LoopTables::tell_waiting(quiesce_owner_t owner) {
+    const bool is_waiting = this->is_waiting(owner);
+    if (is_waiting && !told_waiting_[owner]) {
+        exchange_.log.log(LogLevel::info,
+                          "%s (%s) waits: it is used once the parameters that it was made for are "
+                          "applied",
+                          road_name(owner), table_source_name(node_.tables.of[owner].source));
+    }
+    told_waiting_[owner] = is_waiting;
+}
+
 void LoopTables::tell() {
     for (const quiesce_owner_t owner : kOwners) {
+        tell_waiting(owner);
         const std::uint32_t *table = quiesce_table_in_use(&node_.controller, owner);
         if (crc_in(table) != told_crc_[owner]) {
             told_crc_[owner] = crc_in(table);
@@ -158,7 +186,8 @@ std::array<RoadStatus, ROADS> LoopTables::status() const {
                        words != nullptr ? source_of(road) : TABLE_FROM_NOWHERE,
                        kept.mark,
                        kept.writes,
-                       node_.tables.of[road].refusal};
+                       node_.tables.of[road].refusal,
+                       kept.state};
     }
     return roads;
 }

@@ -34,13 +34,17 @@ class LoopTables {
     void answer();
     void take_new(quiesce_owner_t owner);
     void use_road(std::uint32_t road, const StartTables &start);
+    void use_configured(quiesce_owner_t owner, const TableWords &words);
     bool use_found(const table_found_t &found);
+    bool is_waiting(quiesce_owner_t owner) const;
+    void tell_waiting(quiesce_owner_t owner);
     table_source_t source_of(std::uint32_t road) const;
 
     node_t &node_;
     Exchange &exchange_;
     StoreOrder order_{};
     std::array<std::uint32_t, QUIESCE_TABLE_OWNERS> told_crc_{};
+    std::array<bool, QUIESCE_TABLE_OWNERS> told_waiting_{};
     const char *told_lacking_ = nullptr;
 };
 

@@ -71,6 +71,11 @@ const char *table_source_name(std::uint32_t source) {
     return name_in(names, source);
 }
 
+const char *record_state_name(std::uint32_t state) {
+    constexpr std::array<const char *, 3> names = {"whole", "older", "lost"};
+    return name_in(names, state);
+}
+
 const char *verdict_text(quiesce_table_verdict_t verdict) {
     constexpr std::array<const char *, QUIESCE_TABLE_BOARD + 1> texts = {
         "accepted",

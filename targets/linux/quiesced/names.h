@@ -23,6 +23,7 @@ const char *owner_name(quiesce_owner_t owner); ///< of [tables]
 const char *road_name(std::uint32_t road);
 const char *table_source_name(std::uint32_t source);
 const char *verdict_text(quiesce_table_verdict_t verdict);
+const char *record_state_name(std::uint32_t state); ///< keeper_state_t
 
 /// "0.1.0"
 const char *version();

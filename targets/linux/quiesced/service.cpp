@@ -50,8 +50,8 @@ Service::Service(const Config &config, const ConfiguredTables &tables, Exchange 
                  FaultStore &faults, RecordStore &records, Caretaker &caretaker, LogSink &sink)
     : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
       tables_(config.state.folder), faults_(faults), records_(records), caretaker_(caretaker),
-      kept_(config.state.folder), manager_(exchange.manager), configured_(config.params),
-      configured_tables_(tables), stored_fault_(exchange.latched_fault.load()),
+      kept_(config.state.folder), manager_(exchange.manager),
+      reload_(config, store_, tables, exchange, sink), stored_fault_(exchange.latched_fault.load()),
       thread_([this] { run(); }) {}
 
 Service::~Service() {
@@ -89,9 +89,9 @@ void Service::work(std::int64_t now_ns) {
     keep_params();
     store_words();
     if (take_reload_request()) {
-        reload();
+        reload_.begin();
     }
-    finish_reload();
+    reload_.finish();
     if (take_status_request() || now_ns >= next_status_ns_) {
         next_status_ns_ = now_ns + config_.state.status_s * kSecond_ns;
         exchange_.snapshot_is_wanted.store(true);
@@ -121,79 +121,16 @@ void Service::drain_log() {
     }
 }
 
-void Service::reload() {
-    manager_.send("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
-    is_reloading_ = true;
-    try {
-        const Config fresh = require_config(config_.file, Needs::peripherals);
-        std::string note;
-        const quiesce_params_t params = store_.effective(fresh.params, note);
-        if (!note.empty()) {
-            sink_.write(LogLevel::info, note);
-        }
-        // The board is still that of the start.
-        if (const std::optional<Misfit> misfit = find_misfit(config_, params)) {
-            throw quiesce::InputError(misfit->reason.data());
-        }
-        const ConfiguredTables tables = load_tables(fresh, config_.wiring());
-        require_fit(changed_of(tables), fresh, config_.wiring(), params);
-        if (!is_taken()) {
-            throw quiesce::InputError("the last reload is not through yet");
-        }
-        hand_over(params, tables);
-        configured_ = fresh.params;
-    } catch (const quiesce::InputError &error) {
-        sink_.write(LogLevel::error, std::string("parameters and tables stay: ") + error.what());
-    }
-}
-
-/// Those that are others than before.
-ConfiguredTables Service::changed_of(ConfiguredTables tables) const {
-    for (const quiesce_owner_t owner : kOwners) {
-        if (tables[owner] == configured_tables_[owner]) {
-            tables[owner].clear();
-        }
-    }
-    return tables;
-}
-
-/// Parameters first: a table may be of their law.
-void Service::hand_over(const quiesce_params_t &params, const ConfiguredTables &tables) {
-    (void)exchange_.new_params.put(params);
-    for (const quiesce_owner_t owner : kOwners) {
-        if (tables[owner] != configured_tables_[owner]) {
-            Words words{static_cast<std::uint32_t>(tables[owner].size()), {}};
-            std::copy(tables[owner].begin(), tables[owner].end(), words.words.begin());
-            (void)exchange_.new_tables[owner].put(words);
-        }
-    }
-    configured_tables_ = tables;
-}
-
-/// Whether the loop has taken all of the last reload.
-bool Service::is_taken() const {
-    return !exchange_.new_params.is_full() &&
-           std::none_of(exchange_.new_tables.begin(), exchange_.new_tables.end(),
-                        [](const auto &table) { return table.is_full(); });
-}
-
-void Service::finish_reload() {
-    if (is_reloading_ && is_taken()) {
-        is_reloading_ = false;
-        manager_.send("READY=1");
-    }
-}
-
 std::string Service::store(const StoreOrder &order) {
     const Words &of = order.of;
     if (order.record == KEEPER_PARAMS) {
         quiesce_params_t params{};
         std::memcpy(&params, of.words.data(), sizeof params);
-        return store_.save_params(configured_, params);
+        return store_.save_params(reload_.params(), params);
     }
     const std::uint32_t road = road_of(order.record);
     const std::uint32_t configured =
-        road < QUIESCE_TABLE_OWNERS ? crc_of(configured_tables_[road]) : 0;
+        road < QUIESCE_TABLE_OWNERS ? crc_of(reload_.tables()[road]) : 0;
     return tables_.save(order.record, {configured, table_file_board(config_.wiring())},
                         of.words.data(), of.count);
 }

@@ -13,8 +13,7 @@
 #include "kept_config.h"
 #include "log_sink.h"
 #include "record_store.h"
-#include "start_tables.h"
-#include "state_store.h"
+#include "reload.h"
 
 namespace quiesced {
 
@@ -48,11 +47,6 @@ class Service {
     void wait();
     void work(std::int64_t now_ns);
     void drain_log();
-    void reload();
-    void finish_reload();
-    bool is_taken() const;
-    ConfiguredTables changed_of(ConfiguredTables tables) const;
-    void hand_over(const quiesce_params_t &params, const ConfiguredTables &tables);
     void look_after_devices();
     void write_files();
     void store_words();
@@ -73,8 +67,7 @@ class Service {
     Caretaker &caretaker_;
     KeptConfig kept_;
     const Notifier &manager_;
-    quiesce_params_t configured_;        ///< what [parameters] says, last time that it was read
-    ConfiguredTables configured_tables_; ///< likewise of [tables]
+    Reload reload_;
 
     Snapshot last_{};
     std::uint32_t stored_fault_; ///< as on the disk
@@ -90,7 +83,6 @@ class Service {
     std::int64_t next_devices_ns_ = 0;
     bool is_ready_ = false;
     bool is_stopping_ = false;
-    bool is_reloading_ = false;
     std::thread thread_;
 };
 

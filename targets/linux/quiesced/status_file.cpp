@@ -98,7 +98,8 @@ void put_tables(std::ostream &out, const Snapshot &snapshot) {
         out << (i == 0 ? "\n" : ",\n") << "    " << quoted(names[i])
             << ": {\"kind\": " << kind_json(road) << ", \"crc\": " << road.crc << ", \"source\": \""
             << table_source_name(road.source) << "\", \"stored_crc\": " << road.stored_crc
-            << ", \"writes\": " << road.writes
+            << ", \"writes\": " << road.writes << ", \"record\": \""
+            << record_state_name(road.record) << "\""
             << ", \"refusal\": " << (is_refused ? quoted(verdict_text(road.refusal)) : "null")
             << "}";
     }

@@ -66,7 +66,8 @@ StoredTable TableStore::load(keeper_record_t record, const StoredOver &over,
                std::string(record == KEEPER_LEARNT ? "" : " as stored") + " is not used: " + why;
     }
     const auto begin = kept.words.begin();
-    return {why == nullptr ? TableWords(begin, begin + count) : TableWords(), kept.writes};
+    return {why == nullptr ? TableWords(begin, begin + count) : TableWords(), kept.writes,
+            verdict == NVM_OK ? KEEPER_WHOLE : KEEPER_LOST};
 }
 
 std::string TableStore::save(keeper_record_t record, const StoredOver &over,

@@ -26,6 +26,7 @@ inline std::uint32_t road_of(keeper_record_t record) {
 struct StoredTable {
     TableWords words;         ///< empty: there is none, or it is not used
     std::uint32_t writes = 0; ///< of the record, so far
+    keeper_state_t state = KEEPER_WHOLE;
 };
 
 /// Records of keeper.h but KEEPER_PARAMS.

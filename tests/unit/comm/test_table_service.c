@@ -302,6 +302,78 @@ static void test_a_stored_table_that_is_damaged_is_told_and_not_used(void) {
     TEST_ASSERT_EQUAL_UINT32(QUIESCE_TABLE_CRC, info(ROAD_LAW, TABLE_INFO_REFUSAL));
 }
 
+static table_found_t stored_pulses(void) {
+    return (table_found_t){KEEPER_LAW_TABLE, TABLE_FROM_STORE, pulses, pulses_count, 7};
+}
+
+static void restart_with(int32_t law) {
+    params.law = law;
+    node_restart(&node, &params);
+}
+
+static void test_a_stored_table_of_another_law_waits_for_it(void) {
+    make_pulses(777);
+    const table_found_t found = stored_pulses();
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_MAGIC, node_found(&node, &found));
+    TEST_ASSERT_EQUAL_HEX32(plant_rules_table[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    TEST_ASSERT_EQUAL_UINT32(TABLE_SHIPS, info(ROAD_LAW, TABLE_INFO_SOURCE));
+    TEST_ASSERT_TRUE(
+        quiesce_tables_is_waiting(&node.tables.tables, &node.controller, QUIESCE_OF_LAW));
+    params.slew_mA_s = 4000; // takes it as little
+    restart_with(QUIESCE_LAW_FUZZY);
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_TABLE_MAGIC, info(ROAD_LAW, TABLE_INFO_REFUSAL));
+    restart_with(QUIESCE_LAW_PHASE);
+    TEST_ASSERT_EQUAL_HEX32(pulses[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    TEST_ASSERT_EQUAL_UINT32(TABLE_FROM_STORE, info(ROAD_LAW, TABLE_INFO_SOURCE));
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_TABLE_OK, info(ROAD_LAW, TABLE_INFO_REFUSAL));
+    TEST_ASSERT_FALSE(
+        quiesce_tables_is_waiting(&node.tables.tables, &node.controller, QUIESCE_OF_LAW));
+}
+
+static void test_a_table_that_waits_makes_way_for_one_that_is_loaded(void) {
+    make_pulses(777);
+    const table_found_t found = stored_pulses();
+    (void)node_found(&node, &found);
+    make_rules();
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, load(rules, rules_count).result);
+    restart_with(QUIESCE_LAW_PHASE);
+    TEST_ASSERT_EQUAL_HEX32(plant_pulses_table[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    restart_with(QUIESCE_LAW_FUZZY);
+    TEST_ASSERT_EQUAL_UINT32(TABLE_FROM_CAN, info(ROAD_LAW, TABLE_INFO_SOURCE));
+}
+
+static void test_only_the_first_good_table_waits(void) {
+    make_pulses(777);
+    table_found_t found = stored_pulses();
+    pulses[9] ^= 1u; // damaged: it does not
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_MAGIC, node_found(&node, &found));
+    pulses[9] ^= 1u;
+    (void)node_found(&node, &found);
+    make_pulses(778);
+    found.source = TABLE_FROM_CONFIG;
+    (void)node_found(&node, &found);
+    restart_with(QUIESCE_LAW_PHASE);
+    make_pulses(777);
+    TEST_ASSERT_EQUAL_HEX32(pulses[1], info(ROAD_LAW, TABLE_INFO_CRC));
+    TEST_ASSERT_EQUAL_UINT32(TABLE_FROM_STORE, info(ROAD_LAW, TABLE_INFO_SOURCE));
+}
+
+static void test_how_a_record_was_found_is_told_until_it_is_written_again(void) {
+    start(QUIESCE_LAW_PHASE);
+    TEST_ASSERT_EQUAL_UINT32(KEEPER_WHOLE, info(ROAD_LAW, TABLE_INFO_RECORD));
+    keeper_found_as(&node.tables.keeper, KEEPER_LAW_TABLE, KEEPER_OLDER);
+    keeper_found_as(&node.tables.keeper, KEEPER_LEARNT, KEEPER_LOST);
+    TEST_ASSERT_EQUAL_UINT32(KEEPER_OLDER, info(ROAD_LAW, TABLE_INFO_RECORD));
+    TEST_ASSERT_EQUAL_UINT32(KEEPER_WHOLE, info(ROAD_TRACKER, TABLE_INFO_RECORD));
+    TEST_ASSERT_EQUAL_UINT32(KEEPER_LOST, info(ROAD_LEARNT, TABLE_INFO_RECORD));
+    memory.answer = KEEPER_FAILED;
+    (void)ask(OP(TABLE_SAVE), ROAD_LAW, 0);
+    TEST_ASSERT_EQUAL_UINT32(KEEPER_OLDER, info(ROAD_LAW, TABLE_INFO_RECORD));
+    memory.answer = KEEPER_DONE;
+    (void)ask(OP(TABLE_SAVE), ROAD_LAW, 0);
+    TEST_ASSERT_EQUAL_UINT32(KEEPER_WHOLE, info(ROAD_LAW, TABLE_INFO_RECORD));
+}
+
 static void test_a_table_of_the_program_takes_the_place_of_what_ships(void) {
     start(QUIESCE_LAW_PHASE);
     make_pulses(777);
@@ -609,6 +681,27 @@ static void test_what_was_learnt_travels_as_a_table(void) {
     TEST_ASSERT_EQUAL(CAN_NODE_NOTHING_TO_SEND, ask(OP(TABLE_SAVE), ROAD_LEARNT, 0).result);
 }
 
+// A law that learns nothing does not cost what another one has learnt.
+static void test_what_was_learnt_waits_for_its_law(void) {
+    static uint32_t words[QUIESCE_TABLE_WORDS];
+    start(QUIESCE_LAW_PHASE);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(TABLE_SAVE), ROAD_LEARNT, 0).result);
+    const uint32_t count = memory.count[KEEPER_LEARNT];
+    memcpy(words, memory.words[KEEPER_LEARNT], 4u * count);
+    words[7] += 5u; // a trim that a start does not have by itself
+    words[4] = crc_of(&words[5], count - 5u);
+    seal(words, count);
+    const table_found_t found = {KEEPER_LEARNT, TABLE_FROM_STORE, words, count, 1};
+    start(QUIESCE_LAW_FUZZY);
+    TEST_ASSERT_EQUAL(QUIESCE_TABLE_FIT, node_found(&node, &found));
+    run(61000); // it is looked at whether there is something to store
+    restart_with(QUIESCE_LAW_PHASE);
+    TEST_ASSERT_EQUAL_HEX32(words[1], info(ROAD_LEARNT, TABLE_INFO_CRC));
+    restart_with(QUIESCE_LAW_FUZZY);
+    restart_with(QUIESCE_LAW_PHASE);
+    TEST_ASSERT_EQUAL_HEX32(words[1], info(ROAD_LEARNT, TABLE_INFO_CRC));
+}
+
 // ---- while it runs ------------------------------------------------------------------------------
 
 static void test_an_armed_controller_takes_a_table_without_a_bump(void) {
@@ -647,6 +740,10 @@ int main(void) {
     RUN_TEST(test_a_table_is_loaded_told_saved_and_reverted);
     RUN_TEST(test_a_saved_table_is_used_after_a_start);
     RUN_TEST(test_a_stored_table_that_is_damaged_is_told_and_not_used);
+    RUN_TEST(test_a_stored_table_of_another_law_waits_for_it);
+    RUN_TEST(test_a_table_that_waits_makes_way_for_one_that_is_loaded);
+    RUN_TEST(test_only_the_first_good_table_waits);
+    RUN_TEST(test_how_a_record_was_found_is_told_until_it_is_written_again);
     RUN_TEST(test_a_table_of_the_program_takes_the_place_of_what_ships);
     RUN_TEST(test_a_file_of_the_program_that_is_damaged_or_of_another_board_is_told);
     RUN_TEST(test_mishaps_at_every_frame_leave_the_old_table_in_use);
@@ -661,6 +758,7 @@ int main(void) {
     RUN_TEST(test_what_is_in_use_is_sent_back_as_its_file);
     RUN_TEST(test_what_was_learnt_is_saved_by_time_and_change);
     RUN_TEST(test_what_was_learnt_travels_as_a_table);
+    RUN_TEST(test_what_was_learnt_waits_for_its_law);
     RUN_TEST(test_an_armed_controller_takes_a_table_without_a_bump);
     RUN_TEST(test_a_table_that_changes_by_itself_is_a_fault);
     return UNITY_END();

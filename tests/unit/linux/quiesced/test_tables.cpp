@@ -1,7 +1,12 @@
 // Tables from files and from earlier runs, on their way into the loop and out of it.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <memory>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "board_file.h"
 #include "input_error.h"
@@ -182,26 +187,97 @@ TEST(TableStore, who_edits_configuration_or_board_means_it) {
     EXPECT_EQ(store.load(KEEPER_LEARNT, kOver, note).words.size(), 4U);
 }
 
-TEST(TableStore, a_damaged_record_is_told_and_left_where_it_is) {
-    const TemporaryFolder folder;
-    const TableStore store(folder.path());
-    ASSERT_EQ(save(folder, KEEPER_LAW_TABLE, kOver, {1, 2, 3, 4}), "");
-    const std::string file = store.file(KEEPER_LAW_TABLE);
+/// Of each record: what a cut or a flipped bit leaves.
+class DamagedRecord : public testing::TestWithParam<keeper_record_t> {
+  protected:
+    StoredTable load() { return store.load(GetParam(), kOver, note); }
+    std::string save(const TableWords &words) {
+        return quiesced::save(folder, GetParam(), kOver, words);
+    }
+
+    void expect_lost(const std::string &content) {
+        write_text(file, content);
+        const StoredTable found = load();
+        EXPECT_TRUE(found.words.empty());
+        EXPECT_EQ(found.state, KEEPER_LOST);
+        EXPECT_NE(note.find(" is not used: "), std::string::npos) << note;
+        EXPECT_EQ(note.rfind(road_name(road_of(GetParam())), 0), 0U) << note;
+        EXPECT_EQ(read_text(file), content); // it is left where it is
+    }
+
+    TemporaryFolder folder;
+    TableStore store{folder.path()};
+    std::string file = store.file(GetParam());
+    std::string note;
+};
+
+TEST_P(DamagedRecord, is_told_and_written_anew) {
+    ASSERT_EQ(save({1, 2, 3, 4}), "");
     const std::string whole = read_text(file);
     for (std::size_t at = 0; at < whole.size(); at += at < 80 ? 1 : 997) {
         std::string damaged = whole;
         damaged[at] = static_cast<char>(damaged[at] ^ 4);
-        write_text(file, damaged);
-        std::string note;
-        EXPECT_TRUE(store.load(KEEPER_LAW_TABLE, kOver, note).words.empty()) << at;
-        EXPECT_EQ(note.rfind("the law's table as stored is not used: ", 0), 0U) << note;
-        EXPECT_EQ(read_text(file), damaged);
+        expect_lost(damaged);
+        expect_lost(whole.substr(0, at));
     }
-    ASSERT_EQ(save(folder, KEEPER_LAW_TABLE, kOver, {5, 6, 7, 8}), "");
-    std::string note;
-    EXPECT_EQ(store.load(KEEPER_LAW_TABLE, kOver, note).words.front(), 5U);
-    EXPECT_NE(TableStore("/no/such/folder").save(KEEPER_LAW_TABLE, kOver, nullptr, 0), "");
+    ASSERT_EQ(save({5, 6, 7, 8}), "");
+    EXPECT_EQ(load().words.front(), 5U);
+    EXPECT_EQ(load().state, KEEPER_WHOLE);
+    EXPECT_NE(TableStore("/no/such/folder").save(GetParam(), kOver, nullptr, 0), "");
 }
+
+TEST_P(DamagedRecord, half_of_a_new_one_beside_it_does_no_harm) {
+    ASSERT_EQ(save({1, 2, 3, 4}), "");
+    const std::string whole = read_text(file);
+    for (std::size_t bytes = 0; bytes <= whole.size(); bytes += 97) {
+        write_text(file + ".new", whole.substr(0, bytes));
+        EXPECT_EQ(load().words, TableWords({1, 2, 3, 4}));
+        EXPECT_EQ(note, "");
+    }
+    ASSERT_EQ(save({5, 6, 7, 8}), "");
+    EXPECT_EQ(load().words.front(), 5U);
+    EXPECT_EQ(load().writes, 2U);
+}
+
+/// A child that stores other words again and again until it is killed; tells of each.
+pid_t start_writer(int tell_fd, const TemporaryFolder &folder, keeper_record_t record) {
+    const pid_t child = fork();
+    for (std::uint32_t i = 1; child == 0; ++i) {
+        if (!save(folder, record, kOver, TableWords(200, i)).empty() ||
+            write(tell_fd, &i, sizeof i) != sizeof i) {
+            _exit(1);
+        }
+    }
+    return child;
+}
+
+TEST_P(DamagedRecord, is_none_after_a_kill_at_any_moment) {
+    for (int round = 0; round < 20; ++round) {
+        std::array<int, 2> told{};
+        ASSERT_EQ(pipe2(told.data(), O_CLOEXEC), 0);
+        const pid_t child = start_writer(told[1], folder, GetParam());
+        ASSERT_GT(child, 0);
+        close(told[1]);
+        std::uint32_t last = 0;
+        for (int i = 0; i <= round % 4; ++i) {
+            ASSERT_EQ(read(told[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
+        }
+        ASSERT_EQ(kill(child, SIGKILL), 0);
+        ASSERT_EQ(waitpid(child, nullptr, 0), child);
+        while (read(told[0], &last, sizeof last) == static_cast<ssize_t>(sizeof last)) {
+        }
+        close(told[0]);
+        const StoredTable found = load();
+        ASSERT_EQ(found.words.size(), 200U) << note;
+        EXPECT_EQ(found.words, TableWords(200, found.words.front()));
+        EXPECT_GE(found.words.front(), last); // what it told of is there, or the next
+        EXPECT_LE(found.words.front(), last + 1);
+        EXPECT_EQ(note, "");
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, DamagedRecord,
+                         testing::Values(KEEPER_LAW_TABLE, KEEPER_TRACKER_TABLE, KEEPER_LEARNT));
 
 // ---- in the loop --------------------------------------------------------------------------------
 
@@ -289,6 +365,35 @@ TEST_F(InTheLoop, a_stored_table_that_is_refused_makes_way) {
         << lines;
     EXPECT_NE(lines.find("the law's table: rules, CRC "), std::string::npos) << lines;
     EXPECT_NE(lines.find("(configuration)"), std::string::npos) << lines;
+}
+
+TEST_F(InTheLoop, a_stored_table_of_another_law_waits_for_it_and_says_so) {
+    const TableWords pulses = shipped(QUIESCE_LAW_PHASE);
+    start.stored[ROAD_LAW] = {pulses, 1};
+    tables->use(start);
+    EXPECT_NE(log().find("the law's table (stored) waits: it is used once the parameters that it "
+                         "was made for are applied"),
+              std::string::npos);
+    tables->tell();
+    EXPECT_EQ(log(), ""); // once
+    const quiesce_params_t params = params_of(QUIESCE_LAW_PHASE);
+    node_restart(node.get(), &params);
+    EXPECT_EQ(in_use(), pulses[1]);
+    EXPECT_EQ(tables->status()[ROAD_LAW].source, TABLE_FROM_STORE);
+    EXPECT_EQ(tables->status()[ROAD_LAW].refusal, QUIESCE_TABLE_OK);
+    tables->tell();
+    EXPECT_NE(log().find("the law's table: pulses, CRC "), std::string::npos);
+}
+
+TEST_F(InTheLoop, a_stored_table_that_the_configurations_replaces_is_told_how_to_use) {
+    start.stored[ROAD_LAW] = {shipped(QUIESCE_LAW_PHASE), 1};
+    start.configured[QUIESCE_OF_LAW] = rules(2);
+    tables->use(start);
+    const std::string lines = log();
+    EXPECT_NE(lines.find("the law's table (stored) can be used again: apply and save"),
+              std::string::npos)
+        << lines;
+    EXPECT_EQ(lines.find("waits"), std::string::npos) << lines;
 }
 
 TEST_F(InTheLoop, what_ships_is_used_where_all_are_refused) {
@@ -422,6 +527,7 @@ TEST_F(Learning, a_store_that_is_full_is_asked_again) {
 
 TEST_F(InTheLoop, the_status_file_tells_of_each_road) {
     start.stored[ROAD_LAW] = {shipped(QUIESCE_LAW_PHASE), 1};
+    start.stored[ROAD_TRACKER].state = KEEPER_LOST;
     tables->use(start);
     Snapshot snapshot{};
     snapshot.roads = tables->status();
@@ -429,9 +535,12 @@ TEST_F(InTheLoop, the_status_file_tells_of_each_road) {
     const std::string law = "\"law\": {\"kind\": \"rules\", \"crc\": " + std::to_string(in_use()) +
                             ", \"source\": \"ships\", ";
     for (const std::string &part :
-         {law, std::string("\"writes\": 1, \"refusal\": \"not a table that this law"),
-          std::string("\"tracker\": {\"kind\": null, \"crc\": 0, \"source\": \"none\", "
-                      "\"stored_crc\": 0, \"writes\": 0, \"refusal\": null}")}) {
+         {law,
+          std::string("\"writes\": 1, \"record\": \"whole\", \"refusal\": \"not a table that this "
+                      "law"),
+          std::string(
+              "\"tracker\": {\"kind\": null, \"crc\": 0, \"source\": \"none\", "
+              "\"stored_crc\": 0, \"writes\": 0, \"record\": \"lost\", \"refusal\": null}")}) {
         EXPECT_NE(json.find(part), std::string::npos) << part << " in\n" << json;
     }
 }
