@@ -99,6 +99,7 @@ std::optional<Spread::Outside> Spread::outside(const Span &range) const {
 
 void VisitObserver::add(std::int64_t tick, const quiesce_telemetry_t &now) {
     const bool is_at_work = now.state == QUIESCE_STATE_RUN || now.state == QUIESCE_STATE_DEGRADED;
+    ticks_at_work_ += is_at_work ? 1 : 0;
     if (!is_at_work || now.freq_is_valid == 0) {
         return;
     }
@@ -112,6 +113,10 @@ void VisitObserver::add(std::int64_t tick, const quiesce_telemetry_t &now) {
 std::vector<std::string> warnings_of(const TableRange &range, const VisitObserver &visits) {
     std::vector<std::string> out;
     if (visits.freq_Hz().count() == 0) {
+        if (visits.ticks_at_work() > 0) {
+            out.push_back("no frequency was found anywhere in this run, so the " + range.kind +
+                          " were never asked: a constant current was held");
+        }
         return out;
     }
     if (range.freq_Hz) {

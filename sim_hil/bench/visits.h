@@ -43,11 +43,13 @@ class VisitObserver final : public TickObserver {
     const Spread &freq_Hz() const { return freq_Hz_; }
     const Spread &rms_m_s2() const { return rms_m_s2_; }
     bool wants_current() const { return wants_current_; } ///< in one of them
+    std::int64_t ticks_at_work() const { return ticks_at_work_; } ///< known frequency or not
 
   private:
     Spread freq_Hz_;
     Spread rms_m_s2_;
     bool wants_current_ = false;
+    std::int64_t ticks_at_work_ = 0;
 };
 
 /// What of a run a table does not cover, each in one line; none where all is well.

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <sstream>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
 #include "bench_call.h"
+#include "file_mistakes.h"
 
 extern "C" {
 #include "plant_pulses.h"
@@ -74,11 +77,11 @@ TEST(Spread, tells_most_of_its_values_and_those_outside) {
 
 /// Ticks of a run in which a law was at work.
 VisitObserver visited(double freq_Hz, double rms_m_s2, std::int32_t current_mA,
-                      std::uint32_t state = QUIESCE_STATE_RUN) {
+                      std::uint32_t state = QUIESCE_STATE_RUN, bool is_known = true) {
     constexpr int kTicks = 1000;
     quiesce_telemetry_t now{};
     now.state = state;
-    now.freq_is_valid = 1;
+    now.freq_is_valid = is_known ? 1 : 0;
     now.freq_uHz = static_cast<std::int32_t>(1e6 * freq_Hz);
     now.rms_um_s2 = static_cast<std::int32_t>(1e6 * rms_m_s2);
     now.current_law_mA = current_mA;
@@ -114,21 +117,58 @@ TEST(Warnings, say_that_no_current_is_asked_for) {
     EXPECT_EQ(warnings[0], "the rules ask for no current anywhere in this run");
 }
 
+TEST(Warnings, say_that_no_frequency_was_found) {
+    const auto warnings = warnings_of(kRange, visited(3.0, 2.0, 0, QUIESCE_STATE_RUN, false));
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], "no frequency was found anywhere in this run, so the rules were never "
+                           "asked: a constant current was held");
+    EXPECT_TRUE(warnings_of(kRange, visited(3.0, 2.0, 0, QUIESCE_STATE_IDLE, false)).empty());
+}
+
 TEST(Warnings, are_of_the_time_in_which_the_law_was_at_work) {
     EXPECT_TRUE(warnings_of(kRange, visited(3.0, 2.0, 0, QUIESCE_STATE_IDLE)).empty());
 }
 
-TEST(BenchRun, warns_where_the_shipped_rules_do_not_cover_a_plant) {
+/// A tone on the published rig, with rules or what else its law has.
+Outcome run_at(double freq_Hz, const std::string &law) {
+    const auto plant = std::filesystem::absolute("sim_hil/data/plants/squeeze_2012.toml").string();
+    std::ostringstream text;
+    text << "schema = \"quiesce-scenario\"\nversion = 1\nname = \"tone\"\nplant = \"" << plant
+         << "\"\nduration_s = 4.0\n[[segment]]\nkind = \"sine\"\nfreq_Hz = " << freq_Hz
+         << "\n[[window]]\nstart_s = 3.0\nend_s = 4.0\n";
+    const quiesce::TemporaryFile scenario(text.str());
+    return bench("run --scenario " + scenario.path() + " --law " + law);
+}
+
+nlohmann::json json_in(const std::string &output) {
+    return nlohmann::json::parse(output.substr(output.find('{')));
+}
+
+TEST(BenchRun, warns_where_the_shipped_rules_do_not_cover_a_run) {
+    const Outcome run = run_at(3.0, "fuzzy");
+    EXPECT_EQ(run.exit_code, 0);
+    const std::string warning = "rules cover 5 to 20 Hz; this run is at 3 Hz";
+    EXPECT_NE(run.output.find("quiesce_bench: warning: " + warning), std::string::npos)
+        << run.output;
+    const auto json = json_in(run.output);
+    EXPECT_EQ(json["covered"]["kind"], "rules");
+    EXPECT_NEAR(json["visited"]["freq_Hz"][1].get<double>(), 3.0, 0.05);
+    EXPECT_EQ(json["warnings"][0].get<std::string>(), warning);
+}
+
+TEST(BenchRun, says_nothing_where_they_cover_it) {
+    EXPECT_TRUE(json_in(run_at(10.0, "fuzzy").output)["warnings"].empty());
+}
+
+// 1.88 A hold this mass so firmly that nothing is left to find a frequency in.
+TEST(BenchRun, warns_where_rules_are_never_asked) {
     const Outcome run =
         bench("run --scenario sim_hil/data/scenarios/suspended_mass_step.toml --law fuzzy");
     EXPECT_EQ(run.exit_code, 0);
-    const std::string warning = "rules cover 5 to 20 Hz; this run is at 1.5";
-    EXPECT_NE(run.output.find("quiesce_bench: warning: " + warning), std::string::npos)
-        << run.output;
-    const auto json = nlohmann::json::parse(run.output.substr(run.output.find('{')));
-    EXPECT_EQ(json["covered"]["kind"], "rules");
-    EXPECT_LT(json["visited"]["freq_Hz"][1], 3.0);
-    EXPECT_EQ(json["warnings"][0].get<std::string>().rfind(warning, 0), 0u);
+    const auto json = json_in(run.output);
+    EXPECT_TRUE(json["visited"]["freq_Hz"].is_null());
+    ASSERT_EQ(json["warnings"].size(), 1u);
+    EXPECT_EQ(json["warnings"][0].get<std::string>().rfind("no frequency was found", 0), 0u);
 }
 
 TEST(BenchRun, has_nothing_to_say_of_laws_without_such_tables) {

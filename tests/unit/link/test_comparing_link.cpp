@@ -100,7 +100,7 @@ TEST(comparing_link, disagreement_on_why_a_table_is_refused_is_an_error) {
     FaultyLink faulty(0, 0, 0);
     ComparingLink link(host, faulty);
     EXPECT_EQ(link.start(nullptr, default_params(), tables).table.verdict,
-              std::uint32_t{QUIESCE_TABLE_SIZE});
+              std::uint32_t{QUIESCE_TABLE_MAGIC});
     faulty.accepts = false;
     faulty.refused_table = QUIESCE_TABLE_CRC;
     expect_contains(error_of([&] { link.start(nullptr, default_params(), tables); }), "disagree");
