@@ -156,7 +156,7 @@ typedef struct {
     table_service_t *self;
     quiesce_t *controller;
     const can_service_request_t *request;
-    int32_t *value;
+    int32_t value; ///< of the reply
 } work_t;
 
 // What has arrived is the file that the request means.
@@ -195,7 +195,7 @@ static quiesce_table_verdict_t judge(const work_t *work, bool is_used) {
 }
 
 // TABLE_CHECK and TABLE_COMMIT. Returns false while it is summed.
-static bool take_arrival(const work_t *work, bool is_used, can_node_result_t *result) {
+static bool take_arrival(work_t *work, bool is_used, can_node_result_t *result) {
     table_service_t *self = work->self;
     uint32_t count;
     const uint32_t *words = quiesce_tables_arrival(&self->tables, &count);
@@ -209,7 +209,7 @@ static bool take_arrival(const work_t *work, bool is_used, can_node_result_t *re
     const uint32_t road = road_of(words, count);
     const quiesce_table_verdict_t verdict = judge(work, is_used);
     self->of[road].refusal = verdict;
-    *work->value = (int32_t)verdict;
+    work->value = (int32_t)verdict;
     *result = verdict == QUIESCE_TABLE_OK ? CAN_NODE_DONE : CAN_NODE_TABLE_REFUSED;
     if (is_used) {
         table_link_drop(&self->link);
@@ -320,16 +320,16 @@ static uint32_t info_of(const work_t *work, uint32_t road, const uint32_t *words
     }
 }
 
-static can_node_result_t tell(const work_t *work) {
+static can_node_result_t tell(work_t *work) {
     const uint32_t road = work->request->index;
     if (road >= ROADS || work->request->value < 0 || work->request->value >= TABLE_INFOS) {
         return CAN_NODE_NO_SUCH_TABLE;
     }
-    *work->value = (int32_t)info_of(work, road, in_use(work, road));
+    work->value = (int32_t)info_of(work, road, in_use(work, road));
     return CAN_NODE_DONE;
 }
 
-static can_node_result_t send(const work_t *work) {
+static can_node_result_t send(work_t *work) {
     const uint32_t road = work->request->index;
     if (road >= ROADS) {
         return CAN_NODE_NO_SUCH_TABLE;
@@ -338,11 +338,11 @@ static can_node_result_t send(const work_t *work) {
     if (words == NULL) {
         return CAN_NODE_NOTHING_TO_SEND;
     }
-    *work->value = (int32_t)table_link_send(&work->self->link, words, 0);
+    work->value = (int32_t)table_link_send(&work->self->link, words, 0);
     return CAN_NODE_DONE;
 }
 
-static can_node_result_t restore_learnt(const work_t *work) {
+static can_node_result_t restore_learnt(work_t *work) {
     const uint32_t *words = work->self->learnt.kept.words;
     if (words[COUNT_WORD] == 0u) {
         return CAN_NODE_NOTHING_TO_SEND;
@@ -351,12 +351,12 @@ static can_node_result_t restore_learnt(const work_t *work) {
         work->self->of[ROAD_LEARNT].source = TABLE_FROM_STORE;
         return CAN_NODE_DONE;
     }
-    *work->value = (int32_t)QUIESCE_TABLE_FIT;
+    work->value = (int32_t)QUIESCE_TABLE_FIT;
     return CAN_NODE_TABLE_REFUSED;
 }
 
 // Returns false while it has to wait.
-static bool act(const work_t *work, can_node_result_t *result) {
+static bool act(work_t *work, can_node_result_t *result) {
     switch (work->request->operation) {
     case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_TABLE_CHECK_CHOICE:
         return take_arrival(work, false, result);
@@ -390,8 +390,9 @@ static bool act(const work_t *work, can_node_result_t *result) {
 bool table_service_work(table_service_t *self, quiesce_t *controller,
                         const can_service_request_t *request, can_node_result_t *result,
                         int32_t *value) {
-    const work_t work = {self, controller, request, value};
+    work_t work = {self, controller, request, 0};
     const bool is_done = act(&work, result);
+    *value = work.value;
     self->is_working = !is_done;
     return is_done;
 }

@@ -166,7 +166,7 @@ int run_controller(const std::string &config_file, std::uint64_t ticks) {
     const Bus bus = config.can ? open_bus(*config.can, BusUse::controller) : nullptr;
     keep_config(read, params, exchange->log);
     exchange->bus = bus.get();
-    const Service service(config, tables.configured, *exchange, faults, records, caretaker, sink);
+    const Service service(config, tables.configured, *exchange, {faults, records, caretaker}, sink);
     become_realtime(config.loop);
     // Last, because it cannot always be stopped again.
     const Watchdog watchdog = config.watchdog ? open_watchdog(*config.watchdog) : nullptr;

@@ -47,10 +47,10 @@ void Trouble::note(const std::string &error, LogSink &sink) {
 }
 
 Service::Service(const Config &config, const ConfiguredTables &tables, Exchange &exchange,
-                 FaultStore &faults, RecordStore &records, Caretaker &caretaker, LogSink &sink)
+                 const Survivors &survivors, LogSink &sink)
     : config_(config), exchange_(exchange), sink_(sink), store_(config.state.folder),
-      tables_(config.state.folder), faults_(faults), records_(records), caretaker_(caretaker),
-      kept_(config.state.folder), manager_(exchange.manager),
+      tables_(config.state.folder), faults_(survivors.faults), records_(survivors.records),
+      caretaker_(survivors.caretaker), kept_(config.state.folder), manager_(exchange.manager),
       reload_(config, store_, tables, exchange, sink), stored_fault_(exchange.latched_fault.load()),
       thread_([this] { run(); }) {}
 

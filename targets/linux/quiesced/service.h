@@ -29,13 +29,20 @@ class Trouble {
     std::uint32_t failures_ = 0;
 };
 
+/// What outlives the program beyond what the thread makes itself: a fault, its record, and the
+/// process that acts where this one is killed.
+struct Survivors {
+    FaultStore &faults;
+    RecordStore &records;
+    Caretaker &caretaker;
+};
+
 class Service {
   public:
     /// Starts the thread. Make it before the calling thread becomes a real-time thread. Everything
-    /// that it is given must outlive it.
-    /// tables: of the start.
+    /// that it is given must outlive it, but tables, those of the start.
     Service(const Config &config, const ConfiguredTables &tables, Exchange &exchange,
-            FaultStore &faults, RecordStore &records, Caretaker &caretaker, LogSink &sink);
+            const Survivors &survivors, LogSink &sink);
     Service(const Service &) = delete;
     Service &operator=(const Service &) = delete;
 

@@ -95,6 +95,35 @@ static void test_table_of_another_board_is_not_used(void) {
     TEST_ASSERT_EQUAL_UINT32(2, kept_writes(&kept, KEEPER_LAW_TABLE));
 }
 
+// Slots are written in turn, the second one first.
+static void flip(keeper_record_t record, uint32_t slot) {
+    ((volatile uint32_t *)
+         NVM_MPS2_BASE)[((uint32_t)record * 2u + slot) * kept.nvm.slot_words + NVM_HEAD_WORDS] ^=
+        1u;
+}
+
+static keeper_state_t state_of(keeper_record_t record) {
+    start();
+    (void)kept_read(&kept, record);
+    return kept.state;
+}
+
+static void test_how_each_record_was_found_is_told(void) {
+    static const uint32_t words[4] = {1, 2, 3, 4};
+    for (uint32_t i = 0; i < KEEPER_RECORDS; i++) {
+        const keeper_record_t record = (keeper_record_t)i;
+        TEST_ASSERT_EQUAL(KEEPER_WHOLE, state_of(record));
+        store(record, words, 4);
+        store(record, words, 3);
+        TEST_ASSERT_EQUAL(KEEPER_WHOLE, state_of(record));
+        flip(record, 0);
+        TEST_ASSERT_EQUAL(KEEPER_OLDER, state_of(record));
+        flip(record, 1);
+        TEST_ASSERT_EQUAL(KEEPER_LOST, state_of(record));
+        TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, record));
+    }
+}
+
 static void test_too_many_words_fail_at_once(void) {
     TEST_ASSERT_EQUAL(KEEPER_FAILED,
                       kept_store(&kept, KEEPER_LAW_TABLE, NULL, HAL_NVM_MAX_WORDS + 1u));
@@ -120,6 +149,7 @@ int main(void) {
     RUN_TEST(test_parameters_of_another_number_or_forgotten_are_none);
     RUN_TEST(test_longest_table_comes_back_and_is_forgotten);
     RUN_TEST(test_table_of_another_board_is_not_used);
+    RUN_TEST(test_how_each_record_was_found_is_told);
     RUN_TEST(test_too_many_words_fail_at_once);
     RUN_TEST(test_one_at_a_time_with_the_words_of_its_call);
     return UNITY_END();

@@ -196,7 +196,7 @@ TEST_F(BoardFit, reload_refuses_what_the_board_of_the_start_cannot_do) {
         FaultStore faults(folder_.path());
         RecordStore records(folder_.path());
         Caretaker caretaker(file(), folder_.path(), exchange->latched_fault);
-        const Service service(config_, {}, *exchange, faults, records, caretaker, sink);
+        const Service service(config_, {}, *exchange, {faults, records, caretaker}, sink);
         write_config("tick_rate_Hz = 2000\n"); // right in itself: the default of rate_Hz follows
         EXPECT_TRUE(read_config(file(), Needs::peripherals).problems.empty());
         kill(getpid(), SIGHUP);
