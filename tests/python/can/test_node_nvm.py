@@ -28,12 +28,14 @@ HEAD_WORDS = 4
 MOST_WORDS = 2048
 NO_BOARD = 0  # the memory's owner
 
-PARAMS, LAW_TABLE = 0, 1  # records
-LAW, LEARNT = 0, 2  # roads
-INFO_CRC, INFO_STORED_CRC, INFO_SOURCE, INFO_WRITES = 0, 2, 3, 5
+PARAMS, LAW_TABLE, TRACKER_TABLE, LEARNT_RECORD = 0, 1, 2, 3  # records
+LAW, TRACKER, LEARNT = 0, 1, 2  # roads
+INFO_CRC, INFO_STORED_CRC, INFO_SOURCE, INFO_WRITES, INFO_RECORD = 0, 2, 3, 5, 7
 SHIPS, FROM_STORE = 1, 3
-PHASE = 4  # the law
+WHOLE, OLDER = 0, 1  # how a record was found
+PHASE, LINEAR = 4, 5  # laws
 CURRENT = "constant_current_mA"
+TRIM_WORD = 7  # of a record of what was learnt, after its own head and that of the law's words
 
 
 def slot_base(record: int, slot: int) -> int:
@@ -49,6 +51,28 @@ def pulses(unlock_current_mA: int) -> tuple[int, ...]:
     """A table of the law `phase`: what ships, but for a current."""
     law = read_law(ROOT / "firmware/plants/squeeze_2012/pulses.phase.toml")
     return tuple(law_words(replace(law, unlock_current_mA=unlock_current_mA)))
+
+
+def table(words: Sequence[int]) -> tuple[int, ...]:
+    """The same with its own count and CRC."""
+    after = [len(words), *(word % 2**32 for word in words[3:])]
+    return (words[0], zlib.crc32(struct.pack(f"<{len(after)}I", *after)), *after)
+
+
+def damper_map(force_mN: int) -> tuple[int, ...]:
+    """Forces over stroke velocity, 2 places, and current, 2 of them."""
+    velocities, currents = (-1000, 1000), (0, 1500)
+    forces = (-20_000, -force_mN, 20_000, force_mN)
+    return table([0x32464D51, 0, 0, 1, 4, 2, 2, *velocities, *currents, *forces])
+
+
+def with_trim(learnt: Sequence[int], trim: int) -> tuple[int, ...]:
+    """What was learnt, with another trim of its first point; words 3 and 4 are the law's own magic
+    and CRC."""
+    words = [*learnt]
+    words[TRIM_WORD] = words[TRIM_WORD] & 0xFFFF0000 | trim
+    words[4] = zlib.crc32(struct.pack(f"<{len(words) - 5}I", *words[5:]))
+    return table(words)
 
 
 class Memory:
@@ -209,20 +233,75 @@ def test_saved_tables_are_used_after_a_power_up(image: Path, memory: Memory) -> 
         assert rig.ask("LEARNT_RESTORE")["result"] == "TABLE_REFUSED"  # of the other table
 
 
+@pytest.mark.slow
+def test_older_record_is_told_until_it_is_stored_again(image: Path, memory: Memory) -> None:
+    with running(image, memory.options()) as rig:
+        save_with(rig, "law", PHASE)
+    memory.put(LAW_TABLE, pulses(700))
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_RECORD) == WHOLE
+        memory.put(LAW_TABLE, pulses(701))  # behind its back: now the two slots differ
+        assert rig.ask("TABLE_SAVE", LAW)["result"] == "DONE"
+    memory.flip(memory.newest(LAW_TABLE) + 80)
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == pulses(701)[1]  # the one before
+        assert info(rig, LAW, INFO_RECORD) == OLDER
+        assert info(rig, TRACKER, INFO_RECORD) == WHOLE
+        assert rig.ask("TABLE_SAVE", LAW)["result"] == "DONE"
+        assert info(rig, LAW, INFO_RECORD) == WHOLE
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == pulses(701)[1]
+        assert info(rig, LAW, INFO_RECORD) == WHOLE
+
+
+@pytest.mark.slow
+def test_stored_table_waits_for_the_law_that_it_is_of(image: Path, memory: Memory) -> None:
+    """The law was applied, but not saved with its table."""
+    with running(image, memory.options()) as rig:
+        shipped = info(rig, LAW, INFO_CRC)
+    memory.put(LAW_TABLE, pulses(777))
+    with running(image, memory.options()) as rig:
+        assert info(rig, LAW, INFO_CRC) == shipped
+        assert rig.ask("STAGE", param_index("law"), PHASE)["result"] == "DONE"
+        assert rig.ask("APPLY")["result"] == "DONE"
+        assert info(rig, LAW, INFO_CRC) == pulses(777)[1]
+        assert info(rig, LAW, INFO_SOURCE) == FROM_STORE
+
+
 @dataclass(frozen=True)
 class Subject:
-    """A record, how it is asked for and saved, and the word that tells it apart."""
+    """A record, how it is asked for and saved, the word that tells it apart, and the law that has
+    it."""
 
     record: int
-    save: str
+    save: tuple[str, int]
     question: tuple[str, int]
     place: int
+    law: int = PHASE
 
 
 SUBJECTS = [
-    Subject(PARAMS, "SAVE", ("READ", param_index(CURRENT)), 1 + param_index(CURRENT)),
-    Subject(LAW_TABLE, "TABLE_SAVE", ("TABLE_INFO", LAW), 1),
+    Subject(PARAMS, ("SAVE", 0), ("READ", param_index(CURRENT)), 1 + param_index(CURRENT)),
+    Subject(LAW_TABLE, ("TABLE_SAVE", LAW), ("TABLE_INFO", LAW), 1),
+    Subject(TRACKER_TABLE, ("TABLE_SAVE", TRACKER), ("TABLE_INFO", TRACKER), 1, LINEAR),
+    Subject(LEARNT_RECORD, ("TABLE_SAVE", LEARNT), ("TABLE_INFO", LEARNT), 1),
 ]
+
+
+def two_of(memory: Memory, subject: Subject) -> list[tuple[int, ...]]:
+    """Two good contents of its record; what is there by now is of the subject's law."""
+    at = subject.place
+    if subject.record == PARAMS:
+        _, params = memory.kept(PARAMS)
+        return [(*params[:at], 700 + i, *params[at + 1 :]) for i in range(2)]
+    if subject.record == LEARNT_RECORD:
+        _, learnt = memory.kept(LEARNT_RECORD)
+        return [with_trim(learnt, 1 + i) for i in range(2)]
+    if subject.record == TRACKER_TABLE:
+        return [damper_map(400_000 + i) for i in range(2)]
+    return [pulses(700 + i) for i in range(2)]
+
+
 # Word of the slot, and the write to it: the first one erases, the second one programs.
 ANY = random.Random(20)
 MOMENTS = [
@@ -241,19 +320,16 @@ def settled(rig: Rig, operation: str, index: int) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("subject", SUBJECTS, ids=("parameters", "table"))
+@pytest.mark.parametrize("subject", SUBJECTS, ids=("parameters", "law", "tracker", "learnt"))
 def test_power_cut_leaves_the_old_or_the_new(
     image: Path, memory: Memory, tmp_path: Path, subject: Subject
 ) -> None:
     stub = Stub(tmp_path / "stub")
     with running(image, memory.options()) as rig:
-        save_with(rig, "law", PHASE)
-    _, params = memory.kept(PARAMS)
-    at = subject.place
-    words = {
-        PARAMS: [(*params[:at], 700 + i, *params[at + 1 :]) for i in range(2)],
-        LAW_TABLE: [pulses(700 + i) for i in range(2)],
-    }[subject.record]
+        save_with(rig, "law", subject.law)
+        if subject.record == LEARNT_RECORD:
+            assert rig.ask("TABLE_SAVE", LEARNT)["result"] == "DONE"
+    words = two_of(memory, subject)
     memory.put(subject.record, words[0])
     outcomes = set()
     for word, times in MOMENTS:
@@ -263,7 +339,8 @@ def test_power_cut_leaves_the_old_or_the_new(
             # Behind its back the record becomes the other one, which it replaces.
             memory.put(subject.record, words[1 - words.index(used)])
             with stub.attached():
-                rig.send("ServiceRequest", operation=subject.save)
+                operation, road = subject.save
+                rig.send("ServiceRequest", operation=operation, param_index=road)
                 stub.until_written(memory.spare(subject.record) + 4 * word, times)
                 rig.cut_power()
         _, found = memory.kept(subject.record)

@@ -10,7 +10,7 @@ from quiesced_peer import DBC, Peer, slcan
 
 DATA_ID = DBC.get_message_by_name("TableData").frame_id
 LAW, TRACKER, LEARNT = 0, 1, 2  # roads
-CRC, MAGIC, STORED_CRC, SOURCE, BOARD, WRITES, REFUSAL = range(7)  # of TABLE_INFO
+CRC, MAGIC, STORED_CRC, SOURCE, BOARD, WRITES, REFUSAL, RECORD = range(8)  # of TABLE_INFO
 SHIPS, CAN, STORED, CONFIGURATION = 1, 2, 3, 4  # sources
 DONE, STORE_FAILED, NOTHING_TO_SEND, TABLE_REFUSED, NOTHING_RECEIVED = 0, 5, 7, 10, 11
 FILE_MAGIC = int.from_bytes(b"QTF1", "little")

@@ -2,6 +2,7 @@
 
 import signal
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ from table_host import (
     NOTHING_RECEIVED,
     NOTHING_TO_SEND,
     OVERFLOW,
+    RECORD,
     REFUSAL,
     SHIPS,
     SOURCE,
@@ -38,6 +40,7 @@ from table_host import (
 VERDICT_MAGIC, VERDICT_CRC, VERDICT_BOARD = 2, 3, 10
 INIT, ARMED, DEGRADED, SELF_TEST = 0, 5, 6, 7
 RATE_Hz = 500
+PHASE = 4  # the law
 # A force against the velocity of the body, no states: one input (a body's velocity, at most 1 m/s,
 # as it is), one row (damper 0, a shift of 10, at most 500 N, the gain).
 LINEAR = table([0x314E4C51, 0, 0, RATE_Hz, 0, 1, 1, 0x001, 1_000_000, 0, 0, 10, 500_000, 2_000])
@@ -222,29 +225,107 @@ def test_what_is_refused_changes_nothing(quiesced: Quiesced) -> None:
     assert quiesced.stop() == 0
 
 
-def test_damaged_record_falls_back(quiesced: Quiesced) -> None:
+@dataclass(frozen=True)
+class Kept:
+    """A record, with a controller that stores it; words: of its table, none of what was learnt."""
+
+    road: int
+    file: str
+    parameters: str
+    words: list[int] | None
+    name: str
+
+
+KEPT = [
+    Kept(LAW, "law_table.bin", FORCES, LINEAR, "the law's table as stored"),
+    Kept(TRACKER, "tracker_table.bin", FORCES, MAP, "the tracker's table as stored"),
+    Kept(LEARNT, "learnt.bin", "law = 'phase'\n", None, "what was learnt"),
+]
+each_record = pytest.mark.parametrize("kept", KEPT, ids=("law", "tracker", "learnt"))
+WHOLE, LOST = 0, 2
+
+
+def stored(quiesced: Quiesced, kept: Kept) -> Path:
+    """The file of a record that a controller has stored, which has ended."""
+    quiesced.write_config(kept.parameters)
+    start(quiesced)
+    host = TableHost(quiesced.peer)
+    if kept.words is not None:
+        host.use(kept.words)
+    assert host.ask("TABLE_SAVE", kept.road) == (DONE, 0)
+    assert (host.info(kept.road, RECORD), host.info(kept.road, WRITES)) == (WHOLE, 1)
+    assert quiesced.stop() == 0
+    return quiesced.state / kept.file
+
+
+@each_record
+@pytest.mark.parametrize("damage", ["flipped", "cut"])
+def test_damaged_record_is_told_and_not_used(quiesced: Quiesced, kept: Kept, damage: str) -> None:
+    record = stored(quiesced, kept)
+    data = record.read_bytes()
+    flipped = bytes([*data[:100], data[100] ^ 1, *data[101:]])
+    record.write_bytes(flipped if damage == "flipped" else data[: len(data) // 2])
+    start(quiesced)
+    host = TableHost(quiesced.peer)
+    assert (host.info(kept.road, STORED_CRC), host.info(kept.road, RECORD)) == (0, LOST)
+    if kept.words is not None:
+        assert host.info(kept.road, CRC) == 0
+    road = ("law", "tracker", "learnt")[kept.road]
+    assert quiesced_status(quiesced)["tables"][road]["record"] == "lost"
+    assert quiesced.stop() == 0
+    assert f"{kept.name} is not used: " in quiesced.log_text()
+    assert "damaged: " in quiesced.log_text()
+
+
+@each_record
+def test_half_of_a_new_record_leaves_the_old_one(quiesced: Quiesced, kept: Kept) -> None:
+    """What a cut leaves while a record is stored."""
+    record = stored(quiesced, kept)
+    data = record.read_bytes()
+    record.with_name(record.name + ".new").write_bytes(data[: len(data) // 2])
+    start(quiesced)
+    host = TableHost(quiesced.peer)
+    crc = host.info(kept.road, STORED_CRC)
+    assert (crc != 0, host.info(kept.road, RECORD)) == (True, WHOLE)
+    assert host.info(kept.road, CRC) == crc
+    if kept.words is not None:
+        assert crc == kept.words[1]
+        assert host.info(kept.road, SOURCE) == STORED
+    assert host.ask("TABLE_SAVE", kept.road) == (DONE, 0)
+    assert quiesced.stop() == 0
+    assert "is not used" not in quiesced.log_text()
+
+
+def test_store_that_fails_is_answered(quiesced: Quiesced) -> None:
     quiesced.write_config("law = 'fuzzy'\n")
     start(quiesced)
     host = TableHost(quiesced.peer)
-    shipped = host.info(LAW, CRC)
     (words,) = others(host, 1)
     host.use(words)
-    assert host.ask("TABLE_SAVE", LAW) == (DONE, 0)
-    assert quiesced.stop() == 0
-    record = quiesced.state / "law_table.bin"
-    data = bytearray(record.read_bytes())
-    data[100] ^= 1
-    record.write_bytes(data)
-    start(quiesced)
-    assert (host.info(LAW, CRC), host.info(LAW, STORED_CRC)) == (shipped, 0)
-    assert "the law's table as stored is not used: " in quiesced.log_text()
-    assert "its checksum is wrong" in quiesced.log_text()
-
-    record.unlink()
-    record.mkdir()
+    (quiesced.state / "law_table.bin").mkdir()
     assert host.ask("TABLE_SAVE", LAW)[0] == STORE_FAILED
     assert quiesced.stop() == 0
     assert "not saved: the law's table: " in quiesced.log_text()
+
+
+def test_stored_table_waits_for_the_law_that_it_is_of(quiesced: Quiesced) -> None:
+    """The law was applied, but not saved with its table."""
+    quiesced.write_config("law = 'fuzzy'\n")
+    start(quiesced)
+    host = TableHost(quiesced.peer)
+    set_parameter(quiesced.peer, "law", PHASE)
+    (words,) = others(host, 1)
+    host.use(words)
+    assert host.ask("TABLE_SAVE", LAW) == (DONE, 0)
+    restart(quiesced)
+    assert host.info(LAW, SOURCE) == SHIPS
+    assert host.info(LAW, REFUSAL) == VERDICT_MAGIC
+    assert "the law's table (stored) waits: " in quiesced.log_text()
+    set_parameter(quiesced.peer, "law", PHASE)
+    assert (host.info(LAW, CRC), host.info(LAW, SOURCE)) == (words[1], STORED)
+    assert host.info(LAW, REFUSAL) == 0
+    assert quiesced.stop() == 0
+    assert f"the law's table: pulses, CRC {words[1]:08x} (stored)" in quiesced.log_text()
 
 
 def write_tables(quiesced: Quiesced, parameters: str, **files: bytes) -> None:
