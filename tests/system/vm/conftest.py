@@ -44,5 +44,10 @@ def timing(vm: boots.Vm) -> boots.TimingRun:
 
 
 @pytest.fixture(scope="session")
+def tables(vm: boots.Vm) -> boots.TablesRun:
+    return told(boots.run_tables, vm)
+
+
+@pytest.fixture(scope="session")
 def faults(vm: boots.Vm) -> boots.FaultRun:
     return told(boots.run_faults, vm)

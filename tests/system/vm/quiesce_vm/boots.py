@@ -1,4 +1,4 @@
-"""The three boots of the virtual machine, and what each of them brings back.
+"""The four boots of the virtual machine, and what each of them brings back.
 
 Nothing here judges a figure: tests and `measure` do. BenchFailure where a boot does not come to its
 end.
@@ -6,6 +6,7 @@ end.
 
 import json
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,6 +20,7 @@ from quiesce.engine.bench import require_file
 
 from quiesce_vm.initramfs import Parts, build
 from quiesce_vm.limits import HANG_S
+from quiesce_vm.line_pty import LinePty
 from quiesce_vm.machine import Boot, Machine
 from quiesce_vm.peer import END_ID, Peer
 from quiesce_vm.qmp import Qtest
@@ -224,3 +226,68 @@ def run_faults(vm: Vm) -> FaultRun:
             return FaultRun(results_of(lines), qmp.ending(), lines)
         except BenchFailure as error:
             raise BenchFailure(f"{error}; {machine.tail()}")
+
+
+@dataclass(frozen=True)
+class TablesRun:
+    """What `quiesce can` printed: `tables` of each controller, and what was loaded and fetched."""
+
+    results: Results
+    before: dict[str, Any]
+    loaded: dict[str, Any]
+    after: dict[str, Any]
+    restarted: dict[str, Any]
+    fetched: dict[str, Any]
+    damaged: dict[str, Any]
+
+
+def run_tables(vm: Vm) -> TablesRun:
+    with vm.boot("tables.sh", vm.serial_line) as machine:
+        machine.wait_line("READY loaded")
+        line = LinePty(vm.serial_line)
+        try:
+            return _load(machine, line, vm.serial_line.parent)
+        except BenchFailure as error:
+            raise BenchFailure(f"{error}; {machine.tail()}")
+        finally:
+            line.close()
+
+
+def _load(machine: Machine, line: LinePty, folder: Path) -> TablesRun:
+    def can(*words: str) -> dict[str, Any]:
+        with line.in_use() as name:
+            return _can(name, *words)
+
+    def end_step(next_ready: str) -> None:
+        line.send(b"t%03X0" % END_ID)
+        machine.wait_line(next_ready)
+
+    before = can("tables")
+    loaded = can("load", "pulses", str(_other_pulses(folder)), "--save")
+    after = can("tables")
+    end_step("READY restarted")
+    restarted = can("tables")
+    fetched = can("fetch", "law", "-o", str(folder / "fetched.table"))
+    end_step("READY damaged")
+    damaged = can("tables")
+    end_step('RESULT {"name": "damaged"')
+    results = results_of(machine.wait_end())
+    return TablesRun(results, before, loaded, after, restarted, fetched, damaged)
+
+
+def _other_pulses(folder: Path) -> Path:
+    """Those that ship, but for a current."""
+    shipped = root() / "firmware/plants/squeeze_2012/pulses.phase.toml"
+    file = folder / "other.phase.toml"
+    text = shipped.read_text()
+    file.write_text(text.replace("\nunlock_current_mA = 5000", "\nunlock_current_mA = 4000"))
+    return file
+
+
+def _can(line: str, *words: str) -> dict[str, Any]:
+    """A call of `quiesce can` on the bus behind the line."""
+    command = [sys.executable, "-m", "quiesce", "can", *words, "--json", "--bus", f"slcan:{line}"]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
+    if result.returncode != 0:
+        raise BenchFailure(f"quiesce can {words[0]}: {one_line(result.stderr)}")
+    return json.loads(result.stdout)
