@@ -23,7 +23,7 @@ json run(const std::string &scenario, const std::string &options) {
     const Outcome outcome =
         bench("run --scenario sim_hil/data/scenarios/" + scenario + ".toml " + options);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    return json::parse(outcome.output);
+    return json::parse(quiesce::json_text(outcome));
 }
 
 const std::string kOff = "--law off";
@@ -129,7 +129,7 @@ TEST(Windows, may_be_eight) {
                      "\"\n[[segment]]\nkind = \"sine\"\nfreq_Hz = 10\n" + text);
     const Outcome outcome = bench("run --scenario " + scenario.path() + " " + kFull);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-    const json out = json::parse(outcome.output);
+    const json out = json::parse(quiesce::json_text(outcome));
     ASSERT_EQ(out["windows"].size(), 8u);
     EXPECT_EQ(out["amp_um"], out["windows"][0]["amp_um"]);
     EXPECT_EQ(out["amp2_um"], out["windows"][1]["amp_um"]);

@@ -140,8 +140,8 @@ Outcome run_at(double freq_Hz, const std::string &law) {
     return bench("run --scenario " + scenario.path() + " --law " + law);
 }
 
-nlohmann::json json_in(const std::string &output) {
-    return nlohmann::json::parse(output.substr(output.find('{')));
+nlohmann::json json_of(const Outcome &outcome) {
+    return nlohmann::json::parse(quiesce::json_text(outcome));
 }
 
 TEST(BenchRun, warns_where_the_shipped_rules_do_not_cover_a_run) {
@@ -150,14 +150,14 @@ TEST(BenchRun, warns_where_the_shipped_rules_do_not_cover_a_run) {
     const std::string warning = "rules cover 5 to 20 Hz; this run is at 3 Hz";
     EXPECT_NE(run.output.find("quiesce_bench: warning: " + warning), std::string::npos)
         << run.output;
-    const auto json = json_in(run.output);
+    const auto json = json_of(run);
     EXPECT_EQ(json["covered"]["kind"], "rules");
     EXPECT_NEAR(json["visited"]["freq_Hz"][1].get<double>(), 3.0, 0.05);
     EXPECT_EQ(json["warnings"][0].get<std::string>(), warning);
 }
 
 TEST(BenchRun, says_nothing_where_they_cover_it) {
-    EXPECT_TRUE(json_in(run_at(10.0, "fuzzy").output)["warnings"].empty());
+    EXPECT_TRUE(json_of(run_at(10.0, "fuzzy"))["warnings"].empty());
 }
 
 // 1.88 A hold this mass so firmly that nothing is left to find a frequency in.
@@ -165,7 +165,7 @@ TEST(BenchRun, warns_where_rules_are_never_asked) {
     const Outcome run =
         bench("run --scenario sim_hil/data/scenarios/suspended_mass_step.toml --law fuzzy");
     EXPECT_EQ(run.exit_code, 0);
-    const auto json = json_in(run.output);
+    const auto json = json_of(run);
     EXPECT_TRUE(json["visited"]["freq_Hz"].is_null());
     ASSERT_EQ(json["warnings"].size(), 1u);
     EXPECT_EQ(json["warnings"][0].get<std::string>().rfind("no frequency was found", 0), 0u);
@@ -174,7 +174,7 @@ TEST(BenchRun, warns_where_rules_are_never_asked) {
 TEST(BenchRun, has_nothing_to_say_of_laws_without_such_tables) {
     const Outcome run =
         bench("run --scenario sim_hil/data/scenarios/sine_10Hz.toml --law constant");
-    const auto json = nlohmann::json::parse(run.output);
+    const auto json = json_of(run);
     EXPECT_TRUE(json["covered"].is_null());
     EXPECT_TRUE(json["warnings"].empty());
 }

@@ -32,6 +32,12 @@ inline Outcome bench(const std::string &words, const std::string &environment = 
     return out;
 }
 
+/// The JSON object that ends what was printed, after warnings.
+inline std::string json_text(const Outcome &outcome) {
+    const std::size_t start = outcome.output.find('{');
+    return start == std::string::npos ? outcome.output : outcome.output.substr(start);
+}
+
 } // namespace quiesce
 
 #endif
