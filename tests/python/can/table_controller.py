@@ -48,6 +48,7 @@ class Road:
     source: int = 0
     writes: int = 0
     refusal: int = 0
+    record: int | None = 0  # None: firmware that does not tell
 
 
 def file_of(words: list[int], board: int = 0) -> bytes:
@@ -282,9 +283,10 @@ class TableController(threading.Thread):
 
         told = (
             word(road.words, 1), word(road.words, 0), word(road.stored, 1), road.source, self.board,
-            road.writes, road.refusal,
+            road.writes, road.refusal, road.record,
         )  # fmt: skip
-        return ("DONE", told[what]) if what < len(told) else ("NO_SUCH_TABLE", 0)
+        value = told[what] if what < len(told) else None
+        return ("NO_SUCH_TABLE", 0) if value is None else ("DONE", value)
 
     def _table_send(self, index: int, _value: int) -> tuple[str, int]:
         words = self.roads[index].words

@@ -381,6 +381,19 @@ def test_tables_are_told(controller, tool, tmp_path: Path) -> None:
     assert "last refusal on road law: it is made for another board" in text
 
 
+def test_records_that_are_not_whole_are_told(controller, tool) -> None:
+    law, tracker, learnt = controller.roads
+    law.record, tracker.record, learnt.record = 1, 2, None  # None: older firmware
+    report = json.loads(tool("tables", "--json").stdout)
+    assert [one["record"] for one in report["roads"]] == ["older", "lost", None]
+    text = tool("tables").stdout
+    assert "record of road law: a copy is damaged" in text
+    assert "record of road tracker: damaged, or of another board, and not used" in text
+    assert "record of road learnt" not in text
+    law.record = tracker.record = 0
+    assert "record of" not in tool("tables").stdout
+
+
 def test_revert_and_what_ships(controller, tool, tmp_path: Path) -> None:
     shipped = controller.roads[0].words
     failed(tool("revert", "law"), "there is no earlier table")

@@ -22,11 +22,14 @@ WORD = 1 << 32
 
 REFUSED, NOTHING_RECEIVED = "TABLE_REFUSED", "NOTHING_RECEIVED"
 NOTHING, STORE_FAILED = "NOTHING_TO_SEND", "STORE_FAILED"
+NO_SUCH_TABLE = "NO_SUCH_TABLE"
 
 # What TABLE_INFO is asked for.
-CRC, MAGIC, STORED, SOURCE, BOARD, WRITES, REFUSAL = range(7)
+CRC, MAGIC, STORED, SOURCE, BOARD, WRITES, REFUSAL, RECORD = range(8)
 # Where a table in use came from.
 SOURCES = ("none", "ships", "loaded", "stored", "file")
+# How the controller's start found a record.
+RECORDS = ("whole", "older", "lost")
 
 
 class Refused(BenchFailure):
@@ -48,6 +51,7 @@ class State:
     stored_crc: int  # 0: nothing stored
     writes: int  # of its record
     refusal: int  # verdict of the last refusal, 0: none
+    record: str | None  # None: firmware that does not tell
 
 
 class Tables:
@@ -71,7 +75,16 @@ class Tables:
             stored_crc=self.info(road, STORED),
             writes=self.info(road, WRITES),
             refusal=self.info(road, REFUSAL),
+            record=self.record(road),
         )
+
+    def record(self, road: str) -> str | None:
+        """How a road's record was found. None where the firmware does not tell."""
+        reply = self._ask("TABLE_INFO", ROADS.index(road), RECORD)
+        if reply.result == NO_SUCH_TABLE:
+            return None
+        number = self._done(reply).param_value
+        return RECORDS[number] if number < len(RECORDS) else str(number)
 
     def send(self, data: bytes, crc: int) -> None:
         """A table's file; nothing is used. crc: the table's own. Refused by the checker."""
@@ -180,7 +193,7 @@ REASONS = {
     NOTHING_RECEIVED: "the controller has received no whole table",
     NOTHING: "the controller has nothing of it",
     "NO_SUCH_OPERATION": "this controller's firmware takes no tables over CAN",
-    "NO_SUCH_TABLE": "this controller's firmware knows no such table",
+    NO_SUCH_TABLE: "this controller's firmware knows no such table",
 }
 
 

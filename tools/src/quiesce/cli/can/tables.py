@@ -14,7 +14,8 @@ EPILOG = """examples:
 
 A row a road: the law's table, the tracker's, what was learnt. from: ships (compiled in), loaded
 (over CAN), stored (of an earlier start), file (the configuration's). stored: CRC of what the next
-start has. writes: how often the record of that road was written. Below, the last refusal.
+start has. writes: how often the record of that road was written. Below, the last refusal,
+and a record that this start found damaged.
 """
 
 
@@ -60,7 +61,15 @@ def row_of(state: Any) -> dict[str, Any]:
         "stored_crc": word(state.stored_crc),
         "writes": state.writes,
         "refusal": refusal and {"verdict": refusal.label, "why": refusal.text},
+        "record": state.record,
     }
+
+
+# Of records that are not whole.
+FOUND = {
+    "older": "a copy is damaged, or was cut off: perhaps the one before is in use; save it again",
+    "lost": "damaged, or of another board, and not used",
+}
 
 
 def text(report: dict[str, Any]) -> str:
@@ -81,5 +90,10 @@ def text(report: dict[str, Any]) -> str:
         f"last refusal on road {one['road']}: {one['refusal']['why']}"
         for one in report["roads"]
         if one["refusal"]
+    ]
+    lines += [
+        f"record of road {one['road']}: {FOUND[one['record']]}"
+        for one in report["roads"]
+        if one["record"] in FOUND
     ]
     return "\n".join([*lines, f"board {report['board'] or 'none'}"])
