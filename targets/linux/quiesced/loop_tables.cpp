@@ -77,8 +77,8 @@ void LoopTables::use_road(std::uint32_t road, const StartTables &start) {
 
 /// It takes the place of a stored one that would wait for other parameters.
 void LoopTables::use_configured(quiesce_owner_t owner, const TableWords &words) {
-    const bool is_waiting = this->is_waiting(owner);
-    if (use_found(found_of(owner, TABLE_FROM_CONFIG, words, 0)) && is_waiting) {
+    const bool has_waited = is_waiting(owner);
+    if (use_found(found_of(owner, TABLE_FROM_CONFIG, words, 0)) && has_waited) {
         exchange_.log.log(LogLevel::info,
                           "%s (stored) can be used again: apply and save the parameters that it "
                           "was made for, then restart",
@@ -140,14 +140,14 @@ bool LoopTables::is_waiting(quiesce_owner_t owner) const {
 }
 
 void LoopTables::tell_waiting(quiesce_owner_t owner) {
-    const bool is_waiting = this->is_waiting(owner);
-    if (is_waiting && !told_waiting_[owner]) {
+    const bool waits = is_waiting(owner);
+    if (waits && !told_waiting_[owner]) {
         exchange_.log.log(LogLevel::info,
                           "%s (%s) waits: it is used once the parameters that it was made for are "
                           "applied",
                           road_name(owner), table_source_name(node_.tables.of[owner].source));
     }
-    told_waiting_[owner] = is_waiting;
+    told_waiting_[owner] = waits;
 }
 
 void LoopTables::tell() {

@@ -12,7 +12,7 @@ namespace quiesced {
 
 class Reload {
   public:
-    /// tables: of the start. Everything that it is given must outlive it.
+    /// tables: of the start. Everything else that it is given must outlive it.
     Reload(const Config &config, const StateStore &store, const ConfiguredTables &tables,
            Exchange &exchange, LogSink &sink)
         : config_(config), store_(store), exchange_(exchange), sink_(sink), params_(config.params),

@@ -39,8 +39,8 @@ struct Survivors {
 
 class Service {
   public:
-    /// Starts the thread. Make it before the calling thread becomes a real-time thread. Everything
-    /// that it is given must outlive it, but tables, those of the start.
+    /// Starts the thread. Make it before the calling thread becomes a real-time thread. tables: of
+    /// the start. Everything else that it is given must outlive it.
     Service(const Config &config, const ConfiguredTables &tables, Exchange &exchange,
             const Survivors &survivors, LogSink &sink);
     Service(const Service &) = delete;

@@ -279,6 +279,10 @@ class Quiesced:
         self.config.write_text(text)
 
     def start(self, *arguments: str, **options: Any) -> None:
+        """Without arguments: until it takes requests. A frame that an earlier one left on the line
+        is not taken for its own: what comes before the line is opened is lost."""
+        if not arguments:
+            self.peer.catch_up()
         self.log = open(self.folder / "stderr", "ab")  # noqa: SIM115
         self.process = subprocess.Popen(
             [self.program, "--config", self.config, *arguments],

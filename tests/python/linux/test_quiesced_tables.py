@@ -59,17 +59,11 @@ def quiesced(tmp_path: Path) -> Iterator[Quiesced]:
         yield under_test
 
 
-def start(quiesced: Quiesced) -> None:
-    """Not armed: a busy machine would not let it run for long."""
-    quiesced.peer.catch_up()  # with those who have ended
-    quiesced.start()
-
-
 def restart(quiesced: Quiesced) -> None:
     """After a death without any warning."""
     killed(quiesced)
     assert quiesced.run("--make-safe").returncode == 0  # it waits for the caretaker
-    start(quiesced)
+    quiesced.start()
 
 
 def states_since(quiesced: Quiesced, after: int) -> set[int]:
@@ -100,7 +94,7 @@ def others(host: TableHost, count: int) -> list[list[int]]:
 @pytest.mark.parametrize("law", ["fuzzy", "phase"])
 def test_loaded_table_outlives_the_program(quiesced: Quiesced, law: str) -> None:
     quiesced.write_config(f"law = '{law}'\n")
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     shipped = host.info(LAW, CRC)
     assert host.info(LAW, SOURCE) == SHIPS
@@ -203,7 +197,7 @@ def test_tables_are_used_again_after_other_parameters(quiesced: Quiesced) -> Non
 
 def test_what_is_refused_changes_nothing(quiesced: Quiesced) -> None:
     quiesced.write_config("law = 'fuzzy'\n")
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     shipped = host.info(LAW, CRC)
     good = words_of(host.fetch(LAW))
@@ -248,7 +242,7 @@ WHOLE, LOST = 0, 2
 def stored(quiesced: Quiesced, kept: Kept) -> Path:
     """The file of a record that a controller has stored, which has ended."""
     quiesced.write_config(kept.parameters)
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     if kept.words is not None:
         host.use(kept.words)
@@ -265,7 +259,7 @@ def test_damaged_record_is_told_and_not_used(quiesced: Quiesced, kept: Kept, dam
     data = record.read_bytes()
     flipped = bytes([*data[:100], data[100] ^ 1, *data[101:]])
     record.write_bytes(flipped if damage == "flipped" else data[: len(data) // 2])
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     assert (host.info(kept.road, STORED_CRC), host.info(kept.road, RECORD)) == (0, LOST)
     if kept.words is not None:
@@ -283,7 +277,7 @@ def test_half_of_a_new_record_leaves_the_old_one(quiesced: Quiesced, kept: Kept)
     record = stored(quiesced, kept)
     data = record.read_bytes()
     record.with_name(record.name + ".new").write_bytes(data[: len(data) // 2])
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     crc = host.info(kept.road, STORED_CRC)
     assert (crc != 0, host.info(kept.road, RECORD)) == (True, WHOLE)
@@ -298,7 +292,7 @@ def test_half_of_a_new_record_leaves_the_old_one(quiesced: Quiesced, kept: Kept)
 
 def test_store_that_fails_is_answered(quiesced: Quiesced) -> None:
     quiesced.write_config("law = 'fuzzy'\n")
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     (words,) = others(host, 1)
     host.use(words)
@@ -311,7 +305,7 @@ def test_store_that_fails_is_answered(quiesced: Quiesced) -> None:
 def test_stored_table_waits_for_the_law_that_it_is_of(quiesced: Quiesced) -> None:
     """The law was applied, but not saved with its table."""
     quiesced.write_config("law = 'fuzzy'\n")
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     set_parameter(quiesced.peer, "law", PHASE)
     (words,) = others(host, 1)
@@ -341,7 +335,7 @@ def test_configured_tables_are_used_and_stored_ones_before_them(quiesced: Quiesc
     check = quiesced.run("--check")
     assert check.returncode == 0, check.stdout
     assert f"the law's table: linear, {len(LINEAR)} words, CRC {LINEAR[1]:08x}" in check.stdout
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     for road, words in ((LAW, LINEAR), (TRACKER, MAP)):
         assert (host.info(road, CRC), host.info(road, SOURCE)) == (words[1], CONFIGURATION)
@@ -357,7 +351,7 @@ def test_configured_tables_are_used_and_stored_ones_before_them(quiesced: Quiesc
     weaker = table([*LINEAR[:-1], 1_000])  # who edits the configuration means it
     write_tables(quiesced, FORCES, law=file_of(weaker), tracker=file_of(MAP))
     assert "[tables] has changed since" in quiesced.run("--check").stdout
-    start(quiesced)
+    quiesced.start()
     assert (host.info(LAW, CRC), host.info(LAW, SOURCE)) == (weaker[1], CONFIGURATION)
     assert host.info(LAW, WRITES) == 1
     assert quiesced.stop() == 0
@@ -405,14 +399,14 @@ def test_configured_table_that_is_no_good_does_not_keep_it_from_starting(
     quiesced: Quiesced,
 ) -> None:
     write_tables(quiesced, "law = 'fuzzy'\n", law=b"QTF1 and nothing that follows from it")
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     assert host.info(LAW, SOURCE) == SHIPS
     assert quiesced.stop() == 0
     assert "tables.law: " in quiesced.log_text()
     (quiesced.folder / "law.table").unlink()
     assert quiesced.run("--make-safe").returncode == 0
-    start(quiesced)
+    quiesced.start()
     killed(quiesced)
     assert quiesced.run("--make-safe").returncode == 0  # it waits for the caretaker
     assert "its outputs are safe" in quiesced.log_text()
@@ -420,7 +414,7 @@ def test_configured_table_that_is_no_good_does_not_keep_it_from_starting(
 
 def test_what_was_learnt_is_stored_sent_and_put_back(quiesced: Quiesced) -> None:
     quiesced.write_config("law = 'phase'\n")
-    start(quiesced)
+    quiesced.start()
     host = TableHost(quiesced.peer)
     assert host.ask("LEARNT_RESTORE", LEARNT)[0] == NOTHING_TO_SEND
     assert host.ask("TABLE_SAVE", LEARNT) == (DONE, 0)
@@ -431,7 +425,7 @@ def test_what_was_learnt_is_stored_sent_and_put_back(quiesced: Quiesced) -> None
     assert host.ask("LEARNT_RESTORE", LEARNT)[0] == DONE
     assert host.load(file_of(words), words[1]) == (DONE, 0)
     assert quiesced.stop() == 0
-    start(quiesced)
+    quiesced.start()
     assert host.info(LEARNT, WRITES) >= 1
     assert quiesced.stop() == 0
     assert "what was learnt before is used" in quiesced.log_text()
