@@ -99,6 +99,19 @@ def test_pulses_come_from_law_file_table_or_folder(build: Path, folder: Path) ->
     assert digests(own)["phase", "host"] == of_file["phase", "host"]
 
 
+def test_what_a_board_says_is_left_out_of_a_folders_parameters(build: Path, folder: Path) -> None:
+    """quiesce tune writes the coil's lag for a controller without a board."""
+    tuned = folder / "of_rig"
+    tuned.mkdir()
+    (tuned / "mine.phase.table").write_bytes((folder / "tuned/mine.phase.table").read_bytes())
+    (tuned / "mine.set").write_text("--set law=phase --set current_lag_ms=10\n")
+    options = ["--quick", "--scenario", RIG, "--law", "phase", "--target", "host"]
+    found = details(folder, *options, "--pulses", tuned)
+    assert digests(found) == digests(
+        details(folder, *options, "--pulses", folder / "tuned/mine.phase.table")
+    )
+
+
 def test_each_law_has_its_own_table(build: Path, folder: Path) -> None:
     tables = ["--rules", folder / "mine.fis", "--pulses", folder / "tuned/mine.phase.toml"]
     options = [*QUICK, "--target", "host", "--law", "fuzzy", "--law", "phase"]

@@ -170,6 +170,7 @@ def make_plan(args: argparse.Namespace, bench: Bench, folder: Path) -> tuple[Pla
         options=options,
         telemetry_every=telemetry_every(args),
         tables=tables.options,
+        bare=tables.bare,
     )
     return plan, tables.rules
 

@@ -68,9 +68,18 @@ class Tables:
 
     rules: Path | None = None  # the table of the fuzzy laws
     options: dict[str, list[str]] = field(default_factory=dict)  # of the bench, by its name of law
+    bare: dict[str, list[str]] = field(default_factory=dict)  # and those without a board
 
     def add(self, law: str, *options: str) -> None:
         self.options.setdefault(law, []).extend(options)
+
+    def add_pulses(self, law: str, file: Path, settings: Sequence[str]) -> None:
+        from quiesce.tune.law import OF_BOARD
+
+        bare = [one for one in settings if one.partition("=")[0] in OF_BOARD]
+        rest = [one for one in settings if one not in bare]
+        self.add(law, "--pulses", str(file), *setting_options(rest))
+        self.bare[law] = setting_options(bare)
 
 
 def find_tables(
@@ -86,7 +95,7 @@ def find_tables(
         file, settings = pulses_file(args.pulses, folder)
         effective_params(bench, settings)  # refuses bad ones before anything runs
         for law in _takers(bench, laws, "--pulses", args.pulses, file):
-            tables.add(law, "--pulses", str(file), *setting_options(settings))
+            tables.add_pulses(law, file, settings)
     if args.law_table:
         for law in _takers(bench, laws, "--law-table", args.law_table, args.law_table):
             tables.add(law, "--law-table", str(args.law_table))

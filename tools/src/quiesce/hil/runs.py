@@ -95,6 +95,8 @@ class Plan:
     telemetry_every: int = 1  # ticks between two bursts of all words, targets OVER_CAN
     # Of the bench by its name of a law: the law's own tables, and parameters that go with them.
     tables: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    # Likewise: more parameters that go with them, which a board has in their place.
+    bare: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
     @property
     def constant_step_mA(self) -> int:
@@ -114,9 +116,10 @@ class Plan:
         more += ["--can", self.can] if target == "linux" and self.can else []
         return target_options(target, more, scenario.board is not None)
 
-    def law_options(self, law: Law) -> list[str]:
+    def law_options(self, law: Law, scenario: Scenario) -> list[str]:
+        bare = () if scenario.board else self.bare.get(law.bench_law, ())
         return [
-            "--law", law.bench_law, *self.tables.get(law.bench_law, ()),
+            "--law", law.bench_law, *self.tables.get(law.bench_law, ()), *bare,
             *setting_options([*self.settings, *law.settings]),
         ]  # fmt: skip
 
@@ -178,7 +181,7 @@ class Runner:
 
     def _options(self, scenario: Scenario, law: Law, settings: Sequence[str]) -> list[str]:
         return [
-            "--scenario", str(scenario.file), *self.plan.law_options(law),
+            "--scenario", str(scenario.file), *self.plan.law_options(law, scenario),
             *setting_options(settings), *self.plan.options,
         ]  # fmt: skip
 
@@ -240,7 +243,7 @@ def measure_speed(
     repeats = {"host": 20 if is_quick else 100, "mps2": 3 if is_quick else 5}
     factors: dict[str, float | None] = {"host": None, "mps2": None}
     for target in plan.targets:
-        options = ["--scenario", str(scenario.file), *plan.law_options(law)]
+        options = ["--scenario", str(scenario.file), *plan.law_options(law, scenario)]
         options += ["--repeat", str(repeats.get(target, 1)), *plan.options_of(target, scenario)]
         factors[target] = bench.json("run", *options)["realtime_factor"]
     return factors
@@ -250,7 +253,7 @@ def compare_traces(
     bench: Bench, scenario: Scenario, law: Law, seeds: Sequence[int], plan: Plan, target: str
 ) -> dict[str, Any]:
     """Every word of every reply that the target sends, against the host."""
-    options = ["--scenario", str(scenario.file), *plan.law_options(law)]
+    options = ["--scenario", str(scenario.file), *plan.law_options(law, scenario)]
     options += ["--seeds", ",".join(map(str, seeds)), *plan.options_of(target, scenario)]
     return bench.json("compare", *options)
 

@@ -114,6 +114,10 @@ def raised(result: dict[str, Any], settings: dict[str, Any]) -> dict[str, dict[s
     }
 
 
+# A board file says these, of each damper; a controller with one does not take them.
+OF_BOARD = ("current_lag_ms",)
+
+
 def parameters(plant: Plant, law: PhaseLaw) -> dict[str, int | str]:
     """What to set on the controller of this plant, by name."""
     band = [point.freq_Hz for points in law.settings.values() for point in points]
