@@ -93,6 +93,18 @@ def test_variants_of_a_plant_hold_their_damper(build, small: Path, tmp_path: Pat
     assert read_plant_data(folder / "variant.toml")["damper"]["parameters"]["kw_N"] == [0.0, 0.0016]
 
 
+def test_a_faster_variant_goes_with_shorter_steps(build, tmp_path: Path) -> None:
+    """At the longest step that its own plant takes."""
+    data = read_plant_data(PUBLISHED)
+    data["integration"] = {"max_step_us": 1e6 * Plant(PUBLISHED).safe_step_s * 0.999}
+    file, variant = tmp_path / "plant.toml", tmp_path / "variant.toml"
+    file.write_text(tomli_w.dumps(data), encoding="utf-8")
+    write_variant(file, Variant(force=1.5), variant)
+    assert Plant(variant).max_step_s < Plant(variant).safe_step_s < Plant(file).max_step_s
+    write_variant(file, Variant(force=0.7), variant)
+    assert Plant(variant).max_step_s == Plant(file).max_step_s
+
+
 def test_check_describes_places_and_dampers(quiesce) -> None:
     result = quiesce("plant", "check", TWO_STOREYS)
     assert result.returncode == 0, result.stderr

@@ -12,6 +12,8 @@ from quiesce.base.paths import build_folder
 from quiesce.engine.bench import require_file
 
 ERROR_SIZE = 1000
+# Of the integration where a plant file says none; of the longest safe one where that is shorter.
+USUAL_STEP_us, SAFE_PART = 500.0, 0.9
 
 
 class _Facts(ctypes.Structure):

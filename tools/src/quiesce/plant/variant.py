@@ -12,6 +12,7 @@ from quiesce.base.errors import UsageError, one_line
 from quiesce.base.matrix_file import with_own_matrices
 from quiesce.base.paths import shown
 from quiesce.plant.damper import require_one_damper, scale_force, with_own_damper
+from quiesce.plant.library import SAFE_PART, Plant, USUAL_STEP_us
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,20 @@ def changed(data: dict[str, Any], variant: Variant) -> dict[str, Any]:
 
 
 def write_variant(plant: Path, variant: Variant, file: Path) -> None:
-    file.write_text(tomli_w.dumps(changed(read_plant_data(plant), variant)), encoding="utf-8")
+    data = changed(read_plant_data(plant), variant)
+    if variant.force > 1.0 or variant.freq > 1.0:
+        data = _with_short_steps(data, file)
+    file.write_text(tomli_w.dumps(data), encoding="utf-8")
+
+
+def _with_short_steps(data: dict[str, Any], file: Path) -> dict[str, Any]:
+    """Faster than the plant that it is made from, it may not go with that one's steps."""
+    step_us = data.get("integration", {}).get("max_step_us", USUAL_STEP_us)
+    file.write_text(tomli_w.dumps({**data, "integration": {"max_step_us": 1.0}}), encoding="utf-8")
+    safe_us = 1e6 * Plant(file).safe_step_s
+    if step_us <= safe_us:
+        return data
+    return {**data, "integration": {"max_step_us": SAFE_PART * safe_us}}
 
 
 def _scale_frequencies(structure: dict[str, Any], factor: float) -> None:

@@ -8,7 +8,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
 from quiesce.engine.bench import Bench
-from quiesce.plant.library import Plant
+from quiesce.plant.library import SAFE_PART, Plant, USUAL_STEP_us
 from quiesce.plant.new.order import Order, make_plan, with_step
 from quiesce.plant.new.text import (
     BOARD,
@@ -28,7 +28,6 @@ from quiesce.plant.new.trial import Trial, run_trial
 # Of accelerometers that are sold; the controller's accelerations end at 500 m/s2.
 RANGES_g = (2.0, 4.0, 8.0, 16.0, 50.0)
 SPARE = 2.0  # times the peak at 0 A
-USUAL_STEP_us, SAFE_PART = 500.0, 0.9
 HALVINGS = 12
 TRACKED_Hz = (1.0, 50.0)  # what the controller's tracker reports
 
