@@ -6,7 +6,6 @@ import contextlib
 import json
 import os
 import signal
-import socket
 import subprocess
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -20,10 +19,10 @@ from quiesce_benchmarks.tables.bus import Bus
 from quiesce_benchmarks.tables.line import Line
 
 START_TICKS = 20_000  # for the first frames
-CONNECT_S = 60.0
 # An instruction takes 16 ns of the board's time, which does not run ahead of the clock: 2.5 times
 # its own at 25 MHz.
 ICOUNT = "shift=4,align=on"
+# Its own ticks are real time: with the right to, it goes before everything else here.
 RUN_PRIORITY = 40
 
 
@@ -40,9 +39,6 @@ class Target:
     def command(self) -> Sequence[str | Path]:
         raise NotImplementedError
 
-    def connect(self) -> None:
-        """Once it has started, where it does not open the line itself."""
-
     def start(self) -> None:
         """Until its first demands."""
         self.line.restarted()
@@ -54,7 +50,6 @@ class Target:
                 stderr=log,
                 process_group=0,
             )
-        self.connect()
         self.line.wait(self._has_begun, START_TICKS, f"first demands of {self.name}")
 
     def _has_begun(self) -> bool:
@@ -100,37 +95,16 @@ class Mps2Node(Target):
     def memory(self) -> Path:
         return self.folder / "memory"
 
-    @property
-    def uart(self) -> Path:
-        return self.folder / "uart"
-
-    def start(self) -> None:
-        self.uart.unlink(missing_ok=True)
-        with socket.socket(socket.AF_UNIX) as self._listener:
-            self._listener.settimeout(CONNECT_S)
-            self._listener.bind(str(self.uart))
-            self._listener.listen(1)
-            super().start()
-
-    def connect(self) -> None:
-        try:
-            connection, _ = self._listener.accept()
-        except TimeoutError:
-            raise BenchFailure(f"{self.name} does not connect")
-        connection.setblocking(False)
-        self.line.attach(connection.detach())
-
     def command(self) -> Sequence[str | Path]:
         image = build_folder() / "mps2/targets/mps2/quiesce_mps2_node.elf"
         backend = f"memory-backend-file,id=kept,share=on,size=16M,mem-path={self.memory}"
         return (
             "qemu-system-arm", "-object", backend, "-M", "mps2-an386,memory-backend=kept",
             "-display", "none", "-monitor", "none", "-icount", ICOUNT,
-            "-serial", f"unix:{self.uart}", "-kernel", require_file(image, "the image"),
+            "-serial", self.line.target, "-kernel", require_file(image, "the image"),
         )  # fmt: skip
 
 
-# Its own ticks are real time: with the right to, it goes before everything else here.
 CONFIG = """[loop]
 priority = {priority}
 lock_memory = {locks}
