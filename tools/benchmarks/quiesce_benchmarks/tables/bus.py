@@ -1,4 +1,4 @@
-"""What frames take on a bus of 500 kbit/s: by priority, longest frames, in the controller's ticks."""
+"""What frames take on a bus of 500 kbit/s: by priority, longest frames, in ticks."""
 
 from collections.abc import Callable
 from heapq import heappop, heappush

@@ -60,7 +60,7 @@ class Client:
         self.line.wait(lambda: self.line.state not in RUNNING, ARM_TICKS, "not RUN")
 
     def see(self, current_mA: int) -> None:
-        """Until this is the largest current of some periods. BenchFailure where it does not come."""
+        """Until this is the largest current of some periods. BenchFailure: it does not come."""
         line = self.line
         begin = len(line.demands) + SEEN_TICKS
 

@@ -1,5 +1,5 @@
-"""The largest table of each kind that a controller of one accelerometer and one damper takes, within
-so many words."""
+"""The largest table of each kind that a controller of one accelerometer and one damper takes,
+within so many words."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -147,7 +147,7 @@ class Line:
     def _run(self) -> None:
         rests: dict[int, bytes] = {}
         while not self._is_over:
-            # An emulator writes byte by byte, and would wake this thread, and wait for it, each time.
+            # An emulator writes byte by byte, and would wake this thread each time.
             time.sleep(READ_S)
             with contextlib.suppress(OSError):  # it has just been closed
                 for end in select.select([self._target, self._client], [], [], 0.05)[0]:

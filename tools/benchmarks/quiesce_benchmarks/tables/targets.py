@@ -7,7 +7,8 @@ import json
 import os
 import signal
 import subprocess
-from collections.abc import Iterator, Sequence
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -110,17 +111,20 @@ priority = {priority}
 lock_memory = {locks}
 [can]
 interface = "slcan:{line}"
-[accel]
-source = "can"
-[current]
-output = "can"
-[operator]
+{wired}[operator]
 enable = "can"
 [state]
 folder = "{folder}"
 status_s = 1
 [log]
 to = "stderr"
+"""
+
+
+WIRED = """[accel]
+source = "can"
+[current]
+output = "can"
 """
 
 
@@ -137,6 +141,7 @@ class Quiesced(Target):
         config.write_text(
             CONFIG.format(
                 line=self.line.target,
+                wired=self.wired(),
                 folder=self.folder / "state",
                 priority=RUN_PRIORITY if has_priority() else 0,
                 locks=str(has_priority()).lower(),
@@ -144,16 +149,40 @@ class Quiesced(Target):
         )
         return (require_file(program, "the program"), "--config", config)
 
+    def wired(self) -> str:
+        """Of the configuration: where samples come from and currents go."""
+        return WIRED
+
     def status(self) -> dict[str, Any]:
         found: dict[str, Any] = json.loads((self.folder / "state/state.json").read_text())
         return found
+
+
+class QuiescedOnBoard(Quiesced):
+    """With a board file's one accelerometer and one damper, and a law."""
+
+    def __init__(self, board: Path, law: str, folder: Path, bus: Bus | None = None) -> None:
+        super().__init__(folder, bus)
+        self._board, self._law = board, law
+
+    def wired(self) -> str:
+        board = tomllib.loads(self._board.read_text(encoding="utf-8"))
+        parts = [
+            f'[[{kind}]]\nname = "{one["name"]}"\n{way} = "can"\n'
+            for kind, way in (("sensor", "source"), ("damper", "output"))
+            for one in board[kind]
+        ]
+        head = f'[board]\nfile = "{self._board}"\n'
+        return f'{head}{"".join(parts)}[parameters]\nlaw = "{self._law}"\n'
 
 
 TARGETS: tuple[type[Target], ...] = (HostNode, Mps2Node, Quiesced)
 
 
 @contextlib.contextmanager
-def running(kind: type[Target], folder: Path, bus: Bus | None = None) -> Iterator[Target]:
+def running(
+    kind: Callable[[Path, Bus | None], Target], folder: Path, bus: Bus | None = None
+) -> Iterator[Target]:
     """Started with nothing kept, killed at the end. UsageError where it cannot be had."""
     folder.mkdir(parents=True)
     target = kind(folder, bus)

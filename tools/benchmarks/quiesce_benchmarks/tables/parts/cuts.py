@@ -27,7 +27,7 @@ from quiesce_benchmarks.tables.foreign import (
     file_of,
     frames_of,
 )
-from quiesce_benchmarks.tables.targets import HostNode, Mps2Node, Quiesced, Target, running
+from quiesce_benchmarks.tables.targets import TARGETS, HostNode, Mps2Node, Quiesced, Target, running
 
 TITLE = "cuts: transfers that go wrong at every block, power that goes at any time"
 FIGURES = (
@@ -270,7 +270,7 @@ def measure(effort: Effort) -> Measured:
     ends = []
     for kind, words in ((HostNode, LARGE), (Mps2Node, SMALL), (Quiesced, SMALL)):
         ends.append(on_target(kind, words, effort, lambda scene: line_faults(scene, tally, every)))
-    for kind in (Mps2Node, Quiesced):
+    for kind in TARGETS:
         ends.append(
             on_target(kind, SMALL, effort, lambda scene: power_cuts(scene, tally, moments, every))
         )
