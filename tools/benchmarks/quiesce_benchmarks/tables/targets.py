@@ -158,21 +158,27 @@ class Quiesced(Target):
         return found
 
 
+# Of a sensor whose samples come from a process of a machine with other work.
+PATIENCE = "max_age_us = 1000000\nstuck_us = 0"
+
+
 class QuiescedOnBoard(Quiesced):
     """With a board file's one accelerometer and one damper, and a law."""
 
     def __init__(self, board: Path, law: str, folder: Path, bus: Bus | None = None) -> None:
         super().__init__(folder, bus)
-        self._board, self._law = board, law
+        self._board, self._law = board.read_text(encoding="utf-8"), law
 
     def wired(self) -> str:
-        board = tomllib.loads(self._board.read_text(encoding="utf-8"))
+        board = tomllib.loads(self._board)
         parts = [
             f'[[{kind}]]\nname = "{one["name"]}"\n{way} = "can"\n'
             for kind, way in (("sensor", "source"), ("damper", "output"))
             for one in board[kind]
         ]
-        head = f'[board]\nfile = "{self._board}"\n'
+        patient = self._board.replace("[[sensor]]", f"[[sensor]]\n{PATIENCE}", 1)
+        (self.folder / "board.toml").write_text(patient, encoding="utf-8")
+        head = '[board]\nfile = "board.toml"\n'
         return f'{head}{"".join(parts)}[parameters]\nlaw = "{self._law}"\n'
 
 

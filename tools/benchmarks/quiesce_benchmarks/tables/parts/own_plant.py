@@ -84,6 +84,8 @@ def at_work(folder: Path, name: str, way: Way) -> str:
     target_of = partial(QuiescedOnBoard, folder / name / "board.toml", way.law)
     with running(target_of, folder / name / f"quiesced_{way.law}") as target:
         bus = ["--bus", f"slcan:{target.line.client}"]
+        with client_of(target.line) as client:
+            client.set({"law": way.law})
         loaded = quiesce(folder, [*way.load, *bus])
         require_run(target.line)
         target.restart()
