@@ -65,7 +65,9 @@ def test_magics_are_those_of_the_firmware() -> None:
 
 
 def test_one_wrong_word_is_refused_on_both_sides(rig: LawRig) -> None:
-    """Any word as any number: Python and firmware say the same of each."""
+    """Any word as any number: Python and firmware say the same of each. But for rules within a
+    table: their own CRC, which the whole table's covers, only Python sums; it costs the tick that
+    begins to use them more than it has."""
     dice = random.Random(5)
     ends = [0, 1, 2, 5, 13, 47, 0x104, 0x1000000, 2**30 - 1, 2**30, 2**31 - 1, 2**31, 2**32 - 1]
     refused = taken = 0
@@ -77,11 +79,12 @@ def test_one_wrong_word_is_refused_on_both_sides(rig: LawRig) -> None:
             words = sealed(table.words()[0], spoiled)
             try:
                 table_of_words(words)
-                is_good = True
+                is_good, why = True, ""
             except ValueError as error:
-                assert "\n" not in str(error)
-                is_good = False
-            assert (verdict(table.law, words) == 0) == is_good, words
+                is_good, why = False, str(error)
+            assert "\n" not in why
+            is_of_rules = table.law == "fuzzy_signals" and why.startswith("the CRC-32 of its rules")
+            assert is_of_rules or (verdict(table.law, words) == 0) == is_good, words
             refused += not is_good
             taken += is_good
     assert refused > 300 and taken > 300

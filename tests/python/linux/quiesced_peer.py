@@ -37,7 +37,7 @@ PATIENCE_S = 60.0  # for events on a machine with other work; nothing is asserte
 # at once.
 CONFIG = """\
 [loop]
-priority = 80
+priority = 0
 lock_memory = false
 [can]
 interface = "slcan:{line}"
