@@ -29,7 +29,7 @@ from quiesce_benchmarks.tables.foreign import (
     words_in,
 )
 from quiesce_benchmarks.tables.largest import largest
-from quiesce_benchmarks.tables.line import DEMAND_ID, FAULT, RUN, slcan
+from quiesce_benchmarks.tables.line import DEMAND_ID, FAULT, RUN, is_frame, slcan
 from quiesce_benchmarks.tables.parts import bump, cuts, own_plant, roads
 from quiesce_benchmarks.tables.samples import all_samples
 from quiesce_benchmarks.tables.targets import HostNode, Mps2Node
@@ -122,6 +122,22 @@ def test_a_request_without_an_answer_is_asked_again(monkeypatch) -> None:
 
 def line_of(identifier: int, number: int = 0) -> bytes:
     return slcan(identifier, bytes([number] * 8))
+
+
+@pytest.mark.parametrize(
+    ("line", "is_one"),
+    [
+        (slcan(DEMAND_ID, bytes(4)).rstrip(), True),
+        (b"t0200", True),
+        (b"t01", False),
+        (b"t0104AB", False),
+        (b"t010t0104DC05559A", False),  # one that was cut off, and the next start's
+        (b"t0104DC05559A00", False),
+        (b"z", False),
+    ],
+)
+def test_lines_of_a_program_that_was_killed_are_no_frames(line: bytes, is_one: bool) -> None:
+    assert is_frame(line) == is_one
 
 
 def test_the_lowest_id_goes_first_and_a_tick_has_its_bits() -> None:

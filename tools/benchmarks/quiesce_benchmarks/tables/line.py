@@ -7,6 +7,7 @@ Time is the controller's: a tick is a demand frame, so that an emulator may be s
 import contextlib
 import fcntl
 import os
+import re
 import select
 import sys
 import termios
@@ -24,6 +25,7 @@ from quiesce_benchmarks.tables.bus import Bus
 
 DEMAND_ID, REPLY_ID, FLOW_ID = 0x010, 0x408, 0x418
 DEMAND = b"t0104"
+FRAME = re.compile(rb"t[0-9A-F]{3}([0-8])([0-9A-F]*)")
 INIT, IDLE, RUN, SAFE, FAULT, ARMED, DEGRADED, SELF_TEST = range(8)
 RUNNING = (RUN, DEGRADED)
 HELD = (RUN, DEGRADED, SAFE, ARMED)  # an enable that is held keeps it armed
@@ -40,6 +42,12 @@ SILENT_S = 60.0  # a controller on a busy machine
 
 def slcan(identifier: int, data: bytes) -> bytes:
     return b"t%03X%d%s\r" % (identifier, len(data), data.hex().upper().encode())
+
+
+def is_frame(line: bytes) -> bool:
+    """Not where a program was killed in the middle of one."""
+    found = FRAME.fullmatch(line)
+    return found is not None and len(found[2]) == 2 * int(found[1])
 
 
 def sample_lines() -> list[bytes]:
@@ -161,7 +169,7 @@ class Line:
                 self._changed.notify_all()
 
     def _from_target(self, line: bytes) -> None:
-        if line[:1] != b"t":
+        if not is_frame(line):
             return
         if line[:5] == DEMAND:
             self._on_demand(line)
@@ -178,7 +186,7 @@ class Line:
             self._write(self._client, line + b"\r")
 
     def _from_client(self, line: bytes) -> None:
-        if line[:1] == b"t":
+        if is_frame(line):
             self._to_target(line + b"\r")
 
     def _to_target(self, line: bytes) -> None:
@@ -194,10 +202,7 @@ class Line:
             os.write(end, line)
 
     def _on_demand(self, line: bytes) -> None:
-        try:
-            word = int.from_bytes(bytes.fromhex(line[5:11].decode()), "little")
-        except ValueError:
-            return  # cut off where the program was killed
+        word = int.from_bytes(bytes.fromhex(line[5:11].decode()), "little")
         alive = word >> 20 & 15
         step = (alive - self.demands[-1][2] - 1) % 16 + 1 if self.demands else 1
         self.ticks += step
