@@ -29,7 +29,7 @@ ARM_TICKS = 12_000
 SEEN_TICKS = 300  # three periods of the vibration
 EFFECT_TICKS = 30_000
 NEAR = 0.02  # of a current
-APPLY_S, SAVE_S = 3.0, 10.0
+STAGE_S, APPLY_S, SAVE_S = 2.0, 3.0, 10.0  # an emulator on a busy machine takes its time
 
 
 @dataclass
@@ -41,7 +41,7 @@ class Client:
         """In effect and kept. BenchFailure where it is refused."""
         words = [f"{name}={value}" for name, value in {**SETTINGS, **settings}.items()]
         for index, value in settings_of(words).items():
-            self._must("STAGE", index, value)
+            self._must("STAGE", index, value, reply_s=STAGE_S)
         self._must("APPLY", reply_s=APPLY_S)
         self._must("SAVE", reply_s=SAVE_S, tries=2)
 

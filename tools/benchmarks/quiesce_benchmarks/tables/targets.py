@@ -25,6 +25,7 @@ START_TICKS = 20_000  # for the first frames
 ICOUNT = "shift=4,align=on"
 # Its own ticks are real time: with the right to, it goes before everything else here.
 RUN_PRIORITY = 40
+NICE = -10  # of the others
 
 
 class Target:
@@ -186,13 +187,27 @@ TARGETS: tuple[type[Target], ...] = (HostNode, Mps2Node, Quiesced)
 
 
 @contextlib.contextmanager
+def going_first() -> Iterator[None]:
+    """Samples that the machine's other work holds up come in bursts, which a controller refuses:
+    with the right to, what is started here goes before that work."""
+    before = os.getpriority(os.PRIO_PROCESS, 0)
+    with contextlib.suppress(PermissionError):
+        os.setpriority(os.PRIO_PROCESS, 0, min(before, NICE))
+    try:
+        yield
+    finally:
+        with contextlib.suppress(PermissionError):
+            os.setpriority(os.PRIO_PROCESS, 0, before)
+
+
+@contextlib.contextmanager
 def running(
     kind: Callable[[Path, Bus | None], Target], folder: Path, bus: Bus | None = None
 ) -> Iterator[Target]:
     """Started with nothing kept, killed at the end. UsageError where it cannot be had."""
     folder.mkdir(parents=True)
     target = kind(folder, bus)
-    with target.line:
+    with going_first(), target.line:
         try:
             target.start()
             yield target

@@ -22,6 +22,7 @@ FIGURES = (
     ("table_roads", "kinds x targets", None, "higher"),
     ("table_roads_ok", "kinds x targets", 36.0, "higher"),
     ("table_foreign_client_ok", "kinds x targets", 36.0, "higher"),
+    ("table_roads_again", "kinds x targets", None, "lower"),
 )
 
 
@@ -31,6 +32,7 @@ class Row:
     target: str
     why: str  # empty: it did all that it has to
     foreign_why: str
+    again: str  # why one of them was gone a second time; empty: none was
 
 
 def require(holds: bool, what: str) -> None:
@@ -121,6 +123,9 @@ def travel_foreign(target: Target, sample: Sample) -> None:
     require(host.info(road, 0) == before, "what was before is back")
 
 
+WAYS = (travel, travel_foreign)
+
+
 def why_not(kind: type[Target], sample: Sample, way: Callable[[Target, Sample], None]) -> str:
     """Empty where it went all the way."""
     with tempfile.TemporaryDirectory() as folder:
@@ -132,23 +137,27 @@ def why_not(kind: type[Target], sample: Sample, way: Callable[[Target, Sample], 
     return ""
 
 
+def row_of(kind: type[Target], sample: Sample) -> Row:
+    """A machine with other work may break off a road: it is gone once more, and that is told."""
+    first = [why_not(kind, sample, way) for way in WAYS]
+    last = [why and why_not(kind, sample, way) for way, why in zip(WAYS, first, strict=True)]
+    return Row(sample.name, kind.name, *last, again="; ".join(filter(None, first)))
+
+
 def measure(effort: Effort) -> Measured:
-    rows = [
-        Row(
-            sample.name, kind.name, why_not(kind, sample, travel),
-            why_not(kind, sample, travel_foreign),
-        )
-        for kind in TARGETS
-        for sample in all_samples()
-    ]  # fmt: skip
+    rows = [row_of(kind, sample) for kind in TARGETS for sample in all_samples()]
     values = {
         "table_roads": float(len(rows)),
         "table_roads_ok": float(sum(not row.why for row in rows)),
         "table_foreign_client_ok": float(sum(not row.foreign_why for row in rows)),
+        "table_roads_again": float(sum(bool(row.again) for row in rows)),
     }
     return Measured(values, {"rows": [vars(row) for row in rows]}, (table_of(rows),))
 
 
 def table_of(rows: list[Row]) -> str:
-    cells = [[row.kind, row.target, row.why or "ok", row.foreign_why or "ok"] for row in rows]
-    return format_table(["kind", "target", "road", "by messages alone"], cells, (0, 1, 2, 3))
+    cells = [
+        [row.kind, row.target, row.why or "ok", row.foreign_why or "ok", row.again] for row in rows
+    ]
+    head = ["kind", "target", "road", "by messages alone", "gone again, because"]
+    return format_table(head, cells, (0, 1, 2, 3, 4))
