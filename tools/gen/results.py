@@ -30,6 +30,7 @@ KEPT = {
     "laws": ("seed", "quick", "reported"),
     "papers": ("seed", "quick", "reported"),
     "signal": ("seed", "quick", "settings", "accuracy", "plant_steps", "cost"),
+    "tables": ("seed", "quick", "reported"),
 }
 # What the image counts for a first word of 0, 1, 2.
 NODE_PARTS = ("messages", "one_received", "tick")

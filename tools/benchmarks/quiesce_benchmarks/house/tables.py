@@ -17,6 +17,7 @@ from quiesce_benchmarks.house.signal_tables import (
 )
 from quiesce_benchmarks.laws.page import law_table
 from quiesce_benchmarks.papers.page import paper_table
+from quiesce_benchmarks.tables.page import road_table
 
 # What a page's table shows of ./tools/hil, in this order.
 SHOWN_LAWS = {
@@ -146,4 +147,6 @@ def table(name: str, committed: Committed) -> str:
         return paper_table(file, committed)
     if kind == "law":
         return law_table(file, committed)
+    if kind == "road":
+        return road_table(file, committed)
     return TABLES[kind](committed.files[file])

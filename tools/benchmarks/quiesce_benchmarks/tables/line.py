@@ -1,14 +1,15 @@
-"""The bus between a controller and its tools: serial lines with SLCAN, joined by a thread that is
-sensor node and operator as well, and looks at every demand.
+"""The bus between a controller and its tools: serial lines with SLCAN, joined by a thread that is the
+operator as well, and looks at every demand; sensor_node.py is at the controller's end.
 
 Time is the controller's: a tick is a demand frame, so that an emulator may be slow.
 """
 
 import contextlib
-import fcntl
 import os
 import re
 import select
+import socket
+import subprocess
 import sys
 import termios
 import threading
@@ -21,7 +22,9 @@ from quiesce.base.errors import BenchFailure
 from quiesce.can.database import load
 from quiesce.can.e2e import protect
 
+from quiesce_benchmarks.tables import sensor_node
 from quiesce_benchmarks.tables.bus import Bus
+from quiesce_benchmarks.tables.sensor_node import takes_more
 
 DEMAND_ID, REPLY_ID, FLOW_ID = 0x010, 0x408, 0x418
 DEMAND = b"t0104"
@@ -34,9 +37,7 @@ LET_GO, PRESSED = 4, 12  # commands
 SAMPLES = 4000  # of the vibration, in a circle
 COUNTS, PERIOD_ticks = 40_000, 100
 READ_S = 0.0005
-# A sensor node's frame that has not left is replaced by its next one: no row of old ones builds up
-# before a controller that reads slowly.
-MOST_WAITING_BYTES = 48
+QUIET_S = 0.05  # after what a controller that has ended left behind
 SILENT_S = 60.0  # a controller on a busy machine
 
 
@@ -65,6 +66,14 @@ def sample_lines() -> list[bytes]:
     return lines
 
 
+def node_socket() -> tuple[int, int]:
+    """The bench's end and the sensor node's."""
+    ours, its = socket.socketpair()
+    for one in (ours, its):
+        one.setblocking(False)
+    return ours.detach(), its.detach()
+
+
 def raw_pty() -> tuple[int, int, str]:
     """Master, slave and the slave's name."""
     master, slave = os.openpty()
@@ -80,7 +89,7 @@ class Line:
     time."""
 
     def __init__(self, bus: Bus | None = None) -> None:
-        self._target, self._target_end, self.target = raw_pty()
+        self._pty, self._target_end, self.target = raw_pty()
         self._client, self._client_end, self.client = raw_pty()
         self.bus = bus
         self.forwards: frozenset[int] | None = None  # to the client; None: all
@@ -90,6 +99,8 @@ class Line:
         self.missed = 0  # of them
         self._listeners: dict[int, SimpleQueue[bytes]] = {}
         self._samples = sample_lines()
+        self._target, self._node_end = (self._pty, -1) if bus else node_socket()
+        self._node: subprocess.Popen[bytes] | None = None
         layout = load().by_name["OperatorCommand"].protection
         assert layout is not None
         self._operator = layout
@@ -99,14 +110,28 @@ class Line:
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def __enter__(self) -> "Line":
+        if self.bus is None:
+            self._start_node()
         self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
         self._is_over = True
         self._thread.join()
-        for end in (self._target, self._target_end, self._client, self._client_end):
+        if self._node is not None:
+            os.close(self._target)  # which ends it
+            self._node.wait()
+        for end in (self._pty, self._target_end, self._client, self._client_end):
             os.close(end)
+
+    def _start_node(self) -> None:
+        files = (self._pty, self._target_end, self._node_end)
+        words = [sys.executable, "-I", sensor_node.__file__, *map(str, files)]
+        self._node = subprocess.Popen(words, stdin=subprocess.PIPE, pass_fds=files)
+        os.close(self._node_end)
+        assert self._node.stdin is not None
+        with self._node.stdin as samples:
+            samples.write(b"".join(self._samples))
 
     # What a client of the bench's own does
 
@@ -133,6 +158,10 @@ class Line:
     def restarted(self) -> None:
         """The controller has ended, and the next one is to begin with an empty line."""
         termios.tcflush(self._target_end, termios.TCIOFLUSH)
+        last = -1
+        while self.ticks != last:
+            last = self.ticks
+            time.sleep(QUIET_S)
         with self._changed:
             self.demands.clear()
 
@@ -208,18 +237,13 @@ class Line:
         self.ticks += step
         self.missed += step - 1
         self.demands.append((word & 0xFFFF, word >> 17 & 7, alive))
-        if self._waiting_bytes() < MOST_WAITING_BYTES:
+        if self.bus is not None and takes_more(self._target_end):
             self._to_target(self._samples[self.ticks % SAMPLES])
         if self.ticks >= self._commands * COMMAND_TICKS:
             self._commands = self.ticks // COMMAND_TICKS + 1
             self._command()
         if self.bus is not None:
             self.bus.pass_tick()
-
-    def _waiting_bytes(self) -> int:
-        """That the controller has not read."""
-        found = fcntl.ioctl(self._target_end, termios.FIONREAD, bytes(4))
-        return int.from_bytes(found, sys.byteorder)
 
     def _command(self) -> None:
         """Lets go and presses by turns until it is armed, and holds then."""
