@@ -42,7 +42,7 @@ class VisitObserver final : public TickObserver {
 
     const Spread &freq_Hz() const { return freq_Hz_; }
     const Spread &rms_m_s2() const { return rms_m_s2_; }
-    bool wants_current() const { return wants_current_; } ///< in one of them
+    bool wants_current() const { return wants_current_; }         ///< in one of them
     std::int64_t ticks_at_work() const { return ticks_at_work_; } ///< known frequency or not
 
   private:

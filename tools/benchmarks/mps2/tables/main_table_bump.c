@@ -112,9 +112,10 @@ static void begin(watch_t *watch) {
     watch->least_mA = INT32_MAX;
 }
 
-// The last table, and the one before it on its road.
+// The last table, and the one before it on its road; itself where there is none.
 static void find_pair(const rig_order_t *order, const uint32_t *words[2]) {
     words[1] = rig_table(order, order->tables - 1u);
+    words[0] = words[1];
     for (uint32_t i = 0; i + 1u < order->tables; i++) {
         if (rig_road(rig_table(order, i)) == rig_road(words[1])) {
             words[0] = rig_table(order, i);

@@ -5,7 +5,6 @@
 #include "test_signal.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #define RATE_Hz 1000u
 #define COUNTS 40000
@@ -59,10 +58,9 @@ static uint32_t use_tables(rig_t *rig, const rig_order_t *order, uint32_t used) 
 
 bool rig_start(rig_t *rig, const rig_order_t *order, uint32_t used) {
     static const node_sources_t sources = {.enable = NODE_ENABLE_BOARD, .sensors_on_bus = 1};
-    quiesce_params_t params;
-    memcpy(&params, order->params, sizeof params);
+    const quiesce_params_t *params = (const quiesce_params_t *)(const void *)order->params;
     rig->board = (node_inputs_t){.ticks_elapsed = 1};
-    if (!node_init(&rig->node, NULL, &params, sources)) {
+    if (!node_init(&rig->node, NULL, params, sources)) {
         return false;
     }
     node_use_store(&rig->node, store, NULL);

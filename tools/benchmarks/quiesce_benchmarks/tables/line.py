@@ -1,5 +1,5 @@
-"""The bus between a controller and its tools: serial lines with SLCAN, joined by a thread that is the
-operator as well, and looks at every demand; sensor_node.py is at the controller's end.
+"""The bus between a controller and its tools: serial lines with SLCAN, joined by a thread that is
+the operator as well, and looks at every demand; sensor_node.py is at the controller's end.
 
 Time is the controller's: a tick is a demand frame, so that an emulator may be slow.
 """

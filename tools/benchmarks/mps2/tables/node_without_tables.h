@@ -1,5 +1,8 @@
-// firmware/comm/node.c as it is without its table service: what a tick does for tables is left out,
-// and a frame of theirs is nobody's.
+/// Read before firmware/comm/node.c makes a node without its table service of it: what a tick does
+/// for tables is left out, and a frame of theirs is nobody's.
+#ifndef NODE_WITHOUT_TABLES_H
+#define NODE_WITHOUT_TABLES_H
+
 #include "node.h"
 #include "quiesce_can.h"
 
@@ -8,4 +11,4 @@
 #define table_service_pass(self, passed_ms) false
 #define table_service_rest(self) ((void)(self))
 
-#include "node.c"
+#endif
