@@ -32,7 +32,7 @@ from quiesce_benchmarks.tables.largest import largest
 from quiesce_benchmarks.tables.line import DEMAND_ID, FAULT, RUN, is_frame, slcan
 from quiesce_benchmarks.tables.parts import bump, cuts, own_plant, roads
 from quiesce_benchmarks.tables.samples import all_samples
-from quiesce_benchmarks.tables.targets import HostNode, Mps2Node
+from quiesce_benchmarks.tables.targets import HostNode, SlowMps2Node
 
 WORDS = sealed(RULES.magic, list(range(300)))
 OTHER = sealed(RULES.magic, list(range(1, 301)))
@@ -329,7 +329,7 @@ def test_rules_that_do_not_calm_the_structure_are_no_success(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [HostNode, Mps2Node])
+@pytest.mark.parametrize("kind", [HostNode, SlowMps2Node])
 def test_a_road_is_gone_and_a_wrong_claim_found(build: Path, monkeypatch, kind) -> None:
     require(build / "host/tools/benchmarks/host/tables/table_node")
     require(build / "mps2/targets/mps2/quiesce_mps2_node.elf")
@@ -340,5 +340,5 @@ def test_a_road_is_gone_and_a_wrong_claim_found(build: Path, monkeypatch, kind) 
     assert roads.why_not(kind, signs, roads.travel) == ""
     assert roads.why_not(kind, signs, roads.travel_foreign) == ""
     assert roads.why_not(kind, damaged, roads.travel_foreign) == "not so: it is taken"
-    monkeypatch.setattr("quiesce_benchmarks.tables.client.EFFECT_TICKS", 2000)
+    monkeypatch.setattr(kind, "patience_ticks", 2000)
     assert "not within 2000 ticks: 800 mA, but" in roads.why_not(kind, weaker, roads.travel)

@@ -27,7 +27,6 @@ SETTINGS = {
 SLEW_mA = 50  # a tick
 ARM_TICKS = 12_000
 SEEN_TICKS = 300  # three periods of the vibration
-EFFECT_TICKS = 30_000
 NEAR = 0.02  # of a current
 STAGE_S, APPLY_S, SAVE_S = 2.0, 3.0, 10.0  # an emulator on a busy machine takes its time
 
@@ -69,7 +68,7 @@ class Client:
             return len(line.demands) > begin and abs(found - current_mA) <= NEAR * current_mA
 
         try:
-            line.wait(holds, EFFECT_TICKS, f"{current_mA} mA")
+            line.wait(holds, line.patience_ticks, f"{current_mA} mA")
         except BenchFailure as error:
             raise BenchFailure(f"{error}, but {line.largest_mA(SEEN_TICKS)} mA")
 

@@ -94,6 +94,7 @@ class Line:
         self.bus = bus
         self.forwards: frozenset[int] | None = None  # to the client; None: all
         self.is_to_arm = False
+        self.patience_ticks = 0  # of its target, for an effect
         self.demands: list[tuple[int, int, int]] = []  # current_mA, state, alive
         self.ticks = 0  # by the demands' counter: those that were lost count
         self.missed = 0  # of them

@@ -85,7 +85,7 @@ def main() -> None:
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
     target, target_end, bench = map(int, sys.argv[1:])
     samples = sys.stdin.buffer.read().splitlines(keepends=True)
-    with contextlib.suppress(BrokenPipeError):
+    with contextlib.suppress(ConnectionError):
         SensorNode(target, target_end, bench, samples).run()
 
 

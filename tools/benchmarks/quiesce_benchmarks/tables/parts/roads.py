@@ -15,7 +15,7 @@ from quiesce_benchmarks.part import Effort, Measured
 from quiesce_benchmarks.tables.client import Client, client_of
 from quiesce_benchmarks.tables.foreign import ForeignClient, Silence
 from quiesce_benchmarks.tables.samples import Sample, all_samples
-from quiesce_benchmarks.tables.targets import TARGETS, Target, running
+from quiesce_benchmarks.tables.targets import TARGETS, Mps2Node, SlowMps2Node, Target, running
 
 TITLE = "roads: every kind of table into every target, its memory, and back"
 FIGURES = (
@@ -140,7 +140,8 @@ def why_not(kind: type[Target], sample: Sample, way: Callable[[Target, Sample], 
 def row_of(kind: type[Target], sample: Sample) -> Row:
     """A machine with other work may break off a road: it is gone once more, and that is told."""
     first = [why_not(kind, sample, way) for way in WAYS]
-    last = [why and why_not(kind, sample, way) for way, why in zip(WAYS, first, strict=True)]
+    slow = SlowMps2Node if kind is Mps2Node else kind
+    last = [why and why_not(slow, sample, way) for way, why in zip(WAYS, first, strict=True)]
     return Row(sample.name, kind.name, *last, again="; ".join(filter(None, first)))
 
 
