@@ -30,7 +30,8 @@ def test_no_frame_is_lost_either_way(bus: BusRun) -> None:
 
 def test_every_message_of_the_controller_is_decoded(bus: BusRun) -> None:
     sent = [message for message in load().messages if message.sender == "Controller"]
-    names = {message.name for message in sent if message.number == 0}  # it has one damper
+    # It has one damper, and a law without a table: TableFlow comes in the fourth boot.
+    names = {message.name for message in sent if message.number == 0} - {"TableFlow"}
     assert len(names) == 15
     assert bus.missing == []
     assert names == set(bus.counts)
