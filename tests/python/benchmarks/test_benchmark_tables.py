@@ -31,6 +31,7 @@ from quiesce_benchmarks.tables.foreign import (
 from quiesce_benchmarks.tables.largest import largest
 from quiesce_benchmarks.tables.line import DEMAND_ID, FAULT, RUN, is_frame, slcan
 from quiesce_benchmarks.tables.parts import bump, cuts, own_plant, roads
+from quiesce_benchmarks.tables.parts import load as load_part
 from quiesce_benchmarks.tables.samples import all_samples
 from quiesce_benchmarks.tables.targets import HostNode, SlowMps2Node
 
@@ -280,6 +281,13 @@ def test_a_road_that_ends_before_its_end_says_why(started, error: type[Exception
     assert roads.why_not(HostNode, sample, way) == "not so"
     assert roads.why_not(HostNode, sample, lambda *_: None) == ""
     assert len(started) == 2
+
+
+def test_ticks_that_every_load_costs_are_late() -> None:
+    lost = [(7, 2), (3, 3), (1, 4)]
+    rows = [{"lost": with_it, "lost_without": without} for with_it, without in lost]
+    assert load_part.least_late(rows) == 0
+    assert load_part.least_late([{"lost": n + 2, "lost_without": n} for n in (0, 5)]) == 2
 
 
 # Own plants

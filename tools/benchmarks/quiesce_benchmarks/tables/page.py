@@ -50,13 +50,16 @@ def _cuts(reported: dict[str, Any]) -> str:
 
 def _load(reported: dict[str, Any]) -> str:
     cells = [
-        [row["target"], number(row["load_s"], 2), str(row["loads"]), number(row["bus_pct"], 0)]
+        [
+            row["target"], number(row["load_s"], 2), str(row["loads"]), str(row["late"]),
+            number(row["bus_pct"], 0),
+        ]
         for row in reported["rows"]
-    ]
+    ]  # fmt: skip
     cells.append(
-        ["computed", number(reported["model_s"], 2), "", number(reported["beside_pct"], 0)]
+        ["computed", number(reported["model_s"], 2), "", "", number(reported["beside_pct"], 0)]
     )
-    return markdown(["", "s", "loads", "of the bus, %"], cells)
+    return markdown(["", "s", "loads", "ticks late", "of the bus, %"], cells)
 
 
 def _bump(reported: dict[str, Any]) -> str:
