@@ -9,8 +9,8 @@ from quiesce.base.errors import UsageError
 from quiesce_benchmarks.house.committed import Committed
 from quiesce_benchmarks.papers import parts
 from quiesce_benchmarks.papers.commands import refused
+from quiesce_benchmarks.papers.page import KEY, paper_table, published_text, where
 from quiesce_benchmarks.papers.page import ours_text as ours
-from quiesce_benchmarks.papers.page import paper_table, published_text, where
 from quiesce_benchmarks.papers.parts import rows as rows_part
 from quiesce_benchmarks.papers.rows import (
     KINDS,
@@ -255,3 +255,12 @@ def test_the_part_finds_what_is_wrong(tmp_path: Path, monkeypatch: pytest.Monkey
     names = ("rows", "rows_without_place", "rows_pending", "commands_refused")
     assert [found.values[name] for name in names] == [4, 1, 1, 1]
     assert "no such file" in found.tables[0] and "no such command" in found.tables[0]
+
+
+def test_figures_of_ours_are_named_with_their_result() -> None:
+    """Without its file's name in front a figure is never found, however often it is recorded."""
+    files = {file.stem for file in (ROOT / "docs/results").glob("*.json")}
+    rows = [row for paper in papers().values() for row in paper.rows]
+    keys = [key["key"] for row in rows for key in KEY.finditer(row.ours)]
+    assert keys
+    assert [key for key in keys if key.partition(".")[0] not in files] == []
