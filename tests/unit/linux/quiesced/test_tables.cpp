@@ -242,13 +242,15 @@ TEST_P(DamagedRecord, half_of_a_new_one_beside_it_does_no_harm) {
 /// A child that stores other words again and again until it is killed; tells of each.
 pid_t start_writer(int tell_fd, const TemporaryFolder &folder, keeper_record_t record) {
     const pid_t child = fork();
-    for (std::uint32_t i = 1; child == 0; ++i) {
+    if (child != 0) {
+        return child;
+    }
+    for (std::uint32_t i = 1;; ++i) {
         if (!save(folder, record, kOver, TableWords(200, i)).empty() ||
             write(tell_fd, &i, sizeof i) != sizeof i) {
             _exit(1);
         }
     }
-    return child;
 }
 
 TEST_P(DamagedRecord, is_none_after_a_kill_at_any_moment) {
