@@ -4,7 +4,7 @@
 # The system's library is taken as it is (Debian: libgpiod-dev). The other 2.x is built from the
 # sources in QUIESCE_GPIOD_DIR (tools/setup test fetches them) as a shared library: it is LGPL.
 
-set(QUIESCE_GPIOD_DIR "${CMAKE_SOURCE_DIR}/build/deps/gpiod" CACHE PATH
+set(QUIESCE_GPIOD_DIR "${PROJECT_SOURCE_DIR}/build/deps/gpiod" CACHE PATH
     "Folder with lib/ and include/ of libgpiod 2.x (tools/setup test fetches it)")
 
 # The system's: sets version to 1 or 2; empty where there is none.

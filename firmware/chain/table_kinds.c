@@ -7,15 +7,15 @@
 #include "track.h"
 
 static const table_kind_t *find(uint32_t magic, quiesce_owner_t *owner) {
-    for (int32_t i = 0; law_find(i) != NULL; i++) {
-        const table_kind_t *kind = law_find(i)->kind;
+    for (int32_t i = 0; i < QUIESCE_LAW_COUNT; i++) {
+        const table_kind_t *kind = law_find(i) != NULL ? law_find(i)->kind : NULL;
         if (kind != NULL && kind->magic == magic) {
             *owner = QUIESCE_OF_LAW;
             return kind;
         }
     }
-    for (int32_t i = 0; track_find(i) != NULL; i++) {
-        const table_kind_t *kind = track_find(i)->kind;
+    for (int32_t i = 0; i < QUIESCE_TRACKER_COUNT; i++) {
+        const table_kind_t *kind = track_find(i) != NULL ? track_find(i)->kind : NULL;
         if (kind != NULL && kind->magic == magic) {
             *owner = QUIESCE_OF_TRACKER;
             return kind;

@@ -5,6 +5,10 @@
 #include "can_frame.h"
 #include "quiesce.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define CAN_FREEZE_PAGES 6u
 
 /// The controller's inputs and outputs of a tick, as far as a freeze frame has them.
@@ -61,5 +65,9 @@ bool can_freeze_request(can_freeze_t *self);
 
 /// The next page. Returns false iff there is none to send.
 bool can_freeze_page(can_freeze_t *self, can_frame_t *frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -18,6 +18,10 @@
 #include "fault_record.h"
 #include "quiesce.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Frames of a tick at the most: a demand for each damper, raw sample, a page of the freeze frame,
 /// a reply, and cyclic ones.
 #define CAN_NODE_MAX_FRAMES (6u + QUIESCE_DAMPERS)
@@ -84,5 +88,9 @@ const can_node_counters_t *can_node_counters(const can_node_t *self);
 
 /// CRC-32 of the parameters: their words in index order, little-endian (Identification).
 uint32_t can_node_param_hash(const quiesce_params_t *params);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -7,6 +7,10 @@
 #include "can_receive.h"
 #include "quiesce.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Frames that never left since the start, by class; wrapping.
 typedef struct {
     uint32_t demands;   ///< demands and Status, for newer ones
@@ -51,5 +55,9 @@ void can_pack_health(const can_node_counters_t *counters, const can_node_tick_t 
 void can_pack_shed(const can_unsent_t *unsent, can_frame_t *frame);
 void can_pack_identification(uint32_t param_hash, can_frame_t *frame);
 void can_pack_raw(const can_node_tick_t *tick, uint32_t number, can_frame_t *frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

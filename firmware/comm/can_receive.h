@@ -9,6 +9,10 @@
 #include "quiesce.h"
 #include "quiesce_can_tables.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// What the bus says in this tick.
 typedef struct {
     bool enable;                              ///< OperatorCommand, not older than its timeout
@@ -93,5 +97,9 @@ bool can_receive_frame(can_receive_t *self, const can_frame_t *frame);
 
 /// A tick begins, `ticks` after the last one (more than 1 where some were lost).
 void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *inputs);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 
 #include "quiesce_can_tables.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct {
     uint32_t ticks_per_ms;                  ///< 1 or more
     uint32_t ms_per_tick;                   ///< of the ticks that begin a millisecond
@@ -21,5 +25,9 @@ uint32_t can_schedule_tick(can_schedule_t *self);
 
 /// Whether message QUIESCE_CAN_AT_.. is due in this tick. Ask once a tick for each that is cyclic.
 bool can_schedule_is_due(can_schedule_t *self, uint32_t message);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -8,6 +8,10 @@
 #include "fault_record.h"
 #include "quiesce.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define CAN_SERVICE_MAX_RAW_S 3600
 /// A task that is not answered by then has failed.
 #define CAN_SERVICE_SAVE_MS 2000u
@@ -97,5 +101,9 @@ bool can_service_reply(can_service_t *self, can_frame_t *frame, uint8_t *alive);
 
 /// Whether parameter index (below QUIESCE_PARAM_COUNT) may have that value by itself.
 bool can_service_allows(uint32_t index, int32_t value);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -9,6 +9,10 @@
 
 #include "can_frame.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define E2E_ALIVE_PERIOD 16u
 
 typedef enum {
@@ -36,5 +40,9 @@ e2e_verdict_t e2e_check(const e2e_layout_t *layout, const can_frame_t *frame);
 
 /// The counter of a frame, 0 .. 15.
 uint8_t e2e_alive(const e2e_layout_t *layout, const can_frame_t *frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

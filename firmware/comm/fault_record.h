@@ -31,6 +31,10 @@
 
 #include "can_pack.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define FAULT_RECORD_MAGIC 0x31524651u ///< "QFR1"
 #define FAULT_RECORD_BINS_HZ 50u
 #define FAULT_RECORD_SIGNALS 8u
@@ -137,5 +141,9 @@ bool fault_record_copy(const fault_record_t *self, uint32_t words[FAULT_RECORD_W
 /// Returns false, and changes nothing, iff it is no whole record of this version.
 bool fault_record_load(fault_record_t *self, const uint32_t words[FAULT_RECORD_WORDS],
                        bool is_acknowledged);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -22,6 +22,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Frames of an unknown sender until it is known, the last of which counts.
 #define FRESHNESS_TRIAL 3u
 
@@ -65,5 +69,9 @@ void freshness_pass(freshness_t *self, int32_t passed_us);
 
 /// Whether a sender is known, and what it said last holds.
 bool freshness_is_known(const freshness_t *self);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define ISOTP_BLOCK 32u         ///< frames between two flow controls of ours
 #define ISOTP_GAP_MS 2u         ///< least time between two frames, STmin
 #define ISOTP_PATIENCE_MS 1000u ///< N_Cr and N_Bs
@@ -70,5 +74,9 @@ bool isotp_tick(isotp_t *self, uint32_t passed_ms, isotp_byte_t byte, const void
 static inline bool isotp_is_idle(const isotp_t *self) {
     return self->state == ISOTP_IDLE && !self->owes_flow;
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,6 +6,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Numbers are on the disk of targets and are never reused.
 typedef enum {
     KEEPER_PARAMS = 0,        ///< the words of quiesce_params_t
@@ -77,5 +81,9 @@ static inline void keeper_give_up(keeper_t *self) {
 
 /// The target says how the record under way went.
 void keeper_stored(keeper_t *self, bool is_stored);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,6 +6,10 @@
 
 #include "table_file.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define LEARNT_LOOK_MS 1000u
 #define LEARNT_FIRST_S 60u
 #define LEARNT_SLOWEST_S 86400u
@@ -53,5 +57,9 @@ void learnt_wrote(learnt_store_t *self);
 static inline uint32_t learnt_crc(const learnt_t *self) {
     return self->words[2] > 0u ? self->words[1] : 0u;
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

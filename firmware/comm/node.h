@@ -11,6 +11,10 @@
 #include "safe_current.h"
 #include "table_service.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Frames of a tick at the most.
 #define NODE_MAX_FRAMES (CAN_NODE_MAX_FRAMES + 1u)
 
@@ -129,5 +133,9 @@ bool node_retune(node_t *node, const quiesce_params_t *params);
 /// The last frames before leaving, one a damper: safe current, driver off. The drivers themselves
 /// come first. Returns their number.
 uint32_t node_farewell(node_t *node, can_frame_t frames[QUIESCE_DAMPERS]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

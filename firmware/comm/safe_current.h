@@ -5,6 +5,10 @@
 
 #include "quiesce.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Of a board that quiesce_board_check accepts, or 1 where it refuses it or there is none (NULL).
 uint32_t dampers_of_board(const quiesce_board_t *board);
 
@@ -14,5 +18,9 @@ uint32_t dampers_of_board(const quiesce_board_t *board);
 /// Some 2,000 instructions with a board: for starts, not for ticks.
 int32_t safe_current_mA(const quiesce_board_t *board, const quiesce_params_t *params,
                         uint32_t damper);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

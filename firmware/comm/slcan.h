@@ -10,6 +10,10 @@
 
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Longest line without its end: T, 8 digits of id, the length, 16 digits of data.
 #define SLCAN_MAX_LINE 26u
 /// Longest output of slcan_encode.
@@ -32,5 +36,9 @@ bool slcan_decode(slcan_decoder_t *decoder, uint8_t byte, can_frame_t *frame);
 /// Writes the frame as a line with its CR. Returns the number of bytes;
 /// 0 iff the frame is none (id beyond its width, length > 8).
 size_t slcan_encode(const can_frame_t *frame, uint8_t out[SLCAN_MAX_BYTES]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

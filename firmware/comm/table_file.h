@@ -5,6 +5,10 @@
 
 #include "quiesce.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define TABLE_FILE_MAGIC UINT32_C(0x31465451) ///< "QTF1": kind and version
 
 enum { TABLE_FILE_KIND, TABLE_FILE_BOARD, TABLE_FILE_WORDS, TABLE_FILE_CRC, TABLE_FILE_HEAD_WORDS };
@@ -24,5 +28,9 @@ bool table_file_is_head(const uint32_t head[TABLE_FILE_HEAD_WORDS], uint32_t wor
 
 /// CRC-32 of a board's words; 0 without one.
 uint32_t table_file_board(const quiesce_board_t *board);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -8,6 +8,10 @@
 #include "isotp.h"
 #include "table_file.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Zeros: idle.
 typedef struct {
     isotp_t isotp;
@@ -33,5 +37,9 @@ void table_link_drop(table_link_t *self);
 /// false iff none is.
 bool table_link_tick(table_link_t *self, uint32_t passed_ms, quiesce_tables_t *tables,
                      can_frame_t *frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

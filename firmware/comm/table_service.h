@@ -9,6 +9,10 @@
 #include "learnt.h"
 #include "table_link.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Roads: what requests are about. The first two are quiesce_owner_t.
 enum { ROAD_LAW, ROAD_TRACKER, ROAD_LEARNT, ROADS };
 
@@ -106,5 +110,9 @@ static inline bool table_service_pass(table_service_t *self, uint32_t passed_ms)
 
 /// Returns false iff there is no frame of TableFlow to send.
 bool table_service_tick(table_service_t *self, const table_tick_t *tick, can_frame_t *frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

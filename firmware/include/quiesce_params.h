@@ -27,6 +27,8 @@ enum {
     QUIESCE_LAW_NETWORK = 10,
 };
 
+#define QUIESCE_LAW_COUNT 11
+
 /// Applies LAW(NUMBER, name) to each law.
 #define QUIESCE_EACH_LAW(LAW) \
     LAW(OFF, off) \
@@ -40,6 +42,41 @@ enum {
     LAW(POLYNOMIAL, polynomial) \
     LAW(FUZZY_SIGNALS, fuzzy_signals) \
     LAW(NETWORK, network)
+
+// Whether the build holds it, 1 or 0; parameters that ask for another one are refused.
+#ifndef QUIESCE_WITH_LAW_OFF
+#define QUIESCE_WITH_LAW_OFF 1
+#endif
+#ifndef QUIESCE_WITH_LAW_CONSTANT
+#define QUIESCE_WITH_LAW_CONSTANT 1
+#endif
+#ifndef QUIESCE_WITH_LAW_FUZZY
+#define QUIESCE_WITH_LAW_FUZZY 1
+#endif
+#ifndef QUIESCE_WITH_LAW_FUZZY_SELFTUNE
+#define QUIESCE_WITH_LAW_FUZZY_SELFTUNE 1
+#endif
+#ifndef QUIESCE_WITH_LAW_PHASE
+#define QUIESCE_WITH_LAW_PHASE 1
+#endif
+#ifndef QUIESCE_WITH_LAW_LINEAR
+#define QUIESCE_WITH_LAW_LINEAR 1
+#endif
+#ifndef QUIESCE_WITH_LAW_SIGNS
+#define QUIESCE_WITH_LAW_SIGNS 1
+#endif
+#ifndef QUIESCE_WITH_LAW_FRICTION
+#define QUIESCE_WITH_LAW_FRICTION 1
+#endif
+#ifndef QUIESCE_WITH_LAW_POLYNOMIAL
+#define QUIESCE_WITH_LAW_POLYNOMIAL 1
+#endif
+#ifndef QUIESCE_WITH_LAW_FUZZY_SIGNALS
+#define QUIESCE_WITH_LAW_FUZZY_SIGNALS 1
+#endif
+#ifndef QUIESCE_WITH_LAW_NETWORK
+#define QUIESCE_WITH_LAW_NETWORK 1
+#endif
 
 /// Values of quiesce_params_t.current_check.
 enum {
@@ -77,6 +114,8 @@ enum {
     QUIESCE_TRACKER_BANK = 4,
 };
 
+#define QUIESCE_TRACKER_COUNT 5
+
 /// Applies TRACKER(NUMBER, name) to each tracker.
 #define QUIESCE_EACH_TRACKER(TRACKER) \
     TRACKER(INVERSE, inverse) \
@@ -84,6 +123,23 @@ enum {
     TRACKER(PROPORTIONAL, proportional) \
     TRACKER(NETWORK, network) \
     TRACKER(BANK, bank)
+
+// Whether the build holds it, 1 or 0; parameters that ask for another one are refused.
+#ifndef QUIESCE_WITH_TRACKER_INVERSE
+#define QUIESCE_WITH_TRACKER_INVERSE 1
+#endif
+#ifndef QUIESCE_WITH_TRACKER_COMPARE
+#define QUIESCE_WITH_TRACKER_COMPARE 1
+#endif
+#ifndef QUIESCE_WITH_TRACKER_PROPORTIONAL
+#define QUIESCE_WITH_TRACKER_PROPORTIONAL 1
+#endif
+#ifndef QUIESCE_WITH_TRACKER_NETWORK
+#define QUIESCE_WITH_TRACKER_NETWORK 1
+#endif
+#ifndef QUIESCE_WITH_TRACKER_BANK
+#define QUIESCE_WITH_TRACKER_BANK 1
+#endif
 
 /// Values of quiesce_params_t.estimator.
 enum {

@@ -3,13 +3,13 @@
 #include <stddef.h>
 
 #define DECLARE(number, name) extern const law_t law_##name;
-#define ENTRY(number, name) [QUIESCE_LAW_##number] = &law_##name,
+#define ENTRY(number, name) \
+    [QUIESCE_LAW_##number] = QUIESCE_WITH_LAW_##number ? &law_##name : NULL,
 
 QUIESCE_EACH_LAW(DECLARE)
 
-static const law_t *const laws[] = {QUIESCE_EACH_LAW(ENTRY)};
+static const law_t *const laws[QUIESCE_LAW_COUNT] = {QUIESCE_EACH_LAW(ENTRY)};
 
 const law_t *law_find(int32_t index) {
-    const int32_t count = (int32_t)(sizeof laws / sizeof laws[0]);
-    return index >= 0 && index < count ? laws[index] : NULL;
+    return index >= 0 && index < QUIESCE_LAW_COUNT ? laws[index] : NULL;
 }

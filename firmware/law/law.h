@@ -67,7 +67,7 @@ typedef struct {
     bool (*load)(void *state, const law_setup_t *setup, const uint32_t *words, uint32_t count);
 } law_t;
 
-/// Law by the value of parameter law. Returns NULL iff there is none.
+/// Law by the value of parameter law. Returns NULL iff there is none in this build.
 const law_t *law_find(int32_t index);
 
 #endif

@@ -8,6 +8,30 @@
 _Static_assert(sizeof(quiesce_params_t) == QUIESCE_PARAM_COUNT * sizeof(int32_t),
                "one int32_t a parameter, no padding");
 
+// What the build holds of each choice, by value. Law off is in every one.
+#define HOLDS_LAW(number, name) [QUIESCE_LAW_##number] = QUIESCE_WITH_LAW_##number,
+#define HOLDS_TRACKER(number, name) [QUIESCE_TRACKER_##number] = QUIESCE_WITH_TRACKER_##number,
+static const bool holds_law[] = {QUIESCE_EACH_LAW(HOLDS_LAW)};
+static const bool holds_tracker[] = {QUIESCE_EACH_TRACKER(HOLDS_TRACKER)};
+static const bool holds_estimator[] = {
+    [QUIESCE_ESTIMATOR_FFT] = QUIESCE_WITH_FFT,
+    [QUIESCE_ESTIMATOR_FIT] = QUIESCE_WITH_FIT,
+};
+
+#define ONE_TRACKER(number, name) +QUIESCE_WITH_TRACKER_##number
+_Static_assert(QUIESCE_WITH_LAW_OFF, "law off is what a controller falls back to");
+_Static_assert(0 QUIESCE_EACH_TRACKER(ONE_TRACKER) > 0, "the build holds no tracker");
+
+// value, or where the build does not hold it the first one that it does.
+static int32_t held(const bool *holds, int32_t count, int32_t value) {
+    for (int32_t i = 0; i < count && !holds[value]; i++) {
+        if (holds[i]) {
+            return i;
+        }
+    }
+    return value;
+}
+
 // The struct is an array of int32_t by construction (generated, asserted above).
 static int32_t *slot(quiesce_params_t *params, uint32_t index) {
     return (int32_t *)(void *)params + index;
@@ -21,7 +45,9 @@ void quiesce_params_default(quiesce_params_t *params) {
     for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
         *slot(params, i) = param_table[i].default_value;
     }
-    params->estimator = QUIESCE_WITH_FIT ? params->estimator : QUIESCE_ESTIMATOR_FFT;
+    params->law = held(holds_law, QUIESCE_LAW_COUNT, params->law);
+    params->tracker = held(holds_tracker, QUIESCE_TRACKER_COUNT, params->tracker);
+    params->estimator = held(holds_estimator, 2, params->estimator);
 }
 
 const quiesce_param_info_t *quiesce_param_info(uint32_t index) {
@@ -104,18 +130,24 @@ static bool check_sensor(const quiesce_params_t *params, quiesce_param_error_t *
     return true;
 }
 
-static bool has_estimator(int32_t estimator) {
-    return (estimator == QUIESCE_ESTIMATOR_FFT && QUIESCE_WITH_FFT) ||
-           (estimator == QUIESCE_ESTIMATOR_FIT && QUIESCE_WITH_FIT);
+static bool check_build(const quiesce_params_t *params, quiesce_param_error_t *error) {
+    static const char *const reason = "not in this build";
+    if (!holds_law[params->law]) {
+        return refuse(error, offsetof(quiesce_params_t, law), reason);
+    }
+    if (!holds_tracker[params->tracker]) {
+        return refuse(error, offsetof(quiesce_params_t, tracker), reason);
+    }
+    if (!holds_estimator[params->estimator]) {
+        return refuse(error, offsetof(quiesce_params_t, estimator), reason);
+    }
+    return true;
 }
 
 static bool check_together(const quiesce_params_t *params, quiesce_param_error_t *error) {
     if (params->band_low_mHz >= params->band_high_mHz) {
         return refuse(error, offsetof(quiesce_params_t, band_high_mHz),
                       "must be above band_low_mHz");
-    }
-    if (!has_estimator(params->estimator)) {
-        return refuse(error, offsetof(quiesce_params_t, estimator), "not in this build");
     }
     if (params->constant_current_mA > params->max_current_mA) {
         return refuse(error, offsetof(quiesce_params_t, constant_current_mA),
@@ -153,6 +185,6 @@ bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_
 }
 
 bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t *error) {
-    return check_each(params, error) && check_sensor(params, error) &&
-           check_together(params, error);
+    return check_each(params, error) && check_build(params, error) &&
+           check_sensor(params, error) && check_together(params, error);
 }

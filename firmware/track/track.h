@@ -36,7 +36,8 @@ static inline bool track_is_feasible(int32_t demand_mN, int32_t way) {
     return demand_mN != 0 && (way == 0 || (demand_mN > 0) == (way > 0));
 }
 
-/// Tracker by the value of parameter tracker. Returns NULL iff there is none.
+/// Tracker by the value of parameter tracker. Returns NULL iff there is none in this
+/// build.
 const track_t *track_find(int32_t index);
 
 #endif

@@ -18,7 +18,7 @@ target_link_libraries(mps2_startup PRIVATE hal_mps2 quiesce_warnings)
 # Turns an executable into an image: our start-up and memory map; of libc only what is referred to
 # (memcpy and its like).
 function(quiesce_mps2_image target)
-  set(script ${CMAKE_SOURCE_DIR}/hal/mps2/mps2.ld)
+  set(script ${PROJECT_SOURCE_DIR}/hal/mps2/mps2.ld)
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:mps2_startup>)
   target_link_options(${target} PRIVATE -nostdlib -static -T${script} -Wl,--gc-sections
                       -Wl,--fatal-warnings -Wl,-Map=$<TARGET_FILE:${target}>.map)

@@ -5,8 +5,9 @@
 
 extern "C" {
 #include "mailbox.h"
+}
+
 #include "quiesce_can.h"
 #include "slcan.h"
-}
 
 #endif

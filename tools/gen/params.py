@@ -104,9 +104,17 @@ def every_one(p: dict) -> str:
     name = p["name"]
     macro = name.upper()
     rows = " \\\n".join(f"    {macro}({label.upper()}, {label})" for label in p["labels"])
+    held = "".join(
+        f"#ifndef QUIESCE_WITH_{macro}_{label.upper()}\n"
+        f"#define QUIESCE_WITH_{macro}_{label.upper()} 1\n#endif\n"
+        for label in p["labels"]
+    )
     return (
+        f"\n#define QUIESCE_{macro}_COUNT {len(p['labels'])}\n"
         f"\n/// Applies {macro}(NUMBER, name) to each {name}.\n"
         f"#define QUIESCE_EACH_{macro}({macro}) \\\n{rows}\n"
+        f"\n// Whether the build holds it, 1 or 0; parameters that ask for another one are refused.\n"
+        f"{held}"
     )
 
 

@@ -7,13 +7,14 @@ extern "C" {
 #include "can_bus.h"
 #include "current_backends.h"
 #include "gpio.h"
-#include "node.h"
 #include "nvm_file.h"
 #include "nvm_slots.h"
-#include "quiesce_can.h"
 #include "sysfs.h"
 #include "tick_linux.h"
 #include "watchdog.h"
 }
+
+#include "node.h"
+#include "quiesce_can.h"
 
 #endif

@@ -2,9 +2,7 @@
 
 #include <array>
 
-extern "C" {
 #include "quiesce_version.h"
-}
 
 #define QUIESCED_TEXT(number) #number
 #define QUIESCED_VERSION(major, minor, patch)                                                      \

@@ -16,9 +16,7 @@
 #include "input_error.h"
 #include "table_files.h"
 
-extern "C" {
 #include "plant_rules.h"
-}
 
 namespace {
 

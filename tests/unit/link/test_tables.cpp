@@ -20,8 +20,9 @@
 
 extern "C" {
 #include "plant_pulses.h"
-#include "plant_rules.h"
 }
+
+#include "plant_rules.h"
 
 namespace quiesce {
 namespace {

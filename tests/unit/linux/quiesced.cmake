@@ -31,7 +31,7 @@ add_executable(
 target_link_libraries(test_quiesced PRIVATE can_make quiesced_core quiesce_warnings GTest::gtest_main)
 target_include_directories(test_quiesced PRIVATE quiesced ../support)
 target_compile_definitions(
-  test_quiesced PRIVATE QUIESCED_EXAMPLE="${CMAKE_SOURCE_DIR}/targets/linux/packaging/quiesced.toml")
+  test_quiesced PRIVATE QUIESCED_EXAMPLE="${PROJECT_SOURCE_DIR}/targets/linux/packaging/quiesced.toml")
 gtest_discover_tests(test_quiesced TEST_PREFIX quiesced. DISCOVERY_MODE PRE_TEST)
 
 add_executable(test_quiesced_lockstep quiesced/test_lockstep.cpp)

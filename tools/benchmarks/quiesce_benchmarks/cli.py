@@ -15,6 +15,7 @@ from quiesce_benchmarks.controller import benchmark as controller_benchmark
 from quiesce_benchmarks.damper import benchmark as damper_benchmark
 from quiesce_benchmarks.fuzzy import benchmark as fuzzy_benchmark
 from quiesce_benchmarks.house import benchmark as house_benchmark
+from quiesce_benchmarks.install import benchmark as install_benchmark
 from quiesce_benchmarks.laws import benchmark as laws_benchmark
 from quiesce_benchmarks.papers import benchmark as papers_benchmark
 from quiesce_benchmarks.signal import benchmark as signal_benchmark
@@ -37,6 +38,7 @@ BENCHMARKS = (
     papers_benchmark,
     laws_benchmark,
     tables_benchmark,
+    install_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,

@@ -20,8 +20,9 @@
 
 extern "C" {
 #include "can_make.h"
-#include "slcan.h"
 }
+
+#include "slcan.h"
 
 namespace quiesced {
 namespace {

@@ -9,9 +9,7 @@
 #include "fault_store.h"
 #include "temporary_folder.h"
 
-extern "C" {
 #include "quiesce_can_tables.h"
-}
 
 namespace quiesced {
 namespace {

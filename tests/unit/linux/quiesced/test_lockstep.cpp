@@ -19,8 +19,9 @@
 
 extern "C" {
 #include "lockstep_can.h"
-#include "slcan.h"
 }
+
+#include "slcan.h"
 
 namespace {
 

@@ -1,0 +1,1 @@
+"""Figures of Quiesce outside of its own tree: as a library, as a package."""

@@ -1,0 +1,1 @@
+"""One part a module; quiesce_benchmarks.part says what each has."""
