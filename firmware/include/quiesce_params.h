@@ -43,7 +43,7 @@ enum {
     LAW(FUZZY_SIGNALS, fuzzy_signals) \
     LAW(NETWORK, network)
 
-// Whether the build holds it, 1 or 0; parameters that ask for another one are refused.
+// Whether the build holds it, 1 or 0; what asks for another one is refused.
 #ifndef QUIESCE_WITH_LAW_OFF
 #define QUIESCE_WITH_LAW_OFF 1
 #endif
@@ -124,7 +124,7 @@ enum {
     TRACKER(NETWORK, network) \
     TRACKER(BANK, bank)
 
-// Whether the build holds it, 1 or 0; parameters that ask for another one are refused.
+// Whether the build holds it, 1 or 0; what asks for another one is refused.
 #ifndef QUIESCE_WITH_TRACKER_INVERSE
 #define QUIESCE_WITH_TRACKER_INVERSE 1
 #endif

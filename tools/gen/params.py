@@ -113,7 +113,7 @@ def every_one(p: dict) -> str:
         f"\n#define QUIESCE_{macro}_COUNT {len(p['labels'])}\n"
         f"\n/// Applies {macro}(NUMBER, name) to each {name}.\n"
         f"#define QUIESCE_EACH_{macro}({macro}) \\\n{rows}\n"
-        f"\n// Whether the build holds it, 1 or 0; parameters that ask for another one are refused.\n"
+        "\n// Whether the build holds it, 1 or 0; what asks for another one is refused.\n"
         f"{held}"
     )
 

@@ -5,6 +5,7 @@ import importlib.util
 import numpy as np
 import pytest
 from quiesce.base.errors import UsageError
+from quiesce.base.extras import extra
 from quiesce.base.searches import bees as bee_colony
 from quiesce.base.searches import by_pymoo
 from quiesce.base.searches.methods import METHODS
@@ -124,7 +125,9 @@ def test_onlookers_choose_by_what_the_employed_bees_found(monkeypatch: pytest.Mo
 
 
 def test_without_the_extra_there_is_one_line():
-    with pytest.raises(UsageError, match=r"needs pymoo.*requirements-search\.txt") as caught:
-        with by_pymoo.extra():
+    with pytest.raises(
+        UsageError, match=r"needs the extra 'search'.*requirements-search\.txt"
+    ) as caught:
+        with extra(*by_pymoo.SEARCH):
             raise ModuleNotFoundError("none", name="pymoo")
     assert "\n" not in str(caught.value)

@@ -17,7 +17,7 @@ TIMEOUT_s = 600
 
 
 def run(*command: str | Path, folder: Path | None = None) -> str:
-    """What it printed. BenchFailure with its last line of complaint, UsageError without the tool."""
+    """What it printed. BenchFailure with its complaint, UsageError where the tool is absent."""
     words = [str(word) for word in command]
     if shutil.which(words[0]) is None and not Path(words[0]).is_file():
         raise UsageError(f"{words[0]} is not installed; ./tools/setup test installs it")

@@ -13,14 +13,25 @@ from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from functools import cache
 from hashlib import md5
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from quiesce.base.extras import extra
 from quiesce.can.python_can import can
 
+FILES = ("mdf", "an MDF4 file")
 MAX_BYTES = 64  # of CAN FD, which readers expect
 FRAME = "CAN_DataFrame"
 CHUNK = 50_000  # frames at once: about 100 MB
+
+
+def require_mdf() -> None:
+    """UsageError where asammdf is not there: before a recording, not after it. Imports nothing: a
+    recording begins at once."""
+    with extra(*FILES):
+        if find_spec("asammdf") is None:
+            raise ModuleNotFoundError("no asammdf", name="asammdf")
 
 
 def dtype_of(prefix: str) -> Any:
@@ -43,9 +54,10 @@ def write_mdf(
     Frames without data (remote, error) are left out: tools expect other groups for them, and the
     interface has none. Returns how many.
     """
-    from asammdf import MDF, Signal
-    from asammdf.blocks.v4_blocks import SourceInformation
-    from asammdf.blocks.v4_constants import BUS_TYPE_CAN, SOURCE_BUS
+    with extra(*FILES):
+        from asammdf import MDF, Signal
+        from asammdf.blocks.v4_blocks import SourceInformation
+        from asammdf.blocks.v4_constants import BUS_TYPE_CAN, SOURCE_BUS
 
     quiet()
     left_out = 0
@@ -118,7 +130,8 @@ def samples_of(frames: Sequence[Any]) -> Any:
 
 def read_mdf(file: Path) -> Iterator[Any]:
     """Frames of every CAN bus in the file, by time. Exceptions as asammdf has them."""
-    from asammdf import MDF
+    with extra(*FILES):
+        from asammdf import MDF
 
     quiet()
     with MDF(file) as mdf:
@@ -179,7 +192,8 @@ def frames_of(signal: Any, start_s: float) -> list[Any]:
 def quiet() -> None:
     """asammdf logs what it stumbles over, and where its constructor fails its destructor prints a
     stack trace; the one line that we print says it."""
-    from asammdf.blocks.mdf_v4 import MDF4
+    with extra(*FILES):
+        from asammdf.blocks.mdf_v4 import MDF4
 
     logging.getLogger("asammdf").setLevel(logging.CRITICAL + 1)
     end = MDF4.__del__

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from quiesce.base.atomic import output_files
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
@@ -50,7 +50,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="NAME=VALUE",
         help="parameter; dc_cutoff_mHz is the one that counts here",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder to write to (build/chain)")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help=f"folder to write to ({results_text('chain')})"
+    )
     parser.set_defaults(run=run)
 
 
@@ -143,7 +145,7 @@ def run(args: argparse.Namespace) -> int:
     cutoff_mHz = effective_params(bench, args.set)["dc_cutoff_mHz"]
     worst_dB, worst_deg = largest_difference(bench, MEASURED_Hz, cutoff_mHz)
     table = markdown(cutoff_mHz)
-    out = args.out or build_folder() / "chain"
+    out = args.out or results_folder() / "chain"
     with output_files(out) as staging:
         (staging / "conditioning.md").write_text(table, encoding="utf-8")
         (staging / "conditioning.svg").write_text(figure_svg(cutoff_mHz), encoding="utf-8")

@@ -12,7 +12,7 @@ from typing import Any
 from quiesce.base.atomic import output_files
 from quiesce.base.command import real_number, whole_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown, typed
 from quiesce.cli.hil_tables import add_options, find_tables, rerun_words
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, target_options
@@ -138,7 +138,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument("--quick", action="store_true", help="a shorter run, see below")
     parser.add_argument("--json", action="store_true", help="print metrics.json, not the table")
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder of the report (build/report/hil)"
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help=f"folder of the report ({results_text('report/hil')})",
     )
     parser.set_defaults(run=run)
 
@@ -267,7 +270,7 @@ def write_json(file: Path, content: dict[str, Any]) -> None:
 
 
 def rerun_command(args: argparse.Namespace) -> str:
-    words = ["./tools/hil"]
+    words = typed("quiesce hil").split()
     for option in ("scenario", "law", "set"):
         words += [word for value in getattr(args, option) for word in (f"--{option}", value)]
     words += rerun_words(args)
@@ -316,7 +319,7 @@ def tables(result: Result) -> list[str]:
 
 def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan, rules: Path | None) -> int:
     runner = Runner(bench, plan)
-    out = args.out or build_folder() / "report/hil"
+    out = args.out or results_folder() / "report/hil"
     # Opened before the work, so that a folder that cannot be written is known at once.
     with output_files(out) as staging:
         runs, searches = runner.run_all()

@@ -3,11 +3,13 @@
 import argparse
 import sys
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
 
 from quiesce import __version__
 from quiesce.base.command import Parser, exit_code_of
 from quiesce.base.errors import UsageError
+from quiesce.base.paths import root
 
 # Name, module, what the list says. A module has add_parser(subparsers), which sets `run`, and may
 # have words_of(arguments): what the parser gets in their place.
@@ -58,6 +60,9 @@ Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check
 """
 
 
+SHIPPED = ("sim_hil/data/", "firmware/plants/")
+
+
 def module_of(name: str) -> ModuleType | None:
     return next((import_module(f"quiesce.cli.{m}") for one, m, _ in COMMANDS if one == name), None)
 
@@ -83,7 +88,16 @@ def make_parser(wanted: str, module: ModuleType | None) -> argparse.ArgumentPars
     return parser
 
 
+def with_shipped(word: str) -> str:
+    """A file that ships, by the name that help and pages give it, from any folder."""
+    if not word.startswith(SHIPPED) or Path(word).exists():
+        return word
+    file = root() / word
+    return str(file) if file.exists() else word
+
+
 def run(arguments: list[str]) -> int:
+    arguments = [with_shipped(word) for word in arguments]
     wanted = arguments[0] if arguments else ""
     if wanted.startswith("-") and wanted not in ("-h", "--help", "--version"):
         raise UsageError(f"unknown option '{wanted}'; see 'quiesce --help'")

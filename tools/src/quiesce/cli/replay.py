@@ -10,7 +10,7 @@ import numpy as np
 from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import load_board
 from quiesce.signal.recording import M_S2_PER_UNIT, Recording, read_recording
@@ -73,7 +73,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="ticks from one row of replay.csv to the next (%(default)s)",
     )
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder to write to (build/replay/FILE)"
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help=f"folder to write to ({results_text('replay/FILE')})",
     )
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     add_board_options(parser.add_argument_group("columns for the sensors of a board"))
@@ -266,7 +269,7 @@ def run(args: argparse.Namespace) -> int:
     replayed = replay(bench, recording, source, args.set, args.target)
     agreement = judge(args, replayed, reference) if reference else None
 
-    out = args.out or build_folder() / "replay" / args.file.stem
+    out = args.out or results_folder() / "replay" / args.file.stem
     with output_files(out) as staging:
         write_csv(staging / "replay.csv", replayed, args.every)
         plot_replay(staging / "replay.png", replayed, title_of(args), reference)

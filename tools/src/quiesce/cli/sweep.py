@@ -9,7 +9,7 @@ import numpy as np
 from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.plant_id.sweep import SweepPlan, Timeline, dwell_s, timeline, write_csv
 
 EPILOG = """examples:
@@ -53,7 +53,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--out",
         type=Path,
         metavar="PATH",
-        help="CSV file to write; with --identify a folder (build/sweep/...)",
+        help=f"CSV file to write; with --identify a folder ({results_text('sweep/...')})",
     )
     add_plan_options(parser.add_argument_group("what to record"))
     add_find_options(parser.add_argument_group("with --identify"))
@@ -179,7 +179,7 @@ def write_plan(args: argparse.Namespace) -> int:
     line = timeline(plan)
     accel_m_s2 = recorded(args, line) if args.simulate else None
     name = "recording.csv" if args.simulate else "excitation.csv"
-    out = args.out or build_folder() / "sweep" / name
+    out = args.out or results_folder() / "sweep" / name
     if out.is_dir():
         raise UsageError(f"{shown(out)} is a folder; name a CSV file for --out")
     with output_files(out.parent) as staging:
@@ -206,7 +206,7 @@ def run_find(args: argparse.Namespace) -> int:
 
     if args.modal_mass <= 0.0:
         raise UsageError("--modal-mass: expected more than 0 kg")
-    out = args.out or build_folder() / "sweep" / args.identify.stem
+    out = args.out or results_folder() / "sweep" / args.identify.stem
     found = find_plant(
         args.identify,
         out,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import build_folder
+from quiesce.base.paths import cache_folder
 from quiesce.base.progress import say
 from quiesce.compare.figures import Contact, Figures, figures_of
 from quiesce.compare.goal import Goal
@@ -139,7 +139,7 @@ def clairvoyant(
 ) -> Found:
     """From a store on disk where the same was searched for before. starts: commands to descend
     from, beside constant ones."""
-    file = build_folder() / "clairvoyant" / f"{_key(stage, goal, starts, effort)}.npy"
+    file = cache_folder() / "clairvoyant" / f"{_key(stage, goal, starts, effort)}.npy"
     if file.is_file():
         command_A = np.load(file)
     else:

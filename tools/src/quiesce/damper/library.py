@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.errors import UsageError, one_line
-from quiesce.base.paths import build_folder
+from quiesce.base.paths import build_folder, how_to_build
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment
 
@@ -112,10 +112,7 @@ def module() -> ModuleType:
     """The compiled module; UsageError where it has not been built."""
     files = sorted((build_folder() / "host/sim_hil/python").glob("quiesce_dampers*.so"))
     if not files:
-        raise UsageError(
-            "the damper library is not built; run ./tools/quiesce once, or "
-            "'cmake --build --preset host'"
-        )
+        raise UsageError(f"the damper library is not built; {how_to_build()}")
     spec = importlib.util.spec_from_file_location("quiesce_dampers", files[0])
     if spec is None or spec.loader is None:
         raise UsageError(f"{files[0]} is not a Python module; delete it and build again")

@@ -1,16 +1,18 @@
 """Finds and calls the compiled bench, `quiesce_bench`, and the images that it drives in QEMU."""
 
 import json
+import os
 import shutil
 import signal
 import subprocess
+import sys
 import threading
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from quiesce.base.errors import EXIT_BAD_INPUT, BenchFailure, UsageError, one_line
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import build_folder, how_to_build, shown
 
 QEMU = "qemu-system-arm"
 IMAGES = {"mps2": "quiesce_mps2_shm.elf", "mps2-uart": "quiesce_mps2_uart.elf"}
@@ -21,7 +23,7 @@ ECHO_IMAGE = "uart_echo.elf"
 
 def require_file(path: Path, what: str) -> Path:
     if not path.is_file():
-        raise UsageError(f"{what} {shown(path)} is not built; run ./tools/hil first")
+        raise UsageError(f"{what} {shown(path)} is not built; {how_to_build()}")
     return path
 
 
@@ -55,11 +57,24 @@ def target_options(target: str, more: Sequence[str] = (), has_board: bool = Fals
     return [*own, "--image", str(image(target, has_board))]
 
 
+def bench_file() -> Path:
+    return require_file(build_folder() / "host/sim_hil/quiesce_bench", "the bench")
+
+
+def become_bench() -> NoReturn:
+    """`quiesce_bench` of an installed package: the executable with the same arguments."""
+    try:
+        program = str(bench_file())
+    except UsageError as error:
+        sys.exit(f"quiesce_bench: {error}")
+    os.execv(program, [program, *sys.argv[1:]])
+
+
 class Bench:
     """The executable. Calls may come from several threads; stop() ends those under way."""
 
     def __init__(self) -> None:
-        self.executable = require_file(build_folder() / "host/sim_hil/quiesce_bench", "the bench")
+        self.executable = bench_file()
         self._lock = threading.Lock()
         self._running: set[subprocess.Popen[str]] = set()
 

@@ -3,7 +3,7 @@
 import html
 from collections.abc import Sequence
 
-from quiesce.base.paths import default_plant, root
+from quiesce.base.paths import default_plant, root, typed
 from quiesce.engine import laws
 from quiesce.hil.metrics import Beside, Result, Row
 from quiesce.hil.plots import (
@@ -241,9 +241,9 @@ same excitation; negative is worse than doing nothing. {drive}</p>
 {f"<h2>Instructions of the image</h2><pre>{html.escape(counts)}</pre>" if counts else ""}
 <h2>Run it again</h2>
 <pre>{html.escape(command)}
-./tools/hil --quick                                        # a shorter run
-./tools/hil --scenario step_10_20Hz --law fuzzy --target host
-./tools/hil --help</pre>
+{typed("quiesce hil")} --quick                                        # a shorter run
+{typed("quiesce hil")} --scenario step_10_20Hz --law fuzzy --target host
+{typed("quiesce hil")} --help</pre>
 <p>The same figures for a script: <code>metrics.json</code> beside this page;
 <code>details.json</code> has the search over constant currents and the UART rate. Scenarios:
 <code>sim_hil/data/scenarios/</code>, the plant:

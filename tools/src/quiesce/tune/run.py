@@ -11,7 +11,7 @@ from typing import Any
 
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, shown, typed
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
 from quiesce.optimum.store import plant_hash
@@ -111,7 +111,7 @@ def tune(order: Order) -> Result:
 
 def default_folder(source: Source, name: str) -> Path:
     stem = source.recording.stem if source.recording else name
-    return build_folder() / "tune" / file_stem(stem)
+    return results_folder() / "tune" / file_stem(stem)
 
 
 def found_plant(order: Order) -> tuple[Path, str | None]:
@@ -162,7 +162,7 @@ def finished(
 
 def command(order: Order) -> str:
     out = shlex.join(["--out", shown(order.out)]) if order.out else ""
-    return f"./tools/{order.asked} {out}".rstrip()
+    return typed(f"{order.asked} {out}".rstrip())
 
 
 def closed_loop(

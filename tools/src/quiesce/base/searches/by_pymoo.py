@@ -1,20 +1,20 @@
 """Searches of pymoo, which is an extra: particle swarm (adaptive inertia and attractions),
 covariance matrix adaptation, evolution strategy. One that ends begins anew from random points."""
 
-from collections.abc import Callable, Generator, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Generator
 from typing import Any
 
 import numpy as np
 
-from quiesce.base.errors import UsageError
+from quiesce.base.extras import extra
 
+SEARCH = ("search", "--method pso, cmaes or es")
 Points = Generator[np.ndarray, np.ndarray, None]
 
 
 def pso(first: np.ndarray, rng: np.random.Generator) -> Points:
     """Particle swarm."""
-    with extra():
+    with extra(*SEARCH):
         from pymoo.algorithms.soo.nonconvex.pso import PSO
 
     return again(lambda points: PSO(pop_size=len(points), sampling=points), first, rng)
@@ -22,7 +22,7 @@ def pso(first: np.ndarray, rng: np.random.Generator) -> Points:
 
 def cmaes(first: np.ndarray, rng: np.random.Generator) -> Points:
     """Covariance matrix adaptation, from the first point."""
-    with extra():
+    with extra(*SEARCH):
         from pymoo.algorithms.soo.nonconvex.cmaes import CMAES
 
     return again(
@@ -34,7 +34,7 @@ def cmaes(first: np.ndarray, rng: np.random.Generator) -> Points:
 
 def es(first: np.ndarray, rng: np.random.Generator) -> Points:
     """Evolution strategy with self-adapted steps."""
-    with extra():
+    with extra(*SEARCH):
         from pymoo.algorithms.soo.nonconvex.es import ES
 
     parents = max(2, len(first) // 7)
@@ -43,18 +43,6 @@ def es(first: np.ndarray, rng: np.random.Generator) -> Points:
         first,
         rng,
     )
-
-
-@contextmanager
-def extra() -> Iterator[None]:
-    """Around what imports the extra."""
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        raise UsageError(
-            f"--method needs pymoo for pso, cmaes and es ({error.name} is missing); install it: "
-            ".venv/bin/python -m pip install --require-hashes -r tools/requirements-search.txt"
-        ) from None
 
 
 def again(make: Callable[[np.ndarray], Any], first: np.ndarray, rng: np.random.Generator) -> Points:
@@ -66,7 +54,7 @@ def again(make: Callable[[np.ndarray], Any], first: np.ndarray, rng: np.random.G
 
 def asked(algorithm: Any, dimensions: int, rng: np.random.Generator) -> Points:
     """What the algorithm asks for and is told, until it ends."""
-    with extra():
+    with extra(*SEARCH):
         from pymoo.core.problem import Problem
         from pymoo.core.termination import NoTermination
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.atomic import output_files
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.cli.can.bus_options import add_bus_options, bus_of
 
 EPILOG = """examples:
@@ -31,7 +31,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="(build/report/freeze)")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help=f"({results_text('report/freeze')})"
+    )
     parser.add_argument("--clear", action="store_true", help="then the controller forgets it")
     parser.add_argument("--json", action="store_true", help="print JSON")
     add_bus_options(parser)
@@ -44,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     from quiesce.can.link import Link
 
     database = load()
-    out = args.out or build_folder() / "report" / "freeze"
+    out = args.out or results_folder() / "report" / "freeze"
     with Link(bus_of(args)) as link:
         fetch = Fetch(link, database, None if args.json else tell)
         record, fetched = fetch.record()

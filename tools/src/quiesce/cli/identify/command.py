@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.base.searches.names import NAMES as SEARCHES
 from quiesce.cli.identify import compare, example, export, inverse, online
 from quiesce.cli.identify import plan as cli_plan
@@ -74,7 +74,7 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         "--model", default="quick", metavar="NAMES",
         help="model names with commas, or quick, parametric, all (quick); 'list' prints them",
     )  # fmt: skip
-    group.add_argument("--out", type=Path, metavar="DIR", help="(build/identify/NAME)")
+    group.add_argument("--out", type=Path, metavar="DIR", help=f"({results_text('identify/NAME')})")
     group.add_argument(
         "--fix", action="append", default=[], metavar="NAME=VALUE",
         help="hold a parameter (SI), e.g. n=2 or skew_s=0; repeatable",
@@ -186,7 +186,7 @@ def run(args: argparse.Namespace) -> int:
     names, choice = names_of(args.model), choice_of(args)
     data = records_of(args)
     train, test = split_records(data.records, data.split)
-    out = args.out or build_folder() / NAME / args.files[0].stem
+    out = args.out or results_folder() / NAME / args.files[0].stem
     stamp = stamp_of(train, test, (choice, args.seed, args.effort, args.time_limit))
     store = Store(out, stamp, names)
     done = store.finished(names, train, test) if args.resume else []

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quiesce.base.command import real_number, whole_number
-from quiesce.base.paths import shown
+from quiesce.base.paths import shown, typed
 from quiesce.base.table import format_table
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def make_order(args: argparse.Namespace) -> "Order":
 
     return Order(
         name=args.name,
-        command=shlex.join(["quiesce", "new", "plant", *typed(args)]),
+        command=shlex.join(["quiesce", "new", "plant", *asked_words(args)]),
         masses_kg=args.mass,
         stiffness_N_m=args.stiffness,
         freq_Hz=args.freq,
@@ -172,7 +172,7 @@ def make_order(args: argparse.Namespace) -> "Order":
     )
 
 
-def typed(args: argparse.Namespace) -> list[str]:
+def asked_words(args: argparse.Namespace) -> list[str]:
     """What decides the files, as it can be typed again."""
     words = [args.name] + (["--cantilever"] if args.cantilever else [])
     for name in ("mass", "stiffness", "freq", "damping_ratio", "bodies", "end_mass", "damper",
@@ -261,7 +261,7 @@ def next_lines(made: "Made", folder: Path) -> list[str]:
     )
     band = "" if drive.is_single else f" --from-Hz {drive.low_Hz:g} --to-Hz {drive.high_Hz:g}"
     return [
-        f"run it     ./tools/hil --scenario {steps} --target host",
-        f"rules      ./tools/quiesce rules optimize --scenario {steps} --out {rules}",
-        f"pulses     ./tools/quiesce tune {plant}{band} --out {pulses}",
+        f"run it     {typed('quiesce hil')} --scenario {steps} --target host",
+        f"rules      {typed('quiesce rules optimize')} --scenario {steps} --out {rules}",
+        f"pulses     {typed('quiesce tune')} {plant}{band} --out {pulses}",
     ]

@@ -8,7 +8,7 @@ from pathlib import Path
 from quiesce.base.atomic import output_files
 from quiesce.base.c_names import is_c_name
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import root, shown
+from quiesce.base.paths import results_folder, results_text, root, shown
 from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, compiled_from
 from quiesce.rules.engine.native_build import FIRMWARE_SOURCES
 from quiesce.rules.integers.c_files import header_c, source_c, units_text
@@ -54,7 +54,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     add_file_options(parser)
     parser.add_argument("--name", help="of the C function and files (the file's)")
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder to write to (build/rules/NAME)"
+        "--out", type=Path, metavar="DIR", help=f"folder to write to ({results_text('rules/NAME')})"
     )
     parser.set_defaults(run=run)
 
@@ -66,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
     if not is_c_name(name) or name.startswith("fuzzy_"):
         raise UsageError(f"--name {name}: a name that C and C++ leave free, please")
     compiled = compiled_from(args)
-    out = args.out or root() / "build/rules" / name
+    out = args.out or results_folder() / "rules" / name
     files = made_files(compiled, name)
     with output_files(out) as staging:
         for file, data in files.items():

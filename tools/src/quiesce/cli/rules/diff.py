@@ -11,7 +11,7 @@ from typing import Any
 from quiesce.base.atomic import output_files
 from quiesce.base.command import real_number
 from quiesce.base.errors import EXIT_FAILED
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.cli.rules.show import add_reading_options, read_with_notes, slice_of
 from quiesce.report.html import preformatted
 from quiesce.rules.analysis.findings import number
@@ -73,7 +73,10 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
     )  # fmt: skip
     add_reading_options(parser)
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder to write to (build/rules/diff/A_B)"
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help=f"folder to write to ({results_text('rules/diff/A_B')})",
     )
     parser.add_argument("--json", action="store_true", help="print the differences as JSON")
     parser.set_defaults(run=run)
@@ -195,7 +198,7 @@ def run(args: argparse.Namespace) -> int:
         compare_outputs(one, other, grid, args.threshold),
         grid.points,
     )
-    out = args.out or build_folder() / "rules/diff" / f"{args.a.stem}_{args.b.stem}"
+    out = args.out or results_folder() / "rules/diff" / f"{args.a.stem}_{args.b.stem}"
     with output_files(out) as staging:
         write_files(staging, args, found)
         written = sorted(file.name for file in staging.iterdir())

@@ -12,7 +12,7 @@ from pathlib import Path
 from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
-from quiesce.base.paths import build_folder, default_plant, shown
+from quiesce.base.paths import default_plant, results_folder, results_text, shown, typed
 from quiesce.base.progress import say
 from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
 from quiesce.engine import scenarios
@@ -132,7 +132,7 @@ def add_how(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--anew", action="store_true", help="drop an unfinished search in --out")
     parser.add_argument("--json", action="store_true", help="print result.json, not the tables")
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder (build/report/rules_optimize)"
+        "--out", type=Path, metavar="DIR", help=f"folder ({results_text('report/rules_optimize')})"
     )
 
 
@@ -189,7 +189,7 @@ def make_task(args: argparse.Namespace, bench: Bench, folder: Path, pool: Execut
 
 
 def rerun_command(args: argparse.Namespace) -> str:
-    words = ["./tools/quiesce", "rules", "optimize"]
+    words = typed("quiesce rules optimize").split()
     for option in ("scenario", "weight", "set"):
         words += [word for value in getattr(args, option) for word in (f"--{option}", value)]
     for option in ("freq", "drive", "plant", "start", "population", "evaluations"):
@@ -256,7 +256,7 @@ def search(args: argparse.Namespace, bench: Bench, state_file: Path) -> Found:
 def run(args: argparse.Namespace) -> int:
     bench = Bench()
     require_bench_option(bench)
-    out = args.out or build_folder() / "report/rules_optimize"
+    out = args.out or results_folder() / "report/rules_optimize"
     state_file = out / FILE_NAME
     require_right_state(args, state_file)
     try:

@@ -9,7 +9,7 @@ from typing import Any
 
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import build_folder, shown
+from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.trace import read_trace
@@ -64,7 +64,10 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
     )  # fmt: skip
     add_reading_options(parser)
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder to write to (build/rules/show/FILE)"
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help=f"folder to write to ({results_text('rules/show/FILE')})",
     )
     parser.add_argument("--json", action="store_true", help="print the rules and figures as JSON")
     parser.set_defaults(run=run)
@@ -167,7 +170,7 @@ def run(args: argparse.Namespace) -> int:
     cut = slice_of(args, base)
     visits = visits_of(args, base)
     fired = fired_rules(base, visits) if visits is not None else []
-    out = args.out or build_folder() / "rules/show" / args.file.stem
+    out = args.out or results_folder() / "rules/show" / args.file.stem
     with output_files(out) as staging:
         write_files(staging, base, cut, visits, fired)
         written = sorted(file.name for file in staging.iterdir())

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
-from quiesce.base.paths import shown
+from quiesce.base.paths import results_text, shown
 from quiesce.cli.tune import law
 
 NAME = "tune"
@@ -54,7 +54,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("plant", type=Path, nargs="?", metavar="PLANT.toml")
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder to write to (build/tune/NAME)"
+        "--out", type=Path, metavar="DIR", help=f"folder to write to ({results_text('tune/NAME')})"
     )
     parser.add_argument("--quick", action="store_true", help="few frequencies, coarser bounds")
     parser.add_argument("--json", action="store_true", help="print the figures as one JSON object")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from quiesce.base.command import real_number, whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
-from quiesce.base.paths import shown
+from quiesce.base.paths import results_text, shown
 from quiesce.cli.rig_options import (
     add_motions,
     add_rig,
@@ -84,7 +84,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--jobs", type=whole_number(1, 1024), default=os.cpu_count() or 1, metavar="N",
         help="runs at a time; they change no result (%(default)s)",
     )  # fmt: skip
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="(build/tune/RECIPE_BOARD)")
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", help=f"({results_text('tune/RECIPE_BOARD')})"
+    )
     parser.add_argument("--fresh", action="store_true", help="give up trials that FOLDER holds")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 

@@ -3,10 +3,11 @@ measured. Training by scikit-learn; the kernel's width and the penalty by valida
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from sklearn.svm import SVR
 
+from quiesce.base.extras import extra
 from quiesce.damper.data.split import Segment, inner_split
 from quiesce.damper.learned.inputs import Box, input_keys, stacked
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
@@ -22,8 +23,10 @@ class Settings:
     search_rows: int = 1200
 
 
-def fitted(u: np.ndarray, force: np.ndarray, penalty: float, gamma: float, epsilon: float) -> SVR:
-    """`force` of about unit size."""
+def fitted(u: np.ndarray, force: np.ndarray, penalty: float, gamma: float, epsilon: float) -> Any:
+    """scikit-learn's SVR. `force` of about unit size."""
+    with extra("learned", "support-vector regression"):
+        from sklearn.svm import SVR
     return SVR(kernel="rbf", C=penalty, gamma=gamma, epsilon=epsilon, cache_size=100).fit(u, force)
 
 

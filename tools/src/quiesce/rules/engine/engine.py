@@ -2,15 +2,17 @@
 
 import ctypes
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.rules.engine.native_build import NATIVE, build, firmware_sources
+from quiesce.rules.engine.native_build import build, firmware_sources
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import straight_line_c
 from quiesce.rules.integers.table import table_words
 
+SOURCE = Path(__file__).parent / "native/many.c"
 TABLE = "table"
 STRAIGHT = "straight"
 FUNCTION = "quiesce_rules_straight"
@@ -22,7 +24,7 @@ class Engine:
     def __init__(self, compiled: CompiledBase, kind: str = TABLE) -> None:
         self._compiled = compiled
         texts = {"straight.c": straight_source(compiled)} if kind == STRAIGHT else {}
-        library = build([*firmware_sources(), NATIVE / "many.c"], texts, ())
+        library = build([*firmware_sources(), SOURCE], texts, ())
         self._library = ctypes.CDLL(str(library))
         self._function = getattr(self._library, FUNCTION) if kind == STRAIGHT else None
         self._table = np.array(table_words(compiled), dtype=np.uint32)

@@ -9,9 +9,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from quiesce.base.errors import BenchFailure, UsageError, one_line
-from quiesce.base.paths import build_folder, root
+from quiesce.base.paths import cache_folder, root
 
-NATIVE = Path(__file__).parent / "native"
 FIRMWARE_SOURCES = (
     "fuzzy/fuzzy.c",
     "fuzzy/fuzzy_centroid.c",
@@ -30,7 +29,9 @@ def compiler() -> str:
     """$CC or cc. UsageError where there is none."""
     name = os.environ.get("CC", "cc")
     if shutil.which(name) is None:
-        raise UsageError(f"no C compiler '{name}': run ./tools/setup, or set CC")
+        raise UsageError(
+            f"no C compiler '{name}': install one (Debian: gcc, libc6-dev), or name it in CC"
+        )
     return name
 
 
@@ -40,24 +41,23 @@ def build(
     """A program (suffix "") or shared library of these files and of the C texts, built once.
 
     texts: file name and contents; what ends in .c is compiled, the rest may be included. The result
-    lies in build/rules, named by the hash of all that it is made of.
+    lies in rules/ of the cache (build/ in a checkout), named by the hash of all that it is made of.
     """
-    headers = [
-        *sorted((root() / "firmware/fuzzy").glob("*.h")),
-        *sorted((root() / "firmware/base").glob("*.h")),
-        *sorted(NATIVE.glob("*.h")),
-    ]
+    folders = [*(root() / "firmware" / name for name in ("base", "fuzzy"))]
+    folders += sorted({file.parent for file in sources} - set(folders))
+    headers = [file for folder in folders for file in sorted(folder.glob("*.h"))]
     command = [compiler(), *FLAGS, *flags]
     parts = [*command, suffix, *(text for item in sorted(texts.items()) for text in item)]
     digest = hashlib.sha256("\0".join(parts).encode())
     for file in [*sources, *headers]:
         digest.update(file.read_bytes())
-    folder = build_folder() / "rules"
+    folder = cache_folder() / "rules"
     result = folder / f"{digest.hexdigest()[:24]}{suffix}"
     if not result.is_file():
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            compile_into(Path(scratch), command, sources, texts, result)
+            included = [f"-I{folder}" for folder in [*folders, scratch]]
+            compile_into(Path(scratch), [*command, *included], sources, texts, result)
     return result
 
 
@@ -72,11 +72,9 @@ def compile_into(
         (scratch / name).write_text(text, encoding="utf-8")
     made = scratch / "made"
     shared = ("-shared", "-fPIC") if result.suffix == ".so" else ()
-    folders = [*(root() / "firmware" / name for name in ("base", "fuzzy")), NATIVE, scratch]
     own = [scratch / name for name in texts if name.endswith(".c")]
     process = subprocess.run(
-        [*command, *shared, *(f"-I{folder}" for folder in folders)]
-        + [*map(str, [*sources, *own]), "-lm", "-o", str(made)],
+        [*command, *shared, *map(str, [*sources, *own]), "-lm", "-o", str(made)],
         capture_output=True,
         text=True,
     )

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import build_folder
-from quiesce.engine.bench import Bench, setting_options
+from quiesce.base.paths import how_to_build
+from quiesce.engine.bench import Bench, bench_file, setting_options
 from quiesce.engine.laws import CONSTANT_BEST, OPEN_LOOP, find
 from quiesce.engine.scenarios import Scenario, read_toml
 from quiesce.hil.metrics import excitation_text
@@ -41,13 +41,12 @@ class Place:
 
 def require_bench_option(bench: Bench) -> None:
     if "--rules" not in bench.call("--help"):
-        raise UsageError("the bench that is built takes no rules; run ./tools/hil, which builds it")
+        raise UsageError(f"the bench that is built takes no rules; {how_to_build()}")
 
 
 def bench_digest() -> str:
     """Of the executable, so that results of another build are not taken for those of this one."""
-    exe = build_folder() / "host/sim_hil/quiesce_bench"
-    return hashlib.sha256(exe.read_bytes()).hexdigest()[:16]
+    return hashlib.sha256(bench_file().read_bytes()).hexdigest()[:16]
 
 
 def driver_max_A(scenarios: Sequence[Scenario]) -> float:

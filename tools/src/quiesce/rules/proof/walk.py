@@ -15,10 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import BenchFailure, one_line
-from quiesce.rules.engine.native_build import NATIVE, build, firmware_sources
+from quiesce.rules.engine.native_build import build, firmware_sources
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.proof.walk_model import grid_points, integer_range, model_text
 
+SOURCE = Path(__file__).parent / "native/walk.c"
 MAX_WALKED_POINTS = 1 << 32
 SANITIZE = ("-fsanitize=undefined", "-fno-sanitize-recover=undefined", "-Wno-unused-function")
 CHUNKS_A_JOB = 16
@@ -48,7 +49,7 @@ class Walk:
 
 def build_walk(compiled: CompiledBase) -> Path:
     texts = {"model_values.h": model_text(compiled)}
-    return build([*firmware_sources(), NATIVE / "walk.c"], texts, SANITIZE, "")
+    return build([*firmware_sources(), SOURCE], texts, SANITIZE, "")
 
 
 def walk(

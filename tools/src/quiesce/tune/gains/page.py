@@ -5,6 +5,7 @@ from math import ceil
 
 import numpy as np
 
+from quiesce.base.paths import typed
 from quiesce.report.html import document, html_table, image, preformatted, section
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
 from quiesce.tune.gains.run import Tuned
@@ -29,7 +30,7 @@ def page(tuned: Tuned, values: Rows, records: Rows, compare: str) -> str:
         "the law was tuned on them, too. Judge it on others.</p>" + html_table(records),
         section("Trials over settings", _note(tuned), image(_over_settings(tuned), "trials")),
         section("Trials one after the other", "", image(_over_time(tuned), "best so far")),
-        preformatted("Again", f"./tools/{order.command}"),
+        preformatted("Again", typed(order.command)),
         preformatted("Beside constants", compare),
     ]
     return document(title, "\n".join(parts))

@@ -7,7 +7,7 @@ from typing import Any
 import tomli_w
 
 from quiesce.base.atomic import output_files
-from quiesce.base.paths import shown
+from quiesce.base.paths import shown, typed
 from quiesce.base.table import format_table
 from quiesce.table.file import SUFFIX
 from quiesce.tune.gains.aim import Runs
@@ -87,7 +87,7 @@ def compare_command(tuned: Tuned) -> str:
     words |= {name: str(value) for name, value in tuned.tunable.parameters(best).items()}
     law = tuned.tunable.made(best).table.law
     told = ",".join(f"{key}={value}" for key, value in {**words, "as": "tuned"}.items())
-    return "./tools/" + shlex.join(["quiesce", "compare", *order.shared, "--law", f"{law}:{told}"])
+    return typed(shlex.join(["quiesce", "compare", *order.shared, "--law", f"{law}:{told}"]))
 
 
 def data_of(tuned: Tuned) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import build_folder
+from quiesce.base.paths import results_folder
 from quiesce.base.progress import Progress
 from quiesce.compare.records import Record
 from quiesce.compare.run import Comparison, Shaking
@@ -55,7 +55,7 @@ class Order:
 
     @property
     def folder(self) -> Path:
-        return self.out or build_folder() / "tune" / f"{self.recipe.name}_{self.board.stem}"
+        return self.out or results_folder() / "tune" / f"{self.recipe.name}_{self.board.stem}"
 
 
 @dataclass(frozen=True)
