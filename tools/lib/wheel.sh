@@ -5,16 +5,17 @@ source "$ROOT/tools/lib/python.sh"
 # shellcheck source=tools/lib/build.sh
 source "$ROOT/tools/lib/build.sh"
 
-PACKAGE_PYTHON="$ROOT/build/package/python"
+PACKAGE_PYTHONS="$ROOT/build/package/python" # an environment for each version
 PACKAGE_REQUIREMENTS="$ROOT/tools/requirements-package.txt"
 
-# wheel_python: the environment that makes packages, of pinned tools.
+# wheel_python: PACKAGE_PYTHON, the environment that makes packages for $PYTHON, of pinned tools.
 wheel_python() {
     local stamp
     python_require
+    PACKAGE_PYTHON="$PACKAGE_PYTHONS-$("$PYTHON" -c 'import sys; print("%d.%d" % sys.version_info[:2])')"
     stamp="$(sha256sum <"$PACKAGE_REQUIREMENTS") $("$PYTHON" -V) $ROOT"
     [ "$(cat "$PACKAGE_PYTHON/.complete" 2>/dev/null)" = "$stamp" ] && return 0
-    say "package: environment build/package/python with the packages of tools/requirements-package.txt"
+    say "package: environment ${PACKAGE_PYTHON#"$ROOT/"} with the packages of tools/requirements-package.txt"
     rm -rf "$PACKAGE_PYTHON"
     run_logged package-venv "$PYTHON" -m venv "$PACKAGE_PYTHON" ||
         fail "'$PYTHON -m venv' failed (log: build/logs/package-venv.log). Is the disk full?"
@@ -56,7 +57,7 @@ wheel_build() {
     work_folder
     mkdir -p "$out/packages" "$WORK_FOLDER/plain" "$WORK_FOLDER/wheel"
     say "package: wheel: compiling bench, plant and damper models (minutes the first time)"
-    plain="$(made_package package-wheel "$WORK_FOLDER/plain" --wheel -Cbuild-dir=build/wheel \
+    plain="$(made_package package-wheel "$WORK_FOLDER/plain" --wheel -Cbuild-dir=build/wheel-{wheel_tag} \
         -Ccmake.define.QUIESCE_IMAGES="$ROOT/build/mps2/targets/mps2" "$@")"
     libc="$(getconf GNU_LIBC_VERSION)"
     libc="${libc##* }"

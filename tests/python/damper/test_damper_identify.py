@@ -75,6 +75,16 @@ def test_finds_the_truth_and_writes_a_model(
 
 
 @pytest.mark.slow
+def test_a_moment_of_another_current_is_no_level(example: Path, tmp_path: Path) -> None:
+    """A glitch of the current's sensor: one level still, and no law against the current."""
+    head, *rows = example.read_text().splitlines()[:401]
+    rows = [f"{row},{-0.3 if i == 200 else 0.5}" for i, row in enumerate(rows)]
+    glitch = tmp_path / "glitch.csv"
+    glitch.write_text("\n".join([f"{head},current_A", *rows]) + "\n")
+    command = ["identify", str(glitch), "--model", "bingham", "--effort", "quick"]
+    assert main([*command, "--out", str(tmp_path / "out")]) == 0
+
+
 def test_same_seed_same_model(example: Path, tmp_path: Path) -> None:
     texts = []
     for folder in ("a", "b"):

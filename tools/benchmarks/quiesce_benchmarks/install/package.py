@@ -17,9 +17,17 @@ TIMEOUT_s = 600
 NAMES = {name for name, _ in (*EXAMPLES, *NEED_A_BUS)} | {f"extra {one}" for one, _ in EXTRAS}
 
 
-def made_wheel(folder: Path) -> Path:
-    """Made by the project's own script, for processors like this one."""
-    run(root() / "tools/package", "--native", "--out", folder, "wheel")
+def made_wheel(folder: Path, python: str = sys.executable) -> Path:
+    """Made for that Python by the project's own script, for processors like this one."""
+    run(
+        "env",
+        f"QUIESCE_PYTHON={python}",
+        root() / "tools/package",
+        "--native",
+        "--out",
+        folder,
+        "wheel",
+    )
     return next((folder / "packages").glob("*.whl"))
 
 

@@ -121,7 +121,7 @@ def setting_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice
             fixed.setdefault("field_exponent", FIELD_EXPONENT)
     elif "field_exponent" in rig or "field_exponent" in fixed:
         fixed.setdefault("field_ref_A", max(abs(nodes[-1]), 1e-6))
-    elif is_switched(segments) and most == 3:
+    elif is_switched(segments) and most == 3 and len(nodes) > 1:
         # While the coil's current moves it passes every level in between.
         nodes = (nodes[0], 0.5 * (nodes[0] + nodes[-1]), nodes[-1])
     if candidate.is_passive:

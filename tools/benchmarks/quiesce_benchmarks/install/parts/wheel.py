@@ -1,12 +1,12 @@
 """The Python package in empty environments: an example of every command, outside of the tree."""
 
-import shutil
-import sys
 import tempfile
 from pathlib import Path
 
+from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.base.table import format_table
 
+from quiesce_benchmarks.install.outside import run
 from quiesce_benchmarks.install.package import NAMES, environment, made_wheel, verdicts
 from quiesce_benchmarks.part import Effort, Measured
 
@@ -19,18 +19,26 @@ FIGURES = (
 
 
 def pythons() -> dict[str, str]:
-    """Those of VERSIONS that are here, by version. A wheel is for the one that made it."""
-    found = {version: shutil.which(f"python{version}") for version in VERSIONS}
-    own = f"{sys.version_info[0]}.{sys.version_info[1]}"
-    return {version: name for version, name in found.items() if name and version == own}
+    """Those of VERSIONS that are here and make environments, by version."""
+    found = {}
+    for version in VERSIONS:
+        kept = sorted(Path.home().glob(f".pyenv/versions/{version}.*/bin/python{version}"))
+        for name in (f"python{version}", *map(str, kept)):
+            try:
+                run(name, "-I", "-c", "import ensurepip, venv")
+            except (BenchFailure, UsageError):
+                continue
+            found[version] = name
+            break
+    return found
 
 
 def measure(effort: Effort) -> Measured:
     wrong: dict[str, str] = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        wheel = made_wheel(folder)
         for version, python in pythons().items():
+            wheel = made_wheel(folder / f"made{version}", python)
             command = environment(folder / f"env{version}", wheel, python)
             work = folder / f"work{version}"
             work.mkdir()

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.damper.data.split import Segment, levels_of
+from quiesce.damper.data.split import Segment, levels_of, same_within
 from quiesce.damper.library import RIG, Model
 
 MAX_ORDER = 3
@@ -69,6 +69,8 @@ def nodes_of(segments: Sequence[Segment], most: int = MAX_ORDER) -> tuple[float,
     if any(segment.record.level is None for segment in segments):
         commands = np.concatenate([segment.record.command for segment in segments])
         low, high = np.quantile(commands, [0.02, 0.98])
+        if high - low <= same_within(high):  # but for moments: one level
+            return (float(low),)
         levels = [float(low), float(high)]
         middle = np.mean(
             (commands > low + 0.2 * (high - low)) & (commands < high - 0.2 * (high - low))
