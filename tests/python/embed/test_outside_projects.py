@@ -1,5 +1,6 @@
 """Projects that are not ours with the library in them, and what they are refused."""
 
+import json
 import subprocess
 from pathlib import Path
 
@@ -85,3 +86,31 @@ def test_cpp_links_every_public_function(tmp_path: Path) -> None:
         text = header.read_text()
         if ");\n" in text:
             assert 'extern "C"' in text, header.name
+
+
+def test_platformio_is_told_the_sources_the_flags_and_the_version(tmp_path: Path) -> None:
+    """What library.json says makes the library, compiled here without PlatformIO."""
+    told = json.loads((ROOT / "library.json").read_text())
+    build = told["build"]
+    sources = {
+        file
+        for rule in build["srcFilter"]
+        if rule.startswith("+")
+        for file in ROOT.glob(f"{build['srcDir']}/{rule[2:-1]}")
+    }
+    sources -= set(ROOT.glob("firmware/comm/*"))
+    folders = {f"-I{file.parent.relative_to(ROOT)}" for file in sources}
+    assert folders <= {*build["flags"], "-Ifirmware/board"}
+    flags = [*build["flags"], f"-I{build['includeDir']}", "-std=c11", "-O0"]
+    app = ROOT / "examples/embed/app.c"
+    program = tmp_path / "app"
+    run("gcc", *flags, "-o", program, app, *sorted(sources), folder=ROOT)
+    run(program)
+    assert told["version"] == version()
+
+
+def version() -> str:
+    header = (ROOT / "firmware/include/quiesce_version.h").read_text()
+    parts = [line.split()[2] for line in header.splitlines() if "QUIESCE_VERSION_M" in line]
+    parts += [line.split()[2] for line in header.splitlines() if "QUIESCE_VERSION_P" in line]
+    return ".".join(parts)

@@ -18,6 +18,7 @@ from quiesce.base.errors import (
     UsageError,
     one_line,
 )
+from quiesce.base.nearest import meant
 
 
 class Parser(argparse.ArgumentParser):
@@ -37,8 +38,18 @@ class Parser(argparse.ArgumentParser):
                 self.error("an argument is empty: " + (word or f"{option} ''"))
         found, rest = super().parse_known_args(args, namespace)
         if rest:
-            self.error(f"unrecognized arguments: {' '.join(rest)}")
+            near = meant(rest[0].partition("=")[0], self._option_string_actions)
+            self.error(f"unrecognized arguments: {' '.join(rest)}{near}")
         return found, rest
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is not None and value not in action.choices and isinstance(value, str):
+            known = [str(one) for one in action.choices]
+            near = meant(value, known)
+            raise argparse.ArgumentError(
+                action, f"invalid choice: '{value}' (choose from {', '.join(known)}){near}"
+            )
+        super()._check_value(action, value)
 
 
 def whole_number(low: int, high: int) -> Callable[[str], int]:

@@ -11,34 +11,45 @@ from quiesce.base.command import Parser, exit_code_of
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import root
 
-# Name, module, what the list says. A module has add_parser(subparsers), which sets `run`, and may
-# have words_of(arguments): what the parser gets in their place.
-COMMANDS = (
-    ("hil", "hil", "the published scenarios in closed loop; table and report"),
-    ("replay", "replay", "recorded motion through the firmware"),
-    ("record", "record", "the simulated accelerometer's signal as a CSV file"),
-    ("new", "new.command", "plant, board and scenario files of your own structure"),
-    ("plant", "plant", "plant files"),
-    ("board", "board.command", "board files: sensors, dampers, their places and limits"),
-    ("params", "params", "parameters of the controller: unit, range, default"),
-    ("chain", "chain", "magnitude and phase of the conditioning"),
-    ("rules", "rules.command", "fuzzy rule files"),
-    ("compare", "compare", "control laws side by side on recorded ground motions"),
-    ("law", "law.command", "published control laws as tables: list, make"),
-    ("table", "table.command", "table files: show, check, diff, stamp"),
-    ("sweep", "sweep", "excitation and current steps to record, and the plant from a recording"),
-    (
-        "identify",
-        "identify.command",
-        "damper models from a test rig's recordings; plan, compare, inverse, export",
+# Name, module, what the list says, by what somebody is at. A module has add_parser(subparsers),
+# which sets `run`, and may have words_of(arguments): what the parser gets in their place.
+GROUPS = {
+    "try": (
+        ("hil", "hil", "the published scenarios in closed loop; table and report"),
+        ("replay", "replay", "recorded motion through the firmware"),
+        ("record", "record", "the simulated accelerometer's signal as a CSV file"),
+        ("compare", "compare", "control laws side by side on recorded ground motions"),
     ),
-    (
-        "tune",
-        "tune.command",
-        "the phase law's pulses for a plant, by optimal control; gains of laws",
+    "identify": (
+        (
+            "identify",
+            "identify.command",
+            "damper models from a test rig's recordings; plan, compare, inverse, export",
+        ),
+        ("sweep", "sweep", "excitation and current steps to record, and the plant from that"),
+        ("new", "new.command", "plant, board and scenario files of your own structure"),
     ),
-    ("can", "can.command", "CAN bus: monitor, record, decode, parameters, emergency stop"),
-)
+    "design": (
+        ("rules", "rules.command", "fuzzy rule files"),
+        ("law", "law.command", "published control laws as tables: list, make"),
+        (
+            "tune",
+            "tune.command",
+            "the phase law's pulses for a plant, by optimal control; gains of laws",
+        ),
+    ),
+    "deploy": (
+        ("board", "board.command", "board files: sensors, dampers, their places and limits"),
+        ("params", "params", "parameters of the controller: unit, range, default"),
+        ("table", "table.command", "table files: show, check, diff, stamp"),
+        ("can", "can.command", "CAN bus: monitor, record, decode, parameters, emergency stop"),
+    ),
+    "verify": (
+        ("plant", "plant", "is a plant file right?"),
+        ("chain", "chain", "magnitude and phase of the conditioning"),
+    ),
+}
+COMMANDS = tuple(command for group in GROUPS.values() for command in group)
 
 EPILOG = """examples:
   quiesce hil                                   the published scenarios, table and report
@@ -56,7 +67,7 @@ EPILOG = """examples:
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,
 2 bad input or a missing tool (one line says which and what to do), 130 interrupted.
-'quiesce COMMAND --help' has the options of one command. Benchmarks: ./tools/benchmark --help.
+'quiesce help COMMAND' has the options of one command. Benchmarks: ./tools/benchmark --help.
 """
 
 
@@ -67,19 +78,27 @@ def module_of(name: str) -> ModuleType | None:
     return next((import_module(f"quiesce.cli.{m}") for one, m, _ in COMMANDS if one == name), None)
 
 
+class Overview(Parser):
+    """The parser of all commands, whose help has them by group."""
+
+    def format_help(self) -> str:
+        listed = "\n\n".join(
+            f"{title}\n" + "\n".join(f"  {name:9s} {text}" for name, _, text in group)
+            for title, group in GROUPS.items()
+        )
+        return f"usage: quiesce COMMAND ...\n\n{self.description}\n\n{listed}\n\n{EPILOG}"
+
+
 def make_parser(wanted: str, module: ModuleType | None) -> argparse.ArgumentParser:
     """With all options of the wanted command, and the others' names."""
-    parser = Parser(
+    parser = Overview(
         prog="quiesce",
-        description="Vibration control with magnetorheological dampers: run the controller\n"
-        "against a simulated structure, on this machine and as a Cortex-M image, or over a\n"
-        "recording.",
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Vibration control with magnetorheological dampers: the controller against a\n"
+        "simulated structure, as a Cortex-M image, over a recording, and on a bus.",
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action="version", version=f"quiesce {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    parser.add_argument("-v", "--version", action="version", version=f"quiesce {__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
     for name, _, text in COMMANDS:
         if module is not None and name == wanted:
             module.add_parser(commands)
@@ -98,8 +117,10 @@ def with_shipped(word: str) -> str:
 
 def run(arguments: list[str]) -> int:
     arguments = [with_shipped(word) for word in arguments]
+    if arguments[:1] == ["help"]:
+        arguments = [*arguments[1:], "--help"]
     wanted = arguments[0] if arguments else ""
-    if wanted.startswith("-") and wanted not in ("-h", "--help", "--version"):
+    if wanted.startswith("-") and wanted not in ("-h", "--help", "-v", "--version"):
         raise UsageError(f"unknown option '{wanted}'; see 'quiesce --help'")
     module = module_of(wanted)
     words_of = getattr(module, "words_of", list)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from quiesce.base.command import real_number
 from quiesce.base.errors import UsageError
+from quiesce.base.nearest import listed
 from quiesce.base.paths import measurements, root, shown
 from quiesce.compare.names import ACCEL, TIME
 
@@ -82,7 +83,7 @@ def _shipped(name: str) -> tuple[Path, Path]:
         & {one.stem for one in (data / "boards").glob("*.toml")}
     )
     if name not in names:
-        raise UsageError(f"--rig {name}: there are: {', '.join(names)}")
+        raise UsageError(f"--rig {name}: {listed(name, names)}")
     return data / f"plants/{name}.toml", data / f"boards/{name}.toml"
 
 

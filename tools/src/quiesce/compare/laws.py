@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from quiesce.base.errors import UsageError
+from quiesce.base.nearest import listed
 from quiesce.engine.bench import setting_options
 from quiesce.engine.laws import labels
 from quiesce.engine.params import parameters
@@ -38,7 +39,7 @@ def read_law(text: str) -> ComparedLaw:
     """UsageError where the words do not name a law, or a file is not there."""
     name, _, rest = text.partition(":")
     if name not in labels():
-        raise UsageError(f"--law {text}: no law '{name}'; there are: {', '.join(labels())}")
+        raise UsageError(f"--law {text}: no law '{name}'; {listed(name, labels())}")
     found = ComparedLaw(text if rest else name, name)
     for word in filter(None, rest.split(",")):
         key, equals, value = word.partition("=")

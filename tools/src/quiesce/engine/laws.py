@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from quiesce.base.errors import UsageError
+from quiesce.base.nearest import listed
 from quiesce.engine.params import parameters
 
 OPEN_LOOP = "open_loop"
@@ -74,5 +75,5 @@ def find(name: str) -> Law:
             return law
     if name in labels():
         return Law(name, name, name)
-    known = ", ".join([*names(), *(label for label in labels() if label not in names())])
-    raise UsageError(f"no law '{name}'; there are: {known}")
+    known = [*names(), *(label for label in labels() if label not in names())]
+    raise UsageError(f"no law '{name}'; {listed(name, known)}")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError, one_line
+from quiesce.base.nearest import listed
 from quiesce.base.paths import scenario_folder, shown
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import Board, load_board
@@ -49,9 +50,7 @@ def find_file(name: str) -> Path:
         return Path(name)
     file = scenario_folder() / f"{name}.toml"
     if name not in names():
-        raise UsageError(
-            f"no scenario '{name}'; there are: {', '.join(names())}, or name a .toml file"
-        )
+        raise UsageError(f"no scenario '{name}', and no .toml file; {listed(name, names())}")
     return file
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.base.nearest import listed
 from quiesce.base.paths import shown
 
 M_S2_PER_UNIT = {"g": 9.80665, "m_s2": 1.0, "mm_s2": 1e-3}
@@ -89,7 +90,7 @@ def find_columns(file: Path, head: list[str], names: list[str]) -> list[int]:
     for name in names:
         if head.count(name) != 1:
             problem = "no column" if name not in head else "more than one column"
-            raise UsageError(f"{shown(file)}: {problem} '{name}'; there are: {', '.join(head)}")
+            raise UsageError(f"{shown(file)}: {problem} '{name}'; {listed(name, head)}")
     return [head.index(name) for name in names]
 
 

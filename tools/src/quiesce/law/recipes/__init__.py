@@ -1,6 +1,7 @@
 """Published laws as recipes: one file and one line each."""
 
 from quiesce.base.errors import UsageError
+from quiesce.base.nearest import listed
 from quiesce.law.recipe import Recipe
 from quiesce.law.recipes import (
     add,
@@ -60,4 +61,4 @@ def find(name: str) -> Recipe:
     for recipe in RECIPES:
         if recipe.name == name:
             return recipe
-    raise UsageError(f"no recipe '{name}'; there are: {', '.join(one.name for one in RECIPES)}")
+    raise UsageError(f"no recipe '{name}'; {listed(name, (one.name for one in RECIPES))}")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.base.nearest import listed
 from quiesce.plant.new.structure import GROUND, Floats, Structure, place_lines, row
 
 MOST_BODIES = 4
@@ -83,7 +84,7 @@ def matrix_lines(name: str, matrix: Floats, note: str) -> list[str]:
 
 def index_of(names: Sequence[str], name: str, option: str) -> int:
     if name not in names:
-        raise UsageError(f"{option} {name}: no such body; there are: {', '.join(names)}")
+        raise UsageError(f"{option} {name}: no such body; {listed(name, names)}")
     return list(names).index(name)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError, one_line
+from quiesce.base.nearest import listed
 from quiesce.base.paths import root, shown
 
 DAMPERS, SENSORS = "sim_hil/data/dampers", "sim_hil/data/sensors"
@@ -42,8 +43,7 @@ def find_part(option: str, name: str, folder: str, schema: str) -> tuple[Path, s
     file = Path(name) if is_path else root() / folder / f"{name}.toml"
     if not file.is_file():
         names = sorted(one.stem for one in (root() / folder).glob("*.toml"))
-        raise UsageError(f"{option} {name}: no such file, and none ships; there are: "
-                         f"{', '.join(names)}")  # fmt: skip
+        raise UsageError(f"{option} {name}: no such file, and none ships; {listed(name, names)}")
     try:
         text = file.read_text(encoding="utf-8")
         data = tomllib.loads(text)
