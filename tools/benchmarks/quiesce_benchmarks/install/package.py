@@ -1,18 +1,20 @@
 """The Python package in an empty environment, and its commands there."""
 
+import json
 import os
 import shlex
 import subprocess
 import sys
 from pathlib import Path
 
-from quiesce.base.errors import EXIT_BAD_INPUT
+from quiesce.base.errors import EXIT_BAD_INPUT, BenchFailure
 from quiesce.base.paths import root
 
 from quiesce_benchmarks.install.examples import EXAMPLES, EXTRAS, NEED_A_BUS, NO_BUS, write_files
 from quiesce_benchmarks.install.outside import run
 
 TIMEOUT_s = 600
+BAD_INPUTS = Path(__file__).with_name("bad_inputs.py")
 # What is judged: commands, and extras that are asked for.
 NAMES = {name for name, _ in (*EXAMPLES, *NEED_A_BUS)} | {f"extra {one}" for one, _ in EXTRAS}
 
@@ -83,3 +85,17 @@ def verdicts(command: Path, folder: Path) -> dict[str, str]:
     for extra, words in EXTRAS:
         note(f"extra {extra}", _refusal(typed(command, words, folder), f"quiesce[{extra}]"))
     return found
+
+
+def bad_inputs(command: Path, folder: Path) -> dict[str, str]:
+    """By what was typed "ok" or what was wrong, in a folder where the examples have run."""
+    ended = subprocess.run(
+        [str(command.parent / "python"), "-I", str(BAD_INPUTS), str(folder)],
+        input=json.dumps(EXAMPLES),
+        stdout=subprocess.PIPE,
+        text=True,
+        timeout=4 * TIMEOUT_s,
+    )
+    if ended.returncode != 0:
+        raise BenchFailure(f"{BAD_INPUTS.name} ended with {ended.returncode}")
+    return dict(json.loads(ended.stdout))
