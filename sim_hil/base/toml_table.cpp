@@ -309,7 +309,7 @@ constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
 std::string text_of(const std::string &file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) {
-        throw InputError(on_one_line(file + ": File could not be opened for reading"));
+        throw InputError(on_one_line(file + ": cannot be read; name a file that is there"));
     }
     std::string text(kMostBytes + 1, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -377,7 +377,8 @@ TomlFile::TomlFile(const std::string &file) : file_(file) {
     } catch (const toml::parse_error &error) {
         const auto line = error.source().begin.line;
         const std::string where = line > 0 ? ":" + std::to_string(line) : "";
-        throw InputError(on_one_line(file + where + ": " + std::string(error.description())));
+        throw InputError(on_one_line(file + where + ": " + std::string(error.description()) +
+                                     "; expected a TOML file"));
     }
 }
 

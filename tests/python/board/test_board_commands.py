@@ -22,7 +22,7 @@ def test_check_says_one_line_a_file(quiesce) -> None:
         "ok: squeeze_2012, 1 sensor, 1 body, 1 damper",
         "ok: two_storeys, 3 sensors, 2 bodies, 2 dampers",
     ]
-    assert result.stderr == "quiesce: none.toml: File could not be opened for reading\n"
+    assert result.stderr == "quiesce: none.toml: cannot be read; name a file that is there\n"
 
 
 def test_every_board_that_ships_is_good(quiesce) -> None:

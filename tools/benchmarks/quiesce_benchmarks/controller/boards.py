@@ -109,7 +109,7 @@ def refused(bench: Bench) -> tuple[int, int]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "board.toml"
         results = [
-            is_refused(bench, file, "could not be opened"),
+            is_refused(bench, file, "cannot be read"),
             is_refused(bench, Path(folder), "is a folder"),
         ]
         for _, edit, expected in CASES:

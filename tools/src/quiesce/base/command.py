@@ -80,12 +80,15 @@ def real_number(low: float, high: float, what: str = "") -> Callable[[str], floa
             value = math.nan
         if not (low <= value <= high and math.isfinite(value)):
             name = f"{what}, a number" if what else "a number"
-            raise argparse.ArgumentTypeError(
-                f"expected {name} in {low:g} .. {high:g}, found '{text}'"
-            )
+            span = f" in {low:g} .. {high:g}" if math.isfinite(low) or math.isfinite(high) else ""
+            raise argparse.ArgumentTypeError(f"expected {name}{span}, found '{text}'")
         return value
 
     return read
+
+
+# A type for argparse: any finite number.
+finite_number = real_number(-math.inf, math.inf)
 
 
 @contextmanager

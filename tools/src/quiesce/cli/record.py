@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import finite_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.engine import laws, scenarios
@@ -46,8 +47,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter, repeatable"
     )
-    parser.add_argument("--from-s", type=float, default=0.0, metavar="T", help="(%(default)s)")
-    parser.add_argument("--to-s", type=float, metavar="T", help="(the scenario's end)")
+    parser.add_argument(
+        "--from-s", type=finite_number, default=0.0, metavar="T", help="(%(default)s)"
+    )
+    parser.add_argument("--to-s", type=finite_number, metavar="T", help="(the scenario's end)")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.csv")
     parser.set_defaults(run=run)
 

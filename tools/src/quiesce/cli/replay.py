@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.atomic import output_files
-from quiesce.base.command import whole_number
+from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.engine.bench import Bench
@@ -94,15 +94,15 @@ def add_board_options(group: argparse._ArgumentGroup) -> None:
 def add_reference_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--reference-column", metavar="NAME", help="a second acceleration")
     group.add_argument(
-        "--from-s", type=float, metavar="T", help="count updates from this time on (start)"
+        "--from-s", type=finite_number, metavar="T", help="count updates from this time on (start)"
     )
-    group.add_argument("--to-s", type=float, metavar="T", help="and up to this time (end)")
+    group.add_argument("--to-s", type=finite_number, metavar="T", help="and up to this time (end)")
     group.add_argument(
-        "--tolerance-hz", type=float, default=0.12, metavar="F", help="(%(default)s)"
+        "--tolerance-hz", type=finite_number, default=0.12, metavar="F", help="(%(default)s)"
     )
     group.add_argument(
         "--reference-delay-s",
-        type=float,
+        type=finite_number,
         default=0.0,
         metavar="T",
         help="the reference channel shows an event T later than --column (%(default)s)",

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.atomic import output_files
-from quiesce.base.command import whole_number
+from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.plant_id.sweep import SweepPlan, Timeline, dwell_s, timeline, write_csv
@@ -65,13 +65,17 @@ def add_plan_options(group: argparse._ArgumentGroup) -> None:
 
     def number(name: str, default: float, unit: str, text: str) -> None:
         group.add_argument(
-            name, type=float, default=default, metavar=unit, help=f"{text} (%(default)g {unit})"
+            name,
+            type=finite_number,
+            default=default,
+            metavar=unit,
+            help=f"{text} (%(default)g {unit})",
         )
 
     group.add_argument("--rate", type=int, default=plan.rate_Hz, metavar="Hz", help="(%(default)d)")
     group.add_argument(
         "--band",
-        type=float,
+        type=finite_number,
         nargs=2,
         default=[plan.low_Hz, plan.high_Hz],
         metavar=("LOW", "HIGH"),
@@ -81,17 +85,23 @@ def add_plan_options(group: argparse._ArgumentGroup) -> None:
     number("--sweep-s", plan.sweep_s, "s", "its duration")
     number("--drive", plan.drive_V, "V", "amplitude of the drive")
     group.add_argument(
-        "--dwell-drive", type=float, metavar="V", help="amplitude in the dwells (that of --drive)"
+        "--dwell-drive",
+        type=finite_number,
+        metavar="V",
+        help="amplitude in the dwells (that of --drive)",
     )
     group.add_argument(
         "--dwell-hz",
-        type=float,
+        type=finite_number,
         nargs="+",
         metavar="Hz",
         help="frequencies of the dwells (5 8 12 18)",
     )
     group.add_argument(
-        "--first-mode", type=float, metavar="Hz", help="dwell below, near and above this mode"
+        "--first-mode",
+        type=finite_number,
+        metavar="Hz",
+        help="dwell below, near and above this mode",
     )
     number("--max-current", plan.max_current_A, "A", "largest current")
     number("--hold-s", plan.hold_s, "s", "time at each level: long enough to settle")
@@ -108,7 +118,7 @@ def add_find_options(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--modal-mass",
-        type=float,
+        type=finite_number,
         default=1.0,
         metavar="kg",
         help="of the first mode at the sensor; scales all forces (%(default)g)",

@@ -104,7 +104,7 @@ def parse_rows(
         if len(row) <= max(indices):
             raise UsageError(
                 f"{shown(file)} line {line}: {len(row)} cells, too few for column "
-                f"'{names[indices.index(max(indices))]}'"
+                f"'{names[indices.index(max(indices))]}'; every row needs one"
             )
         cells = zip(names, (row[i] for i in indices), strict=True)
         yield line, [parse_number(file, line, name, text) for name, text in cells]

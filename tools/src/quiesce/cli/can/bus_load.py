@@ -4,6 +4,7 @@ import argparse
 import json
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
 from quiesce.cli.can.options import add_database_option, database_of
@@ -49,10 +50,18 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--no-raw", action="store_true", help="response times without raw streaming"
     )
     parser.add_argument(
-        "--jitter-ms", type=float, default=0.0, metavar="T", help="of the queueing (%(default)g)"
+        "--jitter-ms",
+        type=finite_number,
+        default=0.0,
+        metavar="T",
+        help="of the queueing (%(default)g)",
     )
     parser.add_argument(
-        "--errors-per-s", type=float, default=0.0, metavar="N", help="bus errors (%(default)g)"
+        "--errors-per-s",
+        type=finite_number,
+        default=0.0,
+        metavar="N",
+        help="bus errors (%(default)g)",
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     add_database_option(parser)

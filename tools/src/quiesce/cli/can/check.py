@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.table import format_table
 from quiesce.can.database import CYCLIC
@@ -54,9 +55,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--seconds", type=float, default=5.0, metavar="T", help="(%(default)g)")
     parser.add_argument(
-        "--tolerance", type=float, default=10.0, metavar="PCT",
+        "--seconds", type=finite_number, default=5.0, metavar="T", help="(%(default)g)"
+    )
+    parser.add_argument(
+        "--tolerance", type=finite_number, default=10.0, metavar="PCT",
         help="of the mean cycle times, besides one frame more or less (%(default)g)",
     )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print one JSON object")

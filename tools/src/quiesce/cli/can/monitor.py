@@ -5,6 +5,7 @@ import sys
 import time
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.table import format_table
 from quiesce.cli.can.bus_options import add_bus_options, bus_of
 from quiesce.cli.can.options import check_seconds
@@ -31,7 +32,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--seconds", type=float, metavar="T", help="how long (until Ctrl-C)")
+    parser.add_argument(
+        "--seconds", type=finite_number, metavar="T", help="how long (until Ctrl-C)"
+    )
     add_bus_options(parser)
     parser.set_defaults(run=run)
 

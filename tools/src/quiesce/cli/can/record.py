@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.paths import shown
 from quiesce.cli.can.bus_options import add_bus_options, bus_of
@@ -41,12 +42,14 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--out", type=Path, required=True, metavar="FILE")
-    parser.add_argument("--seconds", type=float, metavar="T", help="how long (until Ctrl-C)")
     parser.add_argument(
-        "--rotate-mb", type=float, metavar="X",
+        "--seconds", type=finite_number, metavar="T", help="how long (until Ctrl-C)"
+    )
+    parser.add_argument(
+        "--rotate-mb", type=finite_number, metavar="X",
         help="next file at this size (of .mf4: while it is written, uncompressed)",
     )  # fmt: skip
-    parser.add_argument("--rotate-s", type=float, metavar="T", help="next file at this age")
+    parser.add_argument("--rotate-s", type=finite_number, metavar="T", help="next file at this age")
     parser.add_argument(
         "--raw", action="store_true", help="every sample, too: asks for RawSample (+27 %% bus load)"
     )

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.can.database import FIRST_LOCKSTEP_ID
 from quiesce.cli.can.bus_options import add_bus_options, bus_of
@@ -43,7 +44,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("file", type=Path, metavar="FILE")
     parser.add_argument(
-        "--speed", type=float, default=1.0, metavar="X", help="times as fast (%(default)g)"
+        "--speed", type=finite_number, default=1.0, metavar="X", help="times as fast (%(default)g)"
     )
     add_only_option(parser)
     parser.add_argument(

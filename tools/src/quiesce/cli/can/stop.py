@@ -5,6 +5,7 @@ import sys
 import time
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.cli.can.bus_options import add_bus_options, bus_of
 from quiesce.cli.can.options import check_seconds
@@ -29,7 +30,11 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--yes", action="store_true", help="do not ask")
     parser.add_argument(
-        "--timeout-s", type=float, default=5.0, metavar="T", help="for its report (%(default)g)"
+        "--timeout-s",
+        type=finite_number,
+        default=5.0,
+        metavar="T",
+        help="for its report (%(default)g)",
     )
     add_bus_options(parser)
     parser.set_defaults(run=run)

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.base.searches.names import NAMES as SEARCHES
@@ -101,7 +102,11 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         "from three sines a current",
     )  # fmt: skip
     group.add_argument(
-        "--time-limit", type=float, default=300.0, metavar="s", help="for each model (%(default)g)"
+        "--time-limit",
+        type=finite_number,
+        default=300.0,
+        metavar="s",
+        help="for each model (%(default)g)",
     )
     group.add_argument("--effort", choices=("quick", "full"), default="full", help="(full)")
     group.add_argument("--seed", type=int, default=1, help="(%(default)s)")

@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
+from quiesce.base.command import finite_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.engine.bench import Bench
@@ -45,7 +46,7 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
         help="what an input is: [FACTOR] QUANTITY [of PLACE]",
     )  # fmt: skip
     parser.add_argument(
-        "--output-A", type=float, default=1.0, metavar="A",
+        "--output-A", type=finite_number, default=1.0, metavar="A",
         help="current for 1 of the file's output (%(default)g)",
     )  # fmt: skip
     parser.add_argument(

@@ -8,6 +8,7 @@ import time
 from dataclasses import asdict
 from typing import Any
 
+from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, compiled_from
 from quiesce.rules.analysis.analyse import analyse
@@ -49,7 +50,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )
     add_file_options(parser)
     parser.add_argument(
-        "--max-error", type=float, metavar="X", help="fail above this error, in the output's unit"
+        "--max-error",
+        type=finite_number,
+        metavar="X",
+        help="fail above this error, in the output's unit",
     )
     parser.add_argument("--jobs", type=int, default=0, metavar="N", help="at once (all processors)")
     parser.add_argument(

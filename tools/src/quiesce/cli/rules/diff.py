@@ -12,9 +12,10 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import real_number
 from quiesce.base.errors import EXIT_FAILED
 from quiesce.base.paths import results_folder, results_text, shown
-from quiesce.cli.rules.show import add_reading_options, read_with_notes, slice_of
+from quiesce.cli.rules.show import add_reading_options, slice_of, tell_notes
 from quiesce.report.html import preformatted
 from quiesce.rules.analysis.findings import number
+from quiesce.rules.formats.files import read_rules
 from quiesce.rules.model import RuleBase
 from quiesce.rules.views.compare import (
     OutputDifference,
@@ -85,9 +86,10 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
 def read_pair(args: argparse.Namespace) -> tuple[RuleBase, RuleBase]:
     """Named by their files; the second one in the order of the first."""
     one, other = (
-        replace(read_with_notes(file, args.approximate), name=shown(file))
-        for file in (args.a, args.b)
+        replace(read_rules(file, args.approximate), name=shown(file)) for file in (args.a, args.b)
     )
+    for base in (one, other):
+        tell_notes(base, base.name)
     return one, matched(one, other)
 
 

@@ -91,9 +91,13 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
 def read_with_notes(file: Path, approximate: int | None) -> RuleBase:
     """Notes of the reader go to stderr."""
     base = read_rules(file, approximate)
-    for note in base.notes:
-        print(f"{shown(file)}: {note}", file=sys.stderr)
+    tell_notes(base, shown(file))
     return base
+
+
+def tell_notes(base: RuleBase, name: str) -> None:
+    for note in base.notes:
+        print(f"{name}: {note}", file=sys.stderr)
 
 
 def slice_of(args: argparse.Namespace, base: RuleBase) -> Slice:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from quiesce.base.command import whole_number
+from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import results_text, shown
 from quiesce.cli.tune import law
@@ -88,7 +88,7 @@ def add_aims(group: argparse._ArgumentGroup) -> None:
         ("--to-Hz", "last frequency (2 times the first mode)"),
         ("--step-Hz", "step; 2 to 64 frequencies in all (some 40; with --quick 7)"),
     ):
-        group.add_argument(name, type=float, metavar="Hz", help=text)
+        group.add_argument(name, type=finite_number, metavar="Hz", help=text)
     group.add_argument(
         "--robustness", choices=("none", "axes", "full"), default="axes",
         help="other plants to try: one property changed at a time, or all 81 combinations "
@@ -107,7 +107,7 @@ def add_sources(group: argparse._ArgumentGroup) -> None:
         help="your sensor, driver, damper model and geometry (squeeze_2012)",
     )  # fmt: skip
     group.add_argument(
-        "--modal-mass", type=float, default=1.0, metavar="kg",
+        "--modal-mass", type=finite_number, default=1.0, metavar="kg",
         help="of the first mode at the sensor (%(default)g)",
     )  # fmt: skip
     group.add_argument(
