@@ -16,10 +16,9 @@ import random
 import re
 import shlex
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from importlib.metadata import entry_points
 from pathlib import Path
-
-from quiesce.cli.main import main
 
 EXIT_BAD_INPUT = 2
 PRINTS_WHAT_COMES_BEFORE = ["can", "decode"]  # where a log is malformed, as its help says
@@ -78,7 +77,7 @@ def state_of(folder: Path) -> str:
     return found.hexdigest()
 
 
-def verdict(words: list[str], folder: Path) -> str:
+def verdict(main: Callable[[list[str]], int], words: list[str], folder: Path) -> str:
     before = state_of(folder)
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
@@ -96,13 +95,15 @@ def verdict(words: list[str], folder: Path) -> str:
 
 
 def run(folder: Path, examples: list[list[str]]) -> dict[str, str]:
+    (script,) = entry_points(group="console_scripts", name="quiesce")
+    main = script.load()
     bad = folder / "bad"
     bad.mkdir(exist_ok=True)
     found = {}
     for name, tail in examples:
         words = shlex.split(f"{name} {tail}")
         for one in variants(words, outputs_of(words), bad):
-            found[shlex.join(one)] = verdict(one, folder)
+            found[shlex.join(one)] = verdict(main, one, folder)
     return found
 
 
