@@ -41,7 +41,7 @@ systemctl reload quiesced
 await reload has_logged "restarted with new parameters"
 sed -i 's/^law = .*/law = "nonsense"/' /etc/quiesced/quiesced.toml
 systemctl reload quiesced
-await refusal has_logged "parameters stay"
+await refusal has_logged "parameters and tables stay"
 tell after_refusal "$(property ActiveState) $([ "$(property MainPID)" = "$pid" ] && echo same)"
 sed -i 's/^law = .*/law = "phase"/' /etc/quiesced/quiesced.toml
 
