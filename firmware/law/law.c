@@ -3,8 +3,7 @@
 #include <stddef.h>
 
 #define DECLARE(number, name) extern const law_t law_##name;
-#define ENTRY(number, name) \
-    [QUIESCE_LAW_##number] = QUIESCE_WITH_LAW_##number ? &law_##name : NULL,
+#define ENTRY(number, name) [QUIESCE_LAW_##number] = QUIESCE_WITH_LAW_##number ? &law_##name : NULL,
 
 QUIESCE_EACH_LAW(DECLARE)
 

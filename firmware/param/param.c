@@ -185,6 +185,6 @@ bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_
 }
 
 bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t *error) {
-    return check_each(params, error) && check_build(params, error) &&
-           check_sensor(params, error) && check_together(params, error);
+    return check_each(params, error) && check_build(params, error) && check_sensor(params, error) &&
+           check_together(params, error);
 }

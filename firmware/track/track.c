@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 #define DECLARE(number, name) extern const track_t track_##name;
-#define ENTRY(number, name) \
+#define ENTRY(number, name)                                                                        \
     [QUIESCE_TRACKER_##number] = QUIESCE_WITH_TRACKER_##number ? &track_##name : NULL,
 
 QUIESCE_EACH_TRACKER(DECLARE)

@@ -57,7 +57,7 @@ wheel_build() {
     work_folder
     mkdir -p "$out/packages" "$WORK_FOLDER/plain" "$WORK_FOLDER/wheel"
     say "package: wheel: compiling bench, plant and damper models (minutes the first time)"
-    plain="$(made_package package-wheel "$WORK_FOLDER/plain" --wheel -Cbuild-dir=build/wheel-{wheel_tag} \
+    plain="$(made_package package-wheel "$WORK_FOLDER/plain" --wheel -Cbuild-dir='build/wheel-{wheel_tag}' \
         -Ccmake.define.QUIESCE_IMAGES="$ROOT/build/mps2/targets/mps2" "$@")"
     libc="$(getconf GNU_LIBC_VERSION)"
     libc="${libc##* }"
