@@ -18,6 +18,7 @@ static const bool holds_estimator[] = {
     [QUIESCE_ESTIMATOR_FIT] = QUIESCE_WITH_FIT,
 };
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a term of a sum
 #define ONE_TRACKER(number, name) +QUIESCE_WITH_TRACKER_##number
 _Static_assert(QUIESCE_WITH_LAW_OFF, "law off is what a controller falls back to");
 _Static_assert(0 QUIESCE_EACH_TRACKER(ONE_TRACKER) > 0, "the build holds no tracker");

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
-from quiesce.base.command import finite_number
+from quiesce.base.command import real_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.engine.bench import Bench
@@ -46,7 +46,7 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
         help="what an input is: [FACTOR] QUANTITY [of PLACE]",
     )  # fmt: skip
     parser.add_argument(
-        "--output-A", type=finite_number, default=1.0, metavar="A",
+        "--output-A", type=real_number(1e-6, 1e6), default=1.0, metavar="A",
         help="current for 1 of the file's output (%(default)g)",
     )  # fmt: skip
     parser.add_argument(
@@ -60,8 +60,6 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
 
 def made(args: argparse.Namespace) -> tuple[RuleBase, FuzzySignalsTable, list[int], int]:
     """With the table's words and the board's CRC-32."""
-    if not 1e-6 <= args.output_A <= 1e6:
-        raise UsageError(f"--output-A {args.output_A:g}: expected 1e-6 .. 1e6")
     base = read_rules(args.file, args.approximate, first_order=True)
     rig = load_rig(Bench(), args.board, None, 1000)
     try:
