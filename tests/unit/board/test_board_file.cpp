@@ -185,8 +185,9 @@ TEST(BoardFile, line_ends_of_other_systems_are_read) {
 
 TEST(BoardFile, missing_file_and_folder_are_told) {
     const std::string folder = std::filesystem::temp_directory_path().string();
-    for (const auto &[file, words] : {std::pair<std::string, const char *>{"none.toml", "cannot be read"},
-                                      {folder, "is a folder, not a file"}}) {
+    for (const auto &[file, words] :
+         {std::pair<std::string, const char *>{"none.toml", "cannot be read"},
+          {folder, "is a folder, not a file"}}) {
         try {
             load_board(file);
             FAIL() << "accepted: " << file;
