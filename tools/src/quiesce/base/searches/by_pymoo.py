@@ -12,6 +12,12 @@ SEARCH = ("search", "--method pso, cmaes or es")
 Points = Generator[np.ndarray, np.ndarray, None]
 
 
+def require_pymoo() -> None:
+    """UsageError where it is not there: before a search, not in it."""
+    with extra(*SEARCH):
+        import pymoo  # noqa: F401
+
+
 def pso(first: np.ndarray, rng: np.random.Generator) -> Points:
     """Particle swarm."""
     with extra(*SEARCH):

@@ -21,3 +21,9 @@ Method = Callable[[np.ndarray, np.random.Generator], Points]
 # In the order of NAMES.
 _SEARCHES: tuple[Method, ...] = (by_pymoo.pso, by_pymoo.cmaes, by_pymoo.es, cuckoo, bees)
 METHODS: dict[str, Method] = dict(zip(NAMES, _SEARCHES, strict=True))
+
+
+def require(method: str) -> None:
+    """UsageError where what a method of that name needs is not there."""
+    if METHODS.get(method) in (by_pymoo.pso, by_pymoo.cmaes, by_pymoo.es):
+        by_pymoo.require_pymoo()

@@ -81,10 +81,13 @@ def say(text: str) -> None:
 def run(args: argparse.Namespace) -> int:
     from quiesce.can.database import load
     from quiesce.can.link import Link
+    from quiesce.can.mdf import require_mdf
     from quiesce.can.recorder import Plan, Recorder, open_first
     from quiesce.can.stopping import until_stopped
 
     check(args)
+    if args.out.suffix.lower() == ".mf4":
+        require_mdf()
     size = None if args.rotate_mb is None else int(args.rotate_mb * 1e6)
     plan = Plan(args.out, size, args.rotate_s, not args.listen, args.raw)
     bus, database = bus_of(args), load()

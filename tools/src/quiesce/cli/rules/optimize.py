@@ -14,6 +14,7 @@ from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import default_plant, results_folder, results_text, shown, typed
 from quiesce.base.progress import say
+from quiesce.base.searches.methods import require
 from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
 from quiesce.engine import scenarios
 from quiesce.engine.bench import Bench
@@ -166,6 +167,7 @@ def start_steadies(args: argparse.Namespace, chosen: list[Scenario]) -> Steadies
 
 
 def make_task(args: argparse.Namespace, bench: Bench, folder: Path, pool: Executor) -> Task:
+    require(args.method)
     tune = parse_tune(args.tune)
     weights = parse_weights(args.objective, args.weight)
     params = effective_params(bench, args.set)
