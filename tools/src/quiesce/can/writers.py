@@ -187,9 +187,6 @@ class MdfFile(LogFile):
         self._is_made = False
         self._attachments = attachments
         self._notes: list[str] = []
-        from quiesce.can.mdf import require_mdf
-
-        require_mdf()
         self._thread: threading.Thread | None = None
         super().__init__(path.with_name(path.name + PART_SUFFIX))
 
