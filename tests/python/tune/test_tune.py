@@ -287,7 +287,7 @@ def test_other_quality_is_not_mixed_with_what_is_stored(tuned) -> None:
         (("one_mode.toml", "--from-Hz", "0.1"), "--from-Hz 0.1"),
         (("one_mode.toml", "--step-Hz", "0.1"), "a table has 2 to 64"),
         (("one_mode.toml", "--step-Hz", "-1"), "--step-Hz -1"),
-        (("one_mode.toml", "--from-Hz", "nan"), "--from-Hz nan"),
+        (("one_mode.toml", "--from-Hz", "nan"), "--from-Hz: expected a number, found 'nan'"),
         (("one_mode.toml", "--weights", "best=1,1,1"), "no setting 'best'"),
         (("one_mode.toml", "--weights", "balanced=1,1"), "DISPLACEMENT,ACCELERATION,CURRENT"),
         (("one_mode.toml", "--weights", "balanced=0,0,1"), "not both"),
