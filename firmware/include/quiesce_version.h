@@ -6,7 +6,4 @@
 #define QUIESCE_VERSION_MINOR 1
 #define QUIESCE_VERSION_PATCH 0
 
-/// Of the messages in quiesce.dbc: changes where a node of the old ones would misread the new ones.
-#define QUIESCE_CAN_INTERFACE_VERSION 3
-
 #endif

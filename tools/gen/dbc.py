@@ -139,6 +139,17 @@ def telemetry_constants(database: Database) -> str:
     )
 
 
+def version_constant(database: Database) -> str:
+    """ValueError where the DBC has no version from 1 on: 0 is what an attribute is by default."""
+    found = database.dbc.attributes.get("QuiesceInterfaceVersion") if database.dbc else None
+    if found is None or int(found.value) < 1:
+        raise ValueError("quiesce.dbc: QuiesceInterfaceVersion must be 1 .. 255")
+    return (
+        "/* Changes where a node of the old messages would misread the new ones. */\n"
+        f"#define QUIESCE_CAN_INTERFACE_VERSION {int(found.value)}\n\n"
+    )
+
+
 def refuse(message: Message, why: str) -> None:
     raise ValueError(f"quiesce.dbc: {message.name}: {why}")
 
@@ -316,7 +327,8 @@ def generate_sources(source: bytes) -> dict[str, str]:
     anchor = "/* Frame ids. */"
     if header.count(anchor) != 1:
         raise ValueError("cantools' header has changed: adapt generate_sources")
-    header = header.replace(anchor, telemetry_constants(database) + anchor)
+    constants = version_constant(database) + telemetry_constants(database)
+    header = header.replace(anchor, constants + anchor)
     texts = {f"{NAME}.h": header, f"{NAME}.c": body}
     for name, text in texts.items():
         texts[name] = replace_stamp(drop_floating_point(restore_units(text, by_function)), digest)

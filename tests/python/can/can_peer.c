@@ -3,11 +3,13 @@
 // slow it waits, so that a busy machine loses no frames; the ticks that it missed do not come.
 //
 // can_peer FD [--drop N] [--corrupt N] [--no-store] [--store FOLDER] [--silent] [--idle]
-//   --drop N     the bus loses every Nth frame
-//   --corrupt N  every Nth frame has a bit flipped
-//   --store DIR  records are files in it, which the next start finds
-//   --silent     answers no requests
-//   --idle       the operator lets go
+//          [--interface N]
+//   --drop N       the bus loses every Nth frame
+//   --corrupt N    every Nth frame has a bit flipped
+//   --store DIR    records are files in it, which the next start finds
+//   --silent       answers no requests
+//   --idle         the operator lets go
+//   --interface N  says that its messages are of this version
 #include <errno.h>
 #include <math.h>
 #include <poll.h>
@@ -19,6 +21,7 @@
 #include <unistd.h>
 
 #include "node.h"
+#include "quiesce_can.h"
 #include "slcan.h"
 
 #define TICK_NS 1000000L
@@ -30,6 +33,7 @@ typedef struct {
     int fd;
     unsigned drop;
     unsigned corrupt;
+    unsigned interface_version; // 0: its own
     bool has_store;
     const char *store; // folder, NULL: records are forgotten
     bool is_idle;      // the operator lets go
@@ -118,6 +122,9 @@ static void send_frame(peer_t *peer, const can_frame_t *frame) {
     if (peer->corrupt != 0u && peer->sent % peer->corrupt == 0u) {
         wire.data[0] ^= 0x10u;
     }
+    if (peer->interface_version != 0u && frame->id == QUIESCE_CAN_IDENTIFICATION_FRAME_ID) {
+        wire.data[3] = (uint8_t)peer->interface_version;
+    }
     uint8_t line[SLCAN_MAX_BYTES];
     if (!write_all(peer->fd, line, slcan_encode(&wire, line))) {
         can_unsent_count(&peer->unsent, frame->id);
@@ -199,6 +206,7 @@ int main(int argc, char **argv) {
     peer.fd = (int)strtol(argv[1], NULL, 10);
     peer.drop = option(argc, argv, "--drop");
     peer.corrupt = option(argc, argv, "--corrupt");
+    peer.interface_version = option(argc, argv, "--interface");
     peer.has_store = !flag(argc, argv, "--no-store");
     peer.store = word(argc, argv, "--store");
     peer.is_idle = flag(argc, argv, "--idle");

@@ -12,13 +12,14 @@ import can
 from can_protection import encode, frame_crc, load_database
 
 DATABASE = load_database()
-REQUEST, REPLY, DATA, FLOW = (
+REQUEST, REPLY, DATA, FLOW, IDENTIFICATION = (
     DATABASE.get_message_by_name(name)
-    for name in ("ServiceRequest", "ServiceReply", "TableData", "TableFlow")
+    for name in ("ServiceRequest", "ServiceReply", "TableData", "TableFlow", "Identification")
 )
 MOST_BYTES = 16 + 4 * 2048
 BLOCK, GAP_MS, SILENCE_S = 32, 2, 1.0
 ROADS = 3
+IDENTIFIES_S = 0.05  # once a second is the real one's, which would be most of a test's time
 
 
 @dataclass
@@ -35,6 +36,7 @@ class Faults:
     waits: int = 0  # flow controls that ask to wait before the one that lets send
     most_bytes: int = MOST_BYTES
     is_silent: bool = False
+    interface_version: int = 3
     is_old: bool = False  # firmware that knows nothing of tables
     ignores_commit: bool = False
 
@@ -91,14 +93,27 @@ class TableController(threading.Thread):
         self._bus.shutdown()
 
     def run(self) -> None:
+        due_s = 0.0
         while not self._is_over.is_set():
             frame = self._bus.recv(0.01)
+            if not self.faults.is_silent and time.monotonic() >= due_s:
+                due_s = time.monotonic() + IDENTIFIES_S
+                self._identify()
             if frame is None or self.faults.is_silent:
                 continue
             if frame.arbitration_id == REQUEST.frame_id:
                 self._answer(bytes(frame.data))
             elif frame.arbitration_id == DATA.frame_id:
                 self._take(bytes(frame.data))
+
+    def _identify(self) -> None:
+        values = {signal.name: 0 for signal in IDENTIFICATION.signals}
+        values["interface_version"] = self.faults.interface_version
+        self._bus.send(
+            can.Message(
+                arbitration_id=0x132, is_extended_id=False, data=IDENTIFICATION.encode(values)
+            )
+        )
 
     # ISO-TP
 

@@ -129,6 +129,36 @@ def test_nobody_answers(controller: Controller, tool) -> None:
     assert "no controller answers" in error_line(tool("set", "law=off"), 1)
 
 
+# Another version of the messages
+
+
+OTHER = "has version 4 of the CAN messages, these tools have 3"
+
+
+@pytest.mark.slow
+def test_other_messages_are_refused_before_anything_is_asked(controller: Controller, tool) -> None:
+    controller.start("--interface", "4", "--idle")
+    for action in (["get"], ["set", "law=off"], ["tables"], ["freeze"]):
+        assert OTHER in error_line(tool(*action), 2), action
+    result = tool("check", "--seconds", "1.5")
+    assert result.returncode == 1 and OTHER in result.stdout
+    # A stop is never held back by what might be misread.
+    assert tool("stop", "--yes").returncode == 0
+
+
+@pytest.mark.slow
+def test_recording_of_other_messages_asks_nothing(
+    controller: Controller, tool, tmp_path: Path
+) -> None:
+    controller.start("--interface", "4")
+    result = tool("record", "--out", tmp_path / "a.log", "--raw", "--seconds", "2")
+    assert result.returncode == 0, result.stderr
+    assert OTHER in result.stderr and "no parameters" in result.stderr
+    ids = {frame.arbitration_id for frame in read_log(tmp_path / "a.log")}
+    assert DATABASE.by_name["Identification"].frame_id in ids
+    assert not ids & {DATABASE.by_name[n].frame_id for n in ("ServiceRequest", "ServiceReply")}
+
+
 # Emergency stop
 
 

@@ -561,3 +561,12 @@ def test_the_page_is_enough(controller, tool, tmp_path: Path, monkeypatch) -> No
     while not controller.received and time.monotonic() < end_s:
         time.sleep(0.01)
     assert controller.received == file_of(words)
+
+
+def test_a_table_does_not_go_to_a_controller_of_other_messages(
+    controller: TableController, tool, tmp_path: Path
+) -> None:
+    controller.faults.interface_version = 4
+    result = tool("load", "rules", written(tmp_path / "a.table", table(RULES)))
+    assert result.returncode == 2 and "version 4 of the CAN messages" in result.stderr
+    assert controller.requests == [] and controller.frames == []

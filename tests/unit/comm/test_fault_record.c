@@ -1,7 +1,6 @@
 // The record of a fault: what is in it, which fault's it is, when it goes, how it is read.
 #include "fault_record.h"
 #include "quiesce_can.h"
-#include "quiesce_version.h"
 #include "unity.h"
 
 #include <stdlib.h>

@@ -72,6 +72,10 @@ class Database:
         self.messages = [message_of(one) for one in self.codec.messages]
         self.by_id = {one.frame_id: one for one in self.messages}
         self.by_name = {one.name: one for one in self.messages}
+        # Of the messages: another number is incompatible (Identification). 0: the file has none.
+        attributes = self.codec.dbc.attributes if self.codec.dbc else {}
+        found = attributes.get("QuiesceInterfaceVersion")
+        self.version = int(found.value) if found else 0
         self._codecs = {one.frame_id: one for one in self.codec.messages}
 
     def decode(self, frame_id: int, data: bytes) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.can.database import Database
 from quiesce.can.link import Back, Link, Lost
 from quiesce.can.parameters import hash_of, name_of
-from quiesce.can.services import ReadAll, Requests
+from quiesce.can.services import ReadAll, Requests, misunderstood
 from quiesce.can.traffic import Traffic
 from quiesce.can.writers import PART_SUFFIX, LogFile, MdfFile, open_log
 
@@ -79,11 +79,24 @@ class Preamble:
         return self._reader.is_over
 
     @property
+    def misunderstood(self) -> str:
+        """Why this controller is asked nothing; empty where it may be, or is not known yet."""
+        if not self.identification:
+            return ""
+        return misunderstood(self._requests.database, self.identification)
+
+    @property
+    def may_ask(self) -> bool:
+        return bool(self.identification) and not self.misunderstood
+
+    @property
     def frames(self) -> list[Any]:
         return [self.identity] * (self.identity is not None) + self._parameters
 
     def text(self) -> str:
         """What files begin with, for people."""
+        if self.misunderstood:
+            return f"{self.misunderstood}; the log has its frames, and no parameters"
         if not self.values:
             return "no controller answers: the log has no parameters"
         version = "an unknown version"
@@ -93,7 +106,10 @@ class Preamble:
         return f"every file begins with the controller's {len(self.values)} parameters, {version}"
 
     def poll(self) -> Any:
-        """Sends the next request where one is due; returns its frame."""
+        """Sends the next request where one is due; returns its frame. Nothing goes to a controller
+        that has not told yet that it understands."""
+        if not self.may_ask:
+            return None
         data = self._reader.poll(time.monotonic())
         return None if data is None else self._link.send(self._requests.request_id, data)
 
@@ -209,14 +225,14 @@ class Recorder:
     def _ask(self) -> None:
         """One request at a time: parameters first, then samples."""
         sent = self.preamble.poll() if self.plan.asks else None
-        if self.raw is not None and self.preamble.is_over:
+        if self.raw is not None and self.preamble.is_over and self.preamble.may_ask:
             sent = self.raw.poll()
         if sent is not None:
             self.keep(sent)
 
     def _drain(self) -> None:
         """What has arrived already."""
-        if self.raw is not None:
+        if self.raw is not None and self.preamble.may_ask:
             self.raw.end()
         while (event := self._link.receive_now()) is not None:
             self.take(event)

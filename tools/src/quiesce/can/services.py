@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from quiesce.base.errors import BenchFailure
+from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.can.database import Database
 from quiesce.can.e2e import ALIVE_PERIOD, alive_of, frame_crc, protect
 from quiesce.can.link import Link
@@ -21,6 +21,9 @@ BUSY = "BUSY"
 REPLY_S = 0.15
 TRIES = 10
 MAX_PARAMETERS = 256  # the index has 8 bits
+# Identification comes once a second; two may be lost.
+IDENTIFIED_S = 3.5
+VERSION_PARTS = ("major", "minor", "patch")
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,10 @@ class ReadAll:
 
 
 class Services:
-    """Asks and waits. Everything else that arrives meanwhile goes to `on_event`."""
+    """Asks and waits. Everything else that arrives meanwhile goes to `on_event`.
+
+    ask() and read_all() say nothing before the controller has told that its messages are ours.
+    """
 
     def __init__(
         self, link: Link, database: Database, on_event: Callable[[Any], None] | None = None
@@ -136,7 +142,23 @@ class Services:
         self.identification: dict[str, int] | None = None
         self._least_s = database.by_name[REQUEST].delay_ms / 1000.0
         self.next_s = 0.0
-        self._on_event = on_event or (lambda _: None)
+        self.on_event = on_event or (lambda _: None)
+        self._is_understood = False
+
+    def understand(self) -> None:
+        """Waits until the controller identifies itself. UsageError where its messages are of
+        another version than the database's, BenchFailure where nobody does."""
+        end_s = time.monotonic() + IDENTIFIED_S
+        while self.identification is None and (left_s := end_s - time.monotonic()) > 0.0:
+            event = self.link.receive(left_s)
+            if event is not None:
+                self.take(event)
+        if self.identification is None:
+            raise BenchFailure(no_answer(self.link))
+        why = misunderstood(self.requests.database, self.identification)
+        if why:
+            raise UsageError(f"{self.link.bus.name}: {why}")
+        self._is_understood = True
 
     def ask(
         self,
@@ -147,6 +169,8 @@ class Services:
         tries: int = TRIES,
     ) -> Reply | None:
         """None where no reply comes. A busy controller is asked again."""
+        if not self._is_understood:
+            self.understand()
         for _ in range(tries):
             reply = self.ask_once(operation, index, value, reply_s)
             if reply is not None and reply.result != BUSY:
@@ -173,6 +197,8 @@ class Services:
 
     def read_all(self) -> list[int]:
         """Values in index order. BenchFailure where nobody answers."""
+        if not self._is_understood:
+            self.understand()
         reader = ReadAll(self.requests)
         while not reader.is_over:
             request = reader.poll(time.monotonic())
@@ -209,7 +235,19 @@ class Services:
     def take(self, event: Any) -> None:
         if hasattr(event, "arbitration_id"):
             self.identification = self.requests.identification_in(event) or self.identification
-        self._on_event(event)
+        self.on_event(event)
+
+
+def misunderstood(database: Database, identification: dict[str, int]) -> str:
+    """Why frames of this controller must not be read by this database; empty: they may."""
+    theirs, ours = identification["interface_version"], database.version
+    if theirs == ours:
+        return ""
+    number = ".".join(str(identification[f"version_{part}"]) for part in VERSION_PARTS)
+    return (
+        f"the controller (firmware {number}) has version {theirs} of the CAN messages, these tools "
+        f"have {ours}; use the tools of its firmware's release"
+    )
 
 
 def no_answer(link: Link) -> str:

@@ -70,7 +70,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> int:
     from quiesce.can.database import load
     from quiesce.can.link import Link
-    from quiesce.can.services import Services
+    from quiesce.can.services import Services, misunderstood
     from quiesce.can.traffic import Traffic
 
     check_seconds("--seconds", args.seconds)
@@ -89,12 +89,14 @@ def run(args: argparse.Namespace) -> int:
     with Link(bus_of(args)) as link:
         services = Services(link, database)
         services.wait(SETTLE_S)  # a driver may hold frames from before
-        services = Services(link, database, take)
+        services.on_event = take
         start_s = time.monotonic()
         trips = measure(services, args.seconds)
         duration_s = time.monotonic() - start_s
     rows = [row(traffic, one, duration_s, args.tolerance) for one in expected(traffic)]
     problems = gaps + problems_of(traffic, trips, rows)
+    if services.identification and (why := misunderstood(database, services.identification)):
+        problems.append(why)
     report = {
         "seconds": duration_s,
         "round_trip": trips.report(),
