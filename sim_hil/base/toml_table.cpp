@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <sstream>
 #include <system_error>
 
@@ -58,6 +59,36 @@ std::string on_one_line(std::string message) {
     return message;
 }
 
+/// Letters to put in, take out or change (Levenshtein) from a to b.
+std::size_t distance(const std::string &a, const std::string &b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+/// The one of `known` that `word` is most likely meant for, and not farther than a third of it.
+std::optional<std::string> nearest(const std::string &word, const std::vector<std::string> &known) {
+    std::optional<std::string> best;
+    std::size_t least = 1 + word.size() / 3;
+    for (const std::string &one : known) {
+        const std::size_t apart = distance(word, one);
+        if (apart > 0 && apart < least) {
+            least = apart;
+            best = one;
+        }
+    }
+    return best;
+}
+
 std::string expected_number(const Range &range) {
     std::ostringstream out;
     out << "expected a number in " << range.min << " .. " << range.max << " (" << range.unit << ")";
@@ -104,7 +135,13 @@ const TomlNode *TomlTable::find(const std::string &key) {
 const TomlNode &TomlTable::require(const std::string &key, const std::string &expected) {
     const TomlNode *node = find(key);
     if (node == nullptr) {
-        fail(key, "missing; " + expected);
+        std::vector<std::string> others = keys();
+        others.erase(
+            std::remove_if(others.begin(), others.end(),
+                           [this](const std::string &one) { return asked_.count(one) > 0; }),
+            others.end());
+        const std::optional<std::string> meant = nearest(key, others);
+        fail(key, "missing; " + (meant ? "is '" + *meant + "' meant for it? " : "") + expected);
     }
     return *node;
 }
@@ -175,6 +212,18 @@ std::string TomlTable::text(const std::string &key) {
         fail(key, "expected a text in quotes, found " + shown(node));
     }
     return node.as_string()->get();
+}
+
+std::string TomlTable::path(const std::string &key) {
+    const std::filesystem::path named = text(key);
+    const std::filesystem::path found =
+        (std::filesystem::path(file_).parent_path() / named).lexically_normal();
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(found, unreadable)) {
+        fail(key, "there is no file " + found.string() +
+                      "; name one that is there, by its path from the folder of this file");
+    }
+    return found.string();
 }
 
 std::string TomlTable::choice(const std::string &key, const std::vector<std::string> &choices) {
@@ -284,11 +333,14 @@ std::vector<std::string> TomlTable::keys() const {
 }
 
 std::vector<std::string> TomlTable::unknown_keys() const {
-    const std::string expected = joined(std::vector<std::string>(asked_.begin(), asked_.end()));
+    const std::vector<std::string> known(asked_.begin(), asked_.end());
     std::vector<std::string> out;
     for (const std::string &key : keys()) {
         if (asked_.count(key) == 0) {
-            out.push_back(message(key, "unknown key; expected one of: " + expected));
+            const std::optional<std::string> meant = nearest(key, known);
+            out.push_back(message(key, "unknown key; " +
+                                           (meant ? "is '" + *meant + "' meant? " : "") +
+                                           "expected one of: " + joined(known)));
         }
     }
     return out;
@@ -296,9 +348,12 @@ std::vector<std::string> TomlTable::unknown_keys() const {
 
 void TomlTable::reject_unknown_keys() const {
     const std::vector<std::string> unknown = unknown_keys();
-    if (!unknown.empty()) {
-        throw InputError(unknown.front());
+    if (unknown.empty()) {
+        return;
     }
+    const std::size_t more = unknown.size() - 1;
+    throw InputError(unknown.front() +
+                     (more > 0 ? " (and " + std::to_string(more) + " more unknown keys)" : ""));
 }
 
 namespace {

@@ -43,6 +43,8 @@ class TomlTable {
     std::vector<double> coefficients(const std::string &key, std::size_t most, const Range &range);
     bool boolean(const std::string &key, bool fallback);
     std::string text(const std::string &key);
+    /// A file that is there, named by its path from the folder of this one.
+    std::string path(const std::string &key);
     std::string choice(const std::string &key, const std::vector<std::string> &choices);
 
     /// An array of texts, none of them empty.

@@ -13,7 +13,7 @@ int cmd_scenario_check(const std::vector<std::string> &words) {
     const Arguments arguments("scenario-check", words, {});
     const std::string file = arguments.only_positional("FILE");
     const Scenario scenario = load_scenario(file);
-    const PlantModel plant = load_plant(scenario.plant_file);
+    const PlantModel plant = load_plant(plant_of(scenario));
     require_base(scenario, plant);
     std::printf("%s: scenario %s is valid\n", file.c_str(), scenario.name.c_str());
     std::printf("  plant %s, %g s, seed %llu\n", plant.name.c_str(), scenario.duration_s,

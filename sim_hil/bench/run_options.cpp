@@ -122,9 +122,11 @@ void refuse_noise(const Arguments &arguments, const Scenario &scenario) {
 RunSetup run_setup(const Arguments &arguments) {
     RunSetup setup{};
     setup.scenario = load_scenario(arguments.required("scenario"));
-    setup.plant = load_plant(arguments.text("plant").value_or(setup.scenario.plant_file));
+    const auto given_plant = arguments.text("plant");
+    setup.plant = load_plant(given_plant ? *given_plant : plant_of(setup.scenario));
     require_base(setup.scenario, setup.plant);
-    const std::string board = arguments.text("board").value_or(setup.scenario.board_file);
+    const auto given_board = arguments.text("board");
+    const std::string board = given_board ? *given_board : board_of(setup.scenario);
     quiesce_params_default(&setup.params);
     arguments.required("law");
     if (board.empty()) {

@@ -248,11 +248,10 @@ CoilParams read_coil(TomlTable section) {
     return params;
 }
 
-DamperChoice read_damper(TomlTable section, const std::string &plant_file) {
+DamperChoice read_damper(TomlTable section) {
     DamperChoice choice;
     if (section.has("file")) {
-        const std::filesystem::path file = section.text("file");
-        choice = load_damper((std::filesystem::path(plant_file).parent_path() / file).string());
+        choice = load_damper(section.path("file"));
         check_for_plant(section, choice);
     } else {
         read_own(section, choice);

@@ -26,9 +26,9 @@ struct DamperChoice {
 };
 
 /// The damper that a table of a plant describes, either by `model` and its keys or by `file`, a
-/// path from plant_file's folder. Models that ask for the acceleration get an estimate of it.
+/// path from its own folder. Models that ask for the acceleration get an estimate of it.
 /// Throws InputError naming the key that is wrong.
-DamperChoice read_damper(TomlTable section, const std::string &plant_file);
+DamperChoice read_damper(TomlTable section);
 
 /// The same from a damper file, as it is: without the estimate.
 DamperChoice load_damper(const std::string &file);

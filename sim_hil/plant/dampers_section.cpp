@@ -15,7 +15,6 @@ namespace {
 /// What all dampers of a file have in common.
 struct Shared {
     TomlTable &root;
-    const std::string &plant_file;
     const PlantModel &model;
     std::optional<CoilParams> coil; ///< [coil]
 };
@@ -46,7 +45,7 @@ CoilParams coil_of(Shared &shared, std::optional<TomlTable> own, const DamperCho
 
 PlantDamper read_one(Shared &shared, const TomlTable &section, std::optional<TomlTable> own_coil,
                      PlantDamper damper) {
-    const DamperChoice choice = read_damper(section, shared.plant_file);
+    const DamperChoice choice = read_damper(section);
     damper.damper = choice.damper;
     check_current(shared, choice, damper);
     damper.coil = coil_of(shared, std::move(own_coil), choice);
@@ -126,9 +125,8 @@ Eigen::VectorXd read_stroke(TomlTable &section, const PlantModel &model) {
     return stroke;
 }
 
-void read_dampers(TomlTable &root, const std::string &plant_file, const Eigen::VectorXd &at_damper,
-                  PlantModel &model) {
-    Shared shared{root, plant_file, model, {}};
+void read_dampers(TomlTable &root, const Eigen::VectorXd &at_damper, PlantModel &model) {
+    Shared shared{root, model, {}};
     if (std::optional<TomlTable> coil = root.optional_table("coil")) {
         shared.coil = read_coil(*coil);
     }

@@ -19,8 +19,7 @@ Eigen::VectorXd read_stroke(TomlTable &section, const PlantModel &model);
 
 /// Fills model.dampers; its structure, places and driver must be there. at_damper: the stroke of
 /// [damper]. Throws InputError naming the key that is wrong.
-void read_dampers(TomlTable &root, const std::string &plant_file, const Eigen::VectorXd &at_damper,
-                  PlantModel &model);
+void read_dampers(TomlTable &root, const Eigen::VectorXd &at_damper, PlantModel &model);
 
 } // namespace quiesce
 

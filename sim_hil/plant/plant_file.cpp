@@ -64,14 +64,14 @@ PlantModel load_plant(const std::string &file) {
     root.integer("version", 1, 1);
     PlantModel model{};
     model.name = root.text("name");
-    StructureSection section = read_structure(root.table("structure"), file, has_damper_ends(root));
+    StructureSection section = read_structure(root.table("structure"), has_damper_ends(root));
     model.structure = std::move(section.structure);
     model.places = read_places(root, model.structure, std::move(section.nodes));
     model.driver = read_driver(root.table("driver"));
-    read_dampers(root, file, section.at_damper, model);
+    read_dampers(root, section.at_damper, model);
     read_mounts(root, model);
     model.shaker = read_shaker(root.table("shaker"), model.structure);
-    read_sensors(root, file, model);
+    read_sensors(root, model);
     model.max_step_s = read_max_step_s(root, model);
     root.reject_unknown_keys();
     return model;

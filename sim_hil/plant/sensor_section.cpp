@@ -22,10 +22,9 @@ Names with_names(Names names, const Items &items) {
 }
 
 /// `file` and `cross_talk_from`, one of the neighbours.
-WiredSensor read_wired(TomlTable &section, const std::string &plant_file, const Names &neighbours) {
-    const std::filesystem::path file = section.text("file");
+WiredSensor read_wired(TomlTable &section, const Names &neighbours) {
     WiredSensor sensor;
-    sensor.params = load_sensor((std::filesystem::path(plant_file).parent_path() / file).string());
+    sensor.params = load_sensor(section.path("file"));
     if (section.has("cross_talk_from")) {
         sensor.cross_talk_from = section.choice("cross_talk_from", neighbours);
         if (sensor.params.cross_talk == 0.0) {
@@ -42,10 +41,10 @@ void require_acceleration(const TomlTable &section, const std::string &unit) {
 }
 
 /// [sensor]: the plant's own accelerometer with its converter.
-void read_own(TomlTable section, const std::string &plant_file, PlantModel &model) {
+void read_own(TomlTable section, PlantModel &model) {
     AccelerometerParams &params = model.sensor;
     if (section.has("file")) {
-        model.transducer = read_wired(section, plant_file, with_names({}, model.places));
+        model.transducer = read_wired(section, with_names({}, model.places));
         require_acceleration(section, model.transducer->params.unit);
     }
     params.full_scale_g = section.number("full_scale_g", {1e-3, 1e4, "g"});
@@ -60,12 +59,12 @@ void read_own(TomlTable section, const std::string &plant_file, PlantModel &mode
 }
 
 /// [sensors]: of a board, whose names the bench knows.
-void read_of_board(TomlTable section, const std::string &plant_file, PlantModel &model) {
+void read_of_board(TomlTable section, PlantModel &model) {
     const Names neighbours = with_names(with_names({}, model.places), model.dampers);
     for (const std::string &name : section.keys()) {
         require_identifier(section, name, name);
         TomlTable one = section.table(name);
-        model.sensors[name] = read_wired(one, plant_file, neighbours);
+        model.sensors[name] = read_wired(one, neighbours);
         one.reject_unknown_keys();
     }
 }
@@ -102,10 +101,10 @@ SensorParams load_sensor(const std::string &file) {
     return params;
 }
 
-void read_sensors(TomlTable &root, const std::string &plant_file, PlantModel &model) {
-    read_own(root.table("sensor"), plant_file, model);
+void read_sensors(TomlTable &root, PlantModel &model) {
+    read_own(root.table("sensor"), model);
     if (std::optional<TomlTable> section = root.optional_table("sensors")) {
-        read_of_board(*section, plant_file, model);
+        read_of_board(*section, model);
     }
     if (std::optional<TomlTable> section = root.optional_table("noise")) {
         read_noise(*section, model);

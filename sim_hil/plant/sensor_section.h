@@ -14,7 +14,7 @@ SensorParams load_sensor(const std::string &file);
 
 /// Places and dampers of the model are there already. Throws InputError naming the key that is
 /// wrong.
-void read_sensors(TomlTable &root, const std::string &plant_file, PlantModel &model);
+void read_sensors(TomlTable &root, PlantModel &model);
 
 } // namespace quiesce
 

@@ -137,9 +137,8 @@ Eigen::VectorXd read_vector(TomlTable &section, const std::string &key, std::siz
 
 /// Of a CSV file without a header, by its path from the plant's.
 std::vector<std::vector<double>> rows_of_file(TomlTable &section, const std::string &key,
-                                              const std::string &plant_file, std::size_t count) {
-    const std::filesystem::path name = section.text(key);
-    const std::string file = (std::filesystem::path(plant_file).parent_path() / name).string();
+                                              std::size_t count) {
+    const std::string file = section.path(key);
     std::vector<std::vector<double>> rows;
     for (CsvRow &row : read_csv_numbers(file)) {
         if (row.values.size() != count) {
@@ -160,15 +159,13 @@ std::vector<std::vector<double>> rows_of_file(TomlTable &section, const std::str
 }
 
 /// Under its key, or in the file that the key with _file names.
-Eigen::MatrixXd read_matrix(TomlTable &section, const std::string &key,
-                            const std::string &plant_file, std::size_t count) {
+Eigen::MatrixXd read_matrix(TomlTable &section, const std::string &key, std::size_t count) {
     const std::string of_file = key + "_file";
     if (section.has(key) && section.has(of_file)) {
         section.fail(of_file, key + " is there, too; leave one of the two out");
     }
     const std::vector<std::vector<double>> rows =
-        section.has(of_file) ? rows_of_file(section, of_file, plant_file, count)
-                             : section.square(key, count);
+        section.has(of_file) ? rows_of_file(section, of_file, count) : section.square(key, count);
     const auto size = static_cast<Eigen::Index>(count);
     Eigen::MatrixXd out(size, size);
     for (Eigen::Index i = 0; i < size; ++i) {
@@ -179,7 +176,7 @@ Eigen::MatrixXd read_matrix(TomlTable &section, const std::string &key,
 }
 
 /// The matrices and vectors but for the damper's.
-Matrices read_degrees(TomlTable &section, const std::string &plant_file, std::size_t count) {
+Matrices read_degrees(TomlTable &section, std::size_t count) {
     Matrices matrices;
     matrices.force = read_vector(section, "force", count);
     matrices.sensor = read_vector(section, "sensor", count);
@@ -187,9 +184,9 @@ Matrices read_degrees(TomlTable &section, const std::string &plant_file, std::si
     if (section.has("base")) {
         matrices.base = read_vector(section, "base", count);
     }
-    matrices.mass_kg = read_matrix(section, "mass_kg", plant_file, count);
-    matrices.damping_N_s_m = read_matrix(section, "damping_N_s_m", plant_file, count);
-    matrices.stiffness_N_m = read_matrix(section, "stiffness_N_m", plant_file, count);
+    matrices.mass_kg = read_matrix(section, "mass_kg", count);
+    matrices.damping_N_s_m = read_matrix(section, "damping_N_s_m", count);
+    matrices.stiffness_N_m = read_matrix(section, "stiffness_N_m", count);
     return matrices;
 }
 
@@ -202,12 +199,12 @@ Eigen::VectorXd read_damper(TomlTable &section, bool has_ends, std::size_t count
     return read_vector(section, "damper", count);
 }
 
-StructureSection read_matrices(TomlTable &section, const std::string &plant_file, bool has_ends) {
+StructureSection read_matrices(TomlTable &section, bool has_ends) {
     const std::size_t count = section.numbers("force", 0).size();
     if (count > kMaxDegrees) {
         section.fail("force", "expected at most " + std::to_string(kMaxDegrees) + " numbers");
     }
-    const Matrices matrices = read_degrees(section, plant_file, count);
+    const Matrices matrices = read_degrees(section, count);
     const Eigen::VectorXd damper = read_damper(section, has_ends, count);
     const auto size = static_cast<std::int64_t>(count);
     const std::int64_t mode_count = section.integer("mode_count", 1, size, size);
@@ -225,11 +222,11 @@ StructureSection read_matrices(TomlTable &section, const std::string &plant_file
 
 } // namespace
 
-StructureSection read_structure(TomlTable section, const std::string &plant_file, bool has_ends) {
+StructureSection read_structure(TomlTable section, bool has_ends) {
     const std::string kind = section.choice("kind", {"modes", "nodes", "matrices"});
     StructureSection out = kind == "modes"   ? read_modes(section, has_ends)
                            : kind == "nodes" ? read_nodes(section, has_ends)
-                                             : read_matrices(section, plant_file, has_ends);
+                                             : read_matrices(section, has_ends);
     section.reject_unknown_keys();
     return out;
 }

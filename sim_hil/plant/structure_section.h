@@ -19,9 +19,9 @@ struct StructureSection {
     std::vector<Place> nodes; ///< of modes over nodes; else none
 };
 
-/// plant_file: that files of matrices are beside. has_ends: the dampers say where they are, so the
-/// structure must not. Throws InputError naming the key, or the file and line, that is wrong.
-StructureSection read_structure(TomlTable section, const std::string &plant_file, bool has_ends);
+/// has_ends: the dampers say where they are, so the structure must not. Throws InputError naming
+/// the key, or the file and line, that is wrong.
+StructureSection read_structure(TomlTable section, bool has_ends);
 
 } // namespace quiesce
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "input_error.h"
 #include "toml_table.h"
 
 namespace quiesce {
@@ -38,7 +39,7 @@ InjectedFault read_fault(TomlTable &table, double end_s) {
     return fault;
 }
 
-std::vector<SegmentSpec> read_segments(TomlTable &root, const std::string &folder, double end_s) {
+std::vector<SegmentSpec> read_segments(TomlTable &root, double end_s) {
     std::vector<TomlTable> tables = root.tables("segment");
     if (tables.empty()) {
         root.fail("segment", "expected at least one table [[segment]]: what shakes the structure");
@@ -46,7 +47,7 @@ std::vector<SegmentSpec> read_segments(TomlTable &root, const std::string &folde
     std::vector<SegmentSpec> segments;
     double covered_s = 0.0;
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        segments.push_back(read_segment(tables[i], folder, i + 1 == tables.size()));
+        segments.push_back(read_segment(tables[i], i + 1 == tables.size()));
         covered_s += segments.back().duration_s;
     }
     if (covered_s < end_s * (1.0 - 1e-9)) {
@@ -95,6 +96,19 @@ std::optional<Transient> read_transient(TomlTable &root, double end_s) {
 
 } // namespace
 
+namespace {
+
+const std::string &named(const Scenario &scenario, const char *key, const std::string &file) {
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(file, unreadable)) {
+        throw InputError(scenario.file + ": " + key + ": there is no file " + file +
+                         "; name one that is there, by its path from the folder of this file");
+    }
+    return file;
+}
+
+} // namespace
+
 bool befalls_damper(FaultKind kind) {
     return kind == FaultKind::coil_open || kind == FaultKind::driver_stuck;
 }
@@ -106,6 +120,7 @@ Scenario load_scenario(const std::string &file) {
     root.text("schema");
     root.integer("version", 1, 1);
     Scenario scenario{};
+    scenario.file = file;
     scenario.name = root.text("name");
     scenario.plant_file = (folder / root.text("plant")).lexically_normal().string();
     if (root.has("board")) {
@@ -120,7 +135,7 @@ Scenario load_scenario(const std::string &file) {
     }
     scenario.seed = static_cast<std::uint64_t>(root.integer("seed", 0, INT64_MAX, 1));
     scenario.feed_current = root.boolean("feed_current", false);
-    scenario.segments = read_segments(root, folder.string(), scenario.duration_s);
+    scenario.segments = read_segments(root, scenario.duration_s);
     for (TomlTable &table : root.tables("fault")) {
         scenario.faults.push_back(read_fault(table, scenario.duration_s));
     }
@@ -128,6 +143,14 @@ Scenario load_scenario(const std::string &file) {
     scenario.transient = read_transient(root, scenario.duration_s);
     root.reject_unknown_keys();
     return scenario;
+}
+
+std::string plant_of(const Scenario &scenario) {
+    return named(scenario, "plant", scenario.plant_file);
+}
+
+std::string board_of(const Scenario &scenario) {
+    return scenario.board_file.empty() ? "" : named(scenario, "board", scenario.board_file);
 }
 
 bool moves_base(const Scenario &scenario, const ShakerParams &shaker) {

@@ -49,6 +49,7 @@ struct Transient {
 };
 
 struct Scenario {
+    std::string file; ///< it was read from
     std::string name;
     std::string plant_file; ///< relative paths resolved against the scenario's own folder
     std::string board_file; ///< likewise; "": the plant's one sensor and one damper
@@ -66,6 +67,11 @@ struct Scenario {
 /// Reads TOML, schema "quiesce-scenario" version 1 (docs/howto/describe-a-plant.md has the table of
 /// keys). Throws InputError naming file, line, key, what is wrong and what is allowed.
 Scenario load_scenario(const std::string &file);
+
+/// The file that its key "plant" or "board" names ("" without a board). Throws InputError, which
+/// names the scenario, the key and the file, where there is none.
+std::string plant_of(const Scenario &scenario);
+std::string board_of(const Scenario &scenario);
 
 /// Some segment shakes the base: by itself, or through a shaker that does.
 bool moves_base(const Scenario &scenario, const ShakerParams &shaker);

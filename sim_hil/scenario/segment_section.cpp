@@ -23,7 +23,6 @@ constexpr double kLongest_s = 1e5;
 constexpr Range kDuration = {1e-3, kLongest_s, "s"};
 
 struct Context {
-    std::string folder;
     bool is_last;
 };
 
@@ -159,17 +158,13 @@ std::vector<RecordPoint> load_record(const std::string &file, const std::string 
 }
 
 SegmentSpec read_record(TomlTable &section, const Context &context) {
-    const std::string file =
-        (std::filesystem::path(context.folder) / section.text("file")).lexically_normal().string();
+    const std::string file = section.path("file");
     const std::string time_column = section.text("time_column");
     const std::string accel_column = section.text("accel_column");
     const double scale_m_s2 = section.number("scale_m_s2", {1e-9, 1e9, "m/s2 per unit"}, 1.0);
     const double gain = section.number("gain", {-1e6, 1e6, "-"}, 1.0);
     const double time_scale = section.number("time_scale", {1e-3, 1e3, "-"}, 1.0);
     const double duration_s = read_open_duration_s(section, context);
-    if (!std::filesystem::is_regular_file(file)) {
-        section.fail("file", "expected a CSV file; there is none at " + file);
-    }
     const auto points = load_record(file, time_column, accel_column, scale_m_s2);
     const double length_s = (points.back().time_s - points.front().time_s) / time_scale;
     return {text("base acceleration from ", file, ", ", length_s, " s"), duration_s, ShakenBy::base,
@@ -195,7 +190,7 @@ const Kind kKinds[] = {
 
 } // namespace
 
-SegmentSpec read_segment(TomlTable &section, const std::string &folder, bool is_last) {
+SegmentSpec read_segment(TomlTable &section, bool is_last) {
     std::vector<std::string> names;
     for (const Kind &kind : kKinds) {
         names.emplace_back(kind.name);
@@ -204,7 +199,7 @@ SegmentSpec read_segment(TomlTable &section, const std::string &folder, bool is_
     SegmentSpec spec{};
     for (const Kind &kind : kKinds) {
         if (chosen == kind.name) {
-            spec = kind.read(section, {folder, is_last});
+            spec = kind.read(section, {is_last});
         }
     }
     section.reject_unknown_keys();

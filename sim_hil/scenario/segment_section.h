@@ -26,9 +26,9 @@ struct SegmentSpec {
     std::function<std::unique_ptr<Segment>(const ShakerParams &shaker)> make;
 };
 
-/// Reads a segment, and what it refers to. folder: where its relative paths start. is_last: it may
-/// go on for ever, where its kind allows that. Throws InputError naming what is wrong.
-SegmentSpec read_segment(TomlTable &section, const std::string &folder, bool is_last);
+/// Reads a segment, and what it refers to. is_last: it may go on for ever, where its kind allows
+/// that. Throws InputError naming what is wrong.
+SegmentSpec read_segment(TomlTable &section, bool is_last);
 
 } // namespace quiesce
 

@@ -63,7 +63,7 @@ const Mistake kModesPlantMistakes[] = {
      "structure.mode[1].at_frce: unknown key"},
     {"mode_is_a_number", "kind = \"modes\"\n", "kind = \"modes\"\nmodes = 2\n",
      "structure.modes: unknown key"},
-    {"no_damper", "[damper]", "[dampr]", "damper: missing; expected a table [damper]"},
+    {"no_damper", "[damper]", "[dampr]", "damper: missing; is 'dampr' meant for it? expected a table [damper]"},
     {"unknown_damper", "\"squeeze_biviscosity\"", "\"sponge\"",
      "viscous, viscous_dahl, zhang_tanh; found 'sponge'"},
     {"zero_gap", "gap_m = 0.002", "gap_m = 0", "damper.gap_m: expected a number in 1e-06 .. 0.1"},
@@ -77,7 +77,14 @@ const Mistake kModesPlantMistakes[] = {
      "damper.yield_coefficient:"},
     {"no_turns", "coil_turns = 1000", "", "damper.coil_turns: missing"},
     {"misspelt_damper_key", "force_scale = 4.74e-5", "force_scal = 4.74e-5",
-     "damper.force_scal: unknown key; expected one of: coil_radius_m, coil_turns, force_scale"},
+     "damper.force_scal: unknown key; is 'force_scale' meant? expected one of: coil_radius_m, "
+     "coil_turns, force_scale"},
+    {"misspelt_needed_key", "coil_turns = 1000", "coil_turn = 1000",
+     "damper.coil_turns: missing; is 'coil_turn' meant for it? expected"},
+    {"two_unknown_keys", "name =", "colour = 1\nmaker = \"x\"\nname =",
+     "colour: unknown key; expected one of:"},
+    {"unknown_keys_are_counted", "name =", "colour = 1\nmaker = \"x\"\nnotes = 1\nname =",
+     "(and 2 more unknown keys)"},
     {"unstable_force_scale", "force_scale = 4.74e-5", "force_scale = 1.0",
      "too long for this plant's fastest motion; set integration.max_step_us to"},
     {"zero_max_current", "max_current_A = 5.0", "max_current_A = 0.0", "driver.max_current_A:"},
@@ -175,6 +182,22 @@ TEST(ScenarioFile, without_segments_is_refused) {
     expect_message("schema = \"quiesce-scenario\"\nversion = 1\nname = \"x\"\nplant = "
                    "\"p.toml\"\nduration_s = 1\n",
                    "segment: expected at least one table [[segment]]", quiesce::load_scenario);
+}
+
+TEST(ScenarioFile, a_plant_that_is_not_there_is_named_with_file_and_key) {
+    const quiesce::TemporaryFile file(
+        spoilt(read("sim_hil/data/scenarios/step_10_20Hz.toml"),
+               {"", "../plants/squeeze_2012.toml", "no/such.toml", ""}));
+    const quiesce::Scenario scenario = quiesce::load_scenario(file.path());
+    try {
+        quiesce::plant_of(scenario);
+        FAIL() << "it was found";
+    } catch (const InputError &error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find(file.path() + ": plant: there is no file "), std::string::npos)
+            << message;
+        EXPECT_NE(message.find("no/such.toml"), std::string::npos) << message;
+    }
 }
 
 TEST(ScenarioFile, takes_eight_windows_and_no_more) {
