@@ -198,8 +198,7 @@ TEST(RecordFile, measured_earthquakes_load_with_their_peaks) {
 }
 
 TEST(RecordFile, that_is_not_there_is_named_with_the_scenarios_line) {
-    expect_message(record_text("no.csv"), ":8: segment[1].file: there is no file ",
-                   load_scenario);
+    expect_message(record_text("no.csv"), ":8: segment[1].file: there is no file ", load_scenario);
     expect_message(record_text("."), "segment[1].file: there is no file ", load_scenario);
 }
 
