@@ -4,6 +4,7 @@
 
 PACKAGING="$ROOT/targets/linux/packaging"
 CLEAN_ROOTS="$ROOT/build/package"
+PACKAGE_NAMES=(quiesced libquiesce-dev)
 
 # package_version: that of the newest entry of the change log.
 package_version() {
@@ -86,12 +87,11 @@ package_libraries() {
     sed -i -e 's#^/lib/#/usr/lib/#' -e "s#^/#$2/root/#" "$2"/database/info/*.list
 }
 
-# package_build ARCH OUT: OUT/packages/quiesced_VERSION_ARCH.deb. Debian's tools take no space in a
-# path: they see the sources through a link. The same sources give the same file, wherever and
-# whenever it is made.
+# package_build ARCH OUT: OUT/packages/NAME_VERSION_ARCH.deb of each package. Debian's tools take no
+# space in a path: they see the sources through a link. The same sources give the same files,
+# wherever and whenever they are made.
 package_build() {
-    local arch="$1" work file cmake="" start_s=$SECONDS
-    file="quiesced_$(package_version)_$arch.deb"
+    local arch="$1" work name file cmake="" start_s=$SECONDS
     work_folder
     work="$WORK_FOLDER/$arch"
     mkdir -p "$work/quiesce" "$2/packages"
@@ -108,6 +108,10 @@ package_build() {
         tail -n 40 "$LOG_DIR/package-$arch.log" >&2
         fail "the package for $arch cannot be built; the whole log is build/logs/package-$arch.log" 1
     }
-    mv "$work/$file" "$2/packages/$file"
-    say "package: ${2#"$ROOT/"}/packages/$file ($((SECONDS - start_s)) s)"
+    for name in "${PACKAGE_NAMES[@]}"; do
+        file="${name}_$(package_version)_$arch.deb"
+        mv "$work/$file" "$2/packages/$file"
+        say "package: ${2#"$ROOT/"}/packages/$file"
+    done
+    say "package: $arch took $((SECONDS - start_s)) s"
 }
