@@ -15,6 +15,7 @@ from quiesce_benchmarks.house.signal_tables import (
     peer_table,
     step_table,
 )
+from quiesce_benchmarks.install.page import install_table
 from quiesce_benchmarks.laws.page import law_table
 from quiesce_benchmarks.papers.page import paper_table
 from quiesce_benchmarks.tables.page import road_table
@@ -143,6 +144,8 @@ TABLES: dict[str, Callable[[dict[str, Any]], str]] = {
 def table(name: str, committed: Committed) -> str:
     """Lines of a page, of a table's name and a file's; KeyError where there is no such table."""
     kind, _, file = name.partition(" ")
+    if kind == "install":
+        return install_table(file, committed)
     if kind == "paper":
         return paper_table(file, committed)
     if kind == "law":
