@@ -12,6 +12,9 @@ extern "C" {
 
 #define QUIESCE_PARAM_COUNT 49
 
+/// Stored words of another layout mean something else: names, units or labels differ.
+#define QUIESCE_PARAM_LAYOUT UINT32_C(0x775F2612)
+
 /// Values of quiesce_params_t.law.
 enum {
     QUIESCE_LAW_OFF = 0,

@@ -11,7 +11,7 @@
 typedef struct {
     hal_nvm_memory_t memory;
     hal_nvm_t nvm;
-    uint32_t shipped_hash; ///< of the parameters that ship
+    uint32_t shipped_hash; ///< of the parameters that ship, and of what they mean
     keeper_state_t state;  ///< of the record that was read last
     bool is_writing;
     uint32_t words[HAL_NVM_MAX_WORDS]; ///< what was read, or is being written

@@ -14,7 +14,7 @@ namespace quiesced {
 namespace {
 
 constexpr const char *kParamKind = "running";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = QUIESCE_PARAM_LAYOUT; // of another release: not used
 constexpr int kReadings = 3;
 
 std::string text_of(const std::string &file) {

@@ -5,7 +5,7 @@ namespace quiesced {
 namespace {
 
 constexpr const char *kParamKind = "param";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = QUIESCE_PARAM_LAYOUT; // of another release: not used
 
 /// On the disk: of another number of parameters is of another length, and damaged.
 struct SavedParams {

@@ -6,6 +6,7 @@
 #include "input_error.h"
 #include "instance_lock.h"
 #include "names.h"
+#include "nvm_file.h"
 #include "state_store.h"
 #include "status_file.h"
 #include "temporary_folder.h"
@@ -45,6 +46,23 @@ TEST(StateStore, parameters_that_a_check_refuses_are_not_used) {
     ASSERT_EQ(store.save_params(params_with(1), params_with(-7)), "");
     EXPECT_EQ(store.effective(params_with(1), note).constant_current_mA, 1);
     EXPECT_EQ(note.rfind("saved parameters are not used: constant_current_mA: ", 0), 0U) << note;
+}
+
+TEST(StateStore, parameters_of_another_release_are_not_used) {
+    const TemporaryFolder folder;
+    StateStore store(folder.path());
+    struct {
+        std::uint32_t configured_hash;
+        quiesce_params_t params;
+    } const saved = {0, params_with(2)};
+    linux_error_t error{};
+    for (const std::uint32_t version : {1U, QUIESCE_PARAM_LAYOUT ^ 1U}) {
+        ASSERT_TRUE(nvm_file_write(store.params_file().c_str(), "param", version, &saved,
+                                   sizeof saved, &error));
+        std::string note;
+        EXPECT_EQ(store.effective(params_with(1), note).constant_current_mA, 1);
+        EXPECT_NE(note.find("another version"), std::string::npos) << note;
+    }
 }
 
 TEST(StateStore, a_damaged_record_is_told_and_left_where_it_is) {
