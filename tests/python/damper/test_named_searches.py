@@ -1,25 +1,22 @@
 """Searches by name: on functions whose least value is known, in identification, in rule search."""
 
-import importlib.util
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
-from quiesce.base.errors import UsageError
-from quiesce.base.extras import extra
+from conftest import ROOT
 from quiesce.base.searches import bees as bee_colony
-from quiesce.base.searches import by_pymoo
 from quiesce.base.searches.methods import METHODS
 from quiesce.damper.fit import named
 from quiesce.damper.fit.named import fit_named
 from quiesce.damper.fit.population import values_of
-from quiesce.rules.optimize.methods import make_search, method_settings
+from quiesce.rules.optimize.methods import method_settings
+from quiesce.rules.optimize.search import make_search
 from test_damper_published_fits import small_problem
 
 TRIALS = 4000
-HAS_PYMOO = importlib.util.find_spec("pymoo") is not None
-OURS = ("cuckoo", "bees")
-BY_PYMOO = pytest.mark.skipif(not HAS_PYMOO, reason="needs tools/requirements-search.txt")
-ALL = [name if name in OURS else pytest.param(name, marks=BY_PYMOO) for name in METHODS]
 
 
 def sphere(points: np.ndarray) -> np.ndarray:
@@ -45,19 +42,19 @@ def best_of(name: str, function, seed: int, dimensions: int = 4) -> float:
     return best
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", METHODS)
 def test_least_values_are_found(name: str):
     drawn = np.random.default_rng(1).random((TRIALS, 4))
     assert best_of(name, sphere, 1) < 1e-3 < sphere(drawn).min()
     assert best_of(name, rastrigin, 1) < 0.5 * rastrigin(drawn).min()
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", METHODS)
 def test_the_same_seed_is_the_same_search(name: str):
     assert best_of(name, rastrigin, 5) == best_of(name, rastrigin, 5)
 
 
-@pytest.mark.parametrize("name", OURS)
+@pytest.mark.parametrize("name", METHODS)
 def test_what_diverges_is_survived(name: str):
     def broken(points: np.ndarray) -> np.ndarray:
         return np.where(points[:, 0] > 0.6, np.inf, sphere(points))
@@ -65,7 +62,7 @@ def test_what_diverges_is_survived(name: str):
     assert best_of(name, broken, 2) < 1e-2
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", METHODS)
 def test_rules_are_searched_by_name(name: str):
     levels, target = (5, 5, 5, 64), np.array([4, 0, 2, 40])
     search = make_search(levels, (0,) * 4, method_settings(name, 12, ""), np.random.default_rng(1))
@@ -81,7 +78,7 @@ def test_rules_are_searched_by_name(name: str):
     assert best < 0.25
 
 
-@pytest.mark.parametrize("name", OURS)
+@pytest.mark.parametrize("name", METHODS)
 def test_a_damper_is_identified_by_name(name: str):
     problem = small_problem()
     found = fit_named(name, problem, 1, trials=3000)
@@ -124,10 +121,37 @@ def test_onlookers_choose_by_what_the_employed_bees_found(monkeypatch: pytest.Mo
     assert [list(one) for one in seen] == [[100.0] * 7 + [0.0] + [100.0] * 2]
 
 
-def test_without_the_extra_there_is_one_line():
-    with pytest.raises(
-        UsageError, match=r"needs the extra 'search'.*requirements-search\.txt"
-    ) as caught:
-        with extra(*by_pymoo.SEARCH):
-            raise ModuleNotFoundError("none", name="pymoo")
-    assert "\n" not in str(caught.value)
+def test_covariance_matrix_adaptation_draws_nothing_from_what_all_share():
+    found = []
+    for disturbed in (False, True):
+        rng = np.random.default_rng(1)
+        search, told = METHODS["cmaes"](rng.random((12, 3)), rng), []
+        points = next(search)
+        for generation in range(30):
+            told.append(points)
+            np.random.seed(generation if disturbed else 0)  # noqa: NPY002, what other threads do
+            points = search.send(sphere(points))
+        found.append(np.concatenate(told))
+    np.testing.assert_array_equal(*found)
+
+
+def test_pymoo_is_loaded_by_a_search_and_says_nothing():
+    """Neither commands that search nothing nor the help of those that do wait for it."""
+    lines = (
+        "import sys, warnings; warnings.simplefilter('error')",
+        "import quiesce.cli.rules.optimize, quiesce.cli.identify.command, quiesce.damper.fit_model",
+        "assert 'pymoo' not in sys.modules",
+        "import pymoo.functions; pymoo.functions.is_compiled = lambda: False",
+        "import numpy as np; from quiesce.base.searches.methods import METHODS",
+        "rng = np.random.default_rng(1)",
+        "search = METHODS['pso'](rng.random((8, 2)), rng); points = next(search)",
+        "for _ in range(5): points = search.send(points.sum(axis=1))",
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", "\n".join(lines)],
+        env={**os.environ, "PYTHONPATH": str(ROOT / "tools/src")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

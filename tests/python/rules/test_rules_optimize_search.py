@@ -9,29 +9,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 from quiesce.base.errors import UsageError
+from quiesce.base.searches import by_pymoo
+from quiesce.base.searches.names import NAMES
 from quiesce.rules.optimize import state as optimize_state
-from quiesce.rules.optimize.de import DeSettings
-from quiesce.rules.optimize.ga import Coding, GaSettings, roulette_shares
-from quiesce.rules.optimize.methods import make_search
-from quiesce.rules.optimize.nsga2 import (
-    NsgaSettings,
-    crowding,
-    fronts,
-    survivors,
-    tournament,
-)
+from quiesce.rules.optimize.coding import Coding
+from quiesce.rules.optimize.methods import method_settings
 from quiesce.rules.optimize.objective import Steady
 from quiesce.rules.optimize.run import Limits, Problem, Runner, simplify
+from quiesce.rules.optimize.search import make_search
 from quiesce.rules.optimize.state import State
 
 LEVELS = (5,) * 6 + (1024,) * 3
 TARGET = (0, 4, 2, 3, 1, 4, 700, 20, 333)
 FIRST = (0,) * 9
 METHODS = {
-    "tournament": GaSettings(population=30),
-    "roulette": GaSettings(population=30, selection="roulette"),
-    "de": DeSettings(population=30),
-    "nsga2": NsgaSettings(population=30),
+    "tournament": method_settings("ga", 30, "tournament"),
+    "roulette": method_settings("ga", 30, "roulette"),
+    **{name: method_settings(name, 30, "tournament") for name in ("de", "nsga2", *NAMES)},
 }
 SETTINGS = {"method": "any", "seed": 3}
 
@@ -51,6 +45,11 @@ def steady_of(genome: tuple[int, ...]) -> tuple[Steady, ...]:
             float(sum(genome[:6])),
         ),
     )
+
+
+def costs_of(people, name: str) -> np.ndarray:
+    rows = [[distance(one), float(sum(one[:6]))] for one in people]
+    return np.array(rows)[:, : 2 if name == "nsga2" else 1]
 
 
 def make_problem(evaluate=steady_of, objectives: int = 1) -> Problem:
@@ -117,7 +116,7 @@ def test_differential_evolution_does_as_well_as_scipy(tmp_path) -> None:
 def test_front_of_two_objectives_holds_both_ends_and_points_between(tmp_path) -> None:
     runner = run(tmp_path, "nsga2", Limits(80))
     costs = np.array([[distance(g), sum(g[:6])] for g in runner.visited])
-    front = costs[fronts(costs)[0]]
+    front = costs[by_pymoo.front(costs)]
     assert front[:, 1].min() == 0
     # With the small genes right, only the three others are left to be found.
     assert front[:, 0].min() < 5.0
@@ -137,10 +136,14 @@ def test_same_seed_same_search_whatever_the_jobs(tmp_path, name) -> None:
 
 @pytest.mark.parametrize("name", METHODS)
 def test_other_seed_other_search(name) -> None:
-    seeds = (3, 4)
-    searches = [make_search(LEVELS, FIRST, METHODS[name], np.random.default_rng(s)) for s in seeds]
-    first, second = (next(search) for search in searches)
-    assert first != second
+    found = []
+    for seed in (3, 4):
+        search = make_search(LEVELS, FIRST, METHODS[name], np.random.default_rng(seed))
+        first = next(search)
+        found.append((first, search.send(costs_of(first, name))))
+    assert found[0][1] != found[1][1]
+    # Covariance matrix adaptation begins at the start alone.
+    assert found[0][0] != found[1][0] or name == "cmaes"
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -151,17 +154,41 @@ def test_first_population_holds_the_start(name) -> None:
         assert next(search)[0] == first
 
 
-def test_elite_survives(tmp_path) -> None:
+@pytest.fixture
+def algorithms(monkeypatch) -> list:
+    """pymoo's algorithms as they are begun."""
+    begun, asked = [], by_pymoo.asked
+
+    def noted(algorithm, *more):
+        begun.append(algorithm)
+        return asked(algorithm, *more)
+
+    monkeypatch.setattr(by_pymoo, "asked", noted)
+    return begun
+
+
+def test_elite_survives(algorithms) -> None:
     for name in ("tournament", "roulette"):
-        best = run(tmp_path, name, Limits(30)).history.best
-        assert all(b <= a for a, b in zip(best, best[1:], strict=False))
         search = make_search(LEVELS, FIRST, METHODS[name], np.random.default_rng(5))
-        people = next(search)
+        people, known = next(search), []
         for _ in range(20):
-            cost = np.array([[distance(one)] for one in people])
-            best_now = people[int(cost.argmin())]
-            people = search.send(cost)
-            assert best_now in people
+            costs = costs_of(people, name)
+            known += [float(cost) for cost in costs[:, 0]]
+            people = search.send(costs)
+            assert len(people) == 30
+            parents = sorted(float(cost) for cost in algorithms[-1].pop.get("F")[:, 0])
+            assert parents == sorted(known)[:30]
+    assert len(algorithms) == 2
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_space_that_is_searched_through_ends_no_search(name) -> None:
+    search = make_search((2, 1), (1, 0), METHODS[name], np.random.default_rng(5))
+    people, seen = next(search), set()
+    for _ in range(12):
+        seen |= set(people)
+        people = search.send(np.array([[float(g[0])] * (1 + (name == "nsga2")) for g in people]))
+    assert seen == {(0, 0), (1, 0)}
 
 
 @pytest.mark.parametrize("levels", [(5,), (2,), (1,), (3, 7, 64), (1024, 5)])
@@ -180,60 +207,63 @@ def test_neighbouring_levels_of_a_power_of_two_differ_in_one_bit() -> None:
 
 def test_all_levels_have_nearly_equal_shares_of_the_codes() -> None:
     coding = Coding((5,))
-    bits = np.array(list(product((0, 1), repeat=coding.bits)), dtype=np.uint8)
+    bits = np.array(list(product((False, True), repeat=coding.bits)))
     counts = np.bincount([coding.decode(one)[0] for one in bits])
     assert len(counts) == 5 and counts.max() - counts.min() <= 1
 
 
 def test_roulette_prefers_the_better_and_takes_equals_equally() -> None:
-    shares = roulette_shares(np.array([1.0, 3.0, 2.0]))
+    shares = by_pymoo.roulette_shares(np.array([1.0, 3.0, 2.0]))
     assert np.allclose(shares, [2 / 3, 0, 1 / 3])
-    assert np.allclose(roulette_shares(np.full(4, 7.0)), 0.25)
+    assert np.allclose(by_pymoo.roulette_shares(np.full(4, 7.0)), 0.25)
 
 
-def test_fronts_are_those_of_brute_force() -> None:
+def test_roulette_turns_by_the_shares(algorithms) -> None:
+    search = make_search(LEVELS, FIRST, METHODS["roulette"], np.random.default_rng(5))
+    search.send(costs_of(next(search), "roulette"))
+    people = algorithms[0].pop
     rng = np.random.default_rng(1)
-    costs = rng.integers(0, 6, (60, 3)).astype(float)
-    left, expected = list(range(60)), []
-    while left:
-        front = [
-            i for i in left
-            if not any((costs[j] <= costs[i]).all() and (costs[j] < costs[i]).any() for j in left)
+    chosen = by_pymoo.Roulette().do(None, people, 20000, 2, to_pop=False, random_state=rng)
+    assert chosen.shape == (20000, 2)
+    shares = np.bincount(chosen.ravel(), minlength=30) / chosen.size
+    expected = by_pymoo.roulette_shares(people.get("F")[:, 0])
+    assert np.allclose(shares, expected, atol=0.005) and expected.max() > 0.04
+
+
+def test_front_is_that_of_brute_force() -> None:
+    rng = np.random.default_rng(1)
+    for size in (1, 5, 60, 400):
+        costs = rng.integers(0, 6, (size, 3)).astype(float)
+        expected = [
+            i for i in range(size)
+            if not any((one <= costs[i]).all() and (one < costs[i]).any() for one in costs)
         ]  # fmt: skip
-        expected.append(front)
-        left = [i for i in left if i not in front]
-    assert [list(front) for front in fronts(costs)] == expected
+        assert list(by_pymoo.front(costs)) == expected
 
 
-def test_crowding_is_infinite_at_the_ends_and_larger_where_it_is_lonely() -> None:
-    costs = np.array([[0.0, 10.0], [1.0, 8.0], [2.0, 7.0], [8.0, 1.0], [10.0, 0.0]])
-    distances = crowding(costs)
-    assert np.isinf(distances[[0, 4]]).all()
-    assert np.allclose(distances[1:4], [2 / 10 + 3 / 10, 7 / 10 + 7 / 10, 8 / 10 + 7 / 10])
+def test_parents_are_the_best_fronts_and_the_lonely_of_the_last(algorithms) -> None:
+    settings = method_settings("nsga2", 5, "")
+    search = make_search(LEVELS, FIRST, settings, np.random.default_rng(1))
+    assert len(next(search)) == 5
+    first = np.array([[2.0, 2.0], [1.0, 9.0], [9.0, 1.0], [3.0, 4.0], [3.1, 3.9]])
+    assert len(search.send(first)) == 5
+    later = np.array([[4.0, 3.5], [20.0, 20.0], [21.0, 20.0], [20.0, 21.0], [30.0, 30.0]])
+    search.send(later)
+    parents = {tuple(costs) for costs in algorithms[0].pop.get("F").tolist()}
+    # The second front is (3, 4), (3.1, 3.9), (4, 3.5): its middle one has the nearest neighbours.
+    assert parents == {(2.0, 2.0), (1.0, 9.0), (9.0, 1.0), (3.0, 4.0), (4.0, 3.5)}
+    search.send(np.full((5, 2), 50.0))
+    assert {tuple(costs) for costs in algorithms[0].pop.get("F").tolist()} == parents
 
 
-def test_parents_win_by_front_and_then_by_distance() -> None:
-    rank, distance = np.array([0, 0, 1]), np.array([0.5, 2.0, np.inf])
-    rng = np.random.default_rng(1)
-    chosen = np.concatenate([tournament(rank, distance, rng) for _ in range(400)])
-    share = np.bincount(chosen, minlength=3) / len(chosen)
-    # Of the nine pairs 1 wins five, 0 three, 2 only the one against itself.
-    assert np.allclose(share, [3 / 9, 5 / 9, 1 / 9], atol=0.05)
-
-
-def test_survivors_are_the_best_fronts_and_the_lonely_of_the_last() -> None:
-    costs = np.array([[2.0, 2.0], [1.0, 9.0], [9.0, 1.0], [3.0, 4.0], [4.0, 3.5], [3.1, 3.9]])
-    people = np.arange(6, dtype=np.uint8)[:, None]
-    kept, kept_costs = survivors(people, costs, 5)
-    assert sorted(kept[:, 0]) == [0, 1, 2, 3, 4]
-    assert (kept_costs == costs[kept[:, 0]]).all()
-    assert sorted(survivors(people, costs, 3)[0][:, 0]) == [0, 1, 2]
-
-
-def test_equal_people_survive_once() -> None:
-    people = np.array([[1], [1], [1], [2], [3]], dtype=np.uint8)
-    costs = np.array([[0.0, 0.0]] * 3 + [[1.0, 2.0], [2.0, 1.0]])
-    assert sorted(survivors(people, costs, 3)[0][:, 0]) == [1, 2, 3]
+def test_equal_people_are_no_two_parents(algorithms) -> None:
+    for name in ("tournament", "roulette", "nsga2"):
+        search = make_search(LEVELS, FIRST, METHODS[name], np.random.default_rng(2))
+        people = next(search)
+        for _ in range(15):
+            people = search.send(costs_of(people, name))
+            bits = algorithms[-1].pop.get("X")
+            assert len(np.unique(bits, axis=0)) == len(bits) == 30
 
 
 # Runs
@@ -357,7 +387,8 @@ def with_change(key: str, value):
     ("change", "words"),
     [
         (with_change("schema", "other"), "damaged"),
-        (with_change("version", 99), "damaged"),
+        (with_change("version", 1), "another version of this command .1, not 2.*--anew"),
+        (with_change("version", 99), "another version"),
         (with_change("evaluated", 5), "damaged"),
         (with_change("evaluated", [[[0] * 8, [[1, 2, 3]]]]), "no genome"),
         (with_change("evaluated", [[[9] + [0] * 8, [[1, 2, 3]]]]), "no genome"),

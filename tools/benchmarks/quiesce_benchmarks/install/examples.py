@@ -113,11 +113,8 @@ NEED_A_BUS = (
 )
 NO_BUS = "--bus socketcan:none0"
 
-# What stands in the place of an example: another extra is asked for.
-EXTRAS = (
-    ("search", "rules optimize --scenario sine_20Hz --method pso --evaluations 6 --out swarm"),
-    ("mdf", f"can record --out run.mf4 {NO_BUS}"),
-)
+# What stands in the place of an example: an extra is asked for.
+EXTRAS = (("mdf", f"can record --out run.mf4 {NO_BUS}"),)
 
 
 def write_files(folder: Path) -> None:

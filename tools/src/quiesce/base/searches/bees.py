@@ -2,7 +2,7 @@
 prefer good ones, and left to scouts where nothing better was found for long.
 
 A bee at x tries x_j + phi (x_j - y_j) in one coordinate j, y another source and phi in -1 .. 1; the
-better of both stays. All bees of a kind fly at once.
+better of both stays. All bees of a kind fly at once. Ours, because pymoo and scipy have none.
 """
 
 from collections.abc import Generator

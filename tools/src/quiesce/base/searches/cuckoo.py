@@ -2,7 +2,8 @@
 
 In a generation every nest is tried a flight away, x + 0.01 L (x - best) g with L of Levy's law
 (Mantegna's algorithm, exponent 1.5) and g Gaussian, then a quarter of all coordinates a random part
-of the way between two other nests; each time the better of old and new stays.
+of the way between two other nests; each time the better of old and new stays. Ours, because pymoo
+and scipy have none.
 """
 
 from collections.abc import Generator

@@ -98,7 +98,7 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         help="default: variable projection, differential evolution, least squares; ga: the binary "
         "genetic algorithm of the squeeze-mode paper, in ranges that narrow; ga-plain: in ranges "
         "that do not; de: the thesis' differential evolution; pso, cmaes, es, cuckoo, bees: "
-        "searches that a review names, the first three by pymoo; ls: Bouc-Wen by least squares "
+        "searches that a review names; ls: Bouc-Wen by least squares "
         "from three sines a current",
     )  # fmt: skip
     group.add_argument(

@@ -14,7 +14,6 @@ from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import default_plant, results_folder, results_text, shown, typed
 from quiesce.base.progress import say
-from quiesce.base.searches.methods import require
 from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
 from quiesce.engine import scenarios
 from quiesce.engine.bench import Bench
@@ -23,9 +22,8 @@ from quiesce.engine.scenarios import Scenario
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.optimize import state as optimize_state
 from quiesce.rules.optimize.evaluate import driver_max_A, require_bench_option
-from quiesce.rules.optimize.ga import SELECTIONS
 from quiesce.rules.optimize.genes import RULES, SETS, TUNABLE
-from quiesce.rules.optimize.methods import GA, METHODS, method_settings
+from quiesce.rules.optimize.methods import GA, METHODS, SELECTIONS, method_settings
 from quiesce.rules.optimize.objective import OBJECTIVES, Objective, parse_weights
 from quiesce.rules.optimize.report import headline, write_report
 from quiesce.rules.optimize.result import Found, result_json, text_sections
@@ -66,7 +64,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="search rule tables and set positions on the plant, in closed loop",
         description="Search rule tables and set positions on the plant, in closed loop with the\n"
         "controller: genetic algorithm, differential evolution, several objectives at once,\n"
-        "or a search that papers name (pso, cmaes and es by pymoo, an extra; cuckoo, bees).",
+        "or a search that papers name (pso, cmaes, es, cuckoo, bees).",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -167,7 +165,6 @@ def start_steadies(args: argparse.Namespace, chosen: list[Scenario]) -> Steadies
 
 
 def make_task(args: argparse.Namespace, bench: Bench, folder: Path, pool: Executor) -> Task:
-    require(args.method)
     tune = parse_tune(args.tune)
     weights = parse_weights(args.objective, args.weight)
     params = effective_params(bench, args.set)
@@ -180,7 +177,6 @@ def make_task(args: argparse.Namespace, bench: Bench, folder: Path, pool: Execut
         scenarios=chosen,
         start=start,
         tune=tune,
-        method=args.method,
         settings=method_settings(args.method, args.population, args.selection),
         objective=Objective(weights, max_A),
         seed=args.seed,

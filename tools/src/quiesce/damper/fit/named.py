@@ -22,8 +22,7 @@ def fit_named(
     progress: Progress | None = None,
     trials: int = TRIALS,
 ) -> Fit:
-    """Of `effort` counts only when to stop (seconds, stop). Ctrl-C ends it with the best so far.
-    UsageError where the method needs an extra that is not installed."""
+    """Of `effort` counts only when to stop (seconds, stop). Ctrl-C ends it with the best so far."""
     clock = Clock(problem, effort, progress)
     rng = np.random.default_rng(seed)
     search = METHODS[name](sobol(len(problem.variables), POPULATION, rng), rng)

@@ -112,7 +112,7 @@ class Runner:
         elif digests[generation] != now:
             raise UsageError(
                 f"{shown(self._file)} does not repeat: generation {generation + 1} is not what it "
-                f"was (another version of this command or of numpy?); {ANEW}"
+                f"was (another version of this command, of numpy or pymoo?); {ANEW}"
             )
 
     def _headline(self) -> str:

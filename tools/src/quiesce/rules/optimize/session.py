@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,12 @@ from quiesce.rules.optimize import state as optimize_state
 from quiesce.rules.optimize.evaluate import ClosedLoop, bench_digest
 from quiesce.rules.optimize.genes import Genome, Space, make_space
 from quiesce.rules.optimize.lookup import Sweep, best_constants, sweep
-from quiesce.rules.optimize.methods import NSGA2, Settings, make_search, settings_json
-from quiesce.rules.optimize.nsga2 import fronts
+from quiesce.rules.optimize.methods import NSGA2, Settings
 from quiesce.rules.optimize.objective import Objective, Outcome
 from quiesce.rules.optimize.result import Found, FrontPoint, NoiseCheck
 from quiesce.rules.optimize.run import Limits, Problem, Runner, simplify
 from quiesce.rules.optimize.scenarios import Steadies, steady_scenarios
+from quiesce.rules.optimize.search import make_search
 from quiesce.rules.optimize.start import recipe_base
 from quiesce.rules.optimize.state import State
 
@@ -41,7 +41,6 @@ class Task:
     scenarios: Sequence[Scenario]
     start: RuleBase
     tune: Sequence[str]
-    method: str
     settings: Settings
     objective: Objective
     seed: int
@@ -76,7 +75,7 @@ def file_digest(file: Path) -> str:
 def search_settings(task: Task) -> dict[str, Any]:
     """All that the result depends on but the number of generations; values of JSON."""
     return {
-        **settings_json(task.method, task.settings),
+        **asdict(task.settings),
         "seed": task.seed,
         "tune": list(task.tune),
         "weights": list(task.objective.weights),
@@ -95,7 +94,7 @@ def make_problem(space: Space, loop: ClosedLoop, task: Task) -> Problem:
     return Problem(
         canonical=space.canonical,
         evaluate=lambda genome: loop.of_rules(space.decode(genome)),
-        costs=objective.several if task.method == NSGA2 else objective.single,
+        costs=objective.several if task.settings.method == NSGA2 else objective.single,
         cost=objective.cost,
     )
 
@@ -152,7 +151,7 @@ class Session:
             objective=objective,
             history=runner.history,
             evaluations=len(runner.visited),
-            front=self._front(runner) if task.method == NSGA2 else (),
+            front=self._front(runner) if task.settings.method == NSGA2 else (),
             checks=self._checks(best),
             settings=self.settings,
             command=task.command,
@@ -174,10 +173,12 @@ class Session:
 
     def _front(self, runner: Runner) -> list[FrontPoint]:
         """Of all that was tried, what nothing beats; equal costs once, by the first objective."""
+        from quiesce.base.searches import by_pymoo  # slow to load
+
         genomes = list(runner.visited)
         costs = self._task.objective.several([runner.visited[genome] for genome in genomes])
         costs = np.round(costs, 3)
-        front = fronts(costs)[0]
+        front = by_pymoo.front(costs)
         _, once = np.unique(costs[front], axis=0, return_index=True)
         chosen = front[once]
         if len(chosen) > FRONT_SHOWN:

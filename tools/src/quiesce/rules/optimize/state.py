@@ -20,7 +20,7 @@ from quiesce.rules.optimize.genes import Genome
 from quiesce.rules.optimize.objective import Outcome, Steady
 
 SCHEMA = "quiesce-rules-optimize"
-VERSION = 1
+VERSION = 2  # raised where a method's populations are no longer what they were
 FILE_NAME = "state.json"
 ANEW = "leave out --resume and give --anew to start again"
 
@@ -101,8 +101,13 @@ def load(file: Path, settings: dict[str, Any], levels: Sequence[int], places: in
     """UsageError where the file is not a state, or is one of a search with other settings."""
     text = read(file)
     try:
-        old = json.loads(text)["settings"]
-        found = difference(old, settings)
+        data = json.loads(text)
+        if data["schema"] == SCHEMA and data["version"] != VERSION:
+            raise UsageError(
+                f"{shown(file)} is of another version of this command ({data['version']}, not "
+                f"{VERSION}), whose searches went another way; {ANEW}"
+            )
+        found = difference(data["settings"], settings)
         state = None if found else parse(text, levels, places)
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise UsageError(f"{shown(file)} is damaged ({one_line(error)}); {ANEW}")
