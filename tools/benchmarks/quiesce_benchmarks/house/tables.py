@@ -119,9 +119,9 @@ def excerpt(hil: dict[str, Any]) -> str:
     """Of what `./tools/hil` prints: the columns' names, the step's first half, the comparison."""
     lines = hil["table"].splitlines()
     start = next(i for i, line in enumerate(lines) if line.startswith("step_"))
-    end = next(i for i in range(start, len(lines)) if lines[i].startswith("---"))
+    end = lines.index("", start)
     equal = next(i for i, line in enumerate(lines) if line.startswith("trace equality"))
-    shown = [*lines[:2], *lines[start:end], "...", *lines[equal : equal + 2]]
+    shown = [*lines[:3], *lines[start:end], "...", *lines[equal : equal + 2]]
     return "```text\n" + "\n".join(line.rstrip() for line in shown) + "\n```\n"
 
 

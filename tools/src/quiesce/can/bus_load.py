@@ -121,9 +121,8 @@ LEFT_OUT = (
 
 def totals_table(totals: dict[str, float], bitrate: int) -> str:
     """totals: of totals_pct()."""
-    rows = [[words, f"{totals[name]:.1f}"] for name, words in TOTAL_WORDS.items()]
-    head = [f"load at {bitrate} bit/s", "%"]
-    return f"{format_table(head, rows, left=(0,))}\n{LEFT_OUT}"
+    rows = [(words, totals[name]) for name, words in TOTAL_WORDS.items()]
+    return f"{format_table([f'load at {bitrate} bit/s', '%||.1f'], rows)}\n{LEFT_OUT}"
 
 
 def on_bus(database: Database, sensors: int = 1, dampers: int = 1) -> list[Message]:

@@ -11,6 +11,7 @@ from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
 from quiesce.cli.rig_options import add_motions, add_rig, records_of, several_rig_files, shaking_of
+from quiesce.cli.terminal import show
 from quiesce.compare.clairvoyant import CLAIRVOYANT, Found
 from quiesce.compare.goal import INDEX, read_goal
 from quiesce.compare.laws import ComparedLaw, read_law, require_labels
@@ -157,5 +158,5 @@ def run(args: argparse.Namespace) -> int:
         names = [one.comparison.rig.board.name for one in rigs]
         print(json.dumps({"rigs": names, "left_out": left_out, "cells": as_data(cells)}, indent=1))
     else:
-        print("\n".join(filter(None, [text(cells), *left_out, told])))
+        show("\n".join(filter(None, [text(cells), *left_out, told])))
     return 0

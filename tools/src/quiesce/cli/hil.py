@@ -14,6 +14,7 @@ from quiesce.base.command import real_number, whole_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.paths import results_folder, results_text, shown, typed
 from quiesce.cli.hil_tables import add_options, find_tables, rerun_words
+from quiesce.cli.terminal import show
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, target_options
 from quiesce.engine.linux_target import linux_channel
@@ -336,7 +337,7 @@ def run_plan(args: argparse.Namespace, bench: Bench, plan: Plan, rules: Path | N
     if args.json:
         print(json.dumps(metrics_json(result), indent=1))
     else:
-        print(f"\n{table}")
+        show(f"\n{table}")
         print(f"report: {shown(out / 'index.html')}\nmetrics: {shown(out / 'metrics.json')}")
     for one in result.warnings:
         say(f"quiesce: warning: {one.scenario}, {one.law}: {one.text}")

@@ -5,6 +5,7 @@ import json
 
 from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
+from quiesce.cli.terminal import show
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import allowed, default
 
@@ -38,5 +39,5 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(params, indent=1))
         return 0
     rows = [[p["name"], p["unit"], allowed(p), default(p)] for p in params]
-    print(format_table(["name", "unit", "allowed", "default"], rows, left=(0, 1, 2)))
+    show(format_table(["name", "unit", "allowed", "default"], rows, left=(0, 1, 2)))
     return 0

@@ -10,6 +10,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
+from quiesce.cli.terminal import show
 from quiesce.plant_id.sweep import SweepPlan, Timeline, dwell_s, timeline, write_csv
 
 EPILOG = """examples:
@@ -225,7 +226,7 @@ def run_find(args: argparse.Namespace) -> int:
         not args.damper_elsewhere,
         args.modes,
     )
-    print(found.text)
+    show(found.text)
     print(f"\nwritten    {', '.join(shown(file) for file in sorted(out.iterdir()))}")
     return 0
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from quiesce.base.table import format_table
 from quiesce.engine import laws
 from quiesce.hil.rig import RigRow, by_window
-from quiesce.hil.table import merge_targets, number
+from quiesce.hil.table import merge_targets
 
 # What stands in a column: heading, figure, digits.
 BODY_COLUMNS = (
@@ -35,13 +35,17 @@ NOTE = (
 Table = tuple[list[str], list[list[str]]]  # head, rows
 
 
+def number(value: float | None, digits: int) -> str:
+    return "-" if value is None else f"{value:z.{digits}f}"
+
+
 def part_table(kind: str, rows: Sequence[RigRow], columns: Sequence[tuple[str, str, int]]) -> Table:
     """Of the bodies or dampers of one window: the laws one below the other for each of them."""
     body = []
     for part in getattr(rows[0], kind):
         for row in rows:
             figures = getattr(row, kind)[part]
-            cells = [number(figures[key], digits, 0) for _, key, digits in columns]
+            cells = [number(figures[key], digits) for _, key, digits in columns]
             body.append([part, laws.find(row.law).label, row.target, *cells])
     head = [{"bodies": "body", "dampers": "damper"}[kind], "law", "on"]
     return [*head, *(title for title, _, _ in columns)], body

@@ -5,19 +5,20 @@ from dataclasses import replace
 from itertools import groupby
 from typing import Any, TypeVar
 
+from quiesce.base.table import format_table
 from quiesce.engine import laws
 from quiesce.hil.metrics import Beside, OpenLoop, Result, Row, excitation_text
 from quiesce.hil.published import Published
 
-HEAD_1 = (
-    f"{'':26}{'displacement amplitude, reduction %':^42}{'RMS acceleration, red. %':^30}"
-    f"{'mean':>5}{'settle':>7}"
-)
-HEAD_2 = (
-    f"{'law':21}{'on':5}{'publ.':>6}{'ours':>6}{'diff':>6}{'sim.':>6}{'diff':>6}{'bound':>6}"
-    f"{'diff':>6}{'ours':>6}{'sim.':>6}{'diff':>6}{'bound':>6}{'diff':>6}{'A':>5}{'s':>7}"
-)
+HEAD = [
+    "law", "on",
+    *(f"x %\n{one}||z.1f" for one in "publ. ours diff sim. diff bound diff".split()),
+    *(f"a %\n{one}||z.1f" for one in "ours sim. diff bound diff".split()),
+    "mean\nA||z.2f", "settle\ns||z.3f",
+]  # fmt: skip
 NOTES = (
+    "x: displacement amplitude, a: RMS acceleration, by how much they are reduced against the open "
+    "loop.\n"
     "publ.: measured by the paper on the real structure. sim.: an independent simulation of this "
     "plant,\n"
     "sine cases without sensor noise. bound: the best that any current waveform does (best found, "
@@ -33,11 +34,6 @@ Also = TypeVar("Also")
 
 def target_name(target: str) -> str:
     return {"linux": "quiesced"}.get(target, "image")
-
-
-def number(value: float | None, digits: int = 1, width: int = 6) -> str:
-    # + 0.0: no minus sign on a value that rounds to zero.
-    return f"{'-' if value is None else f'{round(value, digits) + 0.0:.{digits}f}':>{width}}"
 
 
 def difference(ours: float | None, other: float | None) -> float | None:
@@ -59,28 +55,19 @@ def published_difference(ours: float | None, published: Published | None) -> flo
     return ours - min(max(ours, published.low_pct), published.high_pct)
 
 
-def table_line(row: Row, beside: Beside) -> str:
+def table_row(row: Row, beside: Beside) -> list[Any]:
     amp, accel = row.amp_reduction_pct, row.accel_rms_reduction_pct
     sim_amp = beside.simulated.get("amp_reduction_pct")
     sim_accel = beside.simulated.get("accel_rms_reduction_pct")
-    cells = [
-        f"{laws.find(row.law).label:21}{row.target:5}",
-        f"{published_text(beside.published):>6}",
-        number(amp),
-        number(published_difference(amp, beside.published)),
-        number(sim_amp),
-        number(difference(amp, sim_amp)),
-        number(row.bound_amp_pct),
-        number(difference(amp, row.bound_amp_pct)),
-        number(accel),
-        number(sim_accel),
-        number(difference(accel, sim_accel)),
-        number(row.bound_accel_rms_pct),
-        number(difference(accel, row.bound_accel_rms_pct)),
-        number(row.mean_current_A, 2, 5),
-        number(row.settle_s, 3, 7),
-    ]
-    return "".join(cells)
+    bound_amp, bound_accel = row.bound_amp_pct, row.bound_accel_rms_pct
+    published = beside.published
+    return [
+        laws.find(row.law).label, row.target,
+        published_text(published), amp, published_difference(amp, published),
+        sim_amp, difference(amp, sim_amp), bound_amp, difference(amp, bound_amp),
+        accel, sim_accel, difference(accel, sim_accel), bound_accel, difference(accel, bound_accel),
+        row.mean_current_A, row.settle_s,
+    ]  # fmt: skip
 
 
 def figures_of(row: Row) -> Row:
@@ -126,11 +113,11 @@ def group_key(row: Row) -> tuple[str, float]:
 
 
 def comparison_table(result: Result) -> str:
-    lines = [HEAD_1.rstrip(), HEAD_2]
+    rows: list[Any] = []
     for heading, members in groups(result):
-        lines += ["-" * len(HEAD_2), heading]
-        lines += [table_line(row, beside) for row, beside in members if row.law != laws.OPEN_LOOP]
-    return "\n".join([*lines, "-" * len(HEAD_2), NOTES])
+        rows += [*([""] if rows else []), heading]
+        rows += [table_row(row, beside) for row, beside in members if row.law != laws.OPEN_LOOP]
+    return f"{format_table(HEAD, rows, (0, 1), gap=1)}\n\n{NOTES}"
 
 
 def compared_text(telemetry_every: int) -> str:

@@ -79,8 +79,8 @@ def _poles(a: np.ndarray, rate_Hz: int) -> str:
             continue
         rate = np.log(pole) * rate_Hz
         size = abs(rate)
-        rows.append([f"{size / (2 * math.pi):.5g} Hz", f"{-rate.real / size:.4g}"])
-    return format_table(["pole", "damping ratio"], sorted(rows), ())
+        rows.append((size / (2 * math.pi), -rate.real / size))
+    return format_table(["pole||.5g Hz", "damping ratio||.4g"], sorted(rows), ())
 
 
 def _sum(section: SignsSection, one: Combination) -> str:
@@ -99,31 +99,28 @@ def _signs(damper: int, section: SignsSection) -> str:
     lines = [f"damper {damper + 1}"]
     lines += [f"  sign {j + 1}: {_sum(section, one)}" for j, one in enumerate(section.combinations)]
     rows = [
-        ["".join("+" if number >> j & 1 else "-" for j in range(count)), f"{mA / 1e3:g} A"]
+        ("".join("+" if number >> j & 1 else "-" for j in range(count)), mA / 1e3)
         for number, mA in enumerate(section.currents_mA)
     ]
-    rows.append(["not known, at rest", f"{section.idle_mA / 1e3:g} A"])
-    return "\n".join(lines) + "\n" + format_table(["signs", "current"], rows, (0,))
+    rows.append(("not known, at rest", section.idle_mA / 1e3))
+    return "\n".join([*lines, format_table(["signs", "current||g A"], rows)])
 
 
 def _friction(table: FrictionTable) -> str:
     rows = [
-        [
-            str(i + 1),
-            f"{one.gain_N_m} N/m",
-            f"{1e-6 * one.least_peak_nm:g} mm",
-            f"{1e-3 * one.limit_mN:g} N",
-            f"{1e-3 * one.band_um_s:g} mm/s",
+        (
+            i, one.gain_N_m, 1e-6 * one.least_peak_nm, 1e-3 * one.limit_mN, 1e-3 * one.band_um_s,
             {OUTWARD: "outward", BACK: "back"}.get(one.ways, "both"),
-        ]
-        for i, one in enumerate(table.sections)
-    ]
-    return format_table(["damper", "gain", "least peak", "limit", "band", "ways"], rows, (0, 5))
+        )
+        for i, one in enumerate(table.sections, start=1)
+    ]  # fmt: skip
+    head = ["damper", "gain|| N/m", "least peak||g mm", "limit||g N", "band||g mm/s", "ways"]
+    return format_table(head, rows, (0, 5))
 
 
 def _polynomial(table: PolynomialTable) -> str:
     rows = []
-    for i, section in enumerate(table.sections):
+    for i, section in enumerate(table.sections, start=1):
         names = [
             f"|{one.signal.name}|" if flag else one.signal.name
             for one, flag in zip(section.inputs, section.is_magnitude, strict=True)
@@ -136,11 +133,5 @@ def _polynomial(table: PolynomialTable) -> str:
                 ]
             )
             factors = [f"{n}^{p}" for n, p in zip(names, one.powers, strict=True) if p]
-            rows.append(
-                [
-                    str(i + 1),
-                    f"{1e-3 * one.coefficient / 256 * scale:.5g} A",
-                    " ".join(factors) or "1",
-                ]
-            )
-    return format_table(["damper", "factor, SI units", "of"], rows, (0, 2))
+            rows.append((i, 1e-3 * one.coefficient / 256 * scale, " ".join(factors) or "1"))
+    return format_table(["damper", "factor, SI units||.5g A", "of"], rows, (0, 2))

@@ -138,16 +138,15 @@ def assumed_lines(base: Base) -> list[str]:
 
 def formatted_rows(table: list[dict[str, Any]]) -> str:
     cells = [
-        [
-            one["name"],
-            f"{one['value']:.6g}",
+        (
+            one["name"], one["value"],
             f"{one['low_95']:.6g} .. {one['high_95']:.6g}" if "low_95" in one else "",
-            one["unit"],
-            one["status"],
-        ]
+            one["unit"], one["status"],
+        )
         for one in table
-    ]
-    return format_table(["parameter", "value", "95 % interval", "unit", ""], cells, left=(0, 3, 4))
+    ]  # fmt: skip
+    head = ["parameter", "value||.6g", "95 % interval", "unit", ""]
+    return format_table(head, cells, left=(0, 3, 4))
 
 
 def text_report(

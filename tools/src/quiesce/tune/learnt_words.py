@@ -65,10 +65,9 @@ def described_learnt(learnt: Learnt) -> str:
     if not learnt.trims:
         return f"{owner}: nothing yet"
     rows = [
-        [
-            str(one.point), f"{one.on_deg:+.2f} deg", f"{one.off_deg:+.2f} deg",
-            f"{100.0 * one.level_part:+.2f} %", "without" if one.is_whole else "with",
-        ]
+        (one.point, one.on_deg, one.off_deg, 100.0 * one.level_part,
+         "without" if one.is_whole else "with")
         for one in learnt.trims
     ]  # fmt: skip
-    return f"{owner}\n" + format_table(["point", "on", "off", "level", "gap"], rows, ())
+    head = ["point", "on||+.2f deg", "off||+.2f deg", "level||+.2f %", "gap"]
+    return f"{owner}\n{format_table(head, rows, ())}"

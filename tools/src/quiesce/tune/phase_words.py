@@ -16,6 +16,8 @@ from quiesce.tune.phase_table import FEWEST_POINTS, MOST_POINTS, SETTINGS, Phase
 HALF_TURN = 65_536
 WEIGHT_ONE, SHAPE_ONE = 256, 16_384
 POINT_WORDS = 4
+HEAD = ("Hz||.3f", "centre||.2f deg", "width||.2f deg", "level||g A", "floor||g A", "ramp||.2f deg",
+        "accel weight||.3g", "above||.3g")  # fmt: skip
 
 
 def law_words(law: PhaseLaw) -> list[int]:
@@ -75,18 +77,13 @@ def _point(words: Sequence[int]) -> Point:
 
 def described_pulses(law: PhaseLaw) -> str:
     parts = [f"{1e-3 * law.unlock_current_mA:g} A while the phase is not known"]
-    head = ["Hz", "centre", "width", "level", "floor", "ramp", "accel weight", "above"]
     for name, points in law.settings.items():
-        parts.append(f"setting {name}\n" + format_table(head, [_row(one) for one in points], ()))
+        parts.append(f"setting {name}\n{format_table(HEAD, map(_row, points), ())}")
     return "\n\n".join(parts)
 
 
-def _row(one: Point) -> list[str]:
-    return [
-        f"{one.freq_Hz:.3f}",
-        *(f"{value:.2f} deg" for value in (one.centre_deg, one.width_deg)),
-        *(f"{1e-3 * value:g} A" for value in (one.level_mA, one.floor_mA)),
-        f"{one.ramp_deg:.2f} deg",
-        f"{one.accel_weight:.3g}",
-        f"{one.accel_shape:.3g}",
-    ]
+def _row(one: Point) -> tuple[float, ...]:
+    return (
+        one.freq_Hz, one.centre_deg, one.width_deg, 1e-3 * one.level_mA, 1e-3 * one.floor_mA,
+        one.ramp_deg, one.accel_weight, one.accel_shape,
+    )  # fmt: skip

@@ -4,6 +4,7 @@ import argparse
 from typing import Any
 
 from quiesce.base.table import format_table
+from quiesce.cli.terminal import show
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import SCALES_PER_UNIT
 
@@ -25,6 +26,8 @@ SHOWN_UNITS = {
 }
 NO_LIMIT_PCT = 100
 AXES = "xyz"
+SENSOR_HEAD = "sensor measures of count range every held faulty latency"
+DAMPER_HEAD = "damper stroke ceiling safe continuous current trip coil"
 
 Board = dict[str, Any]
 
@@ -145,13 +148,14 @@ def law_rows(laws: dict[str, str | None]) -> list[list[str]]:
 
 
 def described(board: Board) -> str:
-    sensor_head = "sensor measures of count range every held faulty latency".split()
-    damper_head = ["damper", "stroke", "ceiling", "safe", "continuous", "current", "trip", "coil"]
     tables = [
-        format_table(sensor_head, [sensor_row(s) for s in board["sensors"]], range(9)),
-        format_table(damper_head, [damper_row(d) for d in board["dampers"]], range(8)),
-        format_table(["signal", "of"], signal_rows(board["signals"]), (0, 1)),
-        format_table(["law", "possible"], law_rows(board["laws"]), (0, 1)),
+        format_table(head.split(), rows, range(9))
+        for head, rows in (
+            (SENSOR_HEAD, map(sensor_row, board["sensors"])),
+            (DAMPER_HEAD, map(damper_row, board["dampers"])),
+            ("signal of", signal_rows(board["signals"])),
+            ("law possible", law_rows(board["laws"])),
+        )
     ]
     head = (
         f"{board['name']}: bodies {', '.join(board['bodies'])}; "
@@ -162,5 +166,5 @@ def described(board: Board) -> str:
 
 
 def run(args: argparse.Namespace) -> int:
-    print(described(Bench().json("board-check", args.file)))
+    show(described(Bench().json("board-check", args.file)))
     return 0

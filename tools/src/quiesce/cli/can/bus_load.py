@@ -2,12 +2,14 @@
 
 import argparse
 import json
+from operator import itemgetter
 from typing import Any
 
 from quiesce.base.command import finite_number
 from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
 from quiesce.cli.can.options import add_database_option, database_of
+from quiesce.cli.terminal import show
 
 EPILOG = """examples:
   quiesce can bus-load
@@ -88,7 +90,7 @@ def check(args: argparse.Namespace) -> None:
 def run(args: argparse.Namespace) -> int:
     check(args)
     report = computed(args)
-    print(json.dumps(report, indent=1) if args.json else text(report))
+    show(json.dumps(report, indent=1) if args.json else text(report))
     return 0
 
 
@@ -142,20 +144,16 @@ def row(analysis: Any, index: int) -> dict[str, Any]:
 def text(report: dict[str, Any]) -> str:
     from quiesce.can.bus_load import totals_table
 
+    plain = itemgetter("bytes", "bits", "period_ms", "load_pct")
     rows = [
         [
-            one["name"],
-            f"0x{one['id']:03X}",
-            str(one["bytes"]),
-            str(one["bits"]),
-            str(one["period_ms"]),
-            f"{one['load_pct']:.2f}",
-            "no bound" if one["response_ms"] is None else f"{one['response_ms']:.3f}",
+            one["name"], f"0x{one['id']:03X}", *plain(one),
+            "no bound" if one["response_ms"] is None else one["response_ms"],
             "" if one["is_within_period"] else "> period",
         ]
         for one in report["messages"]
-    ]
-    head = ["message", "id", "bytes", "bits", "period ms", "load %", "response ms", ""]
+    ]  # fmt: skip
+    head = ["message", "id", "bytes", "bits", "period ms", "load %||.2f", "response ms||.3f", ""]
     slcan = report["slcan"]
     return "\n".join(
         [

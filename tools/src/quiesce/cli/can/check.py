@@ -4,6 +4,7 @@ import argparse
 import json
 import time
 from dataclasses import dataclass, field
+from operator import itemgetter
 from typing import Any
 
 from quiesce.base.command import finite_number
@@ -12,6 +13,7 @@ from quiesce.base.table import format_table
 from quiesce.can.database import CYCLIC
 from quiesce.cli.can.bus_options import add_bus_options, bus_of
 from quiesce.cli.can.options import check_seconds
+from quiesce.cli.terminal import show
 
 EPILOG = """examples:
   quiesce can check --bus socketcan:can0
@@ -104,7 +106,7 @@ def run(args: argparse.Namespace) -> int:
         **traffic.summary(),
         "problems": problems,
     }
-    print(json.dumps(report, indent=1) if args.json else text(report))
+    show(json.dumps(report, indent=1) if args.json else text(report))
     return EXIT_FAILED if problems else 0
 
 
@@ -168,25 +170,10 @@ def problems_of(traffic: Any, trips: Trips, rows: list[dict[str, Any]]) -> list[
     return problems
 
 
-def number(value: float | None, digits: int = 2) -> str:
-    return "-" if value is None else f"{value:.{digits}f}"
-
-
 def text(report: dict[str, Any]) -> str:
-    rows = [
-        [
-            one["name"],
-            str(one["count"]),
-            str(one["cycle_ms"]),
-            number(one["mean_ms"]),
-            number(one["longest_ms"]),
-            "-" if one["lost"] is None else str(one["lost"]),
-            str(one["wrong_crc"]),
-            "" if one["is_on_time"] else "OFF",
-        ]
-        for one in report["messages"]
-    ]
-    head = ["message", "count", "cycle ms", "mean ms", "longest ms", "lost", "crc", ""]
+    plain = itemgetter("name", "count", "cycle_ms", "mean_ms", "longest_ms", "lost", "wrong_crc")
+    rows = [(*plain(one), "" if one["is_on_time"] else "OFF") for one in report["messages"]]
+    head = ["message", "count", "cycle ms", "mean ms||.2f", "longest ms||.2f", "lost", "crc", ""]
     trip = report["round_trip"]
     lines = [format_table(head, rows, left=(0, 7)), ""]
     if trip["answered"]:

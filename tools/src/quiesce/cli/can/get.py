@@ -6,6 +6,7 @@ import json
 from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
 from quiesce.cli.can.bus_options import add_bus_options, bus_of
+from quiesce.cli.terminal import show
 from quiesce.engine.params import allowed, default
 
 EPILOG = """examples:
@@ -52,5 +53,5 @@ def run(args: argparse.Namespace) -> int:
         value = text_of(one, values[one["index"]])
         mark = "" if value == default(one) else "*"
         rows.append([one["name"], one["unit"], value, mark, allowed(one)])
-    print(format_table(["name", "unit", "value", "", "allowed"], rows, left=(0, 1, 3, 4)))
+    show(format_table(["name", "unit", "value", "", "allowed"], rows, left=(0, 1, 3, 4)))
     return 0

@@ -10,6 +10,7 @@ from typing import Any
 
 from quiesce.base.table import format_table
 from quiesce.can.buses import Bus, reason_of
+from quiesce.cli.terminal import show
 
 EPILOG = """examples:
   quiesce can list
@@ -56,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps([asdict(one) for one in found], indent=1))
         return 0
     rows = [[f"{one.interface}:{one.channel}", one.state, one.note] for one in found]
-    print(format_table(["--bus", "", "note"], rows, left=(0, 1, 2)))
+    show(format_table(["--bus", "", "note"], rows, left=(0, 1, 2)))
     return 0
 
 

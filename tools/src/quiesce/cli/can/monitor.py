@@ -164,7 +164,7 @@ class View:
     def current(self, number: int) -> str:
         suffix = str(number) if number else ""
         return (
-            f"current {suffix:<2} "
+            f"current {suffix:2} "
             f"{self.value(f'CurrentDemand{suffix}', 'current_cmd_mA', 1e-3)} A demanded, "
             f"{self.value(f'CurrentMeasured{suffix}', 'current_meas_mA', 1e-3)} A measured"
         )
@@ -172,15 +172,10 @@ class View:
     def messages(self, now_s: float) -> str:
         rows = [
             [
-                seen.message.name,
-                f"0x{frame_id:03X}",
-                f"{seen.rate_Hz(now_s):.0f}",
-                age_text(max(0.0, now_s - seen.last_s)),
-                "-" if seen.lost is None else str(seen.lost),
-                str(seen.wrong_crc),
-                str(seen.count),
+                seen.message.name, f"0x{frame_id:03X}", seen.rate_Hz(now_s),
+                age_text(max(0.0, now_s - seen.last_s)), seen.lost, seen.wrong_crc, seen.count,
             ]
             for frame_id, seen in sorted(self._traffic.seen.items())
-        ]
-        head = ["message", "id", "per s", "age", "lost", "crc", "count"]
+        ]  # fmt: skip
+        head = ["message", "id", "per s||.0f", "age", "lost", "crc", "count"]
         return format_table(head, rows, left=(0, 1))

@@ -2,11 +2,13 @@
 
 import argparse
 import json
+from operator import itemgetter
 from typing import Any
 
 from quiesce.base.table import format_table
 from quiesce.cli.can.bus_options import add_bus_options
 from quiesce.cli.can.table_options import add_json, opened
+from quiesce.cli.terminal import show
 
 EPILOG = """examples:
   quiesce can tables --bus socketcan:can0
@@ -40,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
         board = tables.info(ROADS[0], BOARD)
         states = [tables.state(road) for road in ROADS]
     report = {"board": word(board), "roads": [row_of(state) for state in states]}
-    print(json.dumps(report, indent=1) if args.json else text(report))
+    show(json.dumps(report, indent=1) if args.json else text(report))
     return 0
 
 
@@ -73,19 +75,9 @@ FOUND = {
 
 
 def text(report: dict[str, Any]) -> str:
-    rows = [
-        [
-            one["road"],
-            one["kind"],
-            one["crc"] or "-",
-            one["source"],
-            one["stored_crc"] or "-",
-            str(one["writes"]),
-        ]
-        for one in report["roads"]
-    ]
+    rows = map(itemgetter("road", "kind", "crc", "source", "stored_crc", "writes"), report["roads"])
     head = ["road", "in use", "CRC", "from", "stored", "writes"]
-    lines = [format_table(head, rows, left=(0, 1, 2, 3, 4))]
+    lines = [format_table(head, rows, left=range(5))]
     lines += [
         f"last refusal on road {one['road']}: {one['refusal']['why']}"
         for one in report["roads"]

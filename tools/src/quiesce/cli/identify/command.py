@@ -17,6 +17,7 @@ from quiesce.base.searches.names import NAMES as SEARCHES
 from quiesce.cli.identify import compare, example, export, inverse, online
 from quiesce.cli.identify import plan as cli_plan
 from quiesce.cli.identify.data_options import add_data_options
+from quiesce.cli.terminal import show
 
 NAME = "identify"
 # Each has NAME, HELP, add_options(parser) and run(args).
@@ -292,7 +293,7 @@ def report(
     if args.json:
         print(json.dumps(json_report(fitted, train, test, notes, context, white)))
     else:
-        print(text_report(fitted, train, test, notes, white))
+        show(text_report(fitted, train, test, notes, white))
         written = ["report.html", "report.json", "models/"]
         written += ["damper.toml"] if passive is not None else []
         print(f"\nwritten    {', '.join(shown(out / name) for name in written)}")

@@ -8,6 +8,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.cli.identify.data_options import add_data_options
 from quiesce.cli.identify.help import fill
+from quiesce.cli.terminal import show
 
 NAME = "compare"
 HELP = "score a model file on new data"
@@ -48,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(numbers_of(found, data.notes), indent=1))
     else:
-        print(text_of(args.model, found, data.notes))
+        show(text_of(args.model, found, data.notes))
         if args.out:
             print(f"\nwritten: {shown(args.out)}/compare.html")
     return 0

@@ -11,6 +11,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.cli.identify import inverse_methods
 from quiesce.cli.identify.help import fill
+from quiesce.cli.terminal import show
 from quiesce.table.file import SUFFIX
 
 NAME = "inverse"
@@ -130,7 +131,7 @@ def check(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -
     found = monotone_range(damper, most_A, simulate=others, axis=AXES[args.over])
     if args.out:
         write_map(args.out, damper, found)
-    print(json.dumps(numbers_of(damper, found), indent=1) if args.json else text_of(damper, found))
+    show(json.dumps(numbers_of(damper, found), indent=1) if args.json else text_of(damper, found))
     if args.out and not args.json:
         also = ", map.table" if (args.out / "map.table").exists() else ""
         print(f"\nwritten: {shown(args.out)}/inverse.csv, forces.csv, inverse.svg{also}")

@@ -12,6 +12,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.base.progress import say
 from quiesce.cli.identify.data_options import add_data_options
+from quiesce.cli.terminal import show
 from quiesce.damper.inverses.methods import METHODS, methods_of
 from quiesce.table.file import SUFFIX
 
@@ -126,7 +127,7 @@ def run(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -> 
     if args.json:
         print(json.dumps(numbers_of(inverses, found), indent=1))
         return 0
-    print(text_of(inverses, found))
+    show(text_of(inverses, found))
     if found is None:
         print("\nnot compared: a recording is no damper; --on MODEL.toml names one")
     if written:

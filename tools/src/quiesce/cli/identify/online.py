@@ -13,6 +13,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.cli.identify.data_options import add_data_options
 from quiesce.cli.identify.help import fill
+from quiesce.cli.terminal import show
 
 NAME = "online"
 HELP = "a model that adapts sample by sample, beside frozen ones"
@@ -86,11 +87,8 @@ def run(args: argparse.Namespace) -> int:
         title, command = args.files[0].stem, "quiesce " + " ".join(sys.argv[1:])
         adapted = model_of(found.end, stream.before(), f"{title}_adapted")
         write_page(args.out, title, command, found, adapted, data.notes)
-    print(
-        json.dumps(numbers_of(found, data.notes), indent=1)
-        if args.json
-        else text_of(found, data.notes)
-    )
+    numbers = numbers_of(found, data.notes)
+    show(json.dumps(numbers, indent=1) if args.json else text_of(found, data.notes))
     if args.out and not args.json:
         print(f"\nwritten: {shown(args.out)}/{PAGE}, {MODEL}")
     return 0

@@ -11,6 +11,7 @@ from quiesce.base.command import real_number
 from quiesce.base.paths import shown
 from quiesce.base.table import format_table
 from quiesce.cli.identify.help import fill
+from quiesce.cli.terminal import show
 from quiesce.damper import sines_and_chirps
 from quiesce.damper.plain import plain
 from quiesce.damper.plan import KINDS, Damper, Plan, Test, excitation, make_plan, needs
@@ -71,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
     plan = make_plan(damper) if args.protocol == "full" else sines_and_chirps.make_plan(damper)
     if args.out:
         write_plan(args.out, plan)
-    print(json.dumps(numbers_of(plan), indent=1) if args.json else text_of(plan))
+    show(json.dumps(numbers_of(plan), indent=1) if args.json else text_of(plan))
     if args.out and not args.json:
         print(f"\nwritten: {shown(args.out)}/plan.csv, plan.toml and {len(plan.tests)} excitations")
     return 0
@@ -108,22 +109,17 @@ def duration(seconds: float) -> str:
 
 
 def text_of(plan: Plan) -> str:
-    rows = []
-    for tests in groups(plan):
-        one = tests[0]
-        rows.append(
-            [
-                one.kind.replace("_", " "),
-                f"{1e3 * one.amplitude_m:.3g}",
-                f"{one.freq_Hz:.3g}" if one.freq_Hz else "-",
-                f"{one.speed_m_s:.3g}",
-                ", ".join(dict.fromkeys(command_text(test) for test in tests)),
-                str(len(tests)),
-                duration(sum(test.duration_s for test in tests)),
-                f"{max(test.heating_K for test in tests):.1f}",
-            ]
-        )
-    head = ["test", "mm", "Hz", "m/s", "A", "files", "in all", "up to K"]
+    head = ["test", "mm||.3g", "Hz||.3g", "m/s||.3g", "A", "files", "in all", "up to K||.1f"]
+    rows = [
+        [
+            tests[0].kind.replace("_", " "),
+            1e3 * tests[0].amplitude_m, tests[0].freq_Hz or None, tests[0].speed_m_s,
+            ", ".join(dict.fromkeys(map(command_text, tests))), len(tests),
+            duration(sum(test.duration_s for test in tests)),
+            max(test.heating_K for test in tests),
+        ]
+        for tests in groups(plan)
+    ]  # fmt: skip
     kinds = [kind for kind in KINDS if any(test.kind == kind for test in plan.tests)]
     return "\n".join(
         [

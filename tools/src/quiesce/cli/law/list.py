@@ -5,6 +5,7 @@ import json
 from textwrap import fill
 
 from quiesce.base.table import format_table
+from quiesce.cli.terminal import show
 from quiesce.law.recipe import Recipe
 from quiesce.law.recipes import RECIPES, find
 
@@ -29,10 +30,9 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
 
 def described(recipe: Recipe) -> str:
     rows = [
-        [one.name, f"{one.default:g}", f"{one.low:g} .. {one.high:g}", one.help]
-        for one in recipe.settings
+        (one.name, one.default, f"{one.low:g} .. {one.high:g}", one.help) for one in recipe.settings
     ]
-    table = format_table(["setting", "default", "range", ""], rows, (0, 3))
+    table = format_table(["setting", "default||g", "range", ""], rows, (0, 3))
     tracker = f"{recipe.tracker} or another" if recipe.tracker else ""
     facts = {
         "law": recipe.equation,
@@ -70,8 +70,8 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({recipe.name: as_data(recipe) for recipe in chosen}, indent=2))
     elif args.recipe is not None:
-        print(described(chosen[0]))
+        show(described(chosen[0]))
     else:
         rows = [[one.name, "force" if one.tracker else "current", one.summary] for one in chosen]
-        print(format_table(["recipe", "demands", ""], rows, (0, 1, 2)))
+        show(format_table(["recipe", "demands", ""], rows, (0, 1, 2)))
     return 0

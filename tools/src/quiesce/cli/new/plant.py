@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from quiesce.base.command import real_number, whole_number
 from quiesce.base.paths import shown, typed
 from quiesce.base.table import format_table
+from quiesce.cli.terminal import show
 
 if TYPE_CHECKING:
     from quiesce.plant.new.made import Made
@@ -198,11 +199,8 @@ def run(args: argparse.Namespace) -> int:
     made = make(order)
     for note in made.notes:
         print(f"quiesce: note: {note}", file=sys.stderr)
-    print(
-        json.dumps(data_of(made, order.folder), indent=1)
-        if args.json
-        else text_of(made, order.folder)
-    )
+    data = data_of(made, order.folder)
+    show(json.dumps(data, indent=1) if args.json else text_of(made, order.folder))
     return 0
 
 
@@ -230,11 +228,10 @@ def text_of(made: "Made", folder: Path) -> str:
     full = f"{plan.damper.max_current:g} {'V' if plan.damper.is_in_volts else 'A'}"
     own = ", ".join(f"{freq_Hz:.4g}" for freq_Hz in plan.structure.freqs_Hz)
     rows = [
-        [f"{off.freq_Hz:g}", f"{off.disp_um:.1f}", f"{off.accel_mm_s2:.1f}",
-         f"{on.disp_um:.1f}", f"{on.accel_mm_s2:.1f}"]
+        (off.freq_Hz, off.disp_um, off.accel_mm_s2, on.disp_um, on.accel_mm_s2)
         for off, on in zip(made.at_rest.steps, made.at_full.steps, strict=True)
-    ]  # fmt: skip
-    head = ["Hz", "0 A: um", "mm/s2", f"{full}: um", "mm/s2"]
+    ]
+    head = ["Hz||g", "0 A: um||.1f", "mm/s2||.1f", f"{full}: um||.1f", "mm/s2||.1f"]
     return "\n".join(
         [
             f"structure  {plan.structure.what}: {own} Hz without the damper",

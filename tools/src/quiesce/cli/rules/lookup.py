@@ -11,6 +11,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
 from quiesce.cli.rules.optimize import stopping_pool
+from quiesce.cli.terminal import show
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
 from quiesce.rules.formats.files import write_text
@@ -86,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(lookup_json(found), indent=1))
     else:
-        print(f"Table VII: constant current of least RMS acceleration\n\n{lookup_table(found)}")
+        show(f"Table VII: constant current of least RMS acceleration\n\n{lookup_table(found)}")
     if args.write or not args.json:
         write_rules(args, found, max_A)
     return 0
@@ -95,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
 def write_rules(args: argparse.Namespace, found: Sweep, max_A: float) -> None:
     base = recipe_base(found, "recipe", max_A)
     if not args.json:
-        print(f"\nTable VIII: the rules that follow\n\n{rule_table(base)}\n")
+        show(f"\nTable VIII: the rules that follow\n\n{rule_table(base)}\n")
         print("\n".join(set_lines(base)))
     if args.write:
         args.write.write_text(write_text(base, "fcl"), encoding="utf-8")

@@ -15,6 +15,7 @@ from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import default_plant, results_folder, results_text, shown, typed
 from quiesce.base.progress import say
 from quiesce.cli.rules.arguments import add_settle, drives_V, freqs_Hz
+from quiesce.cli.terminal import show
 from quiesce.engine import scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
@@ -267,7 +268,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(result_json(found), indent=1))
     else:
         for title, text in text_sections(found):
-            print(f"{title}\n\n{text}\n")
+            show(f"{title}\n\n{text}\n")
         print(f"{headline(found)}\nrules: {shown(out / 'best.fcl')}")
         print(f"report: {shown(out / 'report.html')}")
     return 0

@@ -10,6 +10,7 @@ from typing import Any
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
+from quiesce.cli.terminal import show
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.trace import read_trace
@@ -182,8 +183,8 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({**json_object(args, base, visits, fired), "outputs": outputs}, indent=1))
         return 0
-    print(f"{summary(base)}\n\n{rules_text(base)}\n")
+    show(f"{summary(base)}\n\n{rules_text(base)}\n")
     if visits is not None:
-        print(f"{visits_text(base, visits)}\n\n{fired_text(base, fired)}\n")
+        show(f"{visits_text(base, visits)}\n\n{fired_text(base, fired)}\n")
     print(f"written  {', '.join(outputs)}")
     return 0

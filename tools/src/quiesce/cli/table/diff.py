@@ -12,6 +12,7 @@ from pathlib import Path
 from quiesce.base.errors import EXIT_FAILED
 from quiesce.base.paths import shown
 from quiesce.cli.table.contents import board_text, contents_of, kind_of, kind_text
+from quiesce.cli.terminal import show
 from quiesce.table.file import TableFile, read_file
 
 EPILOG = """examples:
@@ -144,5 +145,5 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps({"same": found.is_same, **asdict(found)}, indent=1))
     else:
-        print(text(args, found, tables))
+        show(text(args, found, tables))
     return 0 if found.is_same else EXIT_FAILED

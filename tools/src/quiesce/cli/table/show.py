@@ -8,7 +8,9 @@ from typing import Any
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.base.table import format_pairs
 from quiesce.cli.table.contents import board_text, contents_of, kind_of, kind_text
+from quiesce.cli.terminal import show
 from quiesce.table.file import TableFile, read_file
 from quiesce.table.kinds import PULSES, ROADS, Kind
 from quiesce.table.words import MOST_WORDS, WORD_BYTES
@@ -59,7 +61,7 @@ def head_text(file: Path, table: TableFile) -> str:
         "CRC-32": f"0x{table.words[1]:08x}",
         "board": board_text(table.board),
     }
-    return "\n".join(f"{name:10} {value}" for name, value in rows.items())
+    return format_pairs(rows)
 
 
 def data_of(table: TableFile, contents: str) -> dict[str, Any]:
@@ -105,9 +107,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(data_of(table, contents), indent=1))
         return 0
-    print(head_text(args.file, table))
-    if contents:
-        print(f"\n{contents}")
+    show("\n\n".join(filter(None, [head_text(args.file, table), contents])))
     if args.plot:
         print(f"\nwritten    {shown(args.plot)}")
     return 0

@@ -11,6 +11,7 @@ from pathlib import Path
 from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import results_text, shown
+from quiesce.cli.terminal import show
 from quiesce.cli.tune import law
 
 NAME = "tune"
@@ -169,7 +170,7 @@ def tune_into(args: argparse.Namespace) -> int:
             jobs=args.jobs,
         )
     )
-    print(json.dumps(tuned.json(), indent=1) if args.json else tuned.text())
+    show(json.dumps(tuned.json(), indent=1) if args.json else tuned.text())
     return 0
 
 

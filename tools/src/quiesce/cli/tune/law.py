@@ -17,6 +17,7 @@ from quiesce.cli.rig_options import (
     shaking_of,
     words_of_motions,
 )  # fmt: skip
+from quiesce.cli.terminal import show
 from quiesce.tune.gains.defaults import INDEX, TRIALS, WORST_WEIGHT
 
 NAME = "law"
@@ -138,5 +139,5 @@ def run(args: argparse.Namespace) -> int:
         )
     )
     report.write(tuned)
-    print(json.dumps(report.data_of(tuned), indent=1) if args.json else report.text(tuned))
+    show(json.dumps(report.data_of(tuned), indent=1) if args.json else report.text(tuned))
     return EXIT_INTERRUPTED if tuned.is_interrupted else 0

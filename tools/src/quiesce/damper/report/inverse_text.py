@@ -59,18 +59,10 @@ def map_text(found: Monotone) -> str:
 
 def text_of(damper: DamperModel, found: Monotone) -> str:
     forces = found.forces
-    rows = [
-        [f"{place:.4g}", f"{row[0]:.4g}", f"{row.max():.4g}", f"{limit_A:.3g}"]
-        for place, row, limit_A in zip(
-            forces.places, forces.force_N, found.per_place_A, strict=True
-        )
-    ]
-    head = [
-        f"{forces.axis.name} {forces.axis.unit}",
-        "force at 0 A, N",
-        "largest, N",
-        "rises up to, A",
-    ]
+    force_N = forces.force_N
+    rows = zip(forces.places, force_N[:, 0], force_N.max(axis=1), found.per_place_A, strict=True)
+    place = f"{forces.axis.name} {forces.axis.unit}||.4g"
+    head = [place, "force at 0 A, N||.4g", "largest, N||.4g", "rises up to, A||.3g"]
     range_A = f"0 .. {forces.currents_A[-1]:g} A"
     return "\n".join(
         [

@@ -72,14 +72,14 @@ def sets_text(rules: Rules, inputs: Sequence[Told]) -> str:
     for i, (one, axis) in enumerate(zip(inputs, rules.axes, strict=True)):
         for number, places in axis.sets.items():
             name = f"{i + 1}: {one.name}" if number == min(axis.sets) else ""
-            rows.append([name, str(number + 1), *map(one.value, places)])
+            rows.append([name, number + 1, *map(one.value, places)])
     return format_table(["input", "set", "from", "to", "greatest at"], rows, (0,))
 
 
 def rules_text(rules: Rules, then: Callable[[Rule], str]) -> str:
     if len(rules.axes) == 2 and all(map(_is_of_a_pair, rules.rules)):
         return _grid(rules, then)
-    rows = [[str(i + 1), _conditions(rule), then(rule)] for i, rule in enumerate(rules.rules)]
+    rows = [(i, _conditions(rule), then(rule)) for i, rule in enumerate(rules.rules, start=1)]
     return format_table(["rule", "if", "then"], rows, (1, 2))
 
 

@@ -64,26 +64,19 @@ def best_constants(found: Sweep, objective: Objective) -> list[tuple[int, Steady
 def lookup_table(found: Sweep) -> str:
     """Table VII: the current of least RMS acceleration by frequency and drive."""
     head = [
-        "frequency Hz", "drive V", "at 0 A: um", "mm/s2", "current A", "acceleration %",
-        "displacement %", "for displacement A", "displacement %",
+        "frequency Hz||g", "drive V||g", "at 0 A: um||.1f", "mm/s2||.1f", "current A||g",
+        "acceleration %||z.1f", "displacement %||z.1f", "for displacement A||g",
+        "displacement %||z.1f",
     ]  # fmt: skip
     rows = []
     for i, place in enumerate(found.places):
         current_mA, best = found.best(i, accel_left)
         amp_mA, amp_best = found.best(i, amp_left)
-        rows.append(
-            [
-                f"{place.freq_Hz:g}",
-                f"{place.drive_V:g}",
-                f"{place.amp_um:.1f}",
-                f"{place.accel_rms_mm_s2:.1f}",
-                f"{current_mA / 1000:g}",
-                f"{best.accel_rms_reduction_pct + 0.0:.1f}",
-                f"{best.amp_reduction_pct + 0.0:.1f}",
-                f"{amp_mA / 1000:g}",
-                f"{amp_best.amp_reduction_pct + 0.0:.1f}",
-            ]  # fmt: skip
-        )
+        rows.append([
+            place.freq_Hz, place.drive_V, place.amp_um, place.accel_rms_mm_s2, current_mA / 1000,
+            best.accel_rms_reduction_pct, best.amp_reduction_pct, amp_mA / 1000,
+            amp_best.amp_reduction_pct,
+        ])  # fmt: skip
     return format_table(head, rows, left=())
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -69,42 +70,24 @@ def bound_of(place: Place) -> tuple[float, float] | None:
     return reference.bound(place.freq_Hz)
 
 
-def pct(value: float) -> str:
-    return f"{round(value, 1) + 0.0:.1f}"
+FIGURES = attrgetter("amp_reduction_pct", "accel_rms_reduction_pct", "mean_current_A")
+Figures = list[float | None]
 
 
-def cells(steady: Steady) -> list[str]:
-    return [
-        pct(steady.amp_reduction_pct),
-        pct(steady.accel_rms_reduction_pct),
-        f"{steady.mean_current_A:.2f}",
-    ]
-
-
-def place_row(found: Found, i: int) -> list[str]:
-    place, bound = found.places[i], bound_of(found.places[i])
-    limits = ["-", "-"] if bound is None else [pct(value) for value in bound]
+def place_figures(found: Found, i: int) -> Figures:
     outcomes = (found.start_outcome, found.best_outcome, found.constant_outcome)
-    return [
-        place.scenario.name, f"{place.freq_Hz:g}",
-        *(text for outcome in outcomes for text in cells(outcome[i])), *limits,
-    ]  # fmt: skip
+    limits = bound_of(found.places[i]) or (None, None)
+    return [*(figure for outcome in outcomes for figure in FIGURES(outcome[i])), *limits]
 
 
-def mean_row(found: Found) -> list[str]:
-    row = ["mean", ""]
-    for outcome in (found.start_outcome, found.best_outcome, found.constant_outcome):
-        figures = np.mean([list(asdict(steady).values()) for steady in outcome], axis=0)
-        row += cells(Steady(*figures))
-    bounds = [bound_of(place) for place in found.places]
-    known = [bound for bound in bounds if bound is not None]
-    limits = np.mean(known, axis=0) if len(known) == len(bounds) else []
-    return [*row, *(pct(value) for value in limits), *["-"] * (2 - len(limits))]
+def means(rows: Sequence[Figures]) -> Figures:
+    """None where a place has no figure."""
+    return [None if None in column else np.mean(column) for column in zip(*rows, strict=True)]
 
 
 HEAD = [
-    "scenario", "Hz", "start: x %", "a %", "A", "found: x %", "a %", "A", "constant: x %", "a %",
-    "A", "any: x %", "a %",
+    "scenario", "Hz||g", "start: x %||z.1f", "a %||z.1f", "A||.2f", "found: x %||z.1f", "a %||z.1f",
+    "A||.2f", "constant: x %||z.1f", "a %||z.1f", "A||.2f", "any: x %||z.1f", "a %||z.1f",
 ]  # fmt: skip
 HEAD_NOTE = (
     "Reductions against 0 A with the same excitation (negative: worse): x displacement amplitude, "
@@ -115,8 +98,12 @@ HEAD_NOTE = (
 
 
 def comparison_table(found: Found) -> str:
-    rows = [place_row(found, i) for i in range(len(found.places))]
-    return format_table(HEAD, [*rows, mean_row(found)], left=(0,))
+    figures = [place_figures(found, i) for i in range(len(found.places))]
+    rows = [
+        [place.scenario.name, place.freq_Hz, *row]
+        for place, row in zip(found.places, figures, strict=True)
+    ]
+    return format_table(HEAD, [*rows, ["mean", "", *means(figures)]])
 
 
 def cost_table(found: Found) -> str:
@@ -127,15 +114,15 @@ def cost_table(found: Found) -> str:
         ("found", found.best_outcome),
         ("best constant currents", found.constant_outcome),
     ):
-        parts = [f"{value:.2f}" for value in found.objective.parts(outcome)]
-        rows.append([name, *parts, f"{found.objective.cost(outcome):.3f}"])
+        rows.append([name, *found.objective.parts(outcome), found.objective.cost(outcome)])
     weights = [f"x {weight:g}" for weight in found.objective.weights]
-    return format_table(["left, %", *PARTS, "cost"], [["weights", *weights, ""], *rows])
+    head = ["left, %", *(f"{part}||.2f" for part in PARTS), "cost||.3f"]
+    return format_table(head, [["weights", *weights, ""], *rows])
 
 
 def check_table(found: Found) -> str:
-    rows = [[str(c.seed), f"{c.start:.3f}", f"{c.best:.3f}"] for c in found.checks]
-    return format_table(["noise seed", "cost: start", "found"], rows, left=())
+    head = ["noise seed", "cost: start||.3f", "found||.3f"]
+    return format_table(head, [(c.seed, c.start, c.best) for c in found.checks], left=())
 
 
 def rule_table(base: RuleBase) -> str:
@@ -236,9 +223,6 @@ def text_sections(found: Found) -> list[tuple[str, str]]:
 
 
 def front_table(found: Found) -> str:
-    names = found.objective.names
-    rows = [
-        [f"front_{i + 1:02}.fcl", *(f"{value:.2f}" for value in point.costs)]
-        for i, point in enumerate(found.front)
-    ]
-    return format_table(["rule file", *(f"{name} left %" for name in names)], rows)
+    head = ["rule file", *(f"{name} left %||.2f" for name in found.objective.names)]
+    rows = enumerate(found.front, start=1)
+    return format_table(head, [(f"front_{i:02}.fcl", *point.costs) for i, point in rows])

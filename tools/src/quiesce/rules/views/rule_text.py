@@ -100,19 +100,19 @@ def fired_text(base: RuleBase, fired: Sequence[Fired]) -> str:
     """The rules that fired, most often first."""
     order = sorted(range(len(fired)), key=lambda i: (-fired[i].share, -fired[i].strongest, i))
     rows = [
-        [
-            str(i + 1),
+        (
+            i + 1,
             base.rule_text(base.rules[i]),
-            f"{100 * fired[i].share:.1f} %",
-            f"{100 * fired[i].strongest:.1f} %",
-            f"{fired[i].mean_strength:.3f}",
-        ]
+            100 * one.share,
+            100 * one.strongest,
+            one.mean_strength,
+        )
         for i in order
-        if fired[i].share > 0
+        if (one := fired[i]).share > 0
     ]
     if not rows:
         return "no rule fired"
-    head = ["rule", "", "fired", "strongest", "mean strength"]
+    head = ["rule", "", "fired||.1f %", "strongest||.1f %", "mean strength||.3f"]
     silent = len(fired) - len(rows)
     note = f"\n{plural(silent, 'rule')} never fired" if silent else ""
     return format_table(head, rows, left=(1,)) + note
