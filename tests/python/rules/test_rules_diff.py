@@ -84,7 +84,7 @@ def test_one_rule_that_differs(quiesce, tmp_path: Path) -> None:
     # Rule 1 fires where f < 8 and a < 6: 48 of 500.
     assert 100 * 6 / 500 < output["beyond_pct"] < 100 * 48 / 500
     page = (tmp_path / "out/index.html").read_text()
-    assert "data:image/svg+xml;base64," in page and "I IS Z against I IS S" in page
+    assert page.count("<svg") == 1 and "I IS Z against I IS S" in page
 
 
 @pytest.mark.slow

@@ -77,7 +77,7 @@ def test_show_writes_its_pictures(quiesce, tmp_path: Path, file: Path) -> None:
     # Many colours: a surface is there, not an empty frame.
     assert len(np.unique((surface[..., :3] * 255).astype(int).reshape(-1, 3), axis=0)) > 100
     page = (tmp_path / "out/index.html").read_text()
-    assert page.count("data:image/svg+xml;base64,") == 2
+    assert page.count("<svg") == 2
     assert "http://" not in page and "https://" not in page
 
 

@@ -43,20 +43,18 @@ def window_of(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw(free: Run, held: Run, law: str) -> str:
-    plt = pyplot()
-    with plt.rc_context({"svg.fonttype": "none"}):  # Text stays text: a small file.
-        figure, axes = plt.subplots(2, 1, figsize=(8, 3.4), sharex=True, height_ratios=[3, 1.2])
-        names = {laws.OPEN_LOOP: (free, "without control"), law: (held, label(law))}
-        for name, (run, text) in names.items():
-            time_s, shown = window_of(run)
-            axes[0].plot(time_s[shown], run.trace["x5_um"][shown], color=COLORS[name], label=text)
-        axes[1].plot(time_s[shown], held.trace["coil_A"][shown], color=COLORS[law])
-        axes[0].set_ylabel("displacement (µm)")
-        axes[1].set_ylabel("current (A)")
-        is_step = free.case.scenario.is_step
-        axes[1].set_xlabel(f"time {'after the step' if is_step else 'before the end'} (s)")
-        axes[0].set_title(free.case.scenario.name)
-        axes[0].legend(loc="upper right", ncols=2)
-        axes[1].set_xlim(time_s[shown][0], time_s[shown][-1])
-        figure.align_ylabels(axes)
-        return svg_of(figure)
+    figure, axes = pyplot().subplots(2, 1, figsize=(8, 3.4), sharex=True, height_ratios=[3, 1.2])
+    names = {laws.OPEN_LOOP: (free, "without control"), law: (held, label(law))}
+    for name, (run, text) in names.items():
+        time_s, shown = window_of(run)
+        axes[0].plot(time_s[shown], run.trace["x5_um"][shown], color=COLORS[name], label=text)
+    axes[1].plot(time_s[shown], held.trace["coil_A"][shown], color=COLORS[law])
+    axes[0].set_ylabel("displacement (µm)")
+    axes[1].set_ylabel("current (A)")
+    is_step = free.case.scenario.is_step
+    axes[1].set_xlabel(f"time {'after the step' if is_step else 'before the end'} (s)")
+    axes[0].set_title(free.case.scenario.name)
+    axes[0].legend(loc="upper right", ncols=2)
+    axes[1].set_xlim(time_s[shown][0], time_s[shown][-1])
+    figure.align_ylabels(axes)
+    return svg_of(figure)

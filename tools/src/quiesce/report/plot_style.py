@@ -35,7 +35,10 @@ STYLE = {
     "grid.linewidth": 0.7,
     "axes.axisbelow": True,
     "legend.frameon": False,
-    "legend.fontsize": 8,
+    "legend.fontsize": 9,  # 9 pt are 12 pixels of a page
+    "axes.formatter.min_exponent": 5,  # no exponents, which are smaller
+    "font.sans-serif": ["DejaVu Sans"],
+    "svg.fonttype": "none",  # text stays text: a small file
     # The same figure gives the same bytes.
     "svg.hashsalt": "quiesce",
 }

@@ -13,7 +13,7 @@ from quiesce.base.command import real_number
 from quiesce.base.errors import EXIT_FAILED
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.cli.rules.show import add_reading_options, slice_of, tell_notes
-from quiesce.report.html import preformatted
+from quiesce.report.page import render
 from quiesce.rules.analysis.findings import number
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.model import RuleBase
@@ -24,7 +24,6 @@ from quiesce.rules.views.compare import (
     matched,
 )
 from quiesce.rules.views.diff_plots import plot_difference
-from quiesce.rules.views.page import make_page, picture
 from quiesce.rules.views.plots import file_name, save
 from quiesce.rules.views.structure import structural_differences
 from quiesce.rules.views.surface import Slice
@@ -178,14 +177,12 @@ def finite(value: float) -> float | None:
 
 
 def write_files(folder: Path, args: argparse.Namespace, found: Comparison) -> None:
-    parts = [preformatted("Differences", report(found))]
+    pictures = []
     for index, output in enumerate(found.outputs):
         cut = slice_at(args, found.one, output)
         figure = plot_difference(found.one, found.other, index, cut, output)
-        svg = save(figure, folder, f"difference_{file_name(output.name)}")
-        parts.append(picture(f"Output {output.name}", "", svg))
-    title = f"{found.one.name} against {found.other.name}"
-    page = make_page(title, "Evaluated in float64, not by the firmware.", parts)
+        pictures.append((output.name, save(figure, folder, f"difference_{file_name(output.name)}")))
+    page = render("rules/views/diff.html.j2", found=found, report=report(found), pictures=pictures)
     (folder / "index.html").write_text(page, encoding="utf-8")
 
 

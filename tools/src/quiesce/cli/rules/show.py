@@ -14,10 +14,9 @@ from quiesce.cli.terminal import show
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.trace import read_trace
-from quiesce.report.html import preformatted
+from quiesce.report.page import render
 from quiesce.rules.formats.files import read_rules
 from quiesce.rules.model import RuleBase
-from quiesce.rules.views.page import make_page, picture
 from quiesce.rules.views.plots import file_name, plot_memberships, plot_output, save
 from quiesce.rules.views.rule_text import fired_text, rules_text, summary, visits_text
 from quiesce.rules.views.surface import Slice, make_slice
@@ -131,23 +130,23 @@ def run_scenario(base: RuleBase, name: str) -> Visits:
 def write_files(
     folder: Path, base: RuleBase, cut: Slice, visits: Visits | None, fired: list[Fired]
 ) -> None:
-    parts = []
-    for index, output in enumerate(base.outputs):
-        svg = save(
-            plot_output(base, index, cut, visits), folder, f"surface_{file_name(output.name)}"
+    surfaces = [
+        (
+            output.name,
+            save(plot_output(base, i, cut, visits), folder, f"surface_{file_name(output.name)}"),
         )
-        held = cut.text(base)
-        note = f"The other inputs are held: {held}." if held else ""
-        parts.append(picture(f"Output {output.name}", note, svg))
-    svg = save(plot_memberships(base, visits), folder, "memberships")
-    parts.append(picture("Sets", "", svg))
-    parts.append(preformatted("Rules", rules_text(base)))
-    lead = "Evaluated in float64, not by the firmware."
-    if visits is not None:
-        parts.append(preformatted("Rules that fired", fired_text(base, fired)))
-        lead += f" Circles: {visits_text(base, visits)}."
-    page = make_page(
-        f"Rule base {base.name}", lead, [preformatted("What it has", summary(base)), *parts]
+        for i, output in enumerate(base.outputs)
+    ]
+    page = render(
+        "rules/views/show.html.j2",
+        name=base.name,
+        summary=summary(base),
+        visited=visits and visits_text(base, visits),
+        surfaces=surfaces,
+        held=cut.text(base),
+        memberships=save(plot_memberships(base, visits), folder, "memberships"),
+        rules=rules_text(base),
+        fired=visits and fired_text(base, fired),
     )
     (folder / "index.html").write_text(page, encoding="utf-8")
 

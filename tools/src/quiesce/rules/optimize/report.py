@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from quiesce.report.html import card, cards, preformatted
+from quiesce.report.page import render
 from quiesce.rules.formats.files import write_text
 from quiesce.rules.optimize.plots import (
     plot_convergence,
@@ -12,7 +12,6 @@ from quiesce.rules.optimize.plots import (
     plot_surfaces,
 )
 from quiesce.rules.optimize.result import Found, result_json, text_sections
-from quiesce.rules.views.page import make_page, picture
 
 LEAD = (
     "Rule bases tried in closed loop: the controller's firmware against the simulated structure. A "
@@ -38,29 +37,16 @@ def markdown(found: Found) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def cost_cards(found: Found) -> str:
-    cost = found.objective.cost
-    shown = (
-        (f"{cost(found.start_outcome):.2f}", "cost of the start"),
-        (f"{cost(found.best_outcome):.2f}", "cost of the rule base found"),
-        (f"{cost(found.constant_outcome):.2f}", "cost of the best constant currents"),
-        (f"{found.evaluations:,}", "rule bases tried"),
-    )
-    return cards([card(*pair) for pair in shown])
-
-
 def page(found: Found) -> str:
-    pictures = (
-        ("Reductions by frequency", plot_places(found)),
-        ("Rule surface, before and after", plot_surfaces(found)),
-        ("Convergence", plot_convergence(found)),
-        ("Pareto front", plot_front(found)),
-    )
-    drawn = [picture(title, "", svg) for title, svg in pictures]
-    tables = [preformatted(title, text) for title, text in text_sections(found)]
-    again = preformatted("Run it again", found.command)
-    return make_page(
-        f"Rule search: {found.best.name}", LEAD, [cost_cards(found), *drawn, *tables, again]
+    return render(
+        "rules/optimize/report.html.j2",
+        found=found,
+        lead=LEAD,
+        places=plot_places(found),
+        surfaces=plot_surfaces(found),
+        convergence=plot_convergence(found),
+        front=plot_front(found),
+        texts=text_sections(found),
     )
 
 

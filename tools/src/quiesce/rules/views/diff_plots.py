@@ -35,7 +35,7 @@ def plot_difference(
     points = common_points(one, other, cut, GRID_POINTS)
     answers = [evaluate_slice(base, cut, points) for base in (one, other)]
     values = [answer.outputs[index] for answer in answers]
-    figure, axes = pyplot().subplots(1, 3, figsize=(14, 4.2), sharex=True, sharey=True)
+    figure, axes = pyplot().subplots(1, 3, figsize=(11.5, 3.8), sharex=True, sharey=True)
     spans = [color_range(b.outputs[index], v) for b, v in zip((one, other), values, strict=True)]
     look = {"cmap": SURFACE_MAP, "vmin": min(s[0] for s in spans), "vmax": max(s[1] for s in spans)}
     for axis, letter, base, value, answer in zip(

@@ -132,7 +132,7 @@ def plot_output(base: RuleBase, index: int, cut: Slice, visits: Visits | None = 
     answer = evaluate_slice(base, cut, points)
     values = answer.outputs[index]
     plt = pyplot()
-    figure = plt.figure(figsize=(12, 4.9))
+    figure = plt.figure(figsize=(11.5, 4.9))
     flat, solid = figure.add_gridspec(1, 2, width_ratios=[1.25, 1])
     axis = figure.add_subplot(flat)
     output = base.outputs[index]
@@ -157,7 +157,7 @@ def draw_map(
     ruled = np.where(is_default, np.nan, values)
     if has_contours(ruled):
         lines = axis.contour(*points, ruled.T, levels=9, colors="#33415c", linewidths=0.6)
-        axis.clabel(lines, fontsize=7, fmt="%g")
+        axis.clabel(lines, fontsize=9, fmt="%g")
     hatch(axis, points, is_default)
 
 
@@ -177,7 +177,7 @@ def hatch(axis: Any, points: Sequence[np.ndarray], is_default: np.ndarray) -> No
     if is_default.any():
         axis.contourf(*points, is_default.T.astype(float), levels=[0.5, 1.5], colors="none",
                       hatches=["////"])  # fmt: skip
-        axis.text(0.01, 1.01, DEFAULT_NOTE, transform=axis.transAxes, fontsize=8,
+        axis.text(0.01, 1.01, DEFAULT_NOTE, transform=axis.transAxes,
                   color=COLORS["muted"], ha="left", va="bottom")  # fmt: skip
 
 
