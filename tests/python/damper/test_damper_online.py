@@ -172,7 +172,7 @@ def test_command_writes_page_and_model_and_tells_numbers(
     assert found["online_over_best_frozen"] < 0.6
     assert len(found["error_over_time"]["time_s"]) == len(found["error_over_time"][ADAPTIVE])
     page = (out / "online.html").read_text(encoding="utf-8")
-    assert page.count("<img") == 3 and "bingham" in page
+    assert page.count("<figure") == 3 and "bingham" in page
     assert tomllib.loads((out / "adapted.toml").read_text(encoding="utf-8"))["name"]
     assert read_model(out / "adapted.toml").model == "neuro_fuzzy_stf"
 

@@ -228,7 +228,7 @@ def test_white_residual_is_called_white_and_a_missing_term_not(segments) -> None
 class Tags(HTMLParser):
     """Open tags that never close, and what is shown as text."""
 
-    VOID = frozenset({"meta", "img", "br"})
+    VOID = frozenset({"meta", "img", "br", "input"})
 
     def __init__(self) -> None:
         super().__init__()
@@ -236,7 +236,7 @@ class Tags(HTMLParser):
         self.images = 0
 
     def handle_starttag(self, tag: str, attrs: list) -> None:
-        self.images += tag == "img"
+        self.images += tag == "svg"
         if tag not in self.VOID:
             self.open.append(tag)
 

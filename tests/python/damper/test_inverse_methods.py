@@ -445,7 +445,7 @@ def test_command_makes_compares_writes_and_reads_back(tmp_path: Path, capsys) ->
         "map.table", "inverse_steps.toml", "inverse.html"
     }  # fmt: skip
     page = (out / "inverse.html").read_text(encoding="utf-8")
-    assert page.count("<img") == 4 and "steps" in page
+    assert page.count("<figure") == 4 and "steps" in page
     read = ("--read", out / "inverse_steps.toml", "--read", out / "map.table", "--json")
     assert act(cli_inverse, file, "--max-current-A", "2", *read) == 0
     found = json.loads(capsys.readouterr().out)

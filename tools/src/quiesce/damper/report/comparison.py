@@ -1,6 +1,5 @@
 """What a comparison with new data says, as text, numbers and page."""
 
-import html
 import math
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from quiesce.damper.plain import plain
 from quiesce.damper.report.plots import plot_errors, plot_loops, plot_residual, plot_time
 from quiesce.damper.report.runs import whiteness_of
 from quiesce.damper.report.tables import Table, percent, shortened, whiteness_text
-from quiesce.report.html import document, html_table, image, items
+from quiesce.report.page import render
 
 
 def score_table(found: Comparison) -> Table:
@@ -82,26 +81,23 @@ def numbers_of(found: Comparison, notes: list[str]) -> dict[str, Any]:
 
 def write_page(folder: Path, file: Path, found: Comparison, notes: list[str]) -> None:
     """compare.html in `folder`."""
-    drawn = "<p><b>The model diverges on this data: no plots.</b></p>"
+    pictures = {}
     if all(run.is_finite for run in found.runs):
-        drawn = "".join(
-            [
-                image(plot_time(found.runs), "force against time"),
-                image(plot_loops(found.runs), "force against displacement and velocity"),
-                image(plot_residual(found.runs), "residual"),
-                image(plot_errors([(found.damper.name, found.runs)]), "error by command"),
-            ]
-        )
-    title = html.escape(found.damper.name)
-    page = document(
-        f"{found.damper.name} against new data",
-        f"""<h1>{title} against new data</h1>
-<p class="lead">{html.escape(found.damper.model)} from <code>{html.escape(shown(file))}</code>,
-running free. Error of all rows {percent(found.score.error)} %.</p>
-{html_table(score_table(found))}
-{items(found.warnings)}{items(hint_lines(found))}
-{drawn}
-<h2>Data</h2>{items(notes)}""",
+        pictures = {
+            "force against time": plot_time(found.runs),
+            "force against displacement and velocity": plot_loops(found.runs),
+            "residual": plot_residual(found.runs),
+            "error by command": plot_errors([(found.damper.name, found.runs)]),
+        }
+    page = render(
+        "damper/report/comparison.html.j2",
+        found=found,
+        file=shown(file),
+        error=percent(found.score.error),
+        scores=score_table(found),
+        hints=hint_lines(found),
+        pictures=pictures,
+        notes=notes,
     )
     with output_files(folder) as staging:
         (staging / "compare.html").write_text(page, encoding="utf-8")

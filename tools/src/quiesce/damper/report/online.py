@@ -1,6 +1,5 @@
 """What on-line adaptation came to, as text, numbers, plots and page."""
 
-import html
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,7 +14,7 @@ from quiesce.damper.model_file import DamperModel
 from quiesce.damper.online import ADAPTIVE, Followed
 from quiesce.damper.plain import plain
 from quiesce.damper.report.tables import Table
-from quiesce.report.html import card, cards, document, html_table, image, items
+from quiesce.report.page import render
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
 
 PAGE = "online.html"
@@ -177,34 +176,20 @@ def write_page(
 ) -> None:  # fmt: skip
     """online.html and, as it stands after the last row, the adaptive model."""
     best = found.best_frozen()
-    page = document(
-        f"{title}: on-line adaptation",
-        f"""<h1>{html.escape(title)}: on-line adaptation</h1>
-<p class="lead">A self-tuning fuzzy model adapts after every sample; the others are fitted to what
-precedes the change and then frozen. {html.escape(summary(found).capitalize())}.</p>
-{
-            cards(
-                [
-                    card(
-                        f"{percent(found.error_pct(found.adaptive_N, 'after'))} %",
-                        "adaptive, after the change",
-                    ),
-                    card(
-                        f"{percent(found.error_pct(found.frozen_N[best], 'after'))} %",
-                        f"best frozen: {best}",
-                    ),
-                    card(f"{found.over_best_frozen():.2f}", "one over the other"),
-                ]
-            )
-        }
-{html_table(error_table(found), (0, 1))}
-{image(plot_errors(found), "error over time")}
-<h2>Force around the change</h2>{image(plot_force(found), "force against time")}
-<h2>Memberships</h2>{image(plot_memberships(found), "memberships at the start and at the end")}
-<h2>What this is worth</h2><p>The adaptive model is told each force after its own: an estimator, no
-prediction. Where it is not better than the last force held, it follows rather than knows.</p>
-<h2>Data</h2>{items([*stream_lines(found), *notes, *found.notes])}
-<h2>Run it again</h2><pre>{html.escape(command)}</pre>""",
+    page = render(
+        "damper/report/online.html.j2",
+        name=title,
+        summary=summary(found).capitalize(),
+        adaptive=percent(found.error_pct(found.adaptive_N, "after")),
+        frozen=percent(found.error_pct(found.frozen_N[best], "after")),
+        best=best,
+        ratio=found.over_best_frozen(),
+        errors=error_table(found),
+        over_time=plot_errors(found),
+        force=plot_force(found),
+        memberships=plot_memberships(found),
+        data=[*stream_lines(found), *notes, *found.notes],
+        command=command,
     )
     with output_files(folder) as staging:
         (staging / PAGE).write_text(page, encoding="utf-8")

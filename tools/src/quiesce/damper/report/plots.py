@@ -57,7 +57,7 @@ def plot_time(runs: Sequence[Run]) -> str:
         axis.set_ylabel("force (N)")
         part_name = "held out" if run.is_test else "fitted"
         axis.set_title(f"{run.label}, {part_name}: error {100.0 * run.error:.2f} %")
-    axes[0, 0].legend(loc="upper right", ncols=3)
+    axes[0, 0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
     axes[-1, 0].set_xlabel("time (s)")
     return svg_of(figure)
 
@@ -105,9 +105,7 @@ def plot_residual(runs: Sequence[Run]) -> str:
     run = max(shown_part(runs), key=lambda one: len(one.model_N))
     figure, axes = plt.subplots(1, 3, figsize=(11, 3.0))
     step = -(-len(run.model_N) // MOST_ROWS)
-    axes[0].plot(
-        run.time_s[::step], run.residual_N[::step], color=COLORS["current"], lw=0.5, rasterized=True
-    )
+    axes[0].plot(run.time_s[::step], run.residual_N[::step], color=COLORS["current"], lw=0.5)
     axes[0].set(xlabel="time (s)", ylabel="residual (N)")
     for values, name, label in (
         (run.measured_N - run.measured_N.mean(), "muted", "force"),
@@ -180,7 +178,7 @@ def plot_ranking(fitted: Sequence[Fitted]) -> str:
         face = colour if one.passivity.holds else "none"
         at = (max(one.parameter_count, 1), 100.0 * one.validation_error)
         axis.plot(*at, _MARKERS.get(one.kind, "o"), color=colour, mfc=face, ms=6)
-        axis.annotate(one.name, at, xytext=(5, 3), textcoords="offset points", fontsize=7)
+        axis.annotate(one.name, at, xytext=(5, 3), textcoords="offset points")
         if one.test and np.isfinite(one.test.error):
             axis.plot([at[0]] * 2, [at[1], 100.0 * one.test.error], color=COLORS["muted"], lw=0.6)
             axis.plot(at[0], 100.0 * one.test.error, "_", color=COLORS["muted"], ms=9)

@@ -1,6 +1,5 @@
 """What a comparison of inverses says, as text, numbers and page."""
 
-import html
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,7 +9,7 @@ from quiesce.damper.inverses.made import Made
 from quiesce.damper.inverses.methods import METHODS
 from quiesce.damper.inverses.tracking import CONSTANT, IDEAL, Compared, Run, error_pct
 from quiesce.damper.plain import plain
-from quiesce.report.html import card, cards, document, html_table, image, items
+from quiesce.report.page import render
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
 
 PAGE = "inverse.html"
@@ -119,23 +118,18 @@ def plot_task(found: Compared, index: int, names: Sequence[str]) -> str:
 def page_of(
     title: str, inverses: Sequence[Made], found: Compared | None, files: Sequence[str], command: str
 ) -> str:
-    drawn, ranking = "", ""
-    if found is not None:
-        errors = found.errors_pct()
-        names = [one.name for one in inverses]
-        ranking = cards([card(f"{errors[one]:.1f} %", one) for one in [*names, CONSTANT, IDEAL]])
-        drawn = (
-            f"<h2>Tracking</h2>{items(peer_lines(found))}{html_table(error_table(found))}"
-            + "".join(
-                image(plot_task(found, k, [*names, IDEAL]), f"{task}: force and current over time")
-                for k, task in enumerate(task_names(found))
-            )
-        )
-    return document(
-        f"inverses of {title}",
-        f"""<h1>Inverses of {html.escape(title)}</h1>
-<p class="lead">The current for a wanted force, by several methods.</p>{ranking}
-<h2>Methods</h2>{html_table(method_table(inverses), (1, 4))}{items(notes_of(inverses))}{drawn}
-<h2>Files</h2>{items(files)}
-<h2>Run it again</h2><pre>{html.escape(command)}</pre>""",
+    names = [one.name for one in inverses]
+    tasks = task_names(found) if found else []
+    errors = found.errors_pct() if found else {}
+    return render(
+        "damper/report/tracking.html.j2",
+        name=title,
+        cards=[(f"{errors[one]:.1f} %", one) for one in [*names, CONSTANT, IDEAL] if errors],
+        methods=method_table(inverses),
+        notes=notes_of(inverses),
+        pictures={task: plot_task(found, k, [*names, IDEAL]) for k, task in enumerate(tasks)},
+        peers=found and peer_lines(found),
+        errors=found and error_table(found),
+        files=files,
+        command=command,
     )
