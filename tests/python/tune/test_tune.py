@@ -79,7 +79,7 @@ def test_all_files_are_written(tuned) -> None:
     assert expected <= set(data["files"])
     assert all((folder / name).stat().st_size > 0 for name in data["files"])
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert page.count("<img ") == 5
+    assert page.count("<figure") == 5
     assert "--set unlock_current_mA=5000" in page
 
 

@@ -48,7 +48,7 @@ def test_what_is_found_is_in_all_files_and_runs(quiesce, quake: Path, tmp_path: 
     assert settings["settings"] == {**data["settings"], "limit_N": 800.0}
     assert settings["parameters"]["tracker"] == "proportional"
     page = (out / "tune.html").read_text()
-    assert page.count("<img") == 2 and "sky_N_s_m" in page and data["command"] in page
+    assert page.count("<figure") == 2 and "sky_N_s_m" in page and data["command"] in page
     # The table that was written is the one that was tried.
     label = f"linear:table={out / 'skyhook.table'},tracker=proportional,as=tuned,"
     label += f"tracker_gain_mA_kN={settings['parameters']['tracker_gain_mA_kN']}"

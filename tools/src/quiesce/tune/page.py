@@ -1,12 +1,10 @@
 """The report of `quiesce tune`: tables as text, and one HTML page that needs nothing beside it."""
 
-import html
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from quiesce.base.table import format_table
-from quiesce.report.html import card, cards, document, html_table, image, section
+from quiesce.report.page import render
 from quiesce.tune.cycle import Cycle
 from quiesce.tune.law import Row, setting_words
 from quiesce.tune.phase_table import SETTINGS
@@ -103,68 +101,27 @@ def text(tuned: Tuned) -> str:
     return "\n".join(parts)
 
 
-def share_cards(tuned: Tuned) -> str:
+def share_cards(tuned: Tuned) -> list[tuple[str, str]]:
     out = []
     for setting, bound in zip(SETTINGS, ("amp", "no_worse"), strict=True):
         if least := least_fraction(tuned.rows, setting, bound):
             limit = "" if bound == "amp" else " with acceleration no worse than at 0 A"
             what = f"of the displacement bound{limit}, {setting}, least ({least[1]:g} Hz)"
-            out.append(card(f"{least[0]:.3f}", what))
+            out.append((f"{least[0]:.3f}", what))
     for is_adapted, what in ((False, "the table alone"), (True, "adapting, after 120 s")):
         if (share := worst_share(tuned.cells, is_adapted)) is not None:
-            out.append(card(f"{share:.2f}", f"of their bound on the other plants: {what}"))
+            out.append((f"{share:.2f}", f"of their bound on the other plants: {what}"))
     unlock_A = 1e-3 * float(tuned.parameters["unlock_current_mA"])
-    out.append(card(f"{unlock_A:g} A", "best constant current, while nothing is locked on to"))
-    return cards(out)
+    return [*out, (f"{unlock_A:g} A", "best constant current, while nothing is locked on to")]
 
 
-def spring_words(cycles: Sequence[Cycle]) -> str:
-    told = [
-        f"{one.freq_Hz:g} Hz: {one.stiffness_N_m:+.1f} N/m and {one.damping_N_s_m:.2f} N s/m"
-        for one in cycles
-    ]
-    return "; ".join(told)
-
-
-WHY = """A damper's force opposes the motion; the current only says how strongly. <b>Below
-resonance</b> the structure moves like its spring, so more stiffness helps. Current flows while the
-structure moves away from rest and is released at the peak: the force resists the way out, as a
-spring does, and does not push back on the way in; a spring that gives nothing back. <b>Above
-resonance</b> it moves like its mass, so more mass helps. Current flows on the way back to rest and
-is released on the way out: the force opposes the return, as inertia does. Shaded: current flows.
-The command comes earlier than the current by the coil's lag. Dotted: the displacement without
-current. Last row: the force over the displacement; its slope is what acts like a spring or,
-falling, like a mass. Fundamental of the force over that of the displacement: """
-
-
-def make_page(tuned: Tuned, pictures: dict[str, Any]) -> str:
-    sections = [
-        ("Reduction over frequency", "Steady state of the table, without adaptation, at its points "
-         "and half-way between them.", "reductions"),
-        ("The pulses", "Current over the phase of the displacement: 0 is a peak on either side, "
-         "90 the way through rest.", "pulses"),
-        ("Why the pulses are where they are", WHY + spring_words(tuned.cycles) + ".", "cycles"),
-        ("Displacement against acceleration", "Up and to the right is better. Any current: the "
-         "best periodic current for several limits of the acceleration.", "fronts"),
-        ("Plants that the table was not made for", "Nothing retuned. Dashed: that plant's own "
-         "bound; dotted: 0.9 of it.", "robustness"),
-    ]  # fmt: skip
-    drawn = [
-        section(title, note, image(pictures.get(name, ""), title)) for title, note, name in sections
-    ]
-    known = tuned.identification
-    return document(
-        f"{tuned.name} tuned",
-        f"""<h1>Phase law for {html.escape(tuned.name)}</h1>
-<p class="lead">Plant: <code>{html.escape(tuned.plant)}</code>. First mode
-{tuned.first_Hz:.3g} Hz. Reductions are against 0 A with the same excitation; negative is worse
-than doing nothing. Bounds are the best found, not a proof.</p>
-{share_cards(tuned)}
-<h2>What to set</h2><pre>{html.escape(setting_words(tuned.parameters))}</pre>
-{f"<h2>How sure the plant is</h2><pre>{html.escape(known)}</pre>" if known else ""}
-{"".join(drawn)}
-<h2>At each frequency</h2>
-<p>Reductions in %, displacement / RMS acceleration.</p>{html_table(point_table(tuned.rows))}
-{f"<h2>On other plants</h2>{html_table(cell_table(tuned.cells))}" if tuned.cells else ""}
-<h2>Run it again</h2><pre>{html.escape(tuned.command)}</pre>""",
+def make_page(tuned: Tuned, pictures: dict[str, str]) -> str:
+    return render(
+        "tune/page.html.j2",
+        tuned=tuned,
+        pictures=pictures,
+        cards=share_cards(tuned),
+        settings=setting_words(tuned.parameters),
+        points=point_table(tuned.rows),
+        plants=tuned.cells and cell_table(tuned.cells),
     )

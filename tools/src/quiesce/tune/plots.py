@@ -82,7 +82,7 @@ def current_A(points: Any, freq_Hz: float, phase_deg: np.ndarray) -> np.ndarray:
 def plot_fronts(rows: Sequence[Row], fronts: dict[float, list[dict[str, float]]]) -> Any:
     """Displacement against acceleration: what any current can do, and what is done."""
     width = max(len(fronts), 2)
-    figure, axes = pyplot().subplots(1, width, figsize=(3.4 * width, 3.6), squeeze=False)
+    figure, axes = pyplot().subplots(1, width, figsize=(11, 3.6), squeeze=False)
     by_freq = {row.freq_Hz: row for row in rows}
     for axis, (freq_Hz, front) in zip(axes[0], fronts.items(), strict=False):
         row = by_freq[freq_Hz]
@@ -154,7 +154,7 @@ def plot_loop(axis: Any, one: Cycle) -> None:
     reach = np.array([-1.0, 1.0]) * np.abs(one.disp_um).max()
     line = 1e-3 * one.stiffness_N_m * reach
     axis.plot(reach, line, "--", color=COLORS["current"])
-    axis.set_title(f"dashed: its part like a {kind}", fontsize=8)
+    axis.set_title(f"dashed: its part like a {kind}", fontsize="medium")
     axis.set(xlabel="displacement (µm)", ylabel="resisting force (mN)")
     axis.figure.colorbar(image, ax=axis, label="coil current (A)")
 

@@ -1,12 +1,10 @@
 """The page of a tuning: what it reached, trials over each setting and one after the other."""
 
-import html
 from math import ceil
 
 import numpy as np
 
-from quiesce.base.paths import typed
-from quiesce.report.html import document, html_table, image, preformatted, section
+from quiesce.report.page import render
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
 from quiesce.tune.gains.run import Tuned
 from quiesce.tune.gains.space import Dimension
@@ -17,30 +15,16 @@ SHOWN_COST = 2.0  # of the best: what is worse is drawn at this edge
 
 
 def page(tuned: Tuned, values: Rows, records: Rows, compare: str) -> str:
-    order = tuned.order
-    title = f"{order.recipe.name} on {tuned.tunable.rig.name}"
-    lead = (
-        f"{html.escape(order.recipe.summary)}. {len(tuned.trials)} trials; what is minimised: "
-        f"{html.escape(order.aim.text)}."
+    return render(
+        "tune/gains/page.html.j2",
+        tuned=tuned,
+        values=values,
+        records=records,
+        compare=compare,
+        refused=sum(not one.runs for one in tuned.trials),
+        over_settings=_over_settings(tuned),
+        over_time=_over_time(tuned),
     )
-    parts = [
-        f"<h1>{html.escape(title)}</h1><p class='lead'>{lead}</p>",
-        "<h2>Settings</h2>" + html_table(values, (3,)),
-        "<h2>Records</h2><p>The best constant current is the one that is best for all of them; "
-        "the law was tuned on them, too. Judge it on others.</p>" + html_table(records),
-        section("Trials over settings", _note(tuned), image(_over_settings(tuned), "trials")),
-        section("Trials one after the other", "", image(_over_time(tuned), "best so far")),
-        preformatted("Again", typed(order.command)),
-        preformatted("Beside constants", compare),
-    ]
-    return document(title, "\n".join(parts))
-
-
-def _note(tuned: Tuned) -> str:
-    refused = sum(not one.runs for one in tuned.trials)
-    told = "A point a trial, the tuned one in colour; worse than twice the best: at the edge."
-    left_out = f" {refused} were refused by recipe or bench and are left out." if refused else ""
-    return told + left_out
 
 
 def _over_settings(tuned: Tuned) -> str:
