@@ -41,7 +41,7 @@ PYTHON_TESTS = {
     "engine": ("hil/test_hil.py",),
     "optimum": ("tune/test_control_bound.py",),
     "plant": ("plant", "damper/test_plant_dampers.py"),
-    "report": ("damper/test_damper_report.py",),
+    "report": ("report", "damper/test_damper_report.py"),
 }
 SCRIPTS = (
     ".ci/",

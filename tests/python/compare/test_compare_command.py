@@ -52,7 +52,7 @@ def test_laws_stand_beside_constants_in_all_files(quiesce, quake: Path, tmp_path
     rows = list(csv.DictReader((tmp_path / "out/compare.csv").open()))
     assert [row["law"] for row in rows] == [cell["law"] for cell in cells]
     page = (tmp_path / "out/compare.html").read_text()
-    assert page.count("<img") == 3 and "sky" in page
+    assert page.count("<figure") == 3 and "sky" in page
 
 
 def test_the_same_seeds_give_the_same_numbers(quiesce, quake: Path) -> None:
@@ -144,7 +144,7 @@ def test_recipes_on_several_structures(quiesce, quake: Path, tmp_path: Path) -> 
     sky = [cell["figures"]["current_mean_A"] for cell in cells if cell["law"] == "sky"]
     assert all(0.0 < one <= 1.0 for one in sky)
     page = (tmp_path / "out/compare.html").read_text()
-    assert page.count("<img") == 6 and page.count("<h2>") >= 2
+    assert page.count("<figure") == 6 and page.count("<h2>") >= 2
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """The page of a comparison: table, radar of ratios, fronts, motion over time."""
 
-import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +11,7 @@ from quiesce.compare.figures import INDEXED
 from quiesce.compare.run import ALL, BEST, Cell
 from quiesce.compare.table import laws_of, means, rows
 from quiesce.engine.trace import Trace
-from quiesce.report.html import document, html_table, image, section
+from quiesce.report.page import render
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
 
 CYCLE = [COLORS[name] for name in ("open_loop", "reference", "constant_best", "main", "phase",
@@ -33,48 +32,18 @@ class Shown:
 
 
 def page(shown: Sequence[Shown]) -> str:
-    title = f"laws on {', '.join(one.rig for one in shown)}"
-    lead = (
-        "Means over records and seeds. The index is the mean of six ratios to all current: peak "
-        "and RMS of the last body's displacement, of drift, of acceleration."
-    )
-    parts = [f"<h1>{html.escape(title)}</h1><p class='lead'>{lead}</p>"]
-    for one in shown:
-        parts += [f"<h2>{html.escape(one.rig)}</h2>"] if len(shown) > 1 else []
-        parts += _sections(one)
-    return document(title, "\n".join(parts))
-
-
-def _sections(shown: Shown) -> list[str]:
-    cells = shown.cells
-    notes = [f"{one.record}, seed {one.seed}: {one.note}" for one in cells if one.law == BEST]
-    best = f"Best constant current in hindsight: {html.escape('; '.join(notes))}." if notes else ""
-    return [
-        f"<p>{best}{_of_clairvoyant(cells)}</p>",
-        f'<div class="wide">{html_table(rows(cells))}</div>',
-        section("Ratios to all current", "Inside the ring is better.", _radar(cells)),
-        section(
-            "Displacement against acceleration",
-            "Each point is a law on a record; nearer to the corner is better.",
-            _fronts(cells),
-        ),
-        section(
-            "Motion and current",
-            "One record, the first seed.",
-            _motion(shown.traces, shown.body, shown.damper),
-        ),
+    told = [
+        {
+            "rig": one.rig,
+            "cells": one.cells,
+            "table": rows(one.cells),
+            "radar": _radar(one.cells),
+            "fronts": _fronts(one.cells),
+            "motion": _motion(one.traces, one.body, one.damper),
+        }
+        for one in shown
     ]
-
-
-def _of_clairvoyant(cells: Sequence[Cell]) -> str:
-    note = next((cell.note for cell in cells if cell.law == CLAIRVOYANT), None)
-    if note is None:
-        return ""
-    return (
-        f" Row {CLAIRVOYANT}: {html.escape(note)}. It knows the whole record beforehand, without "
-        "noise or delay; no controller can. A share is what a law has of its gain over the best "
-        "constant current."
-    )
+    return render("compare/page.html.j2", shown=told, best_law=BEST, clairvoyant=CLAIRVOYANT)
 
 
 def _radar(cells: Sequence[Cell]) -> str:
@@ -89,7 +58,7 @@ def _radar(cells: Sequence[Cell]) -> str:
     axes.set_xticks(angles[:-1], [name.rsplit("_", 1)[0].replace("_", " ") for name in INDEXED])
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="center left", bbox_to_anchor=(1.15, 0.5))
-    return image(svg_of(figure), "ratios of each law's figures to those of all current")
+    return svg_of(figure)
 
 
 def _fronts(cells: Sequence[Cell]) -> str:
@@ -107,7 +76,7 @@ def _fronts(cells: Sequence[Cell]) -> str:
     axes.set_xlabel("peak displacement of the last body, mm")
     axes.set_ylabel("peak acceleration, m/s2")
     axes.legend()
-    return image(svg_of(figure), "peak displacement against peak acceleration of each law")
+    return svg_of(figure)
 
 
 def _motion(traces: Mapping[str, Trace], body: str, damper: str) -> str:
@@ -123,4 +92,4 @@ def _motion(traces: Mapping[str, Trace], body: str, damper: str) -> str:
     axes[2].set_ylabel(f"current of {damper}, A")
     axes[2].set_xlabel("s")
     axes[0].legend(ncols=4, loc="lower right")
-    return image(svg_of(figure), "displacement, acceleration and current over time")
+    return svg_of(figure)
