@@ -21,11 +21,12 @@ from quiesce.rules.model import CENTROID, OR, FuzzySet, Input, Output, Point, Ru
 
 from quiesce_benchmarks.images import build
 
-FUZZYLITE, COUNT, PYTHON = "fuzzylite", "count", "python"
+FUZZYLITE, COUNT, PYTHON, BROWSER = "fuzzylite", "count", "python", "browser"
 FILES = {
     FUZZYLITE: "host/tools/benchmarks/host/fuzzylite_peer",
     COUNT: "host/tools/benchmarks/host/call_points",
     PYTHON: "deps/peers/bin/python",
+    BROWSER: "deps/axe/axe.min.js",
 }
 
 
