@@ -7,6 +7,7 @@ import sys
 import tempfile
 from pathlib import Path
 from shutil import which
+from typing import Any
 
 from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.base.table import format_table
@@ -32,11 +33,12 @@ SHOWN = 5  # lines of a page in a mode
 
 
 def run(words: list[str], folder: Path) -> str:
-    """What it printed. BenchFailure with its last line."""
-    ended = subprocess.run(
-        words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-        timeout=TIMEOUT_s,
-    )  # fmt: skip
+    """What it printed. BenchFailure with its last line, or where it takes too long."""
+    pipes: dict[str, Any] = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
+    try:
+        ended = subprocess.run(words, cwd=folder, timeout=TIMEOUT_s, **pipes)
+    except subprocess.TimeoutExpired:
+        raise BenchFailure(f"{' '.join(words[:4])} takes more than {TIMEOUT_s} s")
     if ended.returncode != 0:
         raise BenchFailure(f"{' '.join(words[:4])}: {one_line(ended.stderr)}")
     return ended.stdout
