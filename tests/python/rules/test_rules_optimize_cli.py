@@ -1,6 +1,7 @@
 """`quiesce rules optimize` and `lookup`: the published tables, real searches, bad input."""
 
 import json
+import os
 import re
 import signal
 import subprocess
@@ -177,6 +178,7 @@ def interrupt_after(folder: Path, generation: int, arguments: list[str]) -> tupl
     process = subprocess.Popen(
         [sys.executable, "-m", "quiesce", "rules", "optimize", *arguments],
         cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "tools/src")},
     )  # fmt: skip
     assert process.stderr is not None
     lines = []
