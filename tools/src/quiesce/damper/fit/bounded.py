@@ -1,4 +1,5 @@
-"""Small linear least-squares problems with bounds, many at once."""
+"""Small linear least-squares problems with bounds, many at once. Ours, because scipy's lsq_linear
+solves one at a time."""
 
 import numpy as np
 

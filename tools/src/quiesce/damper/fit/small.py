@@ -3,7 +3,8 @@
 A handful of evenly spread starts, the linear variables projected out; from the best of them
 Levenberg and Marquardt's least squares over the nonlinear variables. Where the residual is then
 white noise there is nothing left to explain and the fit ends; else the next starts follow, and the
-global search where they disagree.
+global search where they disagree. The least squares are ours, because scipy's ask for residual and
+derivative one after the other, which here come from one batch.
 """
 
 import numpy as np

@@ -1,7 +1,8 @@
 """Differential evolution as in the thesis on the RD-8040-1.
 
 Mutation V = X_i + F (X_j - X_l) on the target vector itself, binomial crossover, greedy selection;
-all variables, none projected out, no polish. (Usual forms take a third vector or the best one.)
+all variables, none projected out, no polish. Ours, because neither pymoo nor scipy has this
+mutation: theirs take a third vector or the best one.
 What leaves the search range is set to its end: the thesis does not say.
 """
 
