@@ -54,6 +54,7 @@ EXAMPLES: tuple[tuple[str, str], ...] = (
     ("board compile", "press/board.toml --out board.c"),
     ("params", ""),
     ("chain", ""),
+    ("completion", "bash"),
     ("record", "step_10_20Hz --from-s 2 --to-s 8 --out step.csv"),
     ("replay", "step.csv --column accel_m_s2 --unit m_s2"),
     ("hil", "--target host --quick --scenario sine_10Hz --law fuzzy"),

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -48,6 +49,9 @@ GROUPS = {
         ("plant", "plant", "is a plant file right?"),
         ("chain", "chain", "magnitude and phase of the conditioning"),
     ),
+    "shell": (
+        ("completion", "completion", "commands, options and files by TAB, in bash, zsh and tcsh"),
+    ),
 }
 COMMANDS = tuple(command for group in GROUPS.values() for command in group)
 
@@ -83,14 +87,14 @@ class Overview(Parser):
 
     def format_help(self) -> str:
         listed = "\n\n".join(
-            f"{title}\n" + "\n".join(f"  {name:9s} {text}" for name, _, text in group)
+            f"{title}\n" + "\n".join(f"  {name:10s} {text}" for name, _, text in group)
             for title, group in GROUPS.items()
         )
         return f"usage: quiesce COMMAND ...\n\n{self.description}\n\n{listed}\n\n{EPILOG}"
 
 
-def make_parser(wanted: str, module: ModuleType | None) -> argparse.ArgumentParser:
-    """With all options of the wanted command, and the others' names."""
+def make_parser(modules: Mapping[str, ModuleType | None]) -> argparse.ArgumentParser:
+    """With all options of the commands in `modules`, and the others' names."""
     parser = Overview(
         prog="quiesce",
         description="Vibration control with magnetorheological dampers: the controller against a\n"
@@ -100,11 +104,16 @@ def make_parser(wanted: str, module: ModuleType | None) -> argparse.ArgumentPars
     parser.add_argument("-v", "--version", action="version", version=f"quiesce {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
     for name, _, text in COMMANDS:
-        if module is not None and name == wanted:
+        if (module := modules.get(name)) is not None:
             module.add_parser(commands)
         else:
             commands.add_parser(name, help=text)
     return parser
+
+
+def whole_parser() -> argparse.ArgumentParser:
+    """With all options of all commands."""
+    return make_parser({name: module_of(name) for name, _, _ in COMMANDS})
 
 
 def with_shipped(word: str) -> str:
@@ -124,7 +133,7 @@ def run(arguments: list[str]) -> int:
         raise UsageError(f"unknown option '{wanted}'; see 'quiesce --help'")
     module = module_of(wanted)
     words_of = getattr(module, "words_of", list)
-    args = make_parser(wanted, module).parse_args(words_of(arguments))
+    args = make_parser({wanted: module}).parse_args(words_of(arguments))
     return args.run(args)
 
 
