@@ -1,5 +1,6 @@
 """Output files that appear complete or not at all."""
 
+import errno
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -8,13 +9,16 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 
+# A full disk, a quota, a limit of a file's size, a file system that takes no writing.
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
+
 
 @contextmanager
 def output_files(folder: Path) -> Iterator[Path]:
     """Yields an empty folder to write into; at the end its files move into `folder`.
 
     Nothing reaches `folder`, and it is not created, where the block raises. UsageError where
-    `folder` cannot be made or written.
+    `folder` cannot be made or written, or its disk is full.
     """
     parent = folder
     while not parent.exists():
@@ -28,5 +32,15 @@ def output_files(folder: Path) -> Iterator[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         for file in staging.iterdir():
             file.replace(folder / file.name)
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        raise UsageError(f"cannot write {folder / _newest(staging)}: {error.strerror}")
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+
+
+def _newest(staging: Path) -> str:
+    """Name of the file that was being written; empty where there is none yet."""
+    files = sorted(staging.iterdir(), key=lambda file: file.stat().st_mtime_ns)
+    return files[-1].name if files else ""

@@ -6,6 +6,7 @@ import os
 import tempfile
 from pathlib import Path
 
+from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
@@ -99,5 +100,6 @@ def write_rules(args: argparse.Namespace, found: Sweep, max_A: float) -> None:
         show(f"\nTable VIII: the rules that follow\n\n{rule_table(base)}\n")
         print("\n".join(set_lines(base)))
     if args.write:
-        args.write.write_text(write_text(base, "fcl"), encoding="utf-8")
+        with output_files(args.write.parent) as staging:
+            (staging / args.write.name).write_text(write_text(base, "fcl"), encoding="utf-8")
         print(f"rules: {shown(args.write)}")
