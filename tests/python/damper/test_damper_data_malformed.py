@@ -203,6 +203,20 @@ def test_bad_option_is_refused_with_a_hint(tmp_path: Path, name: str) -> None:
     assert hint in str(caught.value) and "\n" not in str(caught.value)
 
 
+def test_all_units_that_are_missing_or_wrong_are_told_at_once(tmp_path: Path) -> None:
+    (tmp_path / "bare.csv").write_text(text_of(samples(), ("t", "x", "f", "i_a")))
+    with pytest.raises(UsageError) as caught:
+        read(tmp_path / "bare.csv")
+    for role, name in (("time", "t"), ("displacement", "x"), ("force", "f")):
+        assert f"--{role} '{name}:UNIT'" in str(caught.value)
+    assert str(caught.value).count("bare.csv:1") == 1
+    with pytest.raises(UsageError, match="'day'.*'stone'"):
+        read(tmp_path / "bare.csv", "--time", "t:day", "--force", "f:stone")
+    (tmp_path / "columns.toml").write_text('columns = { time = "t:day", force = "f:stone" }\n')
+    with pytest.raises(UsageError, match="'day'.*'stone'"):
+        read(tmp_path / "bare.csv", "--columns", str(tmp_path / "columns.toml"))
+
+
 def test_same_file_twice_is_refused(tmp_path: Path) -> None:
     (tmp_path / "good.csv").write_text(GOOD)
     with pytest.raises(UsageError, match="named twice"):

@@ -3,6 +3,13 @@
 import sys
 import threading
 import time
+from collections.abc import Iterable, Iterator
+from typing import TypeVar
+
+Item = TypeVar("Item")
+# A file that takes no longer says nothing; between two sentences about one.
+READING_EVERY_s = 2.0
+_READING_LOOKS = 4096  # items from one look at the clock to the next
 
 
 def say(text: str) -> None:
@@ -32,3 +39,14 @@ class Progress:
             eta = f"about {left_s:.0f} s to go" if self._done < self._total else "done"
             count = f"[{self._done:>{len(str(self._total))}}/{self._total}]"
             print(f"{count} {text}  ({eta})", file=sys.stderr, flush=True)
+
+
+def reading(what: str, items: Iterable[Item], total: int) -> Iterator[Item]:
+    """The items of a file, with a line of progress now and then while that takes long."""
+    start_s = said_s = time.monotonic()
+    for count, item in enumerate(items, 1):
+        if count % _READING_LOOKS == 0 and (now_s := time.monotonic()) > said_s + READING_EVERY_s:
+            left_s = (now_s - start_s) * (total - count) / count
+            say(f"reading {what}: {100 * count // total} %, about {left_s:.0f} s to go")
+            said_s = now_s
+        yield item

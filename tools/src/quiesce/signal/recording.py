@@ -11,6 +11,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.nearest import listed
 from quiesce.base.paths import shown
+from quiesce.base.progress import reading
 
 M_S2_PER_UNIT = {"g": 9.80665, "m_s2": 1.0, "mm_s2": 1e-3}
 # What a column may be in, by the unit of its sensor: how many of that unit it is.
@@ -67,9 +68,10 @@ def read_columns(file: Path, names: list[str]) -> tuple[list[int], np.ndarray]:
     """Line numbers and values of the named columns."""
     try:
         with file.open(newline="", encoding="utf-8-sig") as stream:
-            rows = csv.reader(stream)
-            indices = find_columns(file, next(rows, []), names)
-            numbered = list(parse_rows(file, rows, names, indices))
+            lines = stream.readlines()
+        rows = csv.reader(reading(shown(file), lines, len(lines)))
+        indices = find_columns(file, next(rows, []), names)
+        numbered = list(parse_rows(file, rows, names, indices))
     except UnicodeDecodeError:
         raise UsageError(f"{shown(file)}: not a text file; a CSV in UTF-8 is expected")
     except csv.Error as error:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from quiesce.base.errors import UsageError
+from quiesce.base.errors import Problems, UsageError
 from quiesce.damper.data.columns import NONE, ROLES, parse_spec
 from quiesce.damper.data.mapping import Plan, read_mapping
 from quiesce.damper.data.read import Columns, OutputAverage
@@ -107,9 +107,12 @@ def plan_of(args: argparse.Namespace, files: list[Path]) -> Plan:
 
 def columns_of(args: argparse.Namespace, from_file: Columns) -> Columns:
     given = dict(from_file.given)
+    problems = Problems()
     for role in ROLES:
         if text := getattr(args, f"column_{role}"):
-            given[role] = None if text == NONE else parse_spec(role, text)
+            with problems.told():
+                given[role] = None if text == NONE else parse_spec(role, text)
+    problems.refuse()
     stated = {
         "rate_Hz": args.rate_hz,
         "flip_force": args.flip_force or None,

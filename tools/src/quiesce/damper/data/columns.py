@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from quiesce.base.errors import UsageError
+from quiesce.base.errors import Problems, UsageError
 from quiesce.damper.data import units
 from quiesce.damper.data.table import Table, at, clipped
 from quiesce.damper.data.units import Unit
@@ -136,23 +136,38 @@ def find_column(table: Table, role: str, needed: bool) -> Column | None:
     )  # fmt: skip
 
 
+def column_of(
+    table: Table, role: str, given: dict[str, ColumnSpec | None], needed: bool
+) -> Column | None:
+    if role not in given:
+        return find_column(table, role, needed)
+    spec = given[role]
+    return named_column(table, role, spec) if spec is not None else None
+
+
+def motion_column(table: Table) -> dict[str, Column]:
+    """A column whose name has no unit is taken for the motion only here, to ask for its unit."""
+    column = find_column(table, "displacement", needed=not likely_names(table, "velocity"))
+    column = column or find_column(table, "velocity", needed=True)
+    return {column.role: column} if column is not None else {}
+
+
 def find_columns(table: Table, given: dict[str, ColumnSpec | None]) -> dict[str, Column]:
     """Columns by role. A role given as None is not looked for; motion is needed in some form.
+    UsageError with all that is unclear about them.
 
     Time is needed unless given as None, force always; a current wins over a voltage.
     """
     found: dict[str, Column] = {}
+    problems = Problems()
     for role in ROLES:
-        if role in given:
-            spec = given[role]
-            if spec is not None:
-                found[role] = named_column(table, role, spec)
-        elif column := find_column(table, role, needed=role in ("time", "force")):
-            found[role] = column
-    if "displacement" not in found and "velocity" not in found:
-        column = find_column(table, "displacement", needed=not likely_names(table, "velocity"))
-        column = column or find_column(table, "velocity", needed=True)
-        found[column.role] = column
+        with problems.told():
+            if (column := column_of(table, role, given, role in ("time", "force"))) is not None:
+                found[role] = column
+    with problems.told():
+        if not any(role in found or given.get(role) for role in ("displacement", "velocity")):
+            found |= motion_column(table)
+    problems.refuse()
     if "current" in found and "command" in found:
         drop_one_command(table, found, given)
     return found

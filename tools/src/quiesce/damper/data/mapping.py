@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from quiesce.base.errors import UsageError, one_line
+from quiesce.base.errors import Problems, UsageError, one_line
 from quiesce.base.paths import shown
 from quiesce.damper.data.columns import NONE, ROLES, ColumnSpec, parse_spec, stated_unit
 from quiesce.damper.data.condition import LOW_PASS_Hz, Settings
@@ -119,12 +119,15 @@ def given_columns(table: Any, where: str) -> dict[str, ColumnSpec | None]:
     if not isinstance(table, Mapping):
         raise UsageError(f"{where}: columns has to be a table, such as {{ force = 'f:N' }}")
     given: dict[str, ColumnSpec | None] = {}
+    problems = Problems()
     for role, value in table.items():
-        if role not in ROLES:
-            raise UsageError(
-                f"{where}: columns: no role '{clipped(role)}'; known are {', '.join(ROLES)}"
-            )
-        given[role] = column_spec(role, value, where)
+        with problems.told():
+            if role not in ROLES:
+                raise UsageError(
+                    f"{where}: columns: no role '{clipped(role)}'; known are {', '.join(ROLES)}"
+                )
+            given[role] = column_spec(role, value, where)
+    problems.refuse()
     return given
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
+from quiesce.base.progress import reading
 
 MAX_BYTES = 400_000_000
 # Beyond any measured value, in any unit.
@@ -71,7 +72,8 @@ class Table:
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
         """Line in the file and cells, blank lines left out."""
-        reader = csv.reader(self.body, delimiter=self.separator, skipinitialspace=True)
+        lines = reading(shown(self.file), self.body, len(self.body))
+        reader = csv.reader(lines, delimiter=self.separator, skipinitialspace=True)
         line = self.head_line
         while True:
             try:
