@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "crc32.h"
+
 #define MAGIC 0x314D564Eu ///< "NVM1"
 #define KIND_BYTES 8u
 #define RECORD_WORDS (NVM_MAX_BYTES / 4u)
@@ -17,34 +19,23 @@
 /// A file: little-endian as all Linux targets are, zeros after the data up to a whole word.
 typedef struct {
     uint32_t magic;
-    uint32_t crc; ///< CRC-32 of all that follows
-    char kind[KIND_BYTES];
+    uint32_t crc;                   ///< CRC-32 of all that follows
+    uint32_t kind[KIND_BYTES / 4u]; ///< characters, zeros after them
     uint32_t version;
     uint32_t bytes; ///< of data, without the zeros
     uint32_t data[RECORD_WORDS];
 } record_t;
 
 #define HEADER_BYTES offsetof(record_t, data)
-#define CRC_FROM offsetof(record_t, kind)
+#define CRC_FROM_WORD (offsetof(record_t, kind) / 4u)
 
 static size_t file_bytes(size_t bytes) {
     return HEADER_BYTES + (bytes + 3u) / 4u * 4u;
 }
 
-uint32_t nvm_crc(const void *bytes, size_t count) {
-    const uint8_t *const from = bytes;
-    uint32_t crc = UINT32_MAX;
-    for (size_t i = 0; i < count; i++) {
-        crc ^= from[i];
-        for (int bit = 0; bit < 8; bit++) {
-            crc = crc >> 1 ^ ((crc & 1u) != 0u ? 0xEDB88320u : 0u);
-        }
-    }
-    return ~crc;
-}
-
 static uint32_t crc_of(const record_t *record, size_t bytes) {
-    return nvm_crc((const uint8_t *)record + CRC_FROM, file_bytes(bytes) - CRC_FROM);
+    return crc32_words((const uint32_t *)record + CRC_FROM_WORD,
+                       (uint32_t)(file_bytes(bytes) / 4u - CRC_FROM_WORD));
 }
 
 /// A record without checksum and data.

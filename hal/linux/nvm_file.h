@@ -28,9 +28,6 @@ nvm_verdict_t nvm_file_read(const char *path, const char *kind, uint32_t version
 bool nvm_file_write(const char *path, const char *kind, uint32_t version, const void *data,
                     size_t bytes, linux_error_t *error);
 
-/// CRC-32 (IEEE 802.3, reflected, as zlib's). Bit by bit: nobody waits for it.
-uint32_t nvm_crc(const void *bytes, size_t count);
-
 /// Makes the renaming of a file in its folder last. Returns false, with errno, iff it cannot.
 bool nvm_sync_folder(const char *path);
 

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "crc32.h"
+
 #define MAGIC 0x3153564Eu ///< "NVS1"
 #define SLOTS 2u
 #define SLOT_STEP 4096 ///< so that two slots are not in one block of a disk
@@ -15,25 +17,25 @@
 #define FILE_MODE 0640
 #define LEAST_BYTES 32u ///< of data, zeros after shorter ones
 
-/// A slot: little-endian as all Linux targets are, zeros after the data.
+/// A slot: little-endian as all Linux targets are, zeros after the data up to a whole word.
 typedef struct {
     uint32_t magic;
-    uint32_t crc; ///< CRC-32 of all that follows
-    char kind[8];
+    uint32_t crc;     ///< CRC-32 of all that follows
+    uint32_t kind[2]; ///< characters, zeros after them
     uint32_t sequence;
     uint32_t bytes;
-    uint8_t data[NVM_SLOT_BYTES];
+    uint32_t data[NVM_SLOT_BYTES / 4u];
 } slot_t;
 
 /// On the disk.
 static size_t length_of(size_t bytes) {
-    return offsetof(slot_t, data) + (bytes > LEAST_BYTES ? bytes : LEAST_BYTES);
+    return offsetof(slot_t, data) + (bytes > LEAST_BYTES ? (bytes + 3u) / 4u * 4u : LEAST_BYTES);
 }
 
 /// bytes: of its data, NVM_SLOT_BYTES at most.
 static uint32_t crc_of(const slot_t *slot, size_t bytes) {
-    const size_t from = offsetof(slot_t, kind);
-    return nvm_crc((const uint8_t *)slot + from, length_of(bytes) - from);
+    const uint32_t from = offsetof(slot_t, kind) / 4u;
+    return crc32_words((const uint32_t *)slot + from, (uint32_t)(length_of(bytes) / 4u) - from);
 }
 
 static slot_t make_slot(const char *kind, uint32_t sequence, const void *data, size_t bytes) {

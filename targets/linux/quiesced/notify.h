@@ -1,5 +1,6 @@
-/// sd_notify's protocol (sd_notify(3)) without its library: datagrams to $NOTIFY_SOCKET, and how
-/// often $WATCHDOG_USEC wants to hear from us.
+/// sd_notify's protocol (sd_notify(3)): datagrams to $NOTIFY_SOCKET, and how often $WATCHDOG_USEC
+/// wants to hear from us. Not by libsystemd: it opens a socket for each message and waits while the
+/// manager does not read; this neither waits nor allocates.
 #ifndef QUIESCED_NOTIFY_H
 #define QUIESCED_NOTIFY_H
 
