@@ -19,8 +19,8 @@ uint32_t can_node_param_hash(const quiesce_params_t *params) {
 
 static uint32_t rate_Hz(const quiesce_params_t *params) {
     const uint32_t index = offsetof(quiesce_params_t, tick_rate_Hz) / sizeof(int32_t);
-    return can_service_allows(index, params->tick_rate_Hz) ? (uint32_t)params->tick_rate_Hz
-                                                           : FALLBACK_RATE_HZ;
+    return quiesce_param_allows(index, params->tick_rate_Hz) ? (uint32_t)params->tick_rate_Hz
+                                                             : FALLBACK_RATE_HZ;
 }
 
 void can_node_init(can_node_t *self, const quiesce_board_t *board, const quiesce_params_t *params) {

@@ -15,19 +15,6 @@ void can_service_use_params(can_service_t *self, const quiesce_params_t *params)
     self->has_staged = false;
 }
 
-bool can_service_allows(uint32_t index, int32_t value) {
-    const quiesce_param_info_t *info = quiesce_param_info(index);
-    if (info == NULL || value < info->min || value > info->max) {
-        return false;
-    }
-    for (uint32_t i = 0; i < info->choice_count; i++) {
-        if (info->choices[i] == value) {
-            return true;
-        }
-    }
-    return info->choice_count == 0u;
-}
-
 static can_node_result_t read_param(const can_service_t *self, can_service_reply_t *reply) {
     return quiesce_param_get(&self->in_effect, reply->param_index, &reply->param_value)
                ? CAN_NODE_DONE
@@ -38,7 +25,7 @@ static can_node_result_t stage(can_service_t *self, can_service_reply_t *reply, 
     if (reply->param_index >= QUIESCE_PARAM_COUNT) {
         return CAN_NODE_NO_SUCH_PARAMETER;
     }
-    if (!can_service_allows(reply->param_index, value)) {
+    if (!quiesce_param_allows(reply->param_index, value)) {
         return CAN_NODE_OUT_OF_RANGE;
     }
     (void)quiesce_param_set(&self->staged, reply->param_index, value);

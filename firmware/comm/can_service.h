@@ -99,9 +99,6 @@ void can_service_elapse(can_service_t *self, uint32_t passed_ms);
 /// The next reply, packed but not protected, and its alive counter. Returns false iff none is due.
 bool can_service_reply(can_service_t *self, can_frame_t *frame, uint8_t *alive);
 
-/// Whether parameter index (below QUIESCE_PARAM_COUNT) may have that value by itself.
-bool can_service_allows(uint32_t index, int32_t value);
-
 #ifdef __cplusplus
 }
 #endif

@@ -185,8 +185,8 @@ static void answer_refused(node_t *node, const quiesce_params_t *staged) {
     (void)quiesce_params_check(staged, &error);
     (void)quiesce_param_get(staged, error.index, &value);
     can_node_answer(&node->can,
-                    can_service_allows(error.index, value) ? CAN_NODE_CONTRADICTION
-                                                           : CAN_NODE_OUT_OF_RANGE,
+                    quiesce_param_allows(error.index, value) ? CAN_NODE_CONTRADICTION
+                                                             : CAN_NODE_OUT_OF_RANGE,
                     error.index);
 }
 

@@ -3,10 +3,12 @@
 
 #include <stddef.h>
 
-#include "param_table.h"
+#include "param_limits.h"
 
 _Static_assert(sizeof(quiesce_params_t) == QUIESCE_PARAM_COUNT * sizeof(int32_t),
                "one int32_t a parameter, no padding");
+
+#define INDEX_OF(name) ((uint32_t)(offsetof(quiesce_params_t, name) / sizeof(int32_t)))
 
 // What the build holds of each choice, by value. Law off is in every one.
 #define HOLDS_LAW(number, name) [QUIESCE_LAW_##number] = QUIESCE_WITH_LAW_##number,
@@ -44,15 +46,11 @@ static int32_t value_of(const quiesce_params_t *params, uint32_t index) {
 
 void quiesce_params_default(quiesce_params_t *params) {
     for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
-        *slot(params, i) = param_table[i].default_value;
+        *slot(params, i) = param_limits[i].default_value;
     }
     params->law = held(holds_law, QUIESCE_LAW_COUNT, params->law);
     params->tracker = held(holds_tracker, QUIESCE_TRACKER_COUNT, params->tracker);
     params->estimator = held(holds_estimator, 2, params->estimator);
-}
-
-const quiesce_param_info_t *quiesce_param_info(uint32_t index) {
-    return index < QUIESCE_PARAM_COUNT ? &param_table[index] : NULL;
 }
 
 bool quiesce_param_set(quiesce_params_t *params, uint32_t index, int32_t value) {
@@ -71,44 +69,46 @@ bool quiesce_param_get(const quiesce_params_t *params, uint32_t index, int32_t *
     return true;
 }
 
-static bool is_choice(const quiesce_param_info_t *info, int32_t value) {
-    for (uint32_t i = 0; i < info->choice_count; i++) {
-        if (info->choices[i] == value) {
+static bool is_choice(const param_limits_t *limits, int32_t value) {
+    for (uint32_t i = 0; i < limits->choice_count; i++) {
+        if (param_choices[limits->first_choice + i] == value) {
             return true;
         }
     }
-    return info->choice_count == 0;
+    return limits->choice_count == 0;
 }
 
-static bool refuse(quiesce_param_error_t *error, size_t offset, const char *reason) {
-    const uint32_t index = (uint32_t)(offset / sizeof(int32_t));
+static bool is_in_range(uint32_t index, int32_t value) {
+    return value >= param_limits[index].min && value <= param_limits[index].max;
+}
+
+bool quiesce_param_allows(uint32_t index, int32_t value) {
+    return index < QUIESCE_PARAM_COUNT && is_in_range(index, value) &&
+           is_choice(&param_limits[index], value);
+}
+
+static bool refuse(quiesce_param_error_t *error, uint32_t index, const char *reason) {
     if (error != NULL) {
-        *error = (quiesce_param_error_t){index, param_table[index].name, reason};
+        *error = (quiesce_param_error_t){index, reason};
     }
     return false;
 }
 
-static bool is_in_range(const quiesce_params_t *params, size_t offset) {
-    const uint32_t index = (uint32_t)(offset / sizeof(int32_t));
-    const int32_t value = value_of(params, index);
-    return value >= param_table[index].min && value <= param_table[index].max;
-}
-
 int32_t quiesce_params_safe_current_mA(const quiesce_params_t *params) {
-    const bool is_usable = is_in_range(params, offsetof(quiesce_params_t, safe_current_mA)) &&
-                           is_in_range(params, offsetof(quiesce_params_t, max_current_mA)) &&
+    const bool is_usable = is_in_range(INDEX_OF(safe_current_mA), params->safe_current_mA) &&
+                           is_in_range(INDEX_OF(max_current_mA), params->max_current_mA) &&
                            params->safe_current_mA <= params->max_current_mA;
     return is_usable ? params->safe_current_mA : 0;
 }
 
 static bool check_each(const quiesce_params_t *params, quiesce_param_error_t *error) {
     for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
-        const quiesce_param_info_t *info = &param_table[i];
-        if (!is_in_range(params, i * sizeof(int32_t))) {
-            return refuse(error, i * sizeof(int32_t), "out of range");
+        const int32_t value = value_of(params, i);
+        if (!is_in_range(i, value)) {
+            return refuse(error, i, "out of range");
         }
-        if (!is_choice(info, value_of(params, i))) {
-            return refuse(error, i * sizeof(int32_t), "not one of the allowed values");
+        if (!is_choice(&param_limits[i], value)) {
+            return refuse(error, i, "not one of the allowed values");
         }
     }
     return true;
@@ -121,11 +121,11 @@ static bool check_sensor(const quiesce_params_t *params, quiesce_param_error_t *
     const int64_t full_scale_nm_s2 =
         (int64_t)params->accel_scale_nm_s2 * params->accel_full_scale_counts;
     if (full_scale_nm_s2 > 1000 * MOST_ACCEL_um_s2) {
-        return refuse(error, offsetof(quiesce_params_t, accel_scale_nm_s2),
+        return refuse(error, INDEX_OF(accel_scale_nm_s2),
                       "full scale is beyond 500 m/s2, where accelerations saturate");
     }
     if (params->sensor_stuck_ticks == 1) {
-        return refuse(error, offsetof(quiesce_params_t, sensor_stuck_ticks),
+        return refuse(error, INDEX_OF(sensor_stuck_ticks),
                       "every sample would be a fault; 0 or from 2 on");
     }
     return true;
@@ -134,35 +134,33 @@ static bool check_sensor(const quiesce_params_t *params, quiesce_param_error_t *
 static bool check_build(const quiesce_params_t *params, quiesce_param_error_t *error) {
     static const char *const reason = "not in this build";
     if (!holds_law[params->law]) {
-        return refuse(error, offsetof(quiesce_params_t, law), reason);
+        return refuse(error, INDEX_OF(law), reason);
     }
     if (!holds_tracker[params->tracker]) {
-        return refuse(error, offsetof(quiesce_params_t, tracker), reason);
+        return refuse(error, INDEX_OF(tracker), reason);
     }
     if (!holds_estimator[params->estimator]) {
-        return refuse(error, offsetof(quiesce_params_t, estimator), reason);
+        return refuse(error, INDEX_OF(estimator), reason);
     }
     return true;
 }
 
 static bool check_together(const quiesce_params_t *params, quiesce_param_error_t *error) {
     if (params->band_low_mHz >= params->band_high_mHz) {
-        return refuse(error, offsetof(quiesce_params_t, band_high_mHz),
-                      "must be above band_low_mHz");
+        return refuse(error, INDEX_OF(band_high_mHz), "must be above band_low_mHz");
     }
     if (params->constant_current_mA > params->max_current_mA) {
-        return refuse(error, offsetof(quiesce_params_t, constant_current_mA),
-                      "above max_current_mA");
+        return refuse(error, INDEX_OF(constant_current_mA), "above max_current_mA");
     }
     if (params->safe_current_mA > params->max_current_mA) {
-        return refuse(error, offsetof(quiesce_params_t, safe_current_mA), "above max_current_mA");
+        return refuse(error, INDEX_OF(safe_current_mA), "above max_current_mA");
     }
     if (params->unlock_current_mA > params->max_current_mA) {
-        return refuse(error, offsetof(quiesce_params_t, unlock_current_mA), "above max_current_mA");
+        return refuse(error, INDEX_OF(unlock_current_mA), "above max_current_mA");
     }
     if (params->current_check == QUIESCE_CURRENT_CHECK_ON &&
         params->current_error_mA > params->max_current_mA / 2) {
-        return refuse(error, offsetof(quiesce_params_t, current_error_mA),
+        return refuse(error, INDEX_OF(current_error_mA),
                       "above half of max_current_mA, an open coil would go unseen");
     }
     return true;
@@ -175,7 +173,7 @@ bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_
         int32_t value_b = 0;
         (void)quiesce_param_get(a, i, &value_a);
         (void)quiesce_param_get(b, i, &value_b);
-        if (value_a != value_b && !param_table[i].is_live) {
+        if (value_a != value_b && !param_limits[i].is_live) {
             if (index != NULL) {
                 *index = i;
             }

@@ -89,6 +89,15 @@ std::optional<std::string> nearest(const std::string &word, const std::vector<st
     return best;
 }
 
+/// Names of one row, such as end_a and end_b or c0_kg and c1_kg: one is not there for the other.
+bool are_of_a_row(const std::string &a, const std::string &b) {
+    const auto [in_a, in_b] = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
+    if (a.size() != b.size() || in_a == a.end() || !std::equal(in_a + 1, a.end(), in_b + 1)) {
+        return false;
+    }
+    return in_a + 1 == a.end() || std::isdigit(static_cast<unsigned char>(*in_a)) != 0;
+}
+
 std::string expected_number(const Range &range) {
     std::ostringstream out;
     out << "expected a number in " << range.min << " .. " << range.max << " (" << range.unit << ")";
@@ -136,10 +145,11 @@ const TomlNode &TomlTable::require(const std::string &key, const std::string &ex
     const TomlNode *node = find(key);
     if (node == nullptr) {
         std::vector<std::string> others = keys();
-        others.erase(
-            std::remove_if(others.begin(), others.end(),
-                           [this](const std::string &one) { return asked_.count(one) > 0; }),
-            others.end());
+        others.erase(std::remove_if(others.begin(), others.end(),
+                                    [&](const std::string &one) {
+                                        return asked_.count(one) > 0 || are_of_a_row(key, one);
+                                    }),
+                     others.end());
         const std::optional<std::string> meant = nearest(key, others);
         fail(key, "missing; " + (meant ? "is '" + *meant + "' meant for it? " : "") + expected);
     }

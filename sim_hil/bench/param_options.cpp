@@ -74,7 +74,8 @@ void set_param(quiesce_params_t &params, const std::string &assignment) {
 void require_accepted(const quiesce_params_t &params) {
     quiesce_param_error_t error{};
     if (!quiesce_params_check(&params, &error)) {
-        throw InputError("parameter " + std::string(error.name) + ": " + error.reason);
+        throw InputError("parameter " + std::string(quiesce_param_info(error.index)->name) + ": " +
+                         error.reason);
     }
 }
 

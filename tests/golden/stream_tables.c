@@ -46,7 +46,7 @@ static void refusal_case(stream_t *self) {
         draw_doubtful(self);
         if (!quiesce_params_check(&self->params, &error)) {
             record_word(&self->record, error.index);
-            record_text(&self->record, error.name);
+            record_text(&self->record, quiesce_param_info(error.index)->name);
         }
         record_word(&self->record, (uint32_t)quiesce_params_safe_current_mA(&self->params));
         stream_start(self);

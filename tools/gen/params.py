@@ -63,7 +63,7 @@ typedef struct {{
 {fields}
 }} quiesce_params_t;
 
-/// What is known of one parameter.
+/// What is known of one parameter, its words too.
 typedef struct {{
     const char *name;
     const char *unit;
@@ -78,8 +78,7 @@ typedef struct {{
 
 /// Why parameters were refused.
 typedef struct {{
-    uint32_t index;     ///< of the first bad parameter
-    const char *name;   ///< its name
+    uint32_t index;     ///< of the first bad parameter; its name: quiesce_param_info
     const char *reason; ///< what is wrong, in words
 }} quiesce_param_error_t;
 
@@ -87,7 +86,7 @@ typedef struct {{
 void quiesce_params_default(quiesce_params_t *params);
 
 /// Returns false iff a value is outside its range or choices, or two values contradict each other;
-/// *error then names the first one. error may be NULL.
+/// *error then tells the first one. error may be NULL.
 bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t *error);
 
 /// Whether a and b differ in nothing but live parameters; *index is the first other one, where it
@@ -95,7 +94,12 @@ bool quiesce_params_check(const quiesce_params_t *params, quiesce_param_error_t 
 bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_t *b,
                                 uint32_t *index);
 
-/// Description of parameter index. Returns NULL iff index >= QUIESCE_PARAM_COUNT.
+/// Whether a parameter may have this value as far as its range and choices go; false beyond
+/// QUIESCE_PARAM_COUNT.
+bool quiesce_param_allows(uint32_t index, int32_t value);
+
+/// Description of parameter index. Returns NULL iff index >= QUIESCE_PARAM_COUNT. 3 kB of words,
+/// linked only where this is called.
 const quiesce_param_info_t *quiesce_param_info(uint32_t index);
 
 /// Value by index. Returns false iff index >= QUIESCE_PARAM_COUNT; set checks no range.
@@ -134,7 +138,29 @@ def load(text: str) -> list[dict]:
     return [p | {"min": 0, "max": len(p["labels"]) - 1} if "labels" in p else p for p in params]
 
 
-def table(params: list[dict], digest: str) -> str:
+def limits(params: list[dict], digest: str) -> str:
+    choices, rows = [], ""
+    for p in params:
+        own = p.get("choices", [])
+        live = "true" if p.get("live") else "false"
+        rows += (
+            f"    {{{p['min']}, {p['max']}, {p['default']}, {len(choices)}, {len(own)}, {live}}},"
+            f" // {p['name']}\n"
+        )
+        choices += own
+    listed = ", ".join(map(str, choices))
+    return f"""// clang-format off
+// {banner(digest)}
+#include "param_limits.h"
+
+const int32_t param_choices[] = {{{listed}}};
+
+const param_limits_t param_limits[QUIESCE_PARAM_COUNT] = {{
+{rows}}};
+"""
+
+
+def words(params: list[dict], digest: str) -> str:
     arrays, rows = "", ""
     for p in params:
         choices, count, labels = "NULL", 0, "NULL"
@@ -152,13 +178,17 @@ def table(params: list[dict], digest: str) -> str:
         )
     return f"""// clang-format off
 // {banner(digest)}
-#include "param_table.h"
+#include "quiesce_params.h"
 
 #include <stddef.h>
 
 {arrays}
-const quiesce_param_info_t param_table[QUIESCE_PARAM_COUNT] = {{
+static const quiesce_param_info_t words[QUIESCE_PARAM_COUNT] = {{
 {rows}}};
+
+const quiesce_param_info_t *quiesce_param_info(uint32_t index) {{
+    return index < QUIESCE_PARAM_COUNT ? &words[index] : NULL;
+}}
 """
 
 
@@ -203,7 +233,8 @@ def main() -> int:
     params = load(source.decode())
     outputs = {
         "firmware/include/quiesce_params.h": header(params, digest),
-        "firmware/param/param_table.c": table(params, digest),
+        "firmware/param/param_info.c": words(params, digest),
+        "firmware/param/param_limits.c": limits(params, digest),
         "docs/reference/parameters.md": page(params, digest),
     }
     stale = [

@@ -96,7 +96,8 @@ void Loop::use_params(const quiesce_params_t &params) {
     }
     quiesce_param_error_t error{};
     if (!quiesce_params_check(&params, &error)) {
-        log_.log(LogLevel::error, "parameters stay: %s: %s", error.name, error.reason);
+        log_.log(LogLevel::error, "parameters stay: %s: %s", quiesce_param_info(error.index)->name,
+                 error.reason);
     } else if (quiesce_is_armed(&node_.controller)) {
         use_live(params);
     } else {

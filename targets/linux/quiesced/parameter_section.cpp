@@ -87,7 +87,7 @@ quiesce_params_t read_parameters(Section &section, bool has_board) {
     }
     quiesce_param_error_t error{};
     if (section.problems().size() == problems_before && !quiesce_params_check(&params, &error)) {
-        section.wrong(error.name, error.reason);
+        section.wrong(quiesce_param_info(error.index)->name, error.reason);
     }
     return params;
 }

@@ -36,8 +36,8 @@ quiesce_params_t StateStore::effective(const quiesce_params_t &configured,
     }
     quiesce_param_error_t refused{};
     if (!quiesce_params_check(&saved.params, &refused)) {
-        note =
-            std::string("saved parameters are not used: ") + refused.name + ": " + refused.reason;
+        note = std::string("saved parameters are not used: ") +
+               quiesce_param_info(refused.index)->name + ": " + refused.reason;
         return configured;
     }
     note = "saved parameters are used";

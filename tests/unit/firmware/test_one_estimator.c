@@ -38,7 +38,7 @@ static void test_one_estimator_refuses_the_other(void) {
     quiesce_param_error_t error;
     params.estimator = OTHER;
     TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
-    TEST_ASSERT_EQUAL_STRING("estimator", error.name);
+    TEST_ASSERT_EQUAL_STRING("estimator", quiesce_param_info(error.index)->name);
     TEST_ASSERT_EQUAL_STRING("not in this build", error.reason);
     // On defaults, as with any parameters that are refused.
     TEST_ASSERT_FALSE(quiesce_init(&controller, &params));
