@@ -10,7 +10,7 @@
 
 extern const int32_t cosine_q25[COSINE_POINTS];
 
-/// The same with 2^30 for one.
-extern const int32_t cosine_q30[COSINE_POINTS];
+/// The first quarter of the same with 2^30 for one, its end included.
+extern const int32_t cosine_quarter_q30[COSINE_POINTS / 4 + 1];
 
 #endif

@@ -5,10 +5,18 @@
 
 enum { QUARTER = COSINE_POINTS / 4 };
 
+// cos(2 pi i / 256): the second half mirrors the first, and that has the quarter twice.
+static int32_t cosine_q30(uint32_t i) {
+    const uint32_t at = i % COSINE_POINTS;
+    const uint32_t half = at > COSINE_POINTS / 2 ? COSINE_POINTS - at : at;
+    return half > QUARTER ? -cosine_quarter_q30[COSINE_POINTS / 2 - half]
+                          : cosine_quarter_q30[half];
+}
+
 sincos_t sincos_q30(uint32_t turn) {
     const uint32_t nearest = (turn + (1u << 23)) >> 24;
-    const int32_t c_q30 = cosine_q30[nearest % COSINE_POINTS];
-    const int32_t s_q30 = cosine_q30[(nearest - QUARTER) % COSINE_POINTS];
+    const int32_t c_q30 = cosine_q30(nearest);
+    const int32_t s_q30 = cosine_q30(nearest - QUARTER);
     // The rest is within +-0.0123 rad: three terms of the series are exact to the last bit but one.
     const int64_t rest = (int32_t)(turn - (nearest << 24));
     const int32_t rest_q30 = (int32_t)((rest * HALF_PI_Q30) >> 30);

@@ -343,7 +343,7 @@ static void report(const controller_t *self, quiesce_telemetry_t *t) {
     t->fault_count = self->supervisor.fault_count;
     t->bad_sample_count = self->bad_sample_count;
     report_components(&self->signal, t);
-    t->lock_is_on = self->signal.lock.is_locked ? 1u : 0u;
+    t->lock_is_on = self->signal.lock.in.is_locked ? 1u : 0u;
 }
 
 void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
@@ -353,7 +353,7 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     const signal_chain_in_t signal_in = {
         .samples = in->sensor,
         .lost_ticks = lost_ticks(c, in->tick),
-        .wants_lock = c->control.law->wants_lock,
+        .lock = c->control.law->lock,
     };
     signal_chain_out_t signal;
     signal_chain_step(&c->signal, &signal_in, &c->view, &signal);

@@ -6,7 +6,6 @@
 
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
-    ELSEWHERE_DIVISOR = 32,    // a lock 3 % off the dominant component is on something else
 };
 
 static uint32_t step_turn_of(int32_t freq_mHz, uint32_t rate_Hz) {
@@ -39,11 +38,8 @@ void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
                                              },
                                      });
     displacement_reset(&self->displacement);
-    lock_in_init(&self->lock, rate_Hz);
-    half_cycles_reset(&self->half_cycles);
-    self->lowest_step_turn = step_turn_of(p->band_low_mHz, rate_Hz);
-    self->highest_step_turn = step_turn_of(p->band_high_mHz, rate_Hz);
-    self->min_accel_um_s2 = p->track_min_accel_um_s2;
+    dominant_lock_init(&self->lock, rate_Hz, step_turn_of(p->band_low_mHz, rate_Hz),
+                       step_turn_of(p->band_high_mHz, rate_Hz), p->track_min_accel_um_s2);
     self->hold_ticks = ticks_in_ms(p->track_hold_ms, p->tick_rate_Hz);
     self->latency_q8 = latency_q8(board, rate_Hz);
     self->corner_step_turn = step_turn_of(board->sensor[board->tracked].corner_mHz, rate_Hz);
@@ -82,60 +78,19 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint3
     return displacement_step(&self->displacement, estimate_phase_turn(&self->estimator.known, 0));
 }
 
-static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {
-    return !lock->is_locked || gap_u32(lock->step_turn, step_turn) > step_turn / ELSEWHERE_DIVISOR;
-}
-
-static void lock_on(signal_chain_t *self, const condition_out_t *sample, uint32_t phase_turn,
-                    uint32_t step_turn) {
-    lock_in_acquire(&self->lock, phase_turn, step_turn, sample->raw - sample->value);
-}
-
-// Until the estimator knows more: a few half cycles that are alike.
-static void look_for_lock(signal_chain_t *self, const signal_chain_out_t *out) {
-    half_cycles_tone_t tone;
-    const int32_t velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32);
-    if (half_cycles_step(&self->half_cycles, velocity_um_s, &tone) && !self->lock.is_locked &&
-        tone.step_turn >= self->lowest_step_turn && tone.step_turn <= self->highest_step_turn &&
-        out->rms_um_s2 >= self->min_accel_um_s2) {
-        lock_on(self, out->sample, tone.phase_turn, tone.step_turn);
-    }
-}
-
-// A component that has left the band, by more than a sixteenth of its edge, is none of the laws'.
-static bool has_left_band(const signal_chain_t *self) {
-    const uint32_t step_turn = self->lock.step_turn;
-    return step_turn < self->lowest_step_turn - self->lowest_step_turn / 16u ||
-           step_turn > self->highest_step_turn + self->highest_step_turn / 16u;
-}
-
-// The lock turns on through a few lost ticks; what half cycles there were is not known any more.
-static void bridge(signal_chain_t *self, bool is_fault, uint32_t lost_ticks) {
-    if (is_fault) {
-        lock_in_release(&self->lock);
-    } else {
-        lock_in_skip(&self->lock, lost_ticks);
-    }
-    half_cycles_reset(&self->half_cycles);
-}
-
-// Locks on to what the estimator trusts, or to what looks alike, and holds on to it by itself.
-static void hold_on(signal_chain_t *self, const signal_chain_out_t *out, uint32_t lost_ticks) {
-    const condition_out_t *sample = out->sample;
+// Through the law that asked for it: a build without one holds no lock.
+static void hold_on(signal_chain_t *self, const signal_chain_in_t *in,
+                    const signal_chain_out_t *out) {
     const estimate_t *estimate = &self->estimator.known;
-    const predictor_tone_t *tone = &estimate->predictor.tone[0];
-    if (sample->is_fault || lost_ticks > 0) {
-        bridge(self, sample->is_fault, lost_ticks);
-    }
-    lock_in_step(&self->lock, sample->raw, sample->flag == CONDITION_GOOD);
-    if (self->lock.is_locked && has_left_band(self)) {
-        lock_in_release(&self->lock);
-    }
-    look_for_lock(self, out);
-    if (estimate->has_published && estimate->is_valid &&
-        is_elsewhere(&self->lock, tone->step_turn)) {
-        lock_on(self, sample, tone->phase_turn, tone->step_turn);
-    }
+    in->lock(&self->lock, &(dominant_lock_in_t){
+                              .sample = out->sample,
+                              .velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32),
+                              .rms_um_s2 = out->rms_um_s2,
+                              .lost_ticks = in->lost_ticks,
+                              .tone = estimate->has_published && estimate->is_valid
+                                          ? &estimate->predictor.tone[0]
+                                          : NULL,
+                          });
 }
 
 static uint32_t tracked_of(const signal_chain_t *self) {
@@ -153,7 +108,7 @@ static void turn_phase(const signal_chain_t *self, view_tone_t *tone) {
 }
 
 static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
-    const lock_in_t *lock = &self->lock;
+    const lock_in_t *lock = &self->lock.in;
     // A short doubt must not make the command jump: that would itself change the vibration.
     const bool is_known = self->estimator.known.age_ticks <= self->hold_ticks;
     view->valid |= (is_known ? VIEW_TONE : 0) | (lock->is_locked ? VIEW_LOCK : 0);
@@ -181,8 +136,8 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t
     }
     out->rms_um_s2 = rms_step(&self->rms, out->sample->value);
     out->displacement_nm = follow(self, out->sample, in->lost_ticks);
-    if (in->wants_lock) {
-        hold_on(self, out, in->lost_ticks);
+    if (in->lock != NULL) {
+        hold_on(self, in, out);
     }
     show_tone(self, out, view);
 }

@@ -5,9 +5,8 @@
 #define SIGNAL_CHAIN_H
 
 #include "displacement.h"
+#include "dominant_lock.h"
 #include "estimator.h"
-#include "half_cycles.h"
-#include "lock_in.h"
 #include "quiesce_params.h"
 #include "rms.h"
 #include "sensing.h"
@@ -19,19 +18,15 @@ typedef struct {
     rms_t rms;
     estimator_t estimator;
     displacement_t displacement;
-    lock_in_t lock;
-    half_cycles_t half_cycles;
-    uint32_t lowest_step_turn; ///< of the band, a tick
-    uint32_t highest_step_turn;
-    int32_t min_accel_um_s2; ///< RMS
-    uint32_t hold_ticks;     ///< that laws go on with a frequency that is no longer valid
-    uint32_t latency_q8;     ///< ticks, from a motion to the current that answers it
+    dominant_lock_t lock;
+    uint32_t hold_ticks; ///< that laws go on with a frequency that is no longer valid
+    uint32_t latency_q8; ///< ticks, from a motion to the current that answers it
 } signal_chain_t;
 
 typedef struct {
     const quiesce_sample_t *samples; ///< QUIESCE_SENSORS of them
     uint32_t lost_ticks;             ///< just before this one
-    bool wants_lock;                 ///< the dominant component is to be locked on to
+    dominant_lock_step_t lock;       ///< of the law; NULL: it has no use for one
 } signal_chain_in_t;
 
 /// Of the sensor that is tracked.

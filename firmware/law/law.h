@@ -6,6 +6,7 @@
 #ifndef LAW_H
 #define LAW_H
 
+#include "dominant_lock.h"
 #include "table.h"
 #include "view.h"
 
@@ -49,7 +50,7 @@ typedef struct {
     uint64_t needs;                ///< VIEW_ bits; while they are not all valid it is not stepped
     const table_kind_t *kind;      ///< of its table; NULL: it has none
     uint8_t demands;               ///< law_demand_kind_t
-    bool wants_lock;               ///< the dominant component is to be locked on to
+    dominant_lock_step_t lock;     ///< dominant_lock_step; NULL: it has no use for the lock
     const quiesce_word_t *reports; ///< QUIESCE_REPORT_WORDS of them, the last ones without a name
     /// From rest; all of *state is 0 before. NULL: that is all.
     void (*init)(void *state, const law_setup_t *setup);

@@ -42,7 +42,7 @@ def cosine_table() -> str:
         [
             HEAD.format(header="cosine_table.h"),
             table("cosine_q25", "COSINE_POINTS", cosine(256, 2**25 - 1)),
-            table("cosine_q30", "COSINE_POINTS", cosine(256, 2**30)),
+            table("cosine_quarter_q30", "COSINE_POINTS / 4 + 1", cosine(256, 2**30)[:65]),
         ]
     )
 
