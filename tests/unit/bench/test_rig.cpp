@@ -416,7 +416,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "sim_hil/data/plants/two_storeys.toml",
                 "damper"},
         Mistake{"replay_of_half_a_tick",
-                "replay --counts README.md --trace /dev/null --law off --board "
+                "replay --counts LICENSE --trace /dev/null --law off --board "
                 "sim_hil/data/boards/two_storeys.toml",
                 "counts"}),
     [](const auto &one) { return std::string(one.param.name); });
