@@ -82,15 +82,15 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint3
 static void hold_on(signal_chain_t *self, const signal_chain_in_t *in,
                     const signal_chain_out_t *out) {
     const estimate_t *estimate = &self->estimator.known;
-    in->lock(&self->lock, &(dominant_lock_in_t){
-                              .sample = out->sample,
-                              .velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32),
-                              .rms_um_s2 = out->rms_um_s2,
-                              .lost_ticks = in->lost_ticks,
-                              .tone = estimate->has_published && estimate->is_valid
-                                          ? &estimate->predictor.tone[0]
-                                          : NULL,
-                          });
+    in->lock->step(&self->lock, &(dominant_lock_in_t){
+                                    .sample = out->sample,
+                                    .velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32),
+                                    .rms_um_s2 = out->rms_um_s2,
+                                    .lost_ticks = in->lost_ticks,
+                                    .tone = estimate->has_published && estimate->is_valid
+                                                ? &estimate->predictor.tone[0]
+                                                : NULL,
+                                });
 }
 
 static uint32_t tracked_of(const signal_chain_t *self) {

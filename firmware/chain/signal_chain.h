@@ -18,7 +18,7 @@ typedef struct {
     rms_t rms;
     estimator_t estimator;
     displacement_t displacement;
-    dominant_lock_t lock;
+    dominant_lock_state_t lock;
     uint32_t hold_ticks; ///< that laws go on with a frequency that is no longer valid
     uint32_t latency_q8; ///< ticks, from a motion to the current that answers it
 } signal_chain_t;
@@ -26,7 +26,7 @@ typedef struct {
 typedef struct {
     const quiesce_sample_t *samples; ///< QUIESCE_SENSORS of them
     uint32_t lost_ticks;             ///< just before this one
-    dominant_lock_step_t lock;       ///< of the law; NULL: it has no use for one
+    const dominant_lock_t *lock;     ///< that the law wants, or NULL
 } signal_chain_in_t;
 
 /// Of the sensor that is tracked.

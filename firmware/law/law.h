@@ -6,7 +6,6 @@
 #ifndef LAW_H
 #define LAW_H
 
-#include "dominant_lock.h"
 #include "table.h"
 #include "view.h"
 
@@ -45,12 +44,17 @@ static inline int32_t law_unlock_mA(const quiesce_params_t *params, const view_t
     return view->is_at_rest ? params->safe_current_mA : params->unlock_current_mA;
 }
 
+/// The lock on the dominant component (chain/dominant_lock.h). A law that works with it names it
+/// here, and a build in which none does holds none of it.
+typedef struct dominant_lock dominant_lock_t;
+extern const dominant_lock_t dominant_lock;
+
 typedef struct {
     const char *name;              ///< value of parameter law
     uint64_t needs;                ///< VIEW_ bits; while they are not all valid it is not stepped
     const table_kind_t *kind;      ///< of its table; NULL: it has none
     uint8_t demands;               ///< law_demand_kind_t
-    dominant_lock_step_t lock;     ///< dominant_lock_step; NULL: it has no use for the lock
+    const dominant_lock_t *lock;   ///< &dominant_lock: the dominant component is to be locked on to
     const quiesce_word_t *reports; ///< QUIESCE_REPORT_WORDS of them, the last ones without a name
     /// From rest; all of *state is 0 before. NULL: that is all.
     void (*init)(void *state, const law_setup_t *setup);

@@ -25,6 +25,7 @@ needs_of() {
     "tune law") echo bench ;;
     "tune "*) echo bench plant dampers ;;
     "can "*) ;;
+    "completion "*) ;;
     esac
 }
 

@@ -1,5 +1,6 @@
 """Files that appear complete or not at all, where the disk takes no more."""
 
+import os
 import resource
 import signal
 import subprocess
@@ -64,3 +65,16 @@ def test_a_file_of_before_stays_where_the_disk_is_full(tmp_path: Path) -> None:
 def test_another_error_is_not_taken_for_a_full_disk(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError), output_files(tmp_path):
         (tmp_path / "none").read_text()
+
+
+def test_a_pipe_takes_what_is_written_and_stays_one(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        with output_files(tmp_path) as staging:
+            (staging / "pipe").write_text("new")
+        assert os.read(reader, 10) == b"new"
+        assert pipe.is_fifo()
+    finally:
+        os.close(reader)

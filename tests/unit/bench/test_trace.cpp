@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -46,6 +48,20 @@ TEST(Trace, is_a_json_line_and_rows_of_float64) {
     double second = 0.0;
     std::memcpy(&second, bytes.data() + head.size() + sizeof(double), sizeof second);
     EXPECT_EQ(second, -2.5);
+}
+
+TEST(Trace, leaves_a_pipe_what_it_is) {
+    const std::string pipe = temporary("pipe");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(reader, 0);
+    quiesce::Trace({"a"}).write(pipe);
+    char first = 0;
+    EXPECT_EQ(::read(reader, &first, 1), 1);
+    EXPECT_EQ(first, '{');
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+    ::close(reader);
+    std::filesystem::remove(pipe);
 }
 
 TEST(Trace, cannot_be_written_into_a_folder_that_is_not_there) {

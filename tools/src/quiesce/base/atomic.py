@@ -17,8 +17,9 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 def output_files(folder: Path) -> Iterator[Path]:
     """Yields an empty folder to write into; at the end its files move into `folder`.
 
-    Nothing reaches `folder`, and it is not created, where the block raises. UsageError where
-    `folder` cannot be made or written, or its disk is full.
+    Nothing reaches `folder`, and it is not created, where the block raises. Into a device or pipe
+    of a file's name it is written. UsageError where `folder` cannot be made or written, or its disk
+    is full.
     """
     parent = folder
     while not parent.exists():
@@ -31,13 +32,21 @@ def output_files(folder: Path) -> Iterator[Path]:
         yield staging
         folder.mkdir(parents=True, exist_ok=True)
         for file in staging.iterdir():
-            file.replace(folder / file.name)
+            _put(file, folder / file.name)
     except OSError as error:
         if error.errno not in FULL:
             raise
         raise UsageError(f"cannot write {folder / _newest(staging)}: {error.strerror}")
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+
+
+def _put(file: Path, place: Path) -> None:
+    """A device or a pipe takes what is written and stays what it is."""
+    if place.exists() and not place.is_file() and not place.is_dir():
+        place.write_bytes(file.read_bytes())
+    else:
+        file.replace(place)
 
 
 def _newest(staging: Path) -> str:

@@ -25,7 +25,7 @@ from pymoo.operators.mutation.bitflip import BitflipMutation
 from pymoo.operators.selection.tournament import TournamentSelection
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 
-Config.warnings["not_compiled"] = False  # else pymoo prints a banner
+Config.warnings.update(not_compiled=False)  # else pymoo prints a banner
 
 Points = Generator[np.ndarray, np.ndarray, None]
 REFUSED = 1e9  # a finite cost for what diverged: some algorithms take differences

@@ -9,6 +9,7 @@
 
 #include "condition.h"
 #include "half_cycles.h"
+#include "law.h"
 #include "lock_in.h"
 #include "predictor.h"
 
@@ -18,7 +19,7 @@ typedef struct {
     uint32_t lowest_step_turn; ///< of the band, a tick
     uint32_t highest_step_turn;
     int32_t min_accel_um_s2; ///< RMS
-} dominant_lock_t;
+} dominant_lock_state_t;
 
 /// What is known in this tick.
 typedef struct {
@@ -29,12 +30,13 @@ typedef struct {
     const predictor_tone_t *tone; ///< that the estimator has just published and trusts, or NULL
 } dominant_lock_in_t;
 
-/// One tick. Bounded: lock_in and half_cycles, some 30 instructions more.
-typedef void (*dominant_lock_step_t)(dominant_lock_t *self, const dominant_lock_in_t *in);
-void dominant_lock_step(dominant_lock_t *self, const dominant_lock_in_t *in);
+struct dominant_lock {
+    /// One tick. Bounded: lock_in and half_cycles, some 30 instructions more.
+    void (*step)(dominant_lock_state_t *self, const dominant_lock_in_t *in);
+};
 
 /// Unlocked. The band: 2^32 f / tick_rate.
-static inline void dominant_lock_init(dominant_lock_t *self, uint32_t tick_rate_Hz,
+static inline void dominant_lock_init(dominant_lock_state_t *self, uint32_t tick_rate_Hz,
                                       uint32_t lowest_step_turn, uint32_t highest_step_turn,
                                       int32_t min_accel_um_s2) {
     lock_in_init(&self->in, tick_rate_Hz);

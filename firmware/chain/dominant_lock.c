@@ -8,13 +8,13 @@ static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {
     return !lock->is_locked || gap_u32(lock->step_turn, step_turn) > step_turn / ELSEWHERE_DIVISOR;
 }
 
-static void lock_on(dominant_lock_t *self, const condition_out_t *sample, uint32_t phase_turn,
+static void lock_on(dominant_lock_state_t *self, const condition_out_t *sample, uint32_t phase_turn,
                     uint32_t step_turn) {
     lock_in_acquire(&self->in, phase_turn, step_turn, sample->raw - sample->value);
 }
 
 // Until the estimator knows more: a few half cycles that are alike.
-static void look_for_lock(dominant_lock_t *self, const dominant_lock_in_t *in) {
+static void look_for_lock(dominant_lock_state_t *self, const dominant_lock_in_t *in) {
     half_cycles_tone_t tone;
     if (half_cycles_step(&self->half_cycles, in->velocity_um_s, &tone) && !self->in.is_locked &&
         tone.step_turn >= self->lowest_step_turn && tone.step_turn <= self->highest_step_turn &&
@@ -24,14 +24,14 @@ static void look_for_lock(dominant_lock_t *self, const dominant_lock_in_t *in) {
 }
 
 // A component that has left the band, by more than a sixteenth of its edge, is none of the laws'.
-static bool has_left_band(const dominant_lock_t *self) {
+static bool has_left_band(const dominant_lock_state_t *self) {
     const uint32_t step_turn = self->in.step_turn;
     return step_turn < self->lowest_step_turn - self->lowest_step_turn / 16u ||
            step_turn > self->highest_step_turn + self->highest_step_turn / 16u;
 }
 
 // The lock turns on through a few lost ticks; what half cycles there were is not known any more.
-static void bridge(dominant_lock_t *self, bool is_fault, uint32_t lost_ticks) {
+static void bridge(dominant_lock_state_t *self, bool is_fault, uint32_t lost_ticks) {
     if (is_fault) {
         lock_in_release(&self->in);
     } else {
@@ -40,7 +40,7 @@ static void bridge(dominant_lock_t *self, bool is_fault, uint32_t lost_ticks) {
     half_cycles_reset(&self->half_cycles);
 }
 
-void dominant_lock_step(dominant_lock_t *self, const dominant_lock_in_t *in) {
+static void step(dominant_lock_state_t *self, const dominant_lock_in_t *in) {
     const condition_out_t *sample = in->sample;
     if (sample->is_fault || in->lost_ticks > 0) {
         bridge(self, sample->is_fault, in->lost_ticks);
@@ -54,3 +54,5 @@ void dominant_lock_step(dominant_lock_t *self, const dominant_lock_in_t *in) {
         lock_on(self, sample, in->tone->phase_turn, in->tone->step_turn);
     }
 }
+
+const dominant_lock_t dominant_lock = {step};
