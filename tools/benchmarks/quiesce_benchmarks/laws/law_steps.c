@@ -4,6 +4,12 @@
 #include "law.h"
 #include "view_signal.h"
 
+// The lock is the chain's; here laws are fed by hand.
+struct dominant_lock {
+    int none;
+};
+const dominant_lock_t dominant_lock = {0};
+
 static const law_t *named(const char *name) {
     const law_t *law;
     for (int32_t i = 0; (law = law_find(i)) != NULL && strcmp(law->name, name) != 0; i++) {
