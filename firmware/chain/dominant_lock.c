@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "law.h"
+
 enum { ELSEWHERE_DIVISOR = 32 }; // a lock 3 % off the dominant component is on something else
 
 static bool is_elsewhere(const lock_in_t *lock, uint32_t step_turn) {

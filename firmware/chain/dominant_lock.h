@@ -9,7 +9,6 @@
 
 #include "condition.h"
 #include "half_cycles.h"
-#include "law.h"
 #include "lock_in.h"
 #include "predictor.h"
 
@@ -30,6 +29,8 @@ typedef struct {
     const predictor_tone_t *tone; ///< that the estimator has just published and trusts, or NULL
 } dominant_lock_in_t;
 
+/// What law.h names.
+typedef struct dominant_lock dominant_lock_t;
 struct dominant_lock {
     /// One tick. Bounded: lock_in and half_cycles, some 30 instructions more.
     void (*step)(dominant_lock_state_t *self, const dominant_lock_in_t *in);
