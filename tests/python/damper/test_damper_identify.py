@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -176,8 +177,8 @@ def test_models_are_listed(example: Path, capsys: pytest.CaptureFixture[str]) ->
 
 
 @pytest.mark.slow
-def test_ctrl_c_keeps_the_best_so_far(example: Path, tmp_path: Path) -> None:
-    """Interrupted while fitting: a model file and a report are there, and --resume ends it."""
+def test_ctrl_c_keeps_finished_models(example: Path, tmp_path: Path) -> None:
+    """Interrupted while fitting: finished models are there, and are reported without a fit."""
     words = [
         "identify", str(example), "--current-a", "0", "--low-pass-hz", "60", "--rig", "none",
         "--model", "kwok_tanh,viscoplastic_2,viscoplastic_3,viscoplastic_4_free",
@@ -197,8 +198,19 @@ def test_ctrl_c_keeps_the_best_so_far(example: Path, tmp_path: Path) -> None:
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=300)
     assert process.returncode == 130, err
-    assert "ending with the best so far" in err and "Traceback" not in err
-    assert (tmp_path / "report.html").is_file() and "written" in out
+    assert "Traceback" not in err and out == ""
+    told = re.fullmatch(
+        r"quiesce: interrupted; (\d) of 4 models are finished and kept: "
+        r"--resume goes on, --resume --model (\S+) reports them",
+        err.splitlines()[-1],
+    )
+    assert told and len(told[2].split(",")) == int(told[1])
+    assert not list(tmp_path.glob("models/.quiesce-*")) and not (tmp_path / "report.html").exists()
+    before = {file: file.read_bytes() for file in tmp_path.glob("models/*.toml")}
+    words[words.index("--model") + 1] = told[2]
+    assert main([*words, "--resume"]) == 0
+    assert (tmp_path / "report.html").is_file()
+    assert {file: file.read_bytes() for file in tmp_path.glob("models/*.toml")} == before
 
 
 def write_sine(file: Path, mean_mm: float, freq_Hz: float) -> None:

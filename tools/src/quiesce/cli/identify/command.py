@@ -38,7 +38,7 @@ Writes report.html, report.json and models/NAME.toml for every model; plants rea
 ([damper] file = "..."), so do 'tune' and the actions above. damper.toml is the best passive one.
 --model takes names, 'quick' (static models and small networks), 'parametric', or 'all'.
 Errors are ||F - F_model|| / ||F|| with the model running free; the ranking goes by validation
-inside the training part. Ctrl-C keeps the best so far; --resume goes on from there.
+inside the training part. Ctrl-C keeps the models that are finished; --resume goes on from there.
 """
 
 
@@ -206,10 +206,10 @@ def run(args: argparse.Namespace) -> int:
         {"data": [file.name for file in args.files], "command": "quiesce identify"},
     )
     if args.method == "ls":
-        fitted, was_stopped = [by_least_squares(train, test, plan, store)], False
+        fitted = [by_least_squares(train, test, plan, store)]
     else:
-        fitted, was_stopped = fit_all(train, test, plan, done, store)
-    return report(args, out, fitted, train, test, data.notes, was_stopped)
+        fitted = fit_all(train, test, plan, done, store)
+    return report(args, out, fitted, train, test, data.notes)
 
 
 def by_least_squares(train: Any, test: Any, plan: Any, store: Any) -> Any:
@@ -220,8 +220,8 @@ def by_least_squares(train: Any, test: Any, plan: Any, store: Any) -> Any:
     return fitted
 
 
-def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[list[Any], bool]:
-    """Models as they come, each kept at once. Ctrl-C: the best so far of those under way."""
+def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> list[Any]:
+    """Models as they come, each kept at once. Ctrl-C ends the process there and then."""
     import threading
 
     from quiesce.base.progress import Progress
@@ -230,9 +230,13 @@ def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[li
     progress = Progress(len(plan.names) - len(done))
     results: list[Any] = []
     failure: list[BaseException] = []
+    kept = [one.name for one in done]
+    keeping = threading.Lock()
 
     def told(one: Any) -> None:
-        store.keep(one)
+        with keeping:
+            store.keep(one)
+            kept.extend([one.name] if one.is_complete else [])
         note = "" if one.is_complete else ", not to its end"
         progress.done(f"{one.name}: validation {100 * one.validation_error:.2f} %{note}")
 
@@ -249,20 +253,24 @@ def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> tuple[li
 
     finished = threading.Event()
     threading.Thread(target=work).start()
-    was_stopped = False
     # Not join: one that Ctrl-C interrupts may take the thread for ended.
-    while not finished.is_set():
-        try:
+    try:
+        while not finished.is_set():
             finished.wait(0.2)
-        except KeyboardInterrupt:
-            if was_stopped:  # what is finished is in the folder already
-                os._exit(EXIT_INTERRUPTED)
-            print("quiesce: ending with the best so far", file=sys.stderr, flush=True)
-            was_stopped = True
-            plan.stop.set()
+    except KeyboardInterrupt:
+        with keeping:  # no file is half written
+            print(f"quiesce: {interrupted(kept, plan.names)}", file=sys.stderr, flush=True)
+            os._exit(EXIT_INTERRUPTED)  # a step of a fit takes seconds
     if failure:
         raise failure[0]
-    return results, was_stopped
+    return results
+
+
+def interrupted(kept: Sequence[str], asked: Sequence[str]) -> str:
+    if not kept:
+        return "interrupted; no model was finished"
+    told = f"interrupted; {len(kept)} of {len(asked)} models are finished and kept"
+    return f"{told}: --resume goes on, --resume --model {','.join(kept)} reports them"
 
 
 def report(
@@ -272,7 +280,6 @@ def report(
     train: Any,
     test: Any,
     notes: Sequence[str],
-    was_stopped: bool,
 ) -> int:
     from quiesce.damper.model_file import write_model
     from quiesce.damper.ranking import best, ranked
@@ -281,9 +288,6 @@ def report(
     from quiesce.damper.report.tables import json_report, text_report
     from quiesce.damper.simulate import simulator
 
-    if not fitted:
-        print("quiesce: no model was finished; nothing was written", file=sys.stderr)
-        return EXIT_INTERRUPTED
     white = whiteness_of(shown_part(runs_of(simulator(ranked(fitted)[0].damper), train, test)))
     context = {"title": args.files[0].stem, "command": "quiesce " + " ".join(sys.argv[1:])}
     write_report(out, fitted, train, test, notes, context)
@@ -297,4 +301,4 @@ def report(
         written = ["report.html", "report.json", "models/"]
         written += ["damper.toml"] if passive is not None else []
         print(f"\nwritten    {', '.join(shown(out / name) for name in written)}")
-    return EXIT_INTERRUPTED if was_stopped else 0
+    return 0
