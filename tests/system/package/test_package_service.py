@@ -2,6 +2,7 @@
 kernel. Its time is the count of its instructions: the load of this machine does not matter."""
 
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -77,18 +78,24 @@ def console(tmp_path_factory: pytest.TempPathFactory) -> str:
         "sh", work / "root", work / "root.cpio.gz",
     )  # fmt: skip
     as_root("rm", "-rf", work / "root")
-    result = run(
-        shutil.which("qemu-system-aarch64") or "qemu-system-aarch64",
-        "-M", "virt", "-cpu", "cortex-a53", "-m", "1200", "-accel", "tcg",
-        "-icount", "shift=2,sleep=off", "-rtc", "clock=vm,base=2020-01-01", "-seed", "1",
-        "-display", "none", "-no-reboot", "-nic", "none", "-monitor", "none", "-serial", "stdio",
-        "-kernel", require(BUILD / "vm/kernel/vmlinuz", "./tests/system/vm/build_images kernel"),
-        "-initrd", work / "root.cpio.gz",
-        "-append", "console=ttyAMA0 panic=-1 quiet loglevel=3 nokaslr systemd.show_status=0",
-    )  # fmt: skip
+    kernel = require(BUILD / "vm/kernel/vmlinuz", "./tests/system/vm/build_images kernel")
+    said = work / "console.txt"
+    try:
+        result = run(
+            shutil.which("qemu-system-aarch64") or "qemu-system-aarch64",
+            "-M", "virt", "-cpu", "cortex-a53", "-m", "1200", "-accel", "tcg",
+            "-icount", "shift=2,sleep=off", "-rtc", "clock=vm,base=2020-01-01", "-seed", "1",
+            "-display", "none", "-no-reboot", "-nic", "none", "-monitor", "none",
+            "-serial", f"file:{said}", "-kernel", kernel, "-initrd", work / "root.cpio.gz",
+            "-append", "console=ttyAMA0 panic=-1 quiet loglevel=3 nokaslr systemd.show_status=0",
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as late:
+        last = said.read_text(errors="replace")[-4000:]
+        pytest.fail(f"not off after {late.timeout:g} s; {said} ends in:\n{last}", pytrace=False)
     (work / "root.cpio.gz").unlink()
-    assert "FACT end" in result.stdout, result.stdout[-4000:] + result.stderr
-    return result.stdout
+    text = said.read_text(errors="replace")
+    assert "FACT end" in text, text[-4000:] + result.stderr
+    return text
 
 
 @pytest.mark.parametrize(("name", "expected"), FACTS.items())

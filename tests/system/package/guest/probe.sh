@@ -17,7 +17,14 @@ await() { # await WHAT COMMAND...: for a minute at most
     done
     tell "$what" yes
 }
-other_process() { [ "$(property ActiveState)" = active ] && [ "$(property MainPID)" != "$pid" ]; }
+other_process() { # asked at once: between two questions an old process can end, and 0 is no process
+    now="$(systemctl show quiesced --property ActiveState --property MainPID | sort | tr '\n' ' ')"
+    case "$now" in
+    "ActiveState=active MainPID=0 " | "ActiveState=active MainPID=$pid ") false ;;
+    "ActiveState=active "*) true ;;
+    *) false ;;
+    esac
+}
 is_active() { [ "$(property ActiveState)" = active ]; }
 has_tried() { [ "$(property NRestarts)" -ge "$1" ]; }
 has_logged() { [ "$(logged "$1")" -gt 0 ]; }
