@@ -3,14 +3,14 @@
 import sys
 
 
-def start() -> int:
-    """The command's exit code; Ctrl-C before it has begun is one line, too."""
+def start(arguments: list[str] | None = None) -> int:
+    """As quiesce.cli.main.main; Ctrl-C before it has begun is one line, too."""
     try:
         from quiesce.cli.main import main
     except KeyboardInterrupt:
         print("quiesce: interrupted; nothing was written", file=sys.stderr)
         return 130
-    return main()
+    return main(arguments)
 
 
 if __name__ == "__main__":
