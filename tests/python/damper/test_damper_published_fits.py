@@ -6,6 +6,7 @@ from collections.abc import Callable
 import conftest  # noqa: F401
 import numpy as np
 import pytest
+from quiesce.base.searches import by_pymoo
 from quiesce.damper import library
 from quiesce.damper.data.split import whole
 from quiesce.damper.fit import binary_ga, population, thesis_de
@@ -13,7 +14,6 @@ from quiesce.damper.fit.binary_ga import (
     decoded,
     fit_binary_ga,
     fit_plain_ga,
-    next_generation,
     whole_range,
     window_about,
 )
@@ -145,13 +145,26 @@ def test_epochs_narrow_about_the_best_within_the_search_range() -> None:
     assert window_about(problem, np.array([middle, *high[1:]]), 0.2).low[0] == pytest.approx(0.4)
 
 
-def test_next_generation_keeps_the_best_and_mixes_the_others() -> None:
-    rng = np.random.default_rng(1)
-    genes = rng.random((20, 48)) < 0.5
-    errors = rng.random(20)
-    after = next_generation(genes, errors, binary_ga.PLAIN, rng)
-    np.testing.assert_array_equal(after[0], genes[np.argmin(errors)])
-    assert after.shape == genes.shape and not np.array_equal(after, genes)
+def test_parents_are_the_best_of_all_that_were_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The published elimination by fitness, from parents and offspring alike."""
+    begun, asked = [], by_pymoo.asked
+    monkeypatch.setattr(
+        by_pymoo, "asked", lambda one, *more: begun.append(one) or asked(one, *more)
+    )
+    told: list[float] = []
+
+    def errors(_problem: Problem, values: np.ndarray) -> np.ndarray:
+        found = np.abs(values).sum(axis=1)
+        told.extend(found)
+        return found
+
+    monkeypatch.setattr(binary_ga, "errors_of", errors)
+    monkeypatch.setattr(binary_ga, "PLAIN", binary_ga.Settings(epochs=1, generations=12))
+    fit_plain_ga(small_problem(), 1)
+    assert len(told) == 13 * 60
+    # pymoo is not told the last generation.
+    parents = np.sort(begun[0].pop.get("F")[:, 0])
+    np.testing.assert_array_equal(parents, np.sort(told[: 12 * 60])[:60])
 
 
 def test_mutants_are_the_target_plus_a_difference_of_two_others() -> None:

@@ -2,8 +2,9 @@
 
 A chromosome holds one code of `bits` bits a variable; a code counts evenly from the lowest value of
 the search range to the highest, by their logarithm where a positive range is wide. Published:
-coding, selection by fitness, crossover, mutation, a constant population. Not published, and chosen
-here: the Settings, Gray codes, tournaments of two, one-point crossover, elitism, the logarithm.
+coding, selection by fitness, crossover, mutation, the less fit of parents and offspring eliminated.
+Not published, and chosen here: the Settings, Gray codes, tournaments of two, one-point crossover,
+one bit flipped a chromosome on average, the logarithm. The algorithm is pymoo's.
 
 Ours, too: epochs. A code changes one variable at a time, so that where two can stand in for each
 other a population settles beside the optimum. So each epoch begins anew in ranges that are narrower
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quiesce.base.searches.gray import numbers_of
 from quiesce.damper.fit.population import errors_of, values_of
 from quiesce.damper.fit.problem import Problem
 from quiesce.damper.fit.search import EFFORT, Clock, Effort, Fit, Progress
@@ -25,7 +27,6 @@ class Settings:
     population: int = 60
     generations: int = 200  # of all epochs
     crossover: float = 0.8  # probability of a pair
-    elite: int = 1  # best ones that stay as they are
     epochs: int = 10
     narrowing: float = 0.7  # of the ranges, from epoch to epoch
 
@@ -76,7 +77,11 @@ def evolve(
     problem: Problem, window: Window, settings: Settings, rng: np.random.Generator, clock: Clock
 ) -> None:
     """One epoch, from a random population."""
-    genes = rng.random((settings.population, settings.bits * len(problem.variables))) < 0.5
+    from quiesce.base.searches import by_pymoo  # slow to load
+
+    first = rng.random((settings.population, settings.bits * len(problem.variables))) < 0.5
+    search = by_pymoo.ga(first, rng, settings.crossover)
+    genes = next(search)
     generations = settings.generations // settings.epochs
     for generation in range(generations + 1):
         values = decoded(problem, genes, settings.bits, window)
@@ -84,7 +89,7 @@ def evolve(
         clock.offer(values, errors, f"generation {generation}")
         if generation == generations or clock.is_over():
             break
-        genes = next_generation(genes, errors, settings, rng)
+        genes = search.send(errors)
 
 
 def whole_range(problem: Problem) -> Window:
@@ -104,27 +109,6 @@ def window_about(problem: Problem, values: np.ndarray, width: float) -> Window:
 
 def decoded(problem: Problem, genes: np.ndarray, bits: int, window: Window) -> np.ndarray:
     """Values [candidates, variables] from genes [candidates, variables * bits]."""
-    gray = genes.reshape(len(genes), -1, bits)
-    binary = np.logical_xor.accumulate(gray, axis=2)
-    codes = binary @ (1 << np.arange(bits)[::-1])
+    codes = numbers_of(genes.reshape(len(genes), -1, bits))
     parts = window.low + (window.high - window.low) * codes / ((1 << bits) - 1)
     return values_of(problem, parts)
-
-
-def next_generation(
-    genes: np.ndarray, errors: np.ndarray, settings: Settings, rng: np.random.Generator
-) -> np.ndarray:
-    """Tournaments, one-point crossover of neighbours, mutation of a bit a chromosome on average."""
-    count, length = genes.shape
-    rivals = rng.integers(count, size=(2, count))
-    winners = np.where(errors[rivals[0]] <= errors[rivals[1]], rivals[0], rivals[1])
-    out = genes[winners].copy()
-    for first in range(0, count - 1, 2):
-        if rng.random() < settings.crossover:
-            cut = rng.integers(1, length)
-            pair = out[first : first + 2, cut:].copy()
-            out[first : first + 2, cut:] = pair[::-1]
-    out ^= rng.random(out.shape) < 1.0 / length
-    best = np.argsort(errors)[: settings.elite]
-    out[: settings.elite] = genes[best]
-    return out
