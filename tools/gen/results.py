@@ -27,6 +27,7 @@ KEPT = {
     "control": ("seed", "quick", "settings", "cost"),
     "controller": ("golden_words", "compared_words", "off_worst_instr"),
     "fuzzy": ("seed", "quick", "engines", "peers", "host_instr", "ratios"),
+    "install": ("seed", "quick", "reported"),
     "laws": ("seed", "quick", "reported"),
     "papers": ("seed", "quick", "reported"),
     "signal": ("seed", "quick", "settings", "accuracy", "plant_steps", "cost"),

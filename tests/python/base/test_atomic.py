@@ -78,3 +78,13 @@ def test_a_pipe_takes_what_is_written_and_stays_one(tmp_path: Path) -> None:
         assert pipe.is_fifo()
     finally:
         os.close(reader)
+
+
+def test_a_folder_joins_the_one_that_is_there(tmp_path: Path) -> None:
+    for name in ("first", "second"):
+        with output_files(tmp_path / "out") as staging:
+            (staging / "shots").mkdir()
+            (staging / "shots" / name).write_text(name)
+            (staging / "shots" / "both").write_text(name)
+    files = {file.name: file.read_text() for file in (tmp_path / "out/shots").iterdir()}
+    assert files == {"first": "first", "second": "second", "both": "second"}

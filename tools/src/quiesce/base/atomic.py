@@ -15,7 +15,8 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 
 @contextmanager
 def output_files(folder: Path) -> Iterator[Path]:
-    """Yields an empty folder to write into; at the end its files move into `folder`.
+    """Yields an empty folder to write into; at the end its files move into `folder`, those of its
+    folders into folders there.
 
     Nothing reaches `folder`, and it is not created, where the block raises. Into a device or pipe
     of a file's name it is written. UsageError where `folder` cannot be made or written, or its disk
@@ -42,8 +43,11 @@ def output_files(folder: Path) -> Iterator[Path]:
 
 
 def _put(file: Path, place: Path) -> None:
-    """A device or a pipe takes what is written and stays what it is."""
-    if place.exists() and not place.is_file() and not place.is_dir():
+    """A device or a pipe takes what is written and stays what it is; a folder keeps what it has."""
+    if file.is_dir() and place.is_dir():
+        for inner in file.iterdir():
+            _put(inner, place / inner.name)
+    elif place.exists() and not place.is_file():
         place.write_bytes(file.read_bytes())
     else:
         file.replace(place)
