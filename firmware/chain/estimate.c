@@ -3,6 +3,7 @@
 enum {
     STEADY_FRACTION = 12,    // of the frequency: what moves no further is steady ..
     STEADY_AMP_FRACTION = 3, // .. and of the amplitude
+    MOST_FAILURES = 2,       // of trust in a row, before it is given more slowly
 };
 
 void estimate_init(estimate_t *self, const estimator_cfg_t *cfg, uint32_t sample_rate_Hz,
@@ -21,6 +22,28 @@ void estimate_init(estimate_t *self, const estimator_cfg_t *cfg, uint32_t sample
 void estimate_forget(estimate_t *self) {
     predictor_disarm(&self->predictor);
     tracker_reset(&self->tracker);
+}
+
+bool estimate_decide(estimate_t *self, const tracker_tone_t *tones, uint32_t count,
+                     int32_t residual_um_s2, uint32_t explained_q16) {
+    tracker_t *tracker = &self->tracker;
+    const bool was_plain = tracker->is_valid && self->is_plain;
+    const bool is_good = tracker_decide(tracker, tones, count, residual_um_s2, explained_q16);
+    self->is_plain = tracker->is_clear && (self->failures < MOST_FAILURES || self->is_valid ||
+                                           !tracker->window.is_longest);
+    if (was_plain && !(tracker->is_valid && self->is_plain)) {
+        estimate_end(self);
+    }
+    return is_good;
+}
+
+void estimate_end(estimate_t *self) {
+    if (self->valid_ticks >= self->trust_ticks) {
+        self->failures = 0;
+    } else if (self->valid_ticks > 0 && self->failures < MOST_FAILURES) {
+        self->failures++;
+    }
+    self->valid_ticks = 0;
 }
 
 int32_t estimate_filter_memory(const estimate_t *self) {

@@ -40,15 +40,18 @@ typedef struct {
     uint8_t method;
     bool has_published;                     ///< in this tick
     bool is_valid;                          ///< tone[0] can be trusted now
-    uint32_t stages;                        ///< 2^stages ticks are 4 ms
+    uint8_t stages;                         ///< 2^stages ticks are 4 ms
     uint32_t age_ticks;                     ///< since tone[0] was last valid, saturating
     estimator_tone_t tone[ESTIMATOR_TONES]; ///< last published; dominant one first, 0 Hz: none
     int32_t sigma_uHz;                      ///< expected of tone[0].freq_uHz
-    uint32_t window_ms;                     ///< that they come from
+    uint16_t window_ms;                     ///< that they come from
+    uint8_t failures;                       ///< times in a row that trust in tone[0] did not last
+    bool is_plain;                          ///< the last fit is to be trusted at once
     uint32_t steady_turn;                   ///< where tone[0] has stayed ..
     uint32_t steady_amp_um_s2;
     uint32_t steady_ticks; ///< .. for so long, not contradicted by a sample
     uint32_t trust_ticks;  ///< of them that make up for noise
+    uint32_t valid_ticks;  ///< that it has been valid for, since it was last contradicted
 } estimate_t;
 
 /// sample_rate_Hz: that the estimator works at; window_ticks: of its longest window.
@@ -57,6 +60,14 @@ void estimate_init(estimate_t *self, const estimator_cfg_t *cfg, uint32_t sample
 
 /// The vibration is not what it was: nothing is known any more.
 void estimate_forget(estimate_t *self);
+
+/// As tracker_decide. A clear fit is to be trusted at once, unless that did not last the last times
+/// and the window is the longest: broadband motion looks like a component for a moment.
+bool estimate_decide(estimate_t *self, const tracker_tone_t *tones, uint32_t count,
+                     int32_t residual_um_s2, uint32_t explained_q16);
+
+/// What was published is contradicted, or no longer clear: trust in it has lasted, or failed.
+void estimate_end(estimate_t *self);
 
 /// The tracker's tones become the published ones. half_ticks: twice the ticks from the moment that
 /// their phases belong to until now.
@@ -87,7 +98,8 @@ static inline bool estimate_sample(estimate_t *self, const estimator_in_t *in,
 /// is_held: it is in doubt for another reason.
 static inline void estimate_judge(estimate_t *self, bool is_held) {
     self->is_valid = self->tracker.is_valid && self->predictor.is_armed && !is_held &&
-                     (self->tracker.is_clear || self->steady_ticks >= self->trust_ticks);
+                     (self->is_plain || self->steady_ticks >= self->trust_ticks);
+    self->valid_ticks += self->is_valid ? 1u : 0u;
     self->age_ticks = self->is_valid ? 0 : increment_sat_u32(self->age_ticks);
 }
 

@@ -227,8 +227,8 @@ static void decide(estimator_fft_t *self) {
                                ((uint64_t)(uint32_t)tone->amp_um_s2 * SIGMA_DIVISOR);
         tone->sigma_turn += (uint32_t)(noise < INT32_MAX ? noise : INT32_MAX);
     }
-    const bool is_good = tracker_decide(&self->known.tracker, self->tone, self->refined, residual,
-                                        share_q16(tones, self->energy));
+    const bool is_good = estimate_decide(&self->known, self->tone, self->refined, residual,
+                                         share_q16(tones, self->energy));
     self->residual_um_s2 = residual;
     self->stage = is_good ? ESTIMATOR_FFT_PUBLISH : ESTIMATOR_FFT_WAIT;
 }

@@ -60,6 +60,7 @@ static void contradict_short(estimator_fit_t *self) {
         self->is_pure = false;
     }
     self->calm_ticks = 0;
+    estimate_end(&self->known);
     forget(self);
 }
 
@@ -84,6 +85,7 @@ static void judge_sample(estimator_fit_t *self, predictor_verdict_t verdict) {
     if (self->is_suspended) {
         self->suspended_ticks++;
         if (self->suspended_ticks == self->suspend_most_ticks) {
+            estimate_end(&self->known);
             restart(self, self->known.predictor.suspect_ticks + self->suspended_ticks);
         }
     }
@@ -182,7 +184,7 @@ static void choose(estimator_fit_t *self) {
     self->has_drift =
         tracker->has_drift || (self->is_drifting && self->level == self->longest_level);
     if (tracker->starts == 0) {
-        (void)tracker_decide(tracker, NULL, 0, 0, 0);
+        (void)estimate_decide(&self->known, NULL, 0, 0, 0);
         self->stage = ESTIMATOR_FIT_WAIT;
         return;
     }
@@ -311,7 +313,7 @@ static void judge_window(estimator_fit_t *self) {
 static void publish(estimator_fit_t *self) {
     const predictor_rest_t rest = rest_of(self);
     estimate_publish(&self->known, half_ticks_since_middle(self), &rest);
-    self->known.window_ms = SPECTRUM_POINTS(self->level) * 1000u / SPECTRUM_RATE_Hz;
+    self->known.window_ms = (uint16_t)(SPECTRUM_POINTS(self->level) * 1000u / SPECTRUM_RATE_Hz);
     self->published_level = self->level;
     if (self->level == self->longest_level) {
         judge_window(self);
@@ -331,8 +333,8 @@ static void decide(estimator_fit_t *self) {
             .amp_um_s2 = tone->amp_um_s2,
         };
     }
-    const bool is_good = tracker_decide(&self->known.tracker, tones, self->fit.tones,
-                                        self->fit.residual_um_s2, self->fit.explained_q16);
+    const bool is_good = estimate_decide(&self->known, tones, self->fit.tones,
+                                         self->fit.residual_um_s2, self->fit.explained_q16);
     self->stage = is_good ? ESTIMATOR_FIT_PUBLISH : ESTIMATOR_FIT_WAIT;
     if (self->known.tracker.misses >= LOST_FITS && self->level == self->most_level &&
         self->most_level < self->longest_level) {
@@ -368,6 +370,7 @@ void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
     judge_sample(self, predictor_step(&self->known.predictor, in->accel_um_s2, in->is_good));
     calm_down(self);
     if (in->is_lost) {
+        self->known.valid_ticks = 0; // nothing has contradicted it
         restart(self, 0);
     }
     int32_t sample_um_s2;

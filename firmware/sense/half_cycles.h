@@ -21,6 +21,7 @@ typedef struct {
     int32_t peak_um_s;   ///< largest magnitude since
     bool is_up;          ///< the velocity is positive
     bool is_rough;       ///< the sign has changed, but not yet by enough
+    uint8_t alike;       ///< half cycles in a row that resembled the two before them, saturating
     uint32_t rough_q8;   ///< since_q8 where it did
 } half_cycles_t;
 
@@ -28,6 +29,7 @@ typedef struct {
 typedef struct {
     uint32_t phase_turn; ///< acceleration = amp x cos(phase)
     uint32_t step_turn;  ///< a tick
+    uint8_t alike;       ///< 1 or more: so many half cycles in a row have said so
 } half_cycles_tone_t;
 
 /// Forgets what was before.

@@ -109,7 +109,7 @@ static bool are_alike(uint32_t a, uint32_t b) {
 // Works on the last half cycle, one part a tick, so that no tick has much of it.
 static void work(lock_in_t *self) {
     const uint32_t stage = self->stage;
-    self->stage = stage == LAST_STAGE ? 0 : stage + 1u;
+    self->stage = (uint8_t)(stage == LAST_STAGE ? 0 : stage + 1u);
     if (stage <= HARMONIC_PRODUCTS) {
         self->found.um_s2[stage - 1u] = harmonic_part_um_s2(&self->last, stage - 1u);
     } else if (stage < LAST_STAGE) {

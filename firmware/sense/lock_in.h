@@ -25,15 +25,15 @@ enum { LOCK_IN_MOST_SKIPPED = 8 }; ///< ticks
 typedef struct {
     uint32_t tick_rate_Hz;
     bool is_locked;
+    bool has_half;        ///< that work was finished in this tick
+    uint8_t stage;        ///< of the work on the last half cycle, a division a tick
     uint32_t halves;      ///< half cycles since locked, saturating
     uint32_t phase_turn;  ///< now: the component is amp x cos(phase)
     uint32_t step_turn;   ///< a tick
     uint32_t half_turn;   ///< twice the phase since it began: it ends where this wraps
     harmonic_sums_t half; ///< the one that is running
     harmonic_sums_t last; ///< the last whole half cycle
-    uint32_t stage;       ///< of the work on it, a division a tick
     harmonic_parts_t found;
-    bool has_half;             ///< that work was finished in this tick
     harmonic_sums_t before;    ///< the half cycle before the last: a mean takes both
     int32_t mean_um_s2;        ///< taken off the samples
     harmonic_parts_t expected; ///< of the next samples: what the last half cycle held

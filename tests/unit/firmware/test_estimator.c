@@ -95,6 +95,52 @@ static void test_needs_a_full_window_before_it_is_valid(void) {
     TEST_ASSERT_EQUAL_UINT32(0, estimator.known.age_ticks);
 }
 
+// One tick in noise that leaves a component clear in the longest window only.
+static void tick_in_noise(uint32_t freq_mHz) {
+    static uint32_t seed = 5;
+    step(signal_sine(300000, freq_mHz, now, rate_Hz) + signal_normal(&seed, 130000));
+    now++;
+}
+
+static uint32_t ticks_until_valid(uint32_t freq_mHz, uint32_t most) {
+    uint32_t ticks = 0;
+    do {
+        tick_in_noise(freq_mHz);
+        ticks++;
+    } while (!is_valid() && ticks < most);
+    return ticks;
+}
+
+static void go_on(uint32_t freq_mHz, uint32_t ticks) {
+    for (; ticks > 0; ticks--) {
+        tick_in_noise(freq_mHz);
+    }
+    TEST_ASSERT_TRUE(is_valid());
+}
+
+// The vibration changes; until that is noticed.
+static void change(uint32_t freq_mHz) {
+    while (is_valid()) {
+        tick_in_noise(freq_mHz);
+    }
+}
+
+static void test_trust_that_does_not_last_is_given_more_slowly(void) {
+    TEST_ASSERT_LESS_THAN_UINT32(1250, ticks_until_valid(9000, 5000));
+    go_on(9000, 200);
+    change(14000);
+    TEST_ASSERT_LESS_THAN_UINT32(1250, ticks_until_valid(14000, 5000));
+    go_on(14000, 200);
+    change(21000);
+    const uint32_t third = ticks_until_valid(21000, 5000);
+    TEST_ASSERT_GREATER_THAN_UINT32(2000, third);
+    TEST_ASSERT_LESS_THAN_UINT32(3000, third);
+    // What lasts ends the doubt.
+    go_on(21000, 2000);
+    change(9000);
+    TEST_ASSERT_LESS_THAN_UINT32(1250, ticks_until_valid(9000, 5000));
+}
+
 static void test_stronger_third_harmonic_does_not_win(void) {
     feed((component_t[]){{50000, 5000}, {90000, 15000}}, 2, 8000, 2000);
     assert_dominant(5000, 20000);
@@ -205,6 +251,7 @@ int main(void) {
     RUN_TEST(test_silence_and_small_vibration_are_never_valid);
     RUN_TEST(test_noise_alone_is_not_a_frequency);
     RUN_TEST(test_needs_a_full_window_before_it_is_valid);
+    RUN_TEST(test_trust_that_does_not_last_is_given_more_slowly);
     RUN_TEST(test_stronger_third_harmonic_does_not_win);
     RUN_TEST(test_of_unrelated_tones_the_larger_displacement_wins);
     RUN_TEST(test_drift_below_the_band_is_ignored);
