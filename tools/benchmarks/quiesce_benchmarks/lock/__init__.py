@@ -1,0 +1,1 @@
+"""Motion that no table and no threshold was chosen on."""
