@@ -22,6 +22,7 @@ void estimate_init(estimate_t *self, const estimator_cfg_t *cfg, uint32_t sample
 void estimate_forget(estimate_t *self) {
     predictor_disarm(&self->predictor);
     tracker_reset(&self->tracker);
+    self->valid_ticks = 0;
 }
 
 bool estimate_decide(estimate_t *self, const tracker_tone_t *tones, uint32_t count,

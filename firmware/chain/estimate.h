@@ -51,14 +51,14 @@ typedef struct {
     uint32_t steady_amp_um_s2;
     uint32_t steady_ticks; ///< .. for so long, not contradicted by a sample
     uint32_t trust_ticks;  ///< of them that make up for noise
-    uint32_t valid_ticks;  ///< that it has been valid for, since it was last contradicted
+    uint32_t valid_ticks;  ///< that it has been valid for, since trust last ended; wraps
 } estimate_t;
 
 /// sample_rate_Hz: that the estimator works at; window_ticks: of its longest window.
 void estimate_init(estimate_t *self, const estimator_cfg_t *cfg, uint32_t sample_rate_Hz,
                    uint32_t window_ticks);
 
-/// The vibration is not what it was: nothing is known any more.
+/// Nothing is known any more. Where the samples say so, estimate_end first.
 void estimate_forget(estimate_t *self);
 
 /// As tracker_decide. A clear fit is to be trusted at once, unless that did not last the last times

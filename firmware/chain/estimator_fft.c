@@ -69,6 +69,7 @@ static void contradict(estimator_fft_t *self) {
     self->clean_samples = since < self->clean_samples ? since : self->clean_samples;
     self->is_clean = false;
     self->is_published_clean = false;
+    estimate_end(&self->known);
     predictor_disarm(&self->known.predictor);
 }
 

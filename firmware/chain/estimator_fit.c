@@ -370,7 +370,6 @@ void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
     judge_sample(self, predictor_step(&self->known.predictor, in->accel_um_s2, in->is_good));
     calm_down(self);
     if (in->is_lost) {
-        self->known.valid_ticks = 0; // nothing has contradicted it
         restart(self, 0);
     }
     int32_t sample_um_s2;

@@ -26,9 +26,7 @@ static bool is_steady(const half_cycles_t *self, uint32_t length_q8) {
 // The velocity has crossed zero since_q8 ago, after a half cycle of length_q8.
 static bool end_half(half_cycles_t *self, uint32_t length_q8, half_cycles_tone_t *tone) {
     const bool is_found = is_steady(self, length_q8);
-    self->alike = (uint8_t)(!is_found                      ? 0
-                            : self->alike < UINT8_MAX - 1u ? self->alike + 1u
-                                                           : UINT8_MAX - 1u);
+    self->alike = (uint8_t)(!is_found ? 0 : self->alike < UINT8_MAX ? self->alike + 1u : UINT8_MAX);
     if (is_found) {
         tone->alike = self->alike;
         const uint32_t period_q8 = (self->earlier_q8 + 2u * self->before_q8 + length_q8) / 2u;

@@ -220,6 +220,18 @@ static void test_end_of_the_vibration_is_seen_at_once(void) {
     }
 }
 
+static void test_trust_that_does_not_last_is_given_more_slowly(void) {
+    static const uint32_t freqs_mHz[] = {9000, 14000};
+    for (uint32_t i = 0; i < 2; i++) {
+        feed(&(component_t){300000, freqs_mHz[i]}, 1, 0, 1500);
+        TEST_ASSERT_TRUE(known->is_valid);
+    }
+    feed(&(component_t){300000, 21000}, 1, 0, 1500);
+    TEST_ASSERT_FALSE(known->is_valid);
+    feed(&(component_t){300000, 21000}, 1, 0, 1500);
+    TEST_ASSERT_TRUE(known->is_valid);
+}
+
 static void test_lost_input_invalidates_at_once_and_until_a_window_is_new(void) {
     const component_t tones[] = {{300000, 10000}, {200000, 17000}};
     feed(tones, 2, 5000, 2000);
@@ -292,6 +304,7 @@ int main(void) {
     RUN_TEST(test_band_limits_bind);
     RUN_TEST(test_frequency_step_is_seen_at_once_and_valid_with_a_new_window);
     RUN_TEST(test_end_of_the_vibration_is_seen_at_once);
+    RUN_TEST(test_trust_that_does_not_last_is_given_more_slowly);
     RUN_TEST(test_lost_input_invalidates_at_once_and_until_a_window_is_new);
     RUN_TEST(test_phase_follows_at_every_tick_and_rate);
     RUN_TEST(test_missing_samples_are_bridged);

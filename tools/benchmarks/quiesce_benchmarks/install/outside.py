@@ -16,19 +16,23 @@ M4_RUN = (
 TIMEOUT_s = 600
 
 
-def run(*command: str | Path, folder: Path | None = None) -> str:
-    """What it printed. BenchFailure with its complaint, UsageError where the tool is absent."""
+def run(*command: str | Path, folder: Path | None = None, timeout_s: float = TIMEOUT_s) -> str:
+    """What it printed. BenchFailure with its complaint or where it takes too long, UsageError where
+    the tool is absent."""
     words = [str(word) for word in command]
     if shutil.which(words[0]) is None and not Path(words[0]).is_file():
         raise UsageError(f"{words[0]} is not installed; ./tools/setup test installs it")
-    ended = subprocess.run(
-        words,
-        cwd=folder,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_s,
-    )
+    try:
+        ended = subprocess.run(
+            words,
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=timeout_s,
+        )
+    except subprocess.TimeoutExpired:
+        raise BenchFailure(f"{' '.join(words[:3])} takes more than {timeout_s:g} s") from None
     if ended.returncode != 0:
         said = "\n".join(
             line for line in (ended.stderr + ended.stdout).splitlines() if "rror" in line

@@ -2,18 +2,17 @@
 
 import json
 import shlex
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from shutil import which
-from typing import Any
 
-from quiesce.base.errors import BenchFailure, UsageError, one_line
+from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
 
 from quiesce_benchmarks.fuzzy.peers import BROWSER, PYTHON, built_peer
 from quiesce_benchmarks.install.examples import EXAMPLES
+from quiesce_benchmarks.install.outside import run
 from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "pages: in a browser, on a phone and on a desk, light and dark"
@@ -32,18 +31,6 @@ TIMEOUT_s = 1800
 SHOWN = 5  # lines of a page in a mode
 
 
-def run(words: list[str], folder: Path) -> str:
-    """What it printed. BenchFailure with its last line, or where it takes too long."""
-    pipes: dict[str, Any] = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
-    try:
-        ended = subprocess.run(words, cwd=folder, timeout=TIMEOUT_s, **pipes)
-    except subprocess.TimeoutExpired:
-        raise BenchFailure(f"{' '.join(words[:4])} takes more than {TIMEOUT_s} s")
-    if ended.returncode != 0:
-        raise BenchFailure(f"{' '.join(words[:4])}: {one_line(ended.stderr)}")
-    return ended.stdout
-
-
 def browser() -> tuple[str, str, str]:
     """Python that drives it, Chromium, axe-core. UsageError where one of them cannot be had."""
     axe = built_peer(BROWSER)
@@ -58,7 +45,7 @@ def make_pages(folder: Path) -> list[str]:
         if name in PAGES or name in NEEDED:
             more = PAGES.get(name, ("",))[0]
             typed = shlex.split(f"{name} {words} {more}")
-            run([sys.executable, "-m", "quiesce", *typed], folder)
+            run(sys.executable, "-m", "quiesce", *typed, folder=folder, timeout_s=TIMEOUT_s)
     return [page for _, page in PAGES.values()]
 
 
@@ -69,7 +56,7 @@ def measure(effort: Effort) -> Measured:
         shots = effort.folder / "pages"
         shots.mkdir(parents=True, exist_ok=True)
         look = [python, "-I", str(LOOK), chromium, axe, *pages, "--shots", str(shots.resolve())]
-        found = json.loads(run(look, Path(name)))
+        found = json.loads(run(*look, folder=Path(name), timeout_s=TIMEOUT_s))
     rows = [[mode, line] for mode, lines in found.items() for line in lines[:SHOWN]]
     return Measured(
         {"report_phone_ok": float(sum(not lines for lines in found.values()))},
