@@ -5,6 +5,16 @@ typedef struct {
     uint32_t of[FUZZY_MAX_INPUTS * 8u];
 } memberships_t;
 
+// A table that has passed its check holds nothing beyond these. One that was damaged since must not
+// lead a write out of what it belongs to: until that is noticed anything else might change.
+static uint32_t inputs_of(const fuzzy_table_t *table) {
+    return fuzzy_min(table->inputs, FUZZY_MAX_INPUTS);
+}
+
+static uint32_t outputs_of(const fuzzy_table_t *table) {
+    return fuzzy_min(table->outputs, FUZZY_MAX_OUTPUTS);
+}
+
 typedef struct {
     uint64_t weighted;
     uint64_t strength;
@@ -21,15 +31,16 @@ static const fuzzy_cell_t *find_cell(const fuzzy_table_t *table, uint32_t i, int
 }
 
 static void find_memberships(const fuzzy_table_t *table, const int32_t *input, memberships_t *out) {
-    for (uint32_t i = 0; i < 8u * table->inputs; i++) {
+    const uint32_t inputs = inputs_of(table);
+    for (uint32_t i = 0; i < 8u * inputs; i++) {
         out->of[i] = 0;
     }
-    for (uint32_t i = 0; i < table->inputs; i++) {
+    for (uint32_t i = 0; i < inputs; i++) {
         const fuzzy_cell_t *cell = find_cell(table, i, input[i]);
         const fuzzy_ramp_t *ramp = (const fuzzy_ramp_t *)(const void *)(cell + 1);
         const uint32_t distance = fuzzy_distance(cell, input[i]);
         for (uint32_t k = 0; k < cell->ramps; k++) {
-            out->of[8u * i + ramp[k].set] = fuzzy_membership(&ramp[k], distance);
+            out->of[8u * i + ramp[k].set % 8u] = fuzzy_membership(&ramp[k], distance);
         }
     }
 }
@@ -97,8 +108,8 @@ static sums_t sum_by_term(const fuzzy_table_t *table, const fuzzy_output_t *outp
     for (uint32_t i = 0; i < table->rules; i++) {
         const uint32_t term = rule[i].conclusion[index];
         if (term != FUZZY_NO_TERM) {
-            strongest[term] =
-                fuzzy_max_u64(strongest[term], strength_of(table, &rule[i], memberships));
+            uint64_t *known = &strongest[term % FUZZY_MAX_TERMS];
+            *known = fuzzy_max_u64(*known, strength_of(table, &rule[i], memberships));
         }
     }
     sums_t sums = {0};
@@ -121,14 +132,14 @@ static uint32_t average(const fuzzy_output_t *output, sums_t sums, int32_t *valu
 static uint32_t centroid(const fuzzy_table_t *table, const fuzzy_output_t *output, uint32_t index,
                          const memberships_t *memberships, int32_t *value) {
     const fuzzy_rule_t *rule = rules_of(table);
-    uint64_t strongest[FUZZY_MAX_SETS] = {0};
+    uint64_t strongest[FUZZY_STRENGTHS] = {0};
     for (uint32_t i = 0; i < table->rules; i++) {
         const uint32_t term = rule[i].conclusion[index];
         if (term != FUZZY_NO_TERM) {
             const uint32_t membership = rule_membership(&rule[i], memberships, table->one);
-            strongest[term] =
-                fuzzy_max_u64(strongest[term], fuzzy_fine_strength(membership, weight_q19(&rule[i]),
-                                                                   weight_exponent(&rule[i])));
+            uint64_t *known = &strongest[term % FUZZY_STRENGTHS];
+            *known = fuzzy_max_u64(*known, fuzzy_fine_strength(membership, weight_q19(&rule[i]),
+                                                               weight_exponent(&rule[i])));
         }
     }
     return fuzzy_any_centroid(table, output, strongest, value);
@@ -153,7 +164,7 @@ __attribute__((noinline)) static uint32_t evaluate_any(const fuzzy_table_t *tabl
     memberships_t memberships;
     find_memberships(table, input, &memberships);
     uint32_t is_default = 0;
-    for (uint32_t i = 0; i < table->outputs; i++) {
+    for (uint32_t i = 0; i < outputs_of(table); i++) {
         is_default |= evaluate_output(table, i, &memberships, &value[i]) << i;
     }
     return is_default;

@@ -71,7 +71,7 @@ uint32_t fuzzy_any_centroid(const fuzzy_table_t *table, const fuzzy_output_t *ou
                             uint64_t *strength, int32_t *value) {
     const uint32_t *peak = fuzzy_at(table, output->terms_offset);
     uint64_t strongest = 0;
-    for (uint32_t i = 0; i < output->terms; i++) {
+    for (uint32_t i = 0; i < output->terms && i < FUZZY_STRENGTHS; i++) {
         strength[i] = fuzzy_min_u64(strength[i], (uint64_t)peak[i] << FUZZY_FINE_BITS);
         strongest = fuzzy_max_u64(strongest, strength[i]);
     }

@@ -18,8 +18,12 @@ static inline const fuzzy_output_t *fuzzy_output_of(const fuzzy_table_t *table, 
     return fuzzy_at(table, table->output_offset[index]);
 }
 
-/// Centroid of an output of any table. strength: fuzzy_fine_strength() of its terms; cut at their
-/// peaks here. Returns 1, and the default in *value, where all are 0.
+/// Strengths of the terms of an output with sets, and one for a place that has none.
+#define FUZZY_STRENGTHS (FUZZY_MAX_SETS + 1u)
+
+/// Centroid of an output of any table. strength: fuzzy_fine_strength() of its terms,
+/// FUZZY_STRENGTHS of them; cut at their peaks here. Returns 1, and the default in *value, where
+/// all are 0.
 uint32_t fuzzy_any_centroid(const fuzzy_table_t *table, const fuzzy_output_t *output,
                             uint64_t *strength, int32_t *value);
 

@@ -193,19 +193,21 @@ uint32_t fuzzy_partition_max(const fuzzy_table_t *table, const int32_t *input, i
     return 0;
 }
 
-static void raise(uint32_t *strength, uint32_t to) {
-    *strength = fuzzy_max(*strength, to);
+// Also with a table that was damaged since its check it stays among the strengths.
+static void raise(uint32_t *strength, uint32_t term, uint32_t to) {
+    uint32_t *known = &strength[term % FUZZY_STRENGTHS];
+    *known = fuzzy_max(*known, to);
 }
 
 uint32_t fuzzy_partition_centroid(const fuzzy_table_t *table, const int32_t *input,
                                   int32_t *value) {
     const block_t block = find_block(table, input);
     const uint32_t *term = (const uint32_t *)(table + 1) + block.place;
-    uint32_t strength[FUZZY_MAX_SETS + 1u] = {0};
-    raise(&strength[term[0]], block.a);
-    raise(&strength[term[1]], block.b);
-    raise(&strength[term[FUZZY_GRID_STRIDE]], block.c);
-    raise(&strength[term[FUZZY_GRID_STRIDE + 1u]], block.d);
+    uint32_t strength[FUZZY_STRENGTHS] = {0};
+    raise(strength, term[0], block.a);
+    raise(strength, term[1], block.b);
+    raise(strength, term[FUZZY_GRID_STRIDE], block.c);
+    raise(strength, term[FUZZY_GRID_STRIDE + 1u], block.d);
     *value = partition_centre(table, fuzzy_output_of(table, 0), strength);
     return 0;
 }

@@ -33,10 +33,10 @@ static quiesce_table_verdict_t check(const uint32_t *words) {
 
 // The shipped rules run as straight-line C, the same numbers in half the time.
 static int32_t evaluated_mA(const uint32_t *table, const int32_t input[RULE_BASE_INPUTS]) {
-    int32_t mA = 0;
-    (void)(table == plant_rules_table ? plant_rules(input, &mA)
-                                      : fuzzy_evaluate(as_table(table), input, &mA));
-    return mA;
+    int32_t mA[FUZZY_MAX_OUTPUTS] = {0}; // one, unless the table was damaged since its check
+    (void)(table == plant_rules_table ? plant_rules(input, mA)
+                                      : fuzzy_evaluate(as_table(table), input, mA));
+    return mA[0];
 }
 
 static uint64_t fired_rules(const uint32_t *table, const int32_t input[RULE_BASE_INPUTS]) {

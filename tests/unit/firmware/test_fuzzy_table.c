@@ -469,6 +469,82 @@ static void test_conclusions_of_a_rule(void) {
     CHANGED(CASE_GENERAL, FUZZY_TABLE_OK, rule(4)->conclusion[0] = FUZZY_NO_TERM);
 }
 
+// ---- what was damaged after its check -----------------------------------------------------------
+
+enum { SPOIL_SET = 0x100, SPOIL_TERM = 0x08, SPOIL_TERM_OF_MANY = 0x40, SPOIL_GRID = 0x10 };
+
+static void evaluate(int32_t step, int32_t out[FUZZY_MAX_OUTPUTS]) {
+    const int32_t input[FUZZY_MAX_INPUTS] = {step * 1999999, step * 29999, step * 77, step * 13};
+    (void)fuzzy_evaluate(table(), input, out);
+}
+
+static void spoil_sets(void) {
+    for (uint32_t i = 0; i < table()->inputs; i++) {
+        for (uint32_t k = 0; k < table()->axis[i].cells; k++) {
+            for (uint32_t j = 0; j < cell(i, k)->cell.ramps; j++) {
+                cell(i, k)->ramp[j].set |= SPOIL_SET;
+            }
+        }
+    }
+}
+
+static void spoil_conclusions(void) {
+    for (uint32_t i = 0; i < table()->rules; i++) {
+        for (uint32_t k = 0; k < table()->outputs; k++) {
+            const uint8_t method = output(k)->method;
+            uint8_t *term = &rule(i)->conclusion[k];
+            const uint8_t bit = method == FUZZY_MAX ? SPOIL_TERM_OF_MANY : SPOIL_TERM;
+            *term |= *term == FUZZY_NO_TERM || method == FUZZY_SUM ? 0 : bit;
+        }
+    }
+}
+
+// Terms of a grid of sets: words right behind the header, up to the first cell.
+static void spoil_grid(void) {
+    for (uint32_t i = FUZZY_HEADER_WORDS; i < table()->axis[0].offset; i++) {
+        words()[i] |= SPOIL_GRID;
+    }
+}
+
+static void spoil(void) {
+    if (table()->form == FUZZY_PARTITION_CENTROID) {
+        spoil_grid();
+    } else if (table()->form == FUZZY_ANY) {
+        spoil_sets();
+        spoil_conclusions();
+    }
+}
+
+// A term or set beyond those that there can be counts as one of them: nothing is written elsewhere,
+// which a sanitizer would see.
+static void test_a_damaged_table_leads_no_write_astray(void) {
+    for (uint32_t which = 0; which < RULE_CASES; which++) {
+        for (int32_t step = 0; step < 30; step++) {
+            int32_t good[FUZZY_MAX_OUTPUTS] = {0};
+            int32_t spoilt[FUZZY_MAX_OUTPUTS] = {0};
+            load(which);
+            evaluate(step, good);
+            spoil();
+            evaluate(step, spoilt);
+            TEST_ASSERT_EQUAL_INT32_ARRAY_MESSAGE(good, spoilt, FUZZY_MAX_OUTPUTS,
+                                                  rule_cases[which].name);
+        }
+    }
+}
+
+static void test_no_more_outputs_are_written_than_there_can_be(void) {
+    int32_t out[2 * FUZZY_MAX_OUTPUTS] = {0};
+    load(CASE_GENERAL);
+    for (uint32_t i = 1; i < FUZZY_MAX_OUTPUTS; i++) {
+        table()->output_offset[i] = table()->output_offset[0];
+    }
+    table()->outputs = UINT8_MAX;
+    evaluate(1, out);
+    for (uint32_t i = FUZZY_MAX_OUTPUTS; i < 2u * FUZZY_MAX_OUTPUTS; i++) {
+        TEST_ASSERT_EQUAL_INT32(0, out[i]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_good_tables_are_accepted);
@@ -502,5 +578,7 @@ int main(void) {
     RUN_TEST(test_places_of_rules);
     RUN_TEST(test_weights_and_conditions_of_a_rule);
     RUN_TEST(test_conclusions_of_a_rule);
+    RUN_TEST(test_a_damaged_table_leads_no_write_astray);
+    RUN_TEST(test_no_more_outputs_are_written_than_there_can_be);
     return UNITY_END();
 }
