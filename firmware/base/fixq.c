@@ -1,5 +1,14 @@
 #include "fixq.h"
 
+uint32_t ticks_in_us(int32_t time_us, uint32_t tick_rate_Hz) {
+    return (uint32_t)((int64_t)time_us * tick_rate_Hz / 1000000);
+}
+
+int32_t radians_a_tick_q32(int32_t freq_mHz, uint32_t tick_rate_Hz) {
+    // 2 pi / 1000 in Q32.
+    return (int32_t)(freq_mHz * INT64_C(26986075) / tick_rate_Hz);
+}
+
 uint32_t isqrt_u32(uint32_t value) {
     if (value == 0) {
         return 0;
@@ -33,16 +42,13 @@ uint32_t isqrt_u64(uint64_t value) {
 }
 
 uint32_t sqrt_fast_u64(uint64_t value) {
-    if (value <= UINT32_MAX) {
-        // Shifted up by an even count, so that small values keep their precision too.
-        if (value == 0) {
-            return 0;
-        }
-        const uint32_t up = (leading_zeros_u64(value) - 32u) & ~1u;
-        return isqrt_u32((uint32_t)value << up) >> (up / 2u);
+    if (value == 0) {
+        return 0;
     }
-    const uint32_t down = (33u - leading_zeros_u64(value)) & ~1u;
-    return isqrt_u32((uint32_t)(value >> down)) << (down / 2u);
+    // At full scale, so that small values keep their precision too: the upper half's root.
+    const uint32_t up = leading_zeros_u64(value) & ~1u;
+    const uint32_t half = isqrt_u32((uint32_t)(value << up >> 32));
+    return half << 16 >> (up / 2u);
 }
 
 scale_t scale_from_ratio(uint32_t numerator, uint32_t denominator) {

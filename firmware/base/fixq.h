@@ -11,9 +11,6 @@
 // cppcheck-suppress shiftNegativeLHS
 _Static_assert((-3 >> 1) == -2, "arithmetic right shift");
 
-/// 2 pi / 1000 in Q32: radians a second of one milli-hertz.
-#define TWO_PI_PER_MILLI_Q32 INT64_C(26986075)
-
 /// value limited to low .. high (low <= high).
 static inline int32_t clamp_i32(int32_t value, int32_t low, int32_t high) {
     return value < low ? low : value > high ? high : value;
@@ -38,6 +35,12 @@ static inline uint32_t gap_u32(uint32_t a, uint32_t b) {
 static inline uint32_t ticks_in_ms(int32_t time_ms, int32_t tick_rate_Hz) {
     return (uint32_t)(time_ms * (tick_rate_Hz / 100) / 10);
 }
+
+/// Ticks in a time, floor. time_us >= 0; tick_rate_Hz <= 4000.
+uint32_t ticks_in_us(int32_t time_us, uint32_t tick_rate_Hz);
+
+/// Radians a tick of a frequency, Q32, floor. freq_mHz: 0 .. 10^6; tick_rate_Hz: 1 or more.
+int32_t radians_a_tick_q32(int32_t freq_mHz, uint32_t tick_rate_Hz);
 
 /// -1, 0 or 1.
 static inline int32_t sign_i64(int64_t value) {

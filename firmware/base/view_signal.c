@@ -10,16 +10,16 @@
     { offsetof(view_t, damper) + offsetof(view_damper_t, field), sizeof(view_damper_t), quantity }
 
 const view_quantity_t view_quantity[VIEW_SIGNAL_QUANTITIES] = {
-    [QUIESCE_SENSE_ACCEL] = OF_BODY(accel_um_s2, VIEW_ACCEL),
-    [QUIESCE_SENSE_VELOCITY] = OF_BODY(velocity_um_s, VIEW_VELOCITY),
-    [QUIESCE_SENSE_DISPLACEMENT] = OF_BODY(displacement_nm, VIEW_DISPLACEMENT),
-    [QUIESCE_SENSE_STROKE] = OF_DAMPER(stroke_nm, VIEW_STROKE),
-    [QUIESCE_SENSE_STROKE_VELOCITY] = OF_DAMPER(velocity_um_s, VIEW_STROKE_VELOCITY),
-    [QUIESCE_SENSE_FORCE] = OF_DAMPER(force_mN, VIEW_FORCE),
-    [QUIESCE_SENSE_VOLTAGE] = OF_DAMPER(voltage_mV, VIEW_VOLTAGE),
-    [QUIESCE_SENSE_TEMPERATURE] = OF_DAMPER(temperature_mdegC, VIEW_TEMPERATURE),
-    [QUIESCE_SENSE_SUPPLY] = {offsetof(view_t, supply_mV), 0, VIEW_SUPPLY},
-    [VIEW_SIGNAL_CURRENT] = OF_DAMPER(current_mA, VIEW_CURRENT),
+    [QUIESCE_SENSE_ACCEL] = OF_BODY(accel_um_s2, QUIESCE_VALID_ACCEL),
+    [QUIESCE_SENSE_VELOCITY] = OF_BODY(velocity_um_s, QUIESCE_VALID_VELOCITY),
+    [QUIESCE_SENSE_DISPLACEMENT] = OF_BODY(displacement_nm, QUIESCE_VALID_DISPLACEMENT),
+    [QUIESCE_SENSE_STROKE] = OF_DAMPER(stroke_nm, QUIESCE_VALID_STROKE),
+    [QUIESCE_SENSE_STROKE_VELOCITY] = OF_DAMPER(velocity_um_s, QUIESCE_VALID_STROKE_VELOCITY),
+    [QUIESCE_SENSE_FORCE] = OF_DAMPER(force_mN, QUIESCE_VALID_FORCE),
+    [QUIESCE_SENSE_VOLTAGE] = OF_DAMPER(voltage_mV, QUIESCE_VALID_VOLTAGE),
+    [QUIESCE_SENSE_TEMPERATURE] = OF_DAMPER(temperature_mdegC, QUIESCE_VALID_TEMPERATURE),
+    [QUIESCE_SENSE_SUPPLY] = {offsetof(view_t, supply_mV), 0, QUIESCE_VALID_SUPPLY},
+    [VIEW_SIGNAL_CURRENT] = OF_DAMPER(current_mA, QUIESCE_VALID_CURRENT),
 };
 
 static uint32_t quantity_of(uint32_t signal) {
@@ -51,7 +51,7 @@ bool view_inputs_are_good(const view_input_t *inputs, uint32_t count) {
 }
 
 uint64_t view_signal_needs(uint32_t signal) {
-    return view_quantity[quantity_of(signal)].bit << place_of(signal);
+    return UINT64_C(1) << (view_quantity[quantity_of(signal)].valid + place_of(signal));
 }
 
 uint64_t view_inputs_need(const view_input_t *inputs, uint32_t count) {

@@ -16,8 +16,8 @@ enum { VIEW_SIGNAL_CURRENT = QUIESCE_SENSES, VIEW_SIGNAL_QUANTITIES };
 /// Where a quantity is in view_t, of the first body or damper, and its first bit.
 typedef struct {
     uint16_t offset;
-    uint16_t stride; ///< to the next body or damper
-    uint64_t bit;
+    uint8_t stride; ///< to the next body or damper
+    uint8_t valid;  ///< number of the bit: QUIESCE_VALID_
 } view_quantity_t;
 
 extern const view_quantity_t view_quantity[VIEW_SIGNAL_QUANTITIES];

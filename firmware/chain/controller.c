@@ -88,7 +88,7 @@ static void start_all(controller_t *self, const quiesce_board_t *board,
                       const quiesce_params_t *params, const quiesce_params_t *used,
                       bool is_accepted) {
     *self = (controller_t){.view.may_learn = true};
-    signal_chain_init(&self->signal, board, used, control_serves(used));
+    signal_chain_init(&self->signal, board, used, control_serves(used), law_find(used->law)->lock);
     control_init(&self->control, &self->signal.sensing.places, used);
     self->recover_ticks = (uint32_t)used->sensor_recover_ticks;
     for (uint32_t i = 0; i < dampers_of(self); i++) {

@@ -12,8 +12,7 @@ static int32_t error_mA(const guard_t *guard, const quiesce_params_t *p) {
     return clamp_i32(p->current_error_mA, 1, half_mA > 1 ? half_mA : 1);
 }
 
-static uint32_t ticks_in_us(int32_t time_us, uint32_t rate_Hz) {
-    const uint32_t ticks = (uint32_t)((int64_t)time_us * rate_Hz / 1000000);
+static uint32_t at_least_one(uint32_t ticks) {
     return ticks > 0u ? ticks : 1u;
 }
 
@@ -37,7 +36,7 @@ static void start_monitor(drive_t *self, const quiesce_board_damper_t *damper,
         .lag_us = damper->coil_lag_us,
         .fault_ticks = (uint32_t)p->current_fault_ticks,
         .trip_mA = damper->trip_mA,
-        .trip_ticks = ticks_in_us(damper->trip_us, rate_Hz),
+        .trip_ticks = at_least_one(ticks_in_us(damper->trip_us, rate_Hz)),
     };
     current_monitor_init(&self->monitor, &monitor, 0);
 }

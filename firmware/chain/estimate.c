@@ -77,11 +77,8 @@ static void stay(estimate_t *self, const tracker_tone_t *dominant) {
 
 void estimate_publish(estimate_t *self, uint32_t half_ticks, const predictor_rest_t *rest) {
     const tracker_t *tracker = &self->tracker;
-    predictor_tone_t tones[ESTIMATOR_TONES] = {0};
+    predictor_tone_t tones[ESTIMATOR_TONES];
     for (uint32_t i = 0; i < ESTIMATOR_TONES; i++) {
-        self->tone[i] = (estimator_tone_t){0};
-    }
-    for (uint32_t i = 0; i < tracker->tones; i++) {
         const tracker_tone_t *tone = &tracker->tone[i];
         tones[i] = (predictor_tone_t){
             .phase_turn = tone->phase_turn +
@@ -89,13 +86,14 @@ void estimate_publish(estimate_t *self, uint32_t half_ticks, const predictor_res
             .step_turn = tone->turn >> self->stages,
             .amp_um_s2 = tone->amp_um_s2,
         };
-        if (i < tracker->in_band) {
-            self->tone[i] = (estimator_tone_t){
-                .freq_uHz = tone->freq_uHz,
-                .amp_um_s2 = tone->amp_um_s2,
-                .displacement_nm = displacement_nm(tone->amp_um_s2, tone->freq_uHz),
-            };
-        }
+        self->tone[i] = i < tracker->in_band
+                            ? (estimator_tone_t){
+                                  .freq_uHz = tone->freq_uHz,
+                                  .amp_um_s2 = tone->amp_um_s2,
+                                  .displacement_nm =
+                                      displacement_nm(tone->amp_um_s2, tone->freq_uHz),
+                              }
+                            : (estimator_tone_t){0};
     }
     predictor_load(&self->predictor, tones, tracker->tones, rest);
     stay(self, &tracker->tone[0]);

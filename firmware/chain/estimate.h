@@ -10,6 +10,10 @@
 
 #define ESTIMATOR_TONES PREDICTOR_TONES
 
+/// Lost ticks in a row that an estimator goes on through. Each costs what a tick's sample does; a
+/// tick that makes up for some leaves the work of its own on windows to the next one.
+#define ESTIMATOR_MOST_BRIDGED 2u
+
 typedef struct {
     int32_t method; ///< quiesce_estimator_t
     uint32_t tick_rate_Hz;
@@ -21,7 +25,8 @@ typedef struct {
 typedef struct {
     int32_t accel_um_s2; ///< before DC removal, |x| < 2^29
     bool is_good;        ///< else accel_um_s2 is a held value
-    bool is_lost;        ///< the sensor is lost, or ticks are: start anew
+    bool is_lost;        ///< the sensor is lost, or too many ticks are: start anew
+    uint32_t lost_ticks; ///< just before this one, 0 .. ESTIMATOR_MOST_BRIDGED: each a held sample
 } estimator_in_t;
 
 /// A published component. Its phase is the predictor's.

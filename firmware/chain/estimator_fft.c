@@ -290,7 +290,7 @@ static void age(estimator_fft_t *self) {
     estimate_age(&self->known);
 }
 
-void estimator_fft_step(estimator_fft_t *self, const estimator_in_t *in) {
+static void take(estimator_fft_t *self, const estimator_in_t *in) {
     age(self);
     if (predictor_step(&self->known.predictor, in->accel_um_s2, in->is_good) == PREDICTOR_CHANGED) {
         contradict(self);
@@ -305,7 +305,15 @@ void estimator_fft_step(estimator_fft_t *self, const estimator_in_t *in) {
         self->clean_samples += self->clean_samples < INT32_MAX ? 1 : 0;
         self->sample_age_ticks = 0;
     }
-    self->credit += self->credit_a_tick;
+}
+
+void estimator_fft_step(estimator_fft_t *self, const estimator_in_t *in) {
+    estimator_in_t one = *in;
+    for (uint32_t lost = in->lost_ticks + 1u; lost-- > 0;) {
+        one.is_good = in->is_good && lost == 0;
+        take(self, &one);
+    }
+    self->credit += in->lost_ticks == 0 ? self->credit_a_tick : 0;
     while (work_on(self)) {
     }
     estimate_judge(&self->known, !self->is_published_clean);

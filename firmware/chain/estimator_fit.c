@@ -365,7 +365,7 @@ static void age(estimator_fit_t *self) {
     estimate_age(&self->known);
 }
 
-void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
+static void take(estimator_fit_t *self, const estimator_in_t *in) {
     age(self);
     judge_sample(self, predictor_step(&self->known.predictor, in->accel_um_s2, in->is_good));
     calm_down(self);
@@ -376,7 +376,17 @@ void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
     if (estimate_sample(&self->known, in, &sample_um_s2)) {
         take_sample(self, sample_um_s2);
     }
-    work(self);
-    spectrum_slice(&self->spectrum);
+}
+
+void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
+    estimator_in_t one = *in;
+    for (uint32_t lost = in->lost_ticks + 1u; lost-- > 0;) {
+        one.is_good = in->is_good && lost == 0;
+        take(self, &one);
+        if (in->lost_ticks == 0) {
+            work(self);
+        }
+        spectrum_slice(&self->spectrum);
+    }
     estimate_judge(&self->known, self->is_suspended);
 }

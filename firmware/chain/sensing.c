@@ -48,15 +48,11 @@ static int32_t end_b_of(damper_place_t damper) {
     return QUIESCE_BODIES == 1 ? QUIESCE_GROUND : damper.end_b;
 }
 
-// floor; rates are 500, 1000, 2000 or 4000 Hz.
-static uint32_t ticks_in_us(int32_t time_us, int32_t tick_rate_Hz) {
-    return (uint32_t)((int64_t)time_us * tick_rate_Hz / 1000000);
-}
-
-// Ceiling: a sample is late only after the longest gap between two of them.
-static uint32_t period_ticks(int32_t period_us, int32_t tick_rate_Hz) {
-    const int64_t millionths = (int64_t)period_us * tick_rate_Hz;
-    return period_us == 0 ? 1u : (uint32_t)((millionths + 999999) / 1000000);
+// Ceiling: a sample is late only after the longest gap between two of them. A tick is a whole
+// number of microseconds.
+static uint32_t period_ticks(int32_t period_us, uint32_t tick_rate_Hz) {
+    const int32_t tick_us = 1000000 / (int32_t)tick_rate_Hz;
+    return period_us == 0 ? 1u : ticks_in_us(period_us + tick_us - 1, tick_rate_Hz);
 }
 
 static uint32_t at_least_one(uint32_t value) {
@@ -64,7 +60,7 @@ static uint32_t at_least_one(uint32_t value) {
 }
 
 // A time that is shorter than two samples must not switch the check off, nor make a fault of each.
-static uint32_t stuck_samples(int32_t stuck_us, int32_t tick_rate_Hz, uint32_t period_ticks) {
+static uint32_t stuck_samples(int32_t stuck_us, uint32_t tick_rate_Hz, uint32_t period_ticks) {
     const uint32_t samples = ticks_in_us(stuck_us, tick_rate_Hz) / period_ticks;
     return stuck_us == 0 ? 0 : samples < 2u ? 2u : samples;
 }
@@ -72,23 +68,22 @@ static uint32_t stuck_samples(int32_t stuck_us, int32_t tick_rate_Hz, uint32_t p
 static void channel_init(channel_t *self, const quiesce_board_sensor_t *sensor,
                          const quiesce_params_t *p, bool is_accel) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
-    const uint32_t period = period_ticks(sensor->period_us, p->tick_rate_Hz);
-    condition_init(
-        &self->condition,
-        &(condition_cfg_t){
-            .tick_rate_Hz = rate_Hz,
-            .scale = sensor->scale,
-            .limit = is_accel ? CONDITION_ACCEL_LIMIT_um_s2 : VIEW_LIMIT,
-            .period_ticks = period,
-            .most_lost_q16 = sensor->max_lost_pct * 65536 / 100, // floor
-            .offset_counts = sensor->offset_counts,
-            .polarity = sensor->polarity,
-            .full_scale_counts = sensor->full_scale_counts,
-            .max_age_ticks = at_least_one(ticks_in_us(sensor->max_age_us, p->tick_rate_Hz)),
-            .stuck_ticks = stuck_samples(sensor->stuck_us, p->tick_rate_Hz, period),
-            .min_noise_counts = (uint32_t)sensor->min_noise_counts,
-            .dc_cutoff_mHz = is_accel ? p->dc_cutoff_mHz : 0,
-        });
+    const uint32_t period = period_ticks(sensor->period_us, rate_Hz);
+    condition_init(&self->condition,
+                   &(condition_cfg_t){
+                       .tick_rate_Hz = rate_Hz,
+                       .scale = sensor->scale,
+                       .limit = is_accel ? CONDITION_ACCEL_LIMIT_um_s2 : VIEW_LIMIT,
+                       .period_ticks = period,
+                       .most_lost_q16 = sensor->max_lost_pct * 65536 / 100, // floor
+                       .offset_counts = sensor->offset_counts,
+                       .polarity = sensor->polarity,
+                       .full_scale_counts = sensor->full_scale_counts,
+                       .max_age_ticks = at_least_one(ticks_in_us(sensor->max_age_us, rate_Hz)),
+                       .stuck_ticks = stuck_samples(sensor->stuck_us, rate_Hz, period),
+                       .min_noise_counts = (uint32_t)sensor->min_noise_counts,
+                       .dc_cutoff_mHz = is_accel ? p->dc_cutoff_mHz : 0,
+                   });
     motion_init(&self->motion, rate_Hz, p->velocity_cutoff_mHz);
     position_init(&self->position, rate_Hz, p->velocity_cutoff_mHz);
 }
@@ -99,7 +94,7 @@ static sensor_place_t place_of(const quiesce_board_sensor_t *sensor) {
         .sense = (uint8_t)sensor->sense,
         .at = (uint8_t)sensor->at,
         .offset = (uint16_t)(quantity->offset + quantity->stride * (uint32_t)sensor->at),
-        .bit = bit(quantity->bit, sensor->at),
+        .bit = UINT64_C(1) << (quantity->valid + (uint32_t)sensor->at),
     };
 }
 

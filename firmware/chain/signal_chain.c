@@ -2,24 +2,26 @@
 
 #include <stddef.h>
 
-#include "trig.h"
-
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
 };
 
-static uint32_t step_turn_of(int32_t freq_mHz, uint32_t rate_Hz) {
-    return (uint32_t)(((uint64_t)(uint32_t)freq_mHz << 32) / (1000u * rate_Hz));
-}
-
-// Of the sensor that is tracked and of the bus, to nearest; the coil's lag is the table's.
-static uint32_t latency_q8(const quiesce_board_t *board, uint32_t rate_Hz) {
-    const int32_t latency_us = board->sensor[board->tracked].latency_us + board->bus_latency_us;
-    return (uint32_t)(((uint64_t)(uint32_t)latency_us * rate_Hz * 256u + 500000u) / 1000000u);
+// Latencies are of the sensor that is tracked and of the bus.
+static void lock_init(dominant_lock_state_t *self, const dominant_lock_t *lock,
+                      const quiesce_board_t *board, const quiesce_params_t *p) {
+    const quiesce_board_sensor_t *sensor = &board->sensor[board->tracked];
+    lock->init(self, &(dominant_lock_cfg_t){
+                         .tick_rate_Hz = (uint32_t)p->tick_rate_Hz,
+                         .band_low_mHz = p->band_low_mHz,
+                         .band_high_mHz = p->band_high_mHz,
+                         .min_accel_um_s2 = p->track_min_accel_um_s2,
+                         .latency_us = sensor->latency_us + board->bus_latency_us,
+                         .corner_mHz = sensor->corner_mHz,
+                     });
 }
 
 void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
-                       const quiesce_params_t *p, uint64_t needs) {
+                       const quiesce_params_t *p, uint64_t needs, const dominant_lock_t *lock) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
     sensing_init(&self->sensing, board, p, needs);
     self->tracked = (uint8_t)board->tracked;
@@ -38,11 +40,10 @@ void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
                                              },
                                      });
     displacement_reset(&self->displacement);
-    dominant_lock_init(&self->lock, rate_Hz, step_turn_of(p->band_low_mHz, rate_Hz),
-                       step_turn_of(p->band_high_mHz, rate_Hz), p->track_min_accel_um_s2);
+    if (lock != NULL) {
+        lock_init(&self->lock, lock, board, p);
+    }
     self->hold_ticks = ticks_in_ms(p->track_hold_ms, p->tick_rate_Hz);
-    self->latency_q8 = latency_q8(board, rate_Hz);
-    self->corner_step_turn = step_turn_of(board->sensor[board->tracked].corner_mHz, rate_Hz);
 }
 
 // The published third harmonic of the dominant component; 0: none (0 is the dominant one itself).
@@ -67,10 +68,12 @@ static void load_displacement(signal_chain_t *self) {
 }
 
 static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint32_t lost_ticks) {
+    const bool is_lost = sample->is_fault || lost_ticks > ESTIMATOR_MOST_BRIDGED;
     estimator_step(&self->estimator, &(estimator_in_t){
                                          .accel_um_s2 = sample->raw,
                                          .is_good = sample->flag == CONDITION_GOOD,
-                                         .is_lost = sample->is_fault || lost_ticks > 0,
+                                         .is_lost = is_lost,
+                                         .lost_ticks = is_lost ? 0 : lost_ticks,
                                      });
     if (self->estimator.known.has_published) {
         load_displacement(self);
@@ -87,9 +90,9 @@ static void hold_on(signal_chain_t *self, const signal_chain_in_t *in,
                                     .velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32),
                                     .rms_um_s2 = out->rms_um_s2,
                                     .lost_ticks = in->lost_ticks,
-                                    .tone = estimate->has_published && estimate->is_valid
-                                                ? &estimate->predictor.tone[0]
-                                                : NULL,
+                                    .known = &estimate->predictor,
+                                    .has_published = estimate->has_published,
+                                    .is_valid = estimate->is_valid,
                                 });
 }
 
@@ -97,31 +100,16 @@ static uint32_t tracked_of(const signal_chain_t *self) {
     return QUIESCE_SENSORS == 1 ? 0 : self->tracked;
 }
 
-// From the phase that the sensor shows to that of the structure when this tick's command reaches
-// its driver: on by the latencies, back by what a first-order high-pass leads, atan(corner / f).
-static void turn_phase(const signal_chain_t *self, view_tone_t *tone) {
-    const int32_t corner_step_turn = (int32_t)self->corner_step_turn;
-    tone->phase_turn += (uint32_t)((uint64_t)tone->step_turn * self->latency_q8 >> 8);
-    if (corner_step_turn != 0) {
-        tone->phase_turn -= atan2_turn(corner_step_turn, (int32_t)tone->step_turn);
-    }
-}
-
 static void show_tone(const signal_chain_t *self, const signal_chain_out_t *out, view_t *view) {
-    const lock_in_t *lock = &self->lock.in;
     // A short doubt must not make the command jump: that would itself change the vibration.
     const bool is_known = self->estimator.known.age_ticks <= self->hold_ticks;
-    view->valid |= (is_known ? VIEW_TONE : 0) | (lock->is_locked ? VIEW_LOCK : 0);
+    view->valid |= is_known ? VIEW_TONE : 0;
     view->valid |= self->sensing.channel[tracked_of(self)].condition.has_value ? VIEW_RMS : 0;
     view->tone = (view_tone_t){
         .body = QUIESCE_BODIES == 1 ? 0 : self->sensing.places.sensor[tracked_of(self)].at,
         .rms_um_s2 = out->rms_um_s2,
         .freq_uHz = self->estimator.known.tone[0].freq_uHz,
-        .phase_turn = lock->phase_turn,
-        .step_turn = lock->step_turn,
-        .half = lock->has_half ? &lock->last : NULL,
     };
-    turn_phase(self, &view->tone);
 }
 
 void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t *view,
@@ -136,8 +124,9 @@ void signal_chain_step(signal_chain_t *self, const signal_chain_in_t *in, view_t
     }
     out->rms_um_s2 = rms_step(&self->rms, out->sample->value);
     out->displacement_nm = follow(self, out->sample, in->lost_ticks);
+    show_tone(self, out, view);
     if (in->lock != NULL) {
         hold_on(self, in, out);
+        in->lock->show(&self->lock, view);
     }
-    show_tone(self, out, view);
 }

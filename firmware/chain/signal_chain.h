@@ -13,14 +13,12 @@
 
 typedef struct {
     sensing_t sensing;
-    uint8_t tracked;           ///< sensor
-    uint32_t corner_step_turn; ///< of the tracked sensor, a tick; 0: none
+    uint8_t tracked; ///< sensor
     rms_t rms;
     estimator_t estimator;
     displacement_t displacement;
     dominant_lock_state_t lock;
     uint32_t hold_ticks; ///< that laws go on with a frequency that is no longer valid
-    uint32_t latency_q8; ///< ticks, from a motion to the current that answers it
 } signal_chain_t;
 
 typedef struct {
@@ -37,9 +35,10 @@ typedef struct {
     int32_t displacement_nm;
 } signal_chain_out_t;
 
-/// Starts from rest. Board and parameters have been checked; needs: as in sensing_init.
+/// Starts from rest. Board and parameters have been checked; needs: as in sensing_init; lock: that
+/// the law wants, or NULL.
 void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
-                       const quiesce_params_t *params, uint64_t needs);
+                       const quiesce_params_t *params, uint64_t needs, const dominant_lock_t *lock);
 
 /// One tick. What is known of the components is read from self->estimator; of *view, all but
 /// is_output_on, may_learn and the dampers' currents is written.

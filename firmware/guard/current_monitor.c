@@ -7,13 +7,13 @@
 void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,
                           int32_t initial_mA) {
     // Backward Euler of the lag: 1 / (1 + lag in ticks).
-    const int64_t lag_milliticks = (int64_t)cfg->lag_us * cfg->tick_rate_Hz / 1000;
+    const uint32_t lag_milliticks = (uint32_t)cfg->lag_us * cfg->tick_rate_Hz / 1000u;
     *self = (current_monitor_t){
         .error_mA = cfg->error_mA,
         .fault_ticks = cfg->fault_ticks,
         .trip_mA = cfg->trip_mA,
         .trip_ticks = cfg->trip_ticks,
-        .lag_gain_q16 = (int32_t)(INT64_C(65536000) / (1000 + lag_milliticks)),
+        .lag_gain_q16 = (int32_t)(65536000u / (1000u + lag_milliticks)),
         .expected_mA_q16 = (int64_t)initial_mA * 65536,
         .is_on = cfg->check == CURRENT_CHECK_ALWAYS,
         .is_on_once_seen = cfg->check == CURRENT_CHECK_ONCE_SEEN,

@@ -5,7 +5,7 @@
 #define SLIP_COSTS_TICKS 4u
 
 void condition_init(condition_t *self, const condition_cfg_t *cfg) {
-    const int64_t omega_q32 = cfg->dc_cutoff_mHz * TWO_PI_PER_MILLI_Q32 / cfg->tick_rate_Hz;
+    const int64_t omega_q32 = radians_a_tick_q32(cfg->dc_cutoff_mHz, cfg->tick_rate_Hz);
     const int64_t one_q32 = INT64_C(1) << 32;
     // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.
     const int32_t dc_gain_q32 = (int32_t)(omega_q32 - omega_q32 * omega_q32 / one_q32);

@@ -46,10 +46,18 @@ static uint32_t crossing_q8(int32_t last, int32_t now) {
     return span == 0 ? 0 : (uint32_t)(((int64_t)now * TICK_q8) / span);
 }
 
+static void pass(half_cycles_t *self, uint32_t ticks) {
+    self->since_q8 += self->since_q8 < LONGEST_q8 ? TICK_q8 * ticks : 0;
+}
+
+void half_cycles_skip(half_cycles_t *self, uint32_t ticks) {
+    pass(self, ticks);
+}
+
 bool half_cycles_step(half_cycles_t *self, int32_t velocity_um_s, half_cycles_tone_t *tone) {
     const int32_t last_um_s = self->last_um_s;
     self->last_um_s = velocity_um_s;
-    self->since_q8 += self->since_q8 < LONGEST_q8 ? TICK_q8 : 0;
+    pass(self, 1u);
     const int32_t size_um_s = abs_i32(velocity_um_s);
     if ((velocity_um_s > 0) == self->is_up) {
         self->is_rough = false;

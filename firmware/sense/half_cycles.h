@@ -35,6 +35,9 @@ typedef struct {
 /// Forgets what was before.
 void half_cycles_reset(half_cycles_t *self);
 
+/// Ticks that went by without a call: half cycles last on.
+void half_cycles_skip(half_cycles_t *self, uint32_t ticks);
+
 /// One tick. Returns true iff a half cycle ended in it that resembles the two before it, within an
 /// eighth; *tone is then written.
 bool half_cycles_step(half_cycles_t *self, int32_t velocity_um_s, half_cycles_tone_t *tone);

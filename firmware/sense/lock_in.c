@@ -8,10 +8,6 @@ enum {
     LARGEST_SCALED = 1 << 20,
 };
 
-void lock_in_init(lock_in_t *self, uint32_t tick_rate_Hz) {
-    *self = (lock_in_t){.tick_rate_Hz = tick_rate_Hz};
-}
-
 // 4 f / rate: one over the ticks of a quarter of a cycle.
 static uint32_t quarter_cycle_q16(uint32_t step_turn) {
     return step_turn >> 14;
@@ -47,7 +43,6 @@ static void expect(lock_in_t *self, uint32_t amp_um_s2, const harmonic_parts_t *
 
 void lock_in_acquire(lock_in_t *self, uint32_t phase_turn, uint32_t step_turn, int32_t mean_um_s2) {
     *self = (lock_in_t){
-        .tick_rate_Hz = self->tick_rate_Hz,
         .is_locked = true,
         .phase_turn = phase_turn,
         .step_turn = step_turn,

@@ -23,7 +23,6 @@
 enum { LOCK_IN_MOST_SKIPPED = 8 }; ///< ticks
 
 typedef struct {
-    uint32_t tick_rate_Hz;
     bool is_locked;
     bool has_half;        ///< that work was finished in this tick
     uint8_t stage;        ///< of the work on the last half cycle, a division a tick
@@ -31,6 +30,7 @@ typedef struct {
     uint32_t phase_turn;  ///< now: the component is amp x cos(phase)
     uint32_t step_turn;   ///< a tick
     uint32_t half_turn;   ///< twice the phase since it began: it ends where this wraps
+    uint32_t memory_q16;  ///< of unexplained: one over the ticks in a quarter of a cycle
     harmonic_sums_t half; ///< the one that is running
     harmonic_sums_t last; ///< the last whole half cycle
     harmonic_parts_t found;
@@ -42,11 +42,12 @@ typedef struct {
     int64_t power;             ///< mean square of the fundamental, shifted
     int32_t slow_q8;           ///< low-passed difference, shifted
     int64_t unexplained;       ///< running mean square of that
-    uint32_t memory_q16;       ///< of that mean: one over the ticks in a quarter of a cycle
 } lock_in_t;
 
-/// Unlocked. tick_rate_Hz: 500 .. 4000.
-void lock_in_init(lock_in_t *self, uint32_t tick_rate_Hz);
+/// Unlocked.
+static inline void lock_in_init(lock_in_t *self) {
+    *self = (lock_in_t){0};
+}
 
 /// Locks on to a component as of this tick. Takes effect with the next tick.
 /// step_turn: its frequency, 2^32 f / tick_rate, 1 .. 60 Hz; mean_um_s2: constant part of the

@@ -148,11 +148,9 @@ static bool displaces_more(uint32_t amp_a, uint32_t fa, uint32_t amp_b, uint32_t
     return (uint64_t)amp_a * (fb * fb) > (uint64_t)amp_b * (fa * fa);
 }
 
-// Puts the one with the largest displacement first; the others keep their order.
-static void dominant_start_first(tracker_start_t *start, uint32_t count) {
-    if (count == 0) {
-        return;
-    }
+// Index of the one with the largest displacement; count > 0.
+__attribute__((noinline)) static uint32_t farthest_of(const tracker_start_t *start,
+                                                      uint32_t count) {
     uint32_t best = 0;
     for (uint32_t i = 1; i < count; i++) {
         if (displaces_more(start[i].amp, start[i].turn >> 16, start[best].amp,
@@ -160,6 +158,15 @@ static void dominant_start_first(tracker_start_t *start, uint32_t count) {
             best = i;
         }
     }
+    return best;
+}
+
+// Puts the one with the largest displacement first; the others keep their order.
+static void farthest_start_first(tracker_start_t *start, uint32_t count) {
+    if (count == 0) {
+        return;
+    }
+    uint32_t best = farthest_of(start, count);
     const tracker_start_t first = start[best];
     for (; best > 0; best--) {
         start[best] = start[best - 1];
@@ -214,7 +221,7 @@ bool tracker_choose(tracker_t *self, const uint64_t *power) {
     }
     if (self->window.is_longest) {
         add_known(self);
-        dominant_start_first(self->start, self->starts);
+        farthest_start_first(self->start, self->starts);
     }
     // A window of n samples tells about log2(n) - 4 components apart.
     const uint32_t most = self->window.points_log2 - 4u;
@@ -223,20 +230,37 @@ bool tracker_choose(tracker_t *self, const uint64_t *power) {
     return true;
 }
 
-static bool is_third_harmonic(const tracker_t *self, const tracker_tone_t *of,
-                              const tracker_tone_t *tone) {
-    return gap_u32(3u * of->turn, tone->turn) < bin_turn(self) / 4u;
+// A sticking damper's third harmonic displaces less than what it belongs to.
+static bool is_third_harmonic(const tracker_t *self, const tracker_start_t *of,
+                              const tracker_start_t *tone) {
+    return gap_u32(3u * of->turn, tone->turn) < bin_turn(self) / 4u && of->amp >= tone->amp / 9u;
 }
 
-// Index of the dominant one among tones in the band; count > 0.
-static uint32_t dominant_of(const tracker_t *self, const tracker_tone_t *tone, uint32_t count) {
+// Index of the one that holds nine sixteenths of the energy of all, or half of it where it was the
+// dominant one before; count: there is none.
+static uint32_t strongest_of(const tracker_t *self, const tracker_start_t *tone, uint32_t count,
+                             uint32_t turn_before) {
+    uint64_t energy = 0;
+    uint64_t most = 0;
     uint32_t best = 0;
-    for (uint32_t i = 1; i < count; i++) {
-        if (displaces_more((uint32_t)tone[i].amp_um_s2, tone[i].turn >> 16,
-                           (uint32_t)tone[best].amp_um_s2, tone[best].turn >> 16)) {
-            best = i;
-        }
+    for (uint32_t i = 0; i < count; i++) {
+        const uint64_t own = (uint64_t)tone[i].amp * tone[i].amp;
+        energy += own;
+        best = own > most ? i : best;
+        most = own > most ? own : most;
     }
+    const bool is_known = gap_u32(tone[best].turn, turn_before) < bin_turn(self) / 2u;
+    return most >= energy / 2u + (is_known ? 0 : energy / 16u) ? best : count;
+}
+
+// Index of the dominant one among the first tones, which are in the band; count > 0.
+static uint32_t dominant_of(const tracker_t *self, uint32_t count, uint32_t turn_before) {
+    tracker_start_t tone[TRACKER_TONES];
+    for (uint32_t i = 0; i < count; i++) {
+        tone[i] = (tracker_start_t){self->tone[i].turn, (uint32_t)self->tone[i].amp_um_s2};
+    }
+    uint32_t best = strongest_of(self, tone, count, turn_before);
+    best = best < count ? best : farthest_of(tone, count);
     for (uint32_t i = 0; i < count; i++) {
         if (is_third_harmonic(self, &tone[i], &tone[best])) {
             return i;
@@ -253,7 +277,7 @@ static bool stands_out(const tracker_t *self, int32_t amp_um_s2, int32_t residua
            log2_q8_u64(noise) + self->snr_log2_q8;
 }
 
-static void swap(tracker_tone_t *a, tracker_tone_t *b) {
+__attribute__((noinline)) static void swap(tracker_tone_t *a, tracker_tone_t *b) {
     const tracker_tone_t first = *a;
     *a = *b;
     *b = first;
@@ -262,6 +286,7 @@ static void swap(tracker_tone_t *a, tracker_tone_t *b) {
 // Keeps the fitted tones that stand out; those in the band first, the dominant one before all.
 static void keep(tracker_t *self, const tracker_tone_t *tones, uint32_t count,
                  int32_t residual_um_s2) {
+    const uint32_t turn_before = self->hints > 0 ? self->tone[0].turn : 0;
     self->tones = 0;
     self->in_band = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -281,7 +306,7 @@ static void keep(tracker_t *self, const tracker_tone_t *tones, uint32_t count,
     }
     self->hints = self->tones;
     if (self->in_band > 0) {
-        swap(&self->tone[dominant_of(self, self->tone, self->in_band)], &self->tone[0]);
+        swap(&self->tone[dominant_of(self, self->in_band, turn_before)], &self->tone[0]);
     }
 }
 

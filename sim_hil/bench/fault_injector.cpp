@@ -51,8 +51,9 @@ void FaultInjector::apply(double time_s, lockstep_stimulus_t &stimulus) {
         }
     }
     for (std::size_t i = 0; i < last_counts_.size(); ++i) {
-        last_counts_[i] =
-            (stimulus.flags & LOCKSTEP_FRESH << i) != 0 ? stimulus.counts[i] : last_counts_[i];
+        const bool is_seen =
+            (stimulus.flags & LOCKSTEP_FRESH << i) != 0 && (stimulus.flags & LOCKSTEP_LOST) == 0;
+        last_counts_[i] = is_seen ? stimulus.counts[i] : last_counts_[i];
     }
 }
 
@@ -79,6 +80,9 @@ void FaultInjector::apply(FaultKind kind, std::size_t sensor, lockstep_stimulus_
         break;
     case FaultKind::disable:
         stimulus.flags &= ~LOCKSTEP_ENABLE;
+        break;
+    case FaultKind::lost_tick:
+        stimulus.flags |= LOCKSTEP_LOST;
         break;
     case FaultKind::coil_open:
     case FaultKind::driver_stuck:

@@ -56,6 +56,10 @@ can_frame_t sensor_frame(const lockstep_stimulus_t &stimulus, std::uint8_t numbe
 
 can_frame_t stimulus_frame(const lockstep_stimulus_t &stimulus, std::uint8_t sequence) {
     require_24_bit(stimulus.counts[0], "counts");
+    if (has_flag(stimulus, LOCKSTEP_LOST)) {
+        throw InputError("fault lost_tick: there is no CAN message for it; expected target host or "
+                         "link shm");
+    }
     quiesce_can_lockstep_stimulus_t message{};
     message.accel_counts = stimulus.counts[0];
     message.accel_is_fresh = has_flag(stimulus, LOCKSTEP_FRESH);

@@ -14,9 +14,9 @@ constexpr std::size_t kMostWindows = 8;
 constexpr double kLongest_s = 1e5;
 
 /// In the order of FaultKind.
-const std::vector<std::string> kFaultNames = {"dropout", "stuck",     "saturate",
-                                              "range",   "estop",     "fault_reset",
-                                              "disable", "coil_open", "driver_stuck"};
+const std::vector<std::string> kFaultNames = {"dropout",   "stuck",       "saturate", "range",
+                                              "estop",     "fault_reset", "disable",  "lost_tick",
+                                              "coil_open", "driver_stuck"};
 
 FaultKind read_fault_kind(TomlTable &table) {
     const std::string name = table.choice("kind", kFaultNames);

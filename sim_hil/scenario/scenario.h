@@ -20,6 +20,7 @@ enum class FaultKind {
     estop,        ///< emergency stop pressed
     fault_reset,  ///< operator lets enable go and acknowledges
     disable,      ///< operator withdraws the enable
+    lost_tick,    ///< the controller does not get to run
     coil_open,    ///< no current flows
     driver_stuck, ///< the driver keeps its last output
 };

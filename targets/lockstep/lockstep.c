@@ -45,7 +45,6 @@ bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
 
 static void take(quiesce_in_t *in, const lockstep_stimulus_t *stimulus) {
     const uint32_t flags = stimulus->flags;
-    in->tick++;
     for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
         in->sensor[i].counts = stimulus->counts[i];
         in->sensor[i].is_fresh = (flags & LOCKSTEP_FRESH << i) != 0;
@@ -70,8 +69,11 @@ static void report(const lockstep_t *server, bool is_wanted, int32_t word[QUIESC
 }
 
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out) {
-    take(&server->in, in);
-    quiesce_step(&server->controller, &server->in, &server->out);
+    server->in.tick++;
+    if ((in->flags & LOCKSTEP_LOST) == 0) {
+        take(&server->in, in);
+        quiesce_step(&server->controller, &server->in, &server->out);
+    }
     out->drivers_enabled = 0;
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         out->current_cmd_mA[i] = server->out.damper[i].current_cmd_mA;

@@ -16,6 +16,7 @@ extern "C" {
 #define LOCKSTEP_ENABLE 2u              ///< operator enables the output
 #define LOCKSTEP_ESTOP 4u               ///< emergency stop pressed
 #define LOCKSTEP_FAULT_RESET 8u         ///< operator acknowledges a latched fault
+#define LOCKSTEP_LOST 16u               ///< the tick is lost: the rest of it is not looked at
 #define LOCKSTEP_REPORT 32u             ///< the law's report is wanted; without it its words are 0
 #define LOCKSTEP_PICTURE 64u            ///< the picture is wanted; without it it is left as it is
 #define LOCKSTEP_FRESH (1u << 8)        ///< counts[0] is a new sample; << i: counts[i]
@@ -67,7 +68,8 @@ typedef struct {
 bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
                     const quiesce_params_t *params, const lockstep_table_t *tables);
 
-/// One control tick.
+/// One control tick; with LOCKSTEP_LOST the controller does not run, and the reply is the last
+/// one's.
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out);
 
 #ifdef __cplusplus

@@ -87,8 +87,11 @@ static void refresh(phase_t *self, const quiesce_params_t *params, uint32_t step
     self->is_stale = false;
 }
 
-static void let_go(phase_t *self) {
-    self->blend_q16 = 0;
+// While the output is off the pulses fade as they were faded in: after a tick or two of the safe
+// current they go on.
+static void let_go(phase_t *self, bool is_locked) {
+    const uint32_t step_q16 = self->blend_step_q16;
+    self->blend_q16 = is_locked && self->blend_q16 > step_q16 ? self->blend_q16 - step_q16 : 0;
     self->is_stale = true;
     adapt_pause(&self->adapt);
 }
@@ -114,7 +117,7 @@ static void adapt(phase_t *self, const quiesce_params_t *params, const view_t *v
 static int32_t request_mA(phase_t *self, const quiesce_params_t *params, const view_t *view) {
     const view_tone_t *tone = &view->tone;
     if ((view->valid & VIEW_LOCK) == 0 || !view->is_output_on) {
-        let_go(self);
+        let_go(self, (view->valid & VIEW_LOCK) != 0);
         return law_unlock_mA(params, view);
     }
     if (self->is_stale) {

@@ -39,7 +39,16 @@ TEST(FaultInjector, each_kind_shows_in_the_stimulus) {
     EXPECT_NE(during(FaultKind::estop).flags & LOCKSTEP_ESTOP, 0u);
     EXPECT_EQ(during(FaultKind::fault_reset).flags, LOCKSTEP_FRESH | LOCKSTEP_FAULT_RESET);
     EXPECT_EQ(during(FaultKind::disable).flags, LOCKSTEP_FRESH);
+    EXPECT_NE(during(FaultKind::lost_tick).flags & LOCKSTEP_LOST, 0u);
     EXPECT_EQ(during(FaultKind::coil_open).flags, LOCKSTEP_FRESH | LOCKSTEP_ENABLE);
+}
+
+TEST(FaultInjector, a_stuck_sample_is_none_of_a_lost_tick) {
+    FaultInjector injector =
+        injector_of({{FaultKind::lost_tick, 1.0, 0.001}, {FaultKind::stuck, 1.001, 0.01}});
+    applied(injector, 0.999, 11);
+    applied(injector, 1.0, 12);
+    EXPECT_EQ(applied(injector, 1.001, 13).counts[0], 11);
 }
 
 TEST(FaultInjector, is_present_from_its_start_until_its_end) {

@@ -291,6 +291,25 @@ static void test_lost_ticks_do_not_cost_the_lock(void) {
     TEST_ASSERT_EQUAL_UINT32(0, reply.telemetry.lock_is_on);
 }
 
+// One or two are made up for: the frequency stays valid, too.
+static void test_few_lost_ticks_do_not_cost_the_frequency(void) {
+    for (int32_t estimator = 0; estimator <= QUIESCE_ESTIMATOR_FFT; estimator++) {
+        params.law = QUIESCE_LAW_PHASE;
+        params.estimator = estimator;
+        start();
+        vibrate(10000, 3000);
+        for (uint32_t i = 0; i < 40u; i++) {
+            lose(1u + i % 2u);
+            for (uint32_t j = 0; j < 97u; j++) {
+                vibrate(10000, 1);
+                TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.freq_is_valid);
+                TEST_ASSERT_EQUAL_UINT32(1, reply.telemetry.lock_is_on);
+            }
+            assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
+        }
+    }
+}
+
 static void test_rms_is_right_soon_after_a_stuck_sensor(void) {
     params.law = QUIESCE_LAW_FUZZY;
     start();
@@ -302,6 +321,20 @@ static void test_rms_is_right_soon_after_a_stuck_sensor(void) {
     vibrate(10000, 520);
     assert_state(QUIESCE_STATE_RUN, QUIESCE_FAULT_NONE);
     TEST_ASSERT_INT32_WITHIN(10000, 212000, reply.telemetry.rms_um_s2);
+}
+
+static void test_in_a_lost_tick_the_controller_does_not_run(void) {
+    params.law = QUIESCE_LAW_CONSTANT;
+    start();
+    vibrate(10000, 500);
+    const lockstep_reply_t before = reply;
+    flags |= LOCKSTEP_LOST | LOCKSTEP_ESTOP;
+    tick(4000000, 0);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &reply, sizeof reply);
+    flags = LOCKSTEP_FRESH | LOCKSTEP_ENABLE;
+    vibrate(10000, 1);
+    TEST_ASSERT_EQUAL_UINT32(before.telemetry.tick + 2u, reply.telemetry.tick);
+    assert_state(QUIESCE_STATE_SAFE, QUIESCE_FAULT_TICK_LOST);
 }
 
 static void test_lost_tick_is_a_clearing_fault(void) {
@@ -492,7 +525,9 @@ int main(void) {
     RUN_TEST(test_emergency_stop_can_be_acknowledged_with_the_current_check_on);
     RUN_TEST(test_lost_tick_invalidates_the_frequency_until_a_window_is_new);
     RUN_TEST(test_lost_ticks_do_not_cost_the_lock);
+    RUN_TEST(test_few_lost_ticks_do_not_cost_the_frequency);
     RUN_TEST(test_rms_is_right_soon_after_a_stuck_sensor);
+    RUN_TEST(test_in_a_lost_tick_the_controller_does_not_run);
     RUN_TEST(test_lost_tick_is_a_clearing_fault);
     RUN_TEST(test_two_controllers_do_not_share_state);
     RUN_TEST(test_arbitrary_input_never_drives_the_command_out_of_range);

@@ -148,12 +148,32 @@ static void test_stronger_third_harmonic_does_not_win(void) {
     TEST_ASSERT_EQUAL_INT32(0, estimator.known.tone[2].freq_uHz);
 }
 
-static void test_of_unrelated_tones_the_larger_displacement_wins(void) {
+static void test_of_unrelated_tones_alike_the_larger_displacement_wins(void) {
     feed((component_t[]){{400000, 17300}, {400000, 31000}}, 2, 8000, 2000);
     assert_dominant(17300, 10000);
     start(1000);
+    feed((component_t[]){{400000, 31000}, {360000, 17300}}, 2, 8000, 2000);
+    assert_dominant(17300, 10000);
+}
+
+static void test_a_tone_with_most_of_the_energy_wins(void) {
     feed((component_t[]){{100000, 17300}, {400000, 31000}}, 2, 8000, 2000);
     assert_dominant(31000, 10000);
+    start(1000);
+    feed((component_t[]){{200000, 12200}, {450000, 26000}}, 2, 8000, 2000); // 7 dB
+    assert_dominant(26000, 10000);
+}
+
+// It has 67 %, 55 %, 45 % and 55 % of the energy in turn.
+static void test_the_strongest_stays_dominant_with_half_of_the_energy(void) {
+    feed((component_t[]){{283000, 12200}, {400000, 26000}}, 2, 8000, 4000);
+    assert_dominant(26000, 10000);
+    feed((component_t[]){{362000, 12200}, {400000, 26000}}, 2, 8000, 4000);
+    assert_dominant(26000, 10000);
+    feed((component_t[]){{442000, 12200}, {400000, 26000}}, 2, 8000, 4000);
+    assert_dominant(12200, 10000);
+    feed((component_t[]){{362000, 12200}, {400000, 26000}}, 2, 8000, 4000);
+    assert_dominant(12200, 10000);
 }
 
 static void test_drift_below_the_band_is_ignored(void) {
@@ -206,6 +226,29 @@ static void test_lost_input_invalidates_at_once_and_until_a_window_is_new(void) 
     TEST_ASSERT_TRUE(is_valid());
 }
 
+// One or two ticks of every 97 go by without a call.
+static void test_few_lost_ticks_are_bridged(void) {
+    for (uint32_t most = 1; most <= ESTIMATOR_MOST_BRIDGED; most++) {
+        start(1000);
+        for (uint32_t i = 0; i < 4000; i++) {
+            const uint32_t lost = i % 97 == 50 ? most : 0;
+            i += lost;
+            estimator_step(&estimator,
+                           &(estimator_in_t){.accel_um_s2 = signal_sine(300000, 12340, i, 1000),
+                                             .is_good = true,
+                                             .lost_ticks = lost});
+            if (i >= 1300) {
+                TEST_ASSERT_TRUE(is_valid());
+                TEST_ASSERT_INT32_WITHIN(10000, 12340000, estimator.known.tone[0].freq_uHz);
+                const uint32_t turn =
+                    (uint32_t)(((uint64_t)i * 12340u << 32) / 1000000u) - (1u << 30);
+                const int32_t off = (int32_t)(estimate_phase_turn(&estimator.known, 0) - turn);
+                TEST_ASSERT_INT32_WITHIN(4 * 11930465, 0, off); // 4 degrees
+            }
+        }
+    }
+}
+
 // Phase of the dominant component: sin has it at -90 degrees when the sine is 0 and rising.
 static void test_phase_follows_at_every_tick(void) {
     for (uint32_t i = 0; i < 3000; i++) {
@@ -253,12 +296,15 @@ int main(void) {
     RUN_TEST(test_needs_a_full_window_before_it_is_valid);
     RUN_TEST(test_trust_that_does_not_last_is_given_more_slowly);
     RUN_TEST(test_stronger_third_harmonic_does_not_win);
-    RUN_TEST(test_of_unrelated_tones_the_larger_displacement_wins);
+    RUN_TEST(test_of_unrelated_tones_alike_the_larger_displacement_wins);
+    RUN_TEST(test_a_tone_with_most_of_the_energy_wins);
+    RUN_TEST(test_the_strongest_stays_dominant_with_half_of_the_energy);
     RUN_TEST(test_drift_below_the_band_is_ignored);
     RUN_TEST(test_band_limits_bind);
     RUN_TEST(test_frequency_step_is_seen_at_once_and_arrives_soon);
     RUN_TEST(test_end_of_the_vibration_is_seen_at_once);
     RUN_TEST(test_lost_input_invalidates_at_once_and_until_a_window_is_new);
+    RUN_TEST(test_few_lost_ticks_are_bridged);
     RUN_TEST(test_phase_follows_at_every_tick);
     RUN_TEST(test_missing_samples_are_bridged);
     RUN_TEST(test_hop_spaces_the_estimates);

@@ -246,6 +246,29 @@ static void test_lost_input_invalidates_at_once_and_until_a_window_is_new(void) 
     TEST_ASSERT_TRUE(known->is_valid);
 }
 
+// One or two ticks of every 97 go by without a call.
+static void test_few_lost_ticks_are_bridged(void) {
+    for (uint32_t most = 1; most <= ESTIMATOR_MOST_BRIDGED; most++) {
+        start(1000);
+        for (uint32_t i = 0; i < 4000; i++) {
+            const uint32_t lost = i % 97 == 50 ? most : 0;
+            i += lost;
+            now = i;
+            estimator_step(&estimator, &(estimator_in_t){.accel_um_s2 = sample_of(
+                                                             &(component_t){300000, 12340}, 1),
+                                                         .is_good = true,
+                                                         .lost_ticks = lost});
+            if (i >= 1300) {
+                TEST_ASSERT_TRUE(known->is_valid);
+                TEST_ASSERT_INT32_WITHIN(30000, 12340000, known->tone[0].freq_uHz);
+                const uint32_t turn = turn_of(12340);
+                const int32_t off = (int32_t)(estimate_phase_turn(known, 0) - turn);
+                TEST_ASSERT_INT32_WITHIN(4 * 11930465, 0, off); // 4 degrees
+            }
+        }
+    }
+}
+
 static void test_phase_follows_at_every_tick_and_rate(void) {
     for (uint32_t r = 0; r < 4; r++) {
         start(rates_Hz[r]);
@@ -306,6 +329,7 @@ int main(void) {
     RUN_TEST(test_end_of_the_vibration_is_seen_at_once);
     RUN_TEST(test_trust_that_does_not_last_is_given_more_slowly);
     RUN_TEST(test_lost_input_invalidates_at_once_and_until_a_window_is_new);
+    RUN_TEST(test_few_lost_ticks_are_bridged);
     RUN_TEST(test_phase_follows_at_every_tick_and_rate);
     RUN_TEST(test_missing_samples_are_bridged);
     RUN_TEST(test_saturated_input_is_followed);

@@ -161,6 +161,20 @@ static void test_half_cycles_survive_extreme_velocities(void) {
     }
 }
 
+static void test_half_cycles_last_on_through_lost_ticks(void) {
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < 3000; i++) {
+        if (i % 97 == 50) {
+            phase += step;
+            half_cycles_skip(&half_cycles, 1);
+        }
+        found += tick() ? 1u : 0u;
+    }
+    // 20 a second, less those that have no two before them.
+    TEST_ASSERT_UINT32_WITHIN(4, 60, found);
+    TEST_ASSERT_UINT32_WITHIN(step / 50u, step, tone.step_turn);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_half_cycles_of_a_sine_at_every_rate);
@@ -173,5 +187,6 @@ int main(void) {
     RUN_TEST(test_half_cycles_of_silence_and_of_a_constant);
     RUN_TEST(test_half_cycles_reset_forgets);
     RUN_TEST(test_half_cycles_survive_extreme_velocities);
+    RUN_TEST(test_half_cycles_last_on_through_lost_ticks);
     return UNITY_END();
 }

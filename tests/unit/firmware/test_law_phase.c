@@ -204,7 +204,7 @@ static void test_law_phase_uses_its_setting(void) {
 
 // --- blend
 
-static void test_law_phase_fades_in_and_lets_go_at_once(void) {
+static void test_law_phase_fades_in_and_lets_go_with_the_lock(void) {
     params->phase_setting = QUIESCE_PHASE_SETTING_BALANCED; // constant: 1500 mA
     params->phase_blend_ms = 200;
     start();
@@ -219,12 +219,31 @@ static void test_law_phase_fades_in_and_lets_go_at_once(void) {
         }
         tick();
         TEST_ASSERT_EQUAL_INT32(1500, tick());
-        // Once by the lock, once by the guard.
-        set_lock(round == 1u);
-        view.is_output_on = round != 1u;
+        set_lock(false);
         TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, request());
         set_lock(true);
+    }
+}
+
+// A tick of the safe current does not cost the pulses; a long one does.
+static void test_law_phase_fades_out_while_the_output_is_off(void) {
+    params->phase_setting = QUIESCE_PHASE_SETTING_BALANCED; // constant: 1500 mA
+    params->phase_blend_ms = 200;
+    start();
+    lock_at(5000);
+    run(300);
+    TEST_ASSERT_EQUAL_INT32(1500, tick());
+    static const int32_t off_ms[] = {1, 50, 199, 1000};
+    for (uint32_t i = 0; i < sizeof off_ms / sizeof *off_ms; i++) {
+        view.is_output_on = false;
+        for (int32_t k = 0; k < off_ms[i]; k++) {
+            TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, tick());
+        }
         view.is_output_on = true;
+        const int32_t faded_ms = off_ms[i] < 200 ? off_ms[i] : 200;
+        TEST_ASSERT_INT32_WITHIN(20, 1500 + 1000 * faded_ms / 200, tick());
+        run(300);
+        TEST_ASSERT_EQUAL_INT32(1500, tick());
     }
 }
 
@@ -443,7 +462,8 @@ int main(void) {
     RUN_TEST(test_law_phase_beyond_the_table_uses_its_ends);
     RUN_TEST(test_law_phase_mean_current_is_the_pulses);
     RUN_TEST(test_law_phase_uses_its_setting);
-    RUN_TEST(test_law_phase_fades_in_and_lets_go_at_once);
+    RUN_TEST(test_law_phase_fades_in_and_lets_go_with_the_lock);
+    RUN_TEST(test_law_phase_fades_out_while_the_output_is_off);
     RUN_TEST(test_law_phase_fades_in_as_long_at_any_tick_rate);
     RUN_TEST(test_law_phase_moves_the_right_edge);
     RUN_TEST(test_law_phase_lowers_the_level_but_not_below_its_floor);

@@ -39,7 +39,7 @@ static void start(uint32_t rate_Hz, uint32_t freq_mHz) {
     motion.step = step_of(freq_mHz);
     motion.ring_step = step_of(96000);
     is_good = true;
-    lock_in_init(&lock, rate_Hz);
+    lock_in_init(&lock);
 }
 
 static void acquire(void) {

@@ -350,6 +350,10 @@ TEST(lockstep_client, values_that_do_not_fit_their_signal_are_refused) {
                         rig.link->exchange({LOCKSTEP_HAS_CURRENT, {0}, {-(1 << 23) - 1}}, reply);
                     }),
                     "current_meas_mA -8388609: does not fit");
+    expect_contains(error_of([&] {
+                        rig.link->exchange({LOCKSTEP_LOST, {0}, {0}}, reply);
+                    }),
+                    "fault lost_tick: there is no CAN message for it");
     rig.link->exchange({LOCKSTEP_FRESH, {-(1 << 23)}, {0}}, reply);
     EXPECT_EQ(reply.telemetry.tick, 1u);
 }

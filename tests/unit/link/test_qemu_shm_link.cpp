@@ -40,6 +40,7 @@ TEST(qemu_shm_link, eight_sensors_and_four_dampers_answer_like_the_host) {
         for (std::uint32_t tick = 0; tick < 2500; ++tick) {
             lockstep_stimulus_t stimulus = varied_stimulus(tick);
             stimulus.flags |= tick % 7 != 0 ? LOCKSTEP_PICTURE : 0u;
+            stimulus.flags |= tick % 211 == 210 ? LOCKSTEP_LOST : 0u;
             lockstep_reply_t expected, actual;
             host.exchange(stimulus, expected);
             target.exchange(stimulus, actual);

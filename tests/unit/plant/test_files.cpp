@@ -170,7 +170,7 @@ const Mistake kScenarioMistakes[] = {
     {"unknown_fault", "[transient]",
      "[[fault]]\nkind = \"fire\"\nt_s = 1\nduration_s = 1\n[transient]",
      "fault[1].kind: expected one of: dropout, stuck, saturate, range, estop, fault_reset, "
-     "disable, coil_open, driver_stuck; found 'fire'"},
+     "disable, lost_tick, coil_open, driver_stuck; found 'fire'"},
     {"fault_after_the_end", "[transient]",
      "[[fault]]\nkind = \"stuck\"\nt_s = 20\nduration_s = 1\n[transient]", "fault[1].t_s:"},
     {"fault_without_duration", "[transient]", "[[fault]]\nkind = \"stuck\"\nt_s = 2\n[transient]",

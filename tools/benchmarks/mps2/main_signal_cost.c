@@ -104,7 +104,7 @@ int main(void) {
     }
     quiesce_board_t board;
     make_board(&board, &params);
-    signal_chain_init(&chain, &board, &params, 0);
+    signal_chain_init(&chain, &board, &params, 0, NULL);
     counted_call_init();
     run(&order, &chain, order.watch != 0 ? &watch : NULL);
     print("ram_bytes", sizeof chain);

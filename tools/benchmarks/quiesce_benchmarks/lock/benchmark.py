@@ -9,9 +9,10 @@ from quiesce_benchmarks.report import Report
 
 NAME = "lock"
 HELP = "motion that nothing was tuned on: what the lock does there"
-DESCRIPTION = """Earthquakes and random forces through the closed loop on the published plant:
-the phase law, which locks on to components, against the best constant current of each input. A
-lock on motion that has no component costs more than it gives."""
+DESCRIPTION = """The phase law, which locks on to components, through the closed loop on the
+published plant: earthquakes and random forces against the best constant current of each input,
+since a lock on motion that has no component costs more than it gives; and a component beside a
+second tone, lost ticks and lost samples against the same undisturbed."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

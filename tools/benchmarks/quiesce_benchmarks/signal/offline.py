@@ -4,7 +4,8 @@ Nonlinear least squares on a rectangular window: up to TONES sinusoids and a con
 jointly by Gauss-Newton steps. The next tone is searched in what the others leave, on a grid, with
 the exact projection on cosine, sine and constant (no asymptotics: few cycles are no special case).
 Among the tones that stand out of the residual, with at least MIN_SHARE of the strongest one's
-acceleration, the one with the largest displacement is the dominant one.
+acceleration, the one with MOST_SHARE of their energy is the dominant one, else the one with the
+largest displacement; of a tone and its third harmonic the tone, where it displaces more.
 """
 
 from functools import lru_cache
@@ -14,6 +15,8 @@ import numpy as np
 BAND_Hz = (1.0, 50.0)
 TONES = 3
 MIN_SHARE = 0.05
+MOST_SHARE = 9 / 16  # of the squares of the accelerations
+HARMONIC_GAP_BINS = 0.25
 # Least amplitude in standard deviations that white noise like the residual gives it.
 MIN_SIGMA = 6.0
 # A drift below the band is a tone like any other to the fit.
@@ -92,10 +95,22 @@ def dominant_Hz(windows: np.ndarray, rate_Hz: int, tones: int) -> np.ndarray:
     sigma = np.sqrt(2.0 / ticks) * residual.std(axis=1, keepdims=True)
     strongest = np.where(is_in_band, amplitude, 0.0).max(axis=1, keepdims=True)
     is_strong = (amplitude >= MIN_SHARE * strongest) & (amplitude >= MIN_SIGMA * sigma)
-    displacement = np.where(is_in_band & is_strong, amplitude / np.square(freqs_Hz), -1.0)
-    # Where none does, the first one found, the strongest.
-    best = np.where(displacement.max(axis=1) > 0.0, np.argmax(displacement, axis=1), 0)
-    return freqs_Hz[np.arange(len(windows)), best]
+    is_known = is_in_band & is_strong
+    displacement = np.where(is_known, amplitude / np.square(freqs_Hz), -1.0)
+    energy = np.where(is_known, np.square(amplitude), 0.0)
+    farthest = np.argmax(displacement, axis=1)
+    most = np.argmax(energy, axis=1)
+    has_most = energy.max(axis=1) >= MOST_SHARE * energy.sum(axis=1)
+    # Where none is known, the first one found, the strongest.
+    best = np.where(is_known.any(axis=1), np.where(has_most, most, farthest), 0)
+    rows = np.arange(len(windows))
+    gap_Hz = np.abs(3.0 * freqs_Hz - freqs_Hz[rows, best][:, None])
+    is_base = (
+        is_known
+        & (gap_Hz < HARMONIC_GAP_BINS * rate_Hz / ticks)
+        & (displacement > displacement[rows, best][:, None])
+    )
+    return freqs_Hz[rows, np.where(is_base.any(axis=1), np.argmax(is_base, axis=1), best)]
 
 
 def trailing_Hz(

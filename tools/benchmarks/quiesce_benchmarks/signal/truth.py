@@ -1,7 +1,8 @@
 """Which of two components is reported: the truth table of the dominant frequency.
 
-{f and its third harmonic: f; unrelated tones: the larger displacement; drift below the band and a
-tone: the tone}. Both components of a case must be there to be seen: accelerations within a factor
+{f and its third harmonic: f; unrelated tones: the one with most of the acceleration's energy, where
+none has it the larger displacement; drift below the band and a tone: the tone}. Both components of
+a case must be there to be seen: accelerations within a factor
 of 10 of each other. Noise: 20 dB below the component that is to be reported.
 """
 
@@ -32,6 +33,8 @@ TONE_BAND_Hz = (2.0, 48.0)
 ACCEL_RATIO = (0.1, 10.0)
 MIN_SPACING_Hz = 3.0
 MIN_DISPLACEMENT_RATIO = 1.2
+# Of the acceleration's energy: from here on one tone is the strongest; up to here none is.
+STRONGEST_SHARE, EQUAL_SHARE = 0.65, 0.55
 HARMONIC_MARGIN = 0.03  # "unrelated" is farther than this from 1:3
 DRIFT_BAND_Hz = (0.05, 0.6)
 DRIFT_RATIO = (0.2, 5.0)
@@ -94,13 +97,21 @@ def harmonic_cases(rng: np.random.Generator, count: int) -> Cases:
 
 
 def is_clear(freq_Hz: np.ndarray, accel_ratio: np.ndarray) -> np.ndarray:
-    """Whether the first tone's displacement is clearly the larger, and the tones are unrelated."""
+    """Whether the first tone is clearly the dominant one, and the tones are unrelated.
+
+    accel_ratio: of the second tone over the first.
+    """
     first, second = freq_Hz[:, 0], freq_Hz[:, 1]
     displacement_ratio = (second / first) ** 2 / accel_ratio
+    share = 1.0 / (1.0 + accel_ratio**2)
+    is_even = np.maximum(share, 1.0 - share) <= EQUAL_SHARE
+    is_dominant = (share >= STRONGEST_SHARE) | (
+        is_even & (displacement_ratio >= MIN_DISPLACEMENT_RATIO)
+    )
     times = np.maximum(first, second) / np.minimum(first, second)
     return (
         (np.abs(first - second) >= MIN_SPACING_Hz)
-        & (displacement_ratio >= MIN_DISPLACEMENT_RATIO)
+        & is_dominant
         & (np.abs(times / 3.0 - 1.0) > HARMONIC_MARGIN)
     )
 

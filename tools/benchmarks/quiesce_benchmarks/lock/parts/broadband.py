@@ -1,7 +1,6 @@
 """Earthquakes at three speeds and random forces: each setting by its own aim, against the constant
 current that is best for that aim and input. Nobody can know that current beforehand."""
 
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -10,9 +9,8 @@ from typing import Any
 
 import numpy as np
 from quiesce.base.errors import UsageError
-from quiesce.base.paths import measurements, root
+from quiesce.base.paths import measurements
 from quiesce.base.table import format_table
-from quiesce.engine.bench import Bench
 
 from quiesce_benchmarks.control.broadband import record_length_s, sized
 from quiesce_benchmarks.control.rig import (
@@ -23,10 +21,9 @@ from quiesce_benchmarks.control.rig import (
     Rig,
     constant,
     grid_A,
-    make_judged,
-    read_plant,
 )
 from quiesce_benchmarks.control.scenarios import Scenario, earthquake, random_force
+from quiesce_benchmarks.lock.rig import phase_rig
 from quiesce_benchmarks.part import Effort, Measured
 
 TITLE = "broadband: earthquakes at three speeds, random forces"
@@ -37,7 +34,6 @@ FIGURES = (
     ("broadband_valid_pct", "%", None, "lower"),
 )
 
-PLANT = "sim_hil/data/plants/squeeze_2012.toml"
 SPEEDS = (1.0, 2.0, 5.0)
 AFTER_s = 2.0  # of free decay
 PEAK_um = 100.0  # without current: well above what counts as rest
@@ -142,12 +138,8 @@ def tables_of(found: Sequence[Found]) -> tuple[str, ...]:
 
 
 def measure(effort: Effort) -> Measured:
-    bench = Bench()
-    plant = read_plant(bench, root() / PLANT)
-    judged, params = make_judged(bench, "phase", [], plant)
     step_A = QUICK_STEP_A if effort.is_quick else GRID_STEP_A
-    with tempfile.TemporaryDirectory() as scratch:
-        rig = Rig(bench, plant, judged, params, effort.seed, Path(scratch))
+    with phase_rig(effort) as rig:
         makes = [*randoms(rig, effort.seed), *quakes(rig, measurements("earthquake"))]
         found: list[Found] = rig.work(
             [
