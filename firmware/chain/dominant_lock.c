@@ -80,6 +80,9 @@ static bool is_crowded(const dominant_lock_state_t *self, const predictor_t *kno
 
 // What the lock has to follow: the sample without the components that are not its own.
 static int32_t own_um_s2(const dominant_lock_state_t *self, const dominant_lock_in_t *in) {
+    if (self->others == 0) {
+        return in->sample->raw;
+    }
     int64_t sum_q25 = 0;
     for (uint32_t i = 0; i < PREDICTOR_TONES && self->others >> i != 0; i++) {
         const predictor_tone_t *tone = &in->known->tone[i];
@@ -149,7 +152,8 @@ static void step(dominant_lock_state_t *self, const dominant_lock_in_t *in) {
         self->others = 0;
         self->is_crowded = false;
     }
-    lock_in_step(&self->in, own_um_s2(self, in), sample->flag == CONDITION_GOOD);
+    lock_in_step(&self->in, own_um_s2(self, in), sample->flag == CONDITION_GOOD,
+                 !in->is_busy && !self->has_news);
     if (self->in.is_locked && is_outside(self, self->in.step_turn)) {
         lock_in_release(&self->in);
     }
@@ -157,9 +161,10 @@ static void step(dominant_lock_state_t *self, const dominant_lock_in_t *in) {
         self->least_alike = ALIKE_ANEW;
     }
     look_for_lock(self, in);
-    if (in->has_published) {
+    if (self->has_news) {
         follow(self, in);
     }
+    self->has_news = in->has_published;
 }
 
 // From the phase that the sensor shows to that of the structure when this tick's command reaches

@@ -28,6 +28,7 @@ typedef struct {
     uint8_t least_alike;       ///< that make the next lock, as half_cycles_tone_t.alike
     uint8_t others;            ///< bit i: predictor_t.tone[i] is not the lock's
     bool is_crowded;           ///< one of them displaces too much beside it
+    bool has_news;             ///< in the last tick: looked at in this one, which has less to do
     uint32_t lowest_step_turn; ///< of the band, a tick
     uint32_t highest_step_turn;
     int32_t min_accel_um_s2;   ///< RMS
@@ -43,6 +44,7 @@ typedef struct {
     uint32_t lost_ticks;      ///< just before this one
     const predictor_t *known; ///< the estimator's components, as of this tick
     bool has_published;       ///< they are new
+    bool is_busy;             ///< the tick has other work: that on half cycles can wait
     bool is_valid;            ///< the dominant one is trusted
 } dominant_lock_in_t;
 

@@ -307,12 +307,19 @@ static void take(estimator_fft_t *self, const estimator_in_t *in) {
     }
 }
 
-void estimator_fft_step(estimator_fft_t *self, const estimator_in_t *in) {
-    estimator_in_t one = *in;
-    for (uint32_t lost = in->lost_ticks + 1u; lost-- > 0;) {
-        one.is_good = in->is_good && lost == 0;
-        take(self, &one);
+// Ticks that went by without a sample: each a held one.
+static void bridge(estimator_fft_t *self, const estimator_in_t *in) {
+    const estimator_in_t held = {.accel_um_s2 = in->accel_um_s2};
+    for (uint32_t i = 0; i < in->lost_ticks; i++) {
+        take(self, &held);
     }
+}
+
+void estimator_fft_step(estimator_fft_t *self, const estimator_in_t *in) {
+    if (in->lost_ticks != 0) {
+        bridge(self, in);
+    }
+    take(self, in);
     self->credit += in->lost_ticks == 0 ? self->credit_a_tick : 0;
     while (work_on(self)) {
     }

@@ -378,15 +378,23 @@ static void take(estimator_fit_t *self, const estimator_in_t *in) {
     }
 }
 
-void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
-    estimator_in_t one = *in;
-    for (uint32_t lost = in->lost_ticks + 1u; lost-- > 0;) {
-        one.is_good = in->is_good && lost == 0;
-        take(self, &one);
-        if (in->lost_ticks == 0) {
-            work(self);
-        }
+// Ticks that went by without a sample: each a held one.
+static void bridge(estimator_fit_t *self, const estimator_in_t *in) {
+    const estimator_in_t held = {.accel_um_s2 = in->accel_um_s2};
+    for (uint32_t i = 0; i < in->lost_ticks; i++) {
+        take(self, &held);
         spectrum_slice(&self->spectrum);
     }
+}
+
+void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
+    if (in->lost_ticks != 0) {
+        bridge(self, in);
+    }
+    take(self, in);
+    if (in->lost_ticks == 0 && !in->is_busy) {
+        work(self);
+    }
+    spectrum_slice(&self->spectrum);
     estimate_judge(&self->known, self->is_suspended);
 }

@@ -73,6 +73,7 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint3
                                          .accel_um_s2 = sample->raw,
                                          .is_good = sample->flag == CONDITION_GOOD,
                                          .is_lost = is_lost,
+                                         .is_busy = rms_has_closed(&self->rms),
                                          .lost_ticks = is_lost ? 0 : lost_ticks,
                                      });
     if (self->estimator.known.has_published) {
@@ -85,15 +86,17 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint3
 static void hold_on(signal_chain_t *self, const signal_chain_in_t *in,
                     const signal_chain_out_t *out) {
     const estimate_t *estimate = &self->estimator.known;
-    in->lock->step(&self->lock, &(dominant_lock_in_t){
-                                    .sample = out->sample,
-                                    .velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32),
-                                    .rms_um_s2 = out->rms_um_s2,
-                                    .lost_ticks = in->lost_ticks,
-                                    .known = &estimate->predictor,
-                                    .has_published = estimate->has_published,
-                                    .is_valid = estimate->is_valid,
-                                });
+    in->lock->step(&self->lock,
+                   &(dominant_lock_in_t){
+                       .sample = out->sample,
+                       .velocity_um_s = motion_velocity_um_s(out->velocity_um_s_q32),
+                       .rms_um_s2 = out->rms_um_s2,
+                       .lost_ticks = in->lost_ticks,
+                       .known = &estimate->predictor,
+                       .has_published = estimate->has_published,
+                       .is_valid = estimate->is_valid,
+                       .is_busy = estimate->has_published || rms_has_closed(&self->rms),
+                   });
 }
 
 static uint32_t tracked_of(const signal_chain_t *self) {

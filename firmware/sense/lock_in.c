@@ -118,7 +118,7 @@ static void work(lock_in_t *self) {
     }
 }
 
-void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good) {
+void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good, bool may_work) {
     self->has_half = false;
     if (!self->is_locked) {
         return;
@@ -134,7 +134,7 @@ void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good) {
         lock_in_release(self);
     } else if (self->half_turn < 2u * self->step_turn && self->stage == 0) {
         end_half(self);
-    } else if (self->stage != 0) {
+    } else if (self->stage != 0 && may_work) {
         work(self);
     }
 }
@@ -145,6 +145,6 @@ void lock_in_skip(lock_in_t *self, uint32_t ticks) {
         return;
     }
     for (uint32_t i = 0; i < ticks; i++) {
-        lock_in_step(self, 0, false);
+        lock_in_step(self, 0, false, true);
     }
 }

@@ -63,6 +63,7 @@ void lock_in_release(lock_in_t *self);
 void lock_in_skip(lock_in_t *self, uint32_t ticks);
 
 /// One tick; a held sample (!is_good) counts as one that was expected. Does nothing while unlocked.
-void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good);
+/// may_work: on the last half cycle; else that waits for a tick that has less to do.
+void lock_in_step(lock_in_t *self, int32_t accel_um_s2, bool is_good, bool may_work);
 
 #endif

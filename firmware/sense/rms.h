@@ -25,6 +25,11 @@ typedef struct {
     int32_t rms_um_s2;   ///< over the finished blocks in the window; 0 before the first
 } rms_t;
 
+/// Whether the last step closed a block, which is most of the work.
+static inline bool rms_has_closed(const rms_t *self) {
+    return self->open_ticks == 0;
+}
+
 /// tick_rate_Hz: 500, 1000, 2000 or 4000. window_ms: 100 .. 4000, rounded down to 10 ms.
 void rms_init(rms_t *self, uint32_t tick_rate_Hz, uint32_t window_ms);
 

@@ -47,7 +47,7 @@ static void step(uint32_t lost_ticks, bool is_published) {
                    .lost_ticks = lost_ticks,
                    .known = &known,
                    .has_published = is_published,
-                   .is_valid = is_published,
+                   .is_valid = known.is_armed,
                });
 }
 
@@ -73,6 +73,8 @@ static void publish(uint32_t tones) {
     known.tones = tones;
     known.is_armed = true;
     step(0, true);
+    run_on(1);
+    step(0, false);
 }
 
 // Ticks of a steady vibration until it is locked, or UINT32_MAX.

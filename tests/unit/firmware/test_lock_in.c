@@ -62,7 +62,7 @@ static int32_t sample(void) {
 }
 
 static void tick(void) {
-    lock_in_step(&lock, sample(), is_good);
+    lock_in_step(&lock, sample(), is_good, true);
 }
 
 static uint32_t phase_error_turn(void) {
@@ -345,7 +345,7 @@ static void test_lock_in_keeps_on_through_held_samples(void) {
         settle_to_part(i);
         for (uint32_t k = 0; k < held[i]; k++) {
             (void)sample();
-            lock_in_step(&lock, HARMONICS_LARGEST_um_s2 - 1, false);
+            lock_in_step(&lock, HARMONICS_LARGEST_um_s2 - 1, false, true);
         }
         TEST_ASSERT_LESS_THAN_UINT32(3000, worst_error_mdeg(500));
     }
@@ -411,7 +411,7 @@ static void test_lock_in_survives_any_input(void) {
         }
         const int32_t any = signal_noise(&seed, HARMONICS_LARGEST_um_s2 - 1);
         const int32_t accel = kind < 20 ? any : sample();
-        lock_in_step(&lock, accel, kind % 11 != 0);
+        lock_in_step(&lock, accel, kind % 11 != 0, kind % 7 != 0);
         locked += lock.is_locked ? 1u : 0u;
     }
     TEST_ASSERT_GREATER_THAN_UINT32(1000, locked);
