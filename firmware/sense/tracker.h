@@ -6,12 +6,12 @@
 /// frequencies for the fit come from the two largest magnitudes of the main lobe, d = (2r - 1)/(r +
 /// 1), or from the last fit where that found the component already.
 ///
-/// decide: of the fitted components inside the band the one that holds nine sixteenths of their energy
-/// (half of it, where it was the dominant one before) is the dominant one, else the one with the
-/// largest displacement, amplitude / frequency^2; but where that is the third harmonic of another
-/// one, a sticking damper's, it is the other one. It is trusted when the fit has converged, expects
-/// a small error, spans enough cycles and, in a short window, leaves next to nothing unexplained
-/// (what a short window cannot resolve must not hide in it).
+/// decide: of the fitted components inside the band the one that holds nine sixteenths of their
+/// energy (half of it, where it was the dominant one before) is the dominant one, else the one with
+/// the largest displacement, amplitude / frequency^2; but where that is the third harmonic of
+/// another one, a sticking damper's, it is the other one. It is trusted when the fit has converged,
+/// expects a small error, spans enough cycles and, in a short window, leaves next to nothing
+/// unexplained (what a short window cannot resolve must not hide in it).
 ///
 /// Formats: powers (um/s2)^2 in 64 bit; frequencies in turns a sample at 250 Hz, Q32 (58 nHz).
 /// Bounded: 20 instructions a power, about 600 for search's end and decide.

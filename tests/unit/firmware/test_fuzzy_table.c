@@ -481,8 +481,10 @@ static void evaluate(int32_t step, int32_t out[FUZZY_MAX_OUTPUTS]) {
 static void spoil_sets(void) {
     for (uint32_t i = 0; i < table()->inputs; i++) {
         for (uint32_t k = 0; k < table()->axis[i].cells; k++) {
-            for (uint32_t j = 0; j < cell(i, k)->cell.ramps; j++) {
-                cell(i, k)->ramp[j].set |= SPOIL_SET;
+            fuzzy_cell_t *one = &cell(i, k)->cell;
+            fuzzy_ramp_t *ramp = (fuzzy_ramp_t *)(void *)(one + 1); // as many as it says
+            for (uint32_t j = 0; j < one->ramps; j++) {
+                ramp[j].set |= SPOIL_SET;
             }
         }
     }
