@@ -26,7 +26,6 @@ typedef struct {
     int32_t accel_um_s2; ///< before DC removal, |x| < 2^29
     bool is_good;        ///< else accel_um_s2 is a held value
     bool is_lost;        ///< the sensor is lost, or too many ticks are: start anew
-    bool is_busy;        ///< the tick has other work: a job of method fit waits for the next one
     uint32_t lost_ticks; ///< just before this one, 0 .. ESTIMATOR_MOST_BRIDGED: each a held sample
 } estimator_in_t;
 

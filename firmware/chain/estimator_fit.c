@@ -392,7 +392,7 @@ void estimator_fit_step(estimator_fit_t *self, const estimator_in_t *in) {
         bridge(self, in);
     }
     take(self, in);
-    if (in->lost_ticks == 0 && !in->is_busy) {
+    if (in->lost_ticks == 0) {
         work(self);
     }
     spectrum_slice(&self->spectrum);

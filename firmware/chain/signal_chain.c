@@ -73,7 +73,6 @@ static int32_t follow(signal_chain_t *self, const condition_out_t *sample, uint3
                                          .accel_um_s2 = sample->raw,
                                          .is_good = sample->flag == CONDITION_GOOD,
                                          .is_lost = is_lost,
-                                         .is_busy = rms_has_closed(&self->rms),
                                          .lost_ticks = is_lost ? 0 : lost_ticks,
                                      });
     if (self->estimator.known.has_published) {
