@@ -10,7 +10,7 @@ import numpy as np
 from quiesce.base.table import format_table
 
 from quiesce_benchmarks.control.measures import reduction_pct
-from quiesce_benchmarks.control.rig import DISPLACEMENT, OPEN_LOOP, Control, Rig
+from quiesce_benchmarks.control.rig import DISPLACEMENT, OPEN_LOOP, Rig
 from quiesce_benchmarks.control.scenarios import Scenario, frozen, whole
 from quiesce_benchmarks.lock.rig import phase_rig
 from quiesce_benchmarks.part import Effort, Measured
@@ -77,9 +77,9 @@ def amplitude(time_s: np.ndarray, values: np.ndarray, freq_Hz: float) -> float:
     return float(2.0 * abs(turned.sum()) / window.sum())
 
 
-def size(rig: Rig, scenario: Scenario, freq_Hz: float, control: Control = OPEN_LOOP) -> np.ndarray:
-    """Displacement and acceleration of a component."""
-    trace = rig.run(scenario, control, columns=TIMED).trace
+def size(rig: Rig, scenario: Scenario, freq_Hz: float) -> np.ndarray:
+    """Displacement and acceleration of a component without current."""
+    trace = rig.run(scenario, OPEN_LOOP, columns=TIMED).trace
     assert trace is not None
     return np.array([amplitude(trace["t_s"], trace[name], freq_Hz) for name in TRACE])
 
