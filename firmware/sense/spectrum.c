@@ -2,7 +2,10 @@
 
 #include "cosine_table.h"
 
-enum { QUARTER = COSINE_POINTS / 4 };
+enum {
+    QUARTER = COSINE_POINTS / 4,
+    START_BINS = 6, // that the work of a new sample is worth, in the tick of the first slice
+};
 
 // First slot of each window's bins; the bins of a window reach one beyond its last power.
 static const uint8_t first_slot[SPECTRUM_LEVELS + 1] = {0, 8, 8 + 15, 8 + 15 + 28, SPECTRUM_BINS};
@@ -161,13 +164,19 @@ static void end_round(spectrum_t *self) {
     }
 }
 
+// First slot of a slice: all do the same work, the first one that of the new sample too.
+static uint32_t slot_of(const spectrum_t *self, uint32_t slice) {
+    return slice == 0 ? 0
+                      : ((SPECTRUM_BINS + START_BINS) * slice >> self->slices_log2) - START_BINS;
+}
+
 void spectrum_slice(spectrum_t *self) {
     const uint32_t slice = self->next_slice;
     if (slice >> self->slices_log2 != 0) {
         return;
     }
-    uint32_t slot = (SPECTRUM_BINS * slice) >> self->slices_log2;
-    const uint32_t end = (SPECTRUM_BINS * (slice + 1u)) >> self->slices_log2;
+    uint32_t slot = slot_of(self, slice);
+    const uint32_t end = slot_of(self, slice + 1u);
     for (uint32_t level = 0; slot < end; level++) {
         const uint32_t limit = first_slot[level + 1u] < end ? first_slot[level + 1u] : end;
         if (slot >= limit) {
