@@ -32,13 +32,13 @@ uint32_t isqrt_u64(uint64_t value) {
     const uint32_t high = (uint32_t)(full >> 32);
     const uint32_t half = isqrt_u32(high);
     const uint64_t rest = (uint64_t)(high - half * half) << 32 | (uint32_t)full;
-    uint64_t root = ((uint64_t)half << 16) + (uint32_t)(rest >> 17) / half;
-    root = root > UINT32_MAX ? UINT32_MAX : root;
+    const uint64_t above = ((uint64_t)half << 16) + (uint32_t)(rest >> 17) / half;
+    uint32_t root = above > UINT32_MAX ? UINT32_MAX : (uint32_t)above;
     // The step overshoots by less than 1, its rounding adds less than 1 on either side.
     for (uint32_t i = 0; i < 2u; i++) {
-        root -= root * root > full ? 1u : 0u;
+        root -= (uint64_t)root * root > full ? 1u : 0u;
     }
-    return (uint32_t)root >> (up / 2u);
+    return root >> (up / 2u);
 }
 
 uint32_t sqrt_fast_u64(uint64_t value) {

@@ -57,6 +57,17 @@ static inline uint32_t leading_zeros_u64(uint64_t value) {
     return (uint32_t)__builtin_clzll(value);
 }
 
+/// floor(dividend / divisor), exact, divisor 1 .. 65535. 15 instructions; the library's division of
+/// 64 bit takes 70.
+static inline uint64_t div_u64_u16(uint64_t dividend, uint32_t divisor) {
+    // By hand, in digits of 16 bit: a remainder and the next digit fit one word.
+    const uint32_t high = (uint32_t)(dividend >> 32);
+    const uint32_t low = (uint32_t)dividend;
+    const uint32_t upper = high % divisor << 16 | low >> 16;
+    const uint32_t lower = upper % divisor << 16 | (low & UINT16_MAX);
+    return (uint64_t)(high / divisor) << 32 | (upper / divisor << 16 | lower / divisor);
+}
+
 /// floor(sqrt(value)), exact. About 90 instructions.
 uint32_t isqrt_u64(uint64_t value);
 

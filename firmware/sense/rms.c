@@ -24,7 +24,7 @@ void rms_reset(rms_t *self) {
 
 static int32_t root_of_mean(const rms_t *self) {
     // total = 5/2^5 of the sum of the blocks' mean squares.
-    const uint64_t mean = self->total / (self->filled * SMALLEST_BLOCK_TICKS);
+    const uint64_t mean = div_u64_u16(self->total, self->filled * SMALLEST_BLOCK_TICKS);
     return (int32_t)isqrt_u64(mean << LEAST_SHIFT);
 }
 

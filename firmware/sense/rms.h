@@ -4,7 +4,7 @@
 /// Scaling: with |x| <= 5 x 10^8 a block's sum of squares (at most 40 ticks) stays below 2^64. A
 /// closed block keeps sum >> shift, shift = 5 + log2(ticks of a block / 5), so that 400 of them fit
 /// 64 bit too. Result: floor of the root in um/s2; resolution 6 um/s2 near zero. Bounded: about 10
-/// instructions a tick and 400 once a block.
+/// instructions a tick and 150 more once a block.
 #ifndef RMS_H
 #define RMS_H
 

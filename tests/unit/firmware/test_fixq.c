@@ -5,6 +5,28 @@
 void setUp(void) {}
 void tearDown(void) {}
 
+static void test_division_by_16_bit_is_that_of_64_bit(void) {
+    const uint32_t divisors[] = {1, 2, 3, 5, 7, 255, 256, 2000, 32767, 32768, 65534, 65535};
+    const uint64_t dividends[] = {
+        0, 1, 65535, 65536, UINT32_MAX, UINT64_C(1) << 32, UINT64_C(1) << 63, UINT64_MAX};
+    uint32_t seed = 5;
+    for (uint32_t i = 0; i < sizeof divisors / sizeof *divisors; i++) {
+        for (uint32_t k = 0; k < sizeof dividends / sizeof *dividends; k++) {
+            const uint64_t product = dividends[k] / divisors[i] * divisors[i];
+            TEST_ASSERT_TRUE(dividends[k] / divisors[i] == div_u64_u16(dividends[k], divisors[i]));
+            TEST_ASSERT_TRUE(product / divisors[i] == div_u64_u16(product, divisors[i]));
+            TEST_ASSERT_TRUE((product - 1u) / divisors[i] ==
+                             div_u64_u16(product - 1u, divisors[i]));
+        }
+    }
+    for (uint32_t i = 0; i < 20000; i++) {
+        const uint64_t high = (uint32_t)signal_noise(&seed, INT32_MAX);
+        const uint64_t value = (high << 32 | (uint32_t)signal_noise(&seed, INT32_MAX)) >> (i % 64u);
+        const uint32_t divisor = 1u + (uint32_t)signal_noise(&seed, INT32_MAX) % UINT16_MAX;
+        TEST_ASSERT_TRUE(value / divisor == div_u64_u16(value, divisor));
+    }
+}
+
 static void test_isqrt_is_the_floor_of_the_root(void) {
     uint32_t seed = 1;
     for (int i = 0; i < 2000; i++) {
@@ -71,6 +93,7 @@ static void test_scale_applies_a_ratio_and_saturates(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_division_by_16_bit_is_that_of_64_bit);
     RUN_TEST(test_isqrt_is_the_floor_of_the_root);
     RUN_TEST(test_fast_root_keeps_fifteen_bits);
     RUN_TEST(test_log2_at_powers_of_two_and_between);
