@@ -1,20 +1,28 @@
 #include "adapt.h"
 
+#include <stddef.h>
+
 enum {
-    EDGE_STEP_q16 = 4369,      // 12 degrees
+    EDGE_STEP_q16 = 4369,      // 12 degrees, or half of it
     LEVEL_STEP_q15 = 4915,     // 15 %
-    SHRINK_LAST = 2,           // to 3 degrees and 2.5 %
     GAIN_q20 = 2097,           // 0.2 %: less is not worth a move
+    NOISY_q20 = 6291,          // 0.6 %
+    STEEP_q20 = 10486,         // 1 %: what the corners of small steps cost, on average
     DISTURBED_q20 = 20972,     // 2 %
     CLEARLY_WORSE_q20 = 10486, // 1 %
+    LOST_q20 = 31457,          // 3 %: cost of a corner at which the lock is lost
+    LOST_CORNERS = 3,          // of a round: the square is too large
+    NOISE_SHIFT = 3,           // measurements that the noise is averaged over: 8
     DRIFT_DIVISOR = 50,        // of the frequency: 2 %
+    FREQ_MEAN = 8,             // half cycles
     DIRECTIONS = 2,
+    NOWHERE = UINT8_MAX,
     HALF_q15 = 1 << 14,
     HALF_q16 = 1 << 15,
 };
 
 void adapt_init(adapt_t *self, const adapt_cfg_t *cfg) {
-    *self = (adapt_t){.cfg = *cfg, .direction = 1};
+    *self = (adapt_t){.cfg = *cfg, .noise_q20 = GAIN_q20, .moved_index = NOWHERE};
 }
 
 void adapt_clear(adapt_t *self) {
@@ -23,25 +31,28 @@ void adapt_clear(adapt_t *self) {
 }
 
 static void wait_for(adapt_t *self, adapt_state_t state, uint32_t ticks) {
-    self->state = state;
+    self->state = (uint8_t)state;
     self->ticks = ticks;
     adapt_meter_reset(&self->meter);
 }
 
-static bool has_moved(const adapt_t *self, uint32_t freq_mHz) {
-    return gap_u32(freq_mHz, self->freq_mHz) > self->freq_mHz / DRIFT_DIVISOR;
+static bool has_moved(const adapt_t *self) {
+    return gap_u32(self->now_mHz, self->freq_mHz) > self->freq_mHz / DRIFT_DIVISOR;
 }
 
-// The vibration is another one: it must last before the search starts, with large steps.
-static void start_search_at(adapt_t *self, uint32_t freq_mHz) {
-    self->freq_mHz = freq_mHz;
-    self->coordinate = ADAPT_WHOLE;
-    self->direction = 1;
-    self->shrink = 0;
-    self->barren = 0;
+static void start_part(adapt_t *self, uint32_t part) {
+    self->part = (uint8_t)part;
+    self->size = ADAPT_FIRST;
     self->failures = 0;
-    self->has_tried_whole = false;
-    self->is_exhausted = false;
+    self->direction = -1;
+    self->square = (adapt_square_t){0};
+}
+
+// The vibration is another one: it must last before the search starts.
+static void start_search(adapt_t *self) {
+    self->freq_mHz = self->now_mHz;
+    self->noise_q20 = GAIN_q20;
+    start_part(self, ADAPT_TRY_WHOLE);
     wait_for(self, ADAPT_MEASURING, self->cfg.start_ticks);
 }
 
@@ -66,17 +77,6 @@ static int32_t cost_q20(adapt_effect_t from, adapt_effect_t to, adapt_goal_t goa
            (int32_t)((accel_q20 * goal.accel_weight_q8) >> 8);
 }
 
-static int32_t step_of(const adapt_t *self) {
-    switch (self->coordinate) {
-    case ADAPT_WHOLE:
-        return self->direction;
-    case ADAPT_LEVEL:
-        return self->direction * (LEVEL_STEP_q15 >> self->shrink);
-    default:
-        return self->direction * (EDGE_STEP_q16 >> self->shrink);
-    }
-}
-
 static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t value) {
     switch (coordinate) {
     case ADAPT_WHOLE:
@@ -88,89 +88,157 @@ static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t valu
     }
 }
 
-// What costs much where it does not help is tried at the beginning of a search only: the pulse
-// without its gap once, a lower level with large steps.
-static bool is_too_late(const adapt_t *self) {
-    const int16_t *now = self->trim[self->nearest].value;
-    switch (self->coordinate) {
-    case ADAPT_WHOLE:
-        return self->has_tried_whole && now[ADAPT_WHOLE] == 0;
-    case ADAPT_LEVEL:
-        return self->shrink == SHRINK_LAST && now[ADAPT_LEVEL] == 0;
+static int32_t edge_step_q16(const adapt_t *self) {
+    return self->size == ADAPT_LARGE ? EDGE_STEP_q16 : EDGE_STEP_q16 / 2;
+}
+
+// The pulse with the change that is tried.
+static adapt_trim_t changed(const adapt_t *self, adapt_trim_t trim) {
+    const adapt_move_t at = adapt_square_corner(self->square.corner);
+    int32_t change[ADAPT_COORDINATES] = {0};
+    switch (self->part) {
+    case ADAPT_TRY_WHOLE:
+        change[ADAPT_WHOLE] = trim.value[ADAPT_WHOLE] == 0 ? 1 : -1;
+        break;
+    case ADAPT_TRY_EDGES:
+        change[ADAPT_ON_EDGE] = at.on * edge_step_q16(self);
+        change[ADAPT_OFF_EDGE] = at.off * edge_step_q16(self);
+        break;
     default:
-        return now[ADAPT_WHOLE] != 0; // there are no edges to move
+        change[ADAPT_LEVEL] = self->direction * LEVEL_STEP_q15;
+        break;
     }
+    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
+        trim.value[i] = (int16_t)limited(&self->cfg, i, trim.value[i] + change[i]);
+    }
+    return trim;
 }
 
-// Whether a trial would change anything.
+// Whether there is something to try in this part of the search.
 static bool has_room(const adapt_t *self) {
-    const int32_t value = self->trim[self->nearest].value[self->coordinate];
-    return !is_too_late(self) &&
-           limited(&self->cfg, self->coordinate, value + step_of(self)) != value;
+    const adapt_trim_t *now = &self->trim[self->nearest];
+    if (self->part == ADAPT_TRY_EDGES) {
+        return now->value[ADAPT_WHOLE] == 0 && self->cfg.edge_limit_q16 > 0;
+    }
+    return self->part == ADAPT_TRY_WHOLE ||
+           changed(self, *now).value[ADAPT_LEVEL] != now->value[ADAPT_LEVEL];
 }
 
-static void next_coordinate(adapt_t *self) {
+static void resize(adapt_t *self, uint32_t size) {
+    self->size = (uint8_t)size;
+    self->square = (adapt_square_t){0};
     self->failures = 0;
-    self->coordinate = (self->coordinate + 1u) % ADAPT_COORDINATES;
-    self->barren++;
-    if (self->barren < ADAPT_COORDINATES) {
-        return;
-    }
-    self->barren = 0;
-    self->is_exhausted = self->shrink == SHRINK_LAST;
-    self->shrink += self->shrink < SHRINK_LAST ? 1u : 0u;
 }
 
-// One direction gains nothing: the other one, then the next coordinate.
+// Steps of this size are too large.
+static void shrink(adapt_t *self) {
+    if (self->size == ADAPT_LARGE) {
+        resize(self, ADAPT_LAST);
+    } else {
+        start_part(self, self->part + 1u);
+    }
+}
+
+// A whole pulse or a level is no gain.
 static void fail(adapt_t *self) {
-    self->direction = -self->direction;
+    self->direction = (int8_t)-self->direction;
     self->failures++;
-    if (self->failures >= DIRECTIONS) {
-        next_coordinate(self);
+    if (self->part == ADAPT_TRY_WHOLE || self->failures >= DIRECTIONS) {
+        start_part(self, self->part + 1u);
     }
 }
 
-// A trial that is not checked.
-static void give_up(adapt_t *self) {
-    self->trials = increment_sat_u32(self->trials);
-    fail(self);
+// Whether a round of small steps tells little.
+static bool is_noisy(const adapt_t *self) {
+    return self->noise_q20 > NOISY_q20;
 }
 
 static void try_next(adapt_t *self) {
-    for (uint32_t i = 0; i < DIRECTIONS * ADAPT_COORDINATES && !has_room(self); i++) {
-        fail(self);
+    for (uint32_t i = 0;
+         i < DIRECTIONS * ADAPT_TRY_NOTHING && self->part != ADAPT_TRY_NOTHING && !has_room(self);
+         i++) {
+        self->part == ADAPT_TRY_EDGES ? start_part(self, ADAPT_TRY_LEVEL) : fail(self);
     }
-    if (self->is_exhausted) {
-        self->is_exhausted = false;
+    if (self->part == ADAPT_TRY_NOTHING) {
+        const bool is_whole = self->trim[self->nearest].value[ADAPT_WHOLE] != 0;
+        start_part(self, is_whole ? ADAPT_TRY_WHOLE : ADAPT_TRY_EDGES);
         wait_for(self, ADAPT_RESTING, self->cfg.rest_ticks);
     } else {
-        self->has_tried_whole |= self->coordinate == ADAPT_WHOLE;
+        const bool is_start = self->part == ADAPT_TRY_EDGES && self->size == ADAPT_FIRST;
+        self->size = is_start && is_noisy(self) ? ADAPT_LARGE : self->size;
         wait_for(self, ADAPT_TRYING, self->cfg.settle_ticks);
     }
 }
 
+static adapt_trim_t *point_at(adapt_t *self, uint32_t index) {
+    return &self->trim[index < ADAPT_POINTS ? index : ADAPT_POINTS - 1u];
+}
+
+// A whole pulse or a level is better.
 static void keep(adapt_t *self) {
-    for (uint32_t i = self->index; i <= self->index + 1u && i < ADAPT_POINTS; i++) {
-        int16_t *value = &self->trim[i].value[self->coordinate];
-        // A gap is closed or open at both points: between them it is as at the nearer one.
-        const int32_t from = self->coordinate == ADAPT_WHOLE ? 0 : *value;
-        *value = (int16_t)limited(&self->cfg, self->coordinate, from + step_of(self));
+    const adapt_trim_t now = changed(self, self->trim[self->nearest]);
+    for (uint32_t i = 0; i < 2u; i++) {
+        adapt_trim_t *point = point_at(self, self->index + i);
+        if (self->part == ADAPT_TRY_WHOLE) { // at both: between them it is as at the nearer one
+            point->value[ADAPT_WHOLE] = now.value[ADAPT_WHOLE];
+        } else {
+            point->value[ADAPT_LEVEL] = changed(self, *point).value[ADAPT_LEVEL];
+        }
     }
     self->gains = increment_sat_u32(self->gains);
-    self->barren = 0;
-    self->failures = 0;
     self->before = self->trial;
+    self->failures = 0;
+    if (self->part == ADAPT_TRY_WHOLE) {
+        start_part(self, ADAPT_TRY_EDGES);
+    }
+}
+
+static void move_edges(adapt_t *self, adapt_move_t move) {
+    for (uint32_t i = 0; i < 2u; i++) {
+        int16_t *value = point_at(self, self->index + i)->value;
+        self->from[i] = (adapt_edges_t){value[ADAPT_ON_EDGE], value[ADAPT_OFF_EDGE]};
+        value[ADAPT_ON_EDGE] = (int16_t)limited(
+            &self->cfg, ADAPT_ON_EDGE, value[ADAPT_ON_EDGE] + move.on * edge_step_q16(self));
+        value[ADAPT_OFF_EDGE] = (int16_t)limited(
+            &self->cfg, ADAPT_OFF_EDGE, value[ADAPT_OFF_EDGE] + move.off * edge_step_q16(self));
+    }
+    self->moved_index = self->index;
+    adapt_square_moved(&self->square, move);
+    self->gains = increment_sat_u32(self->gains);
+}
+
+// The move without an edge that is at its limit.
+static adapt_move_t within_limits(const adapt_t *self, adapt_move_t move) {
+    const int16_t *now = self->trim[self->nearest].value;
+    const int32_t limit = self->cfg.edge_limit_q16;
+    return (adapt_move_t){
+        .on = move.on * now[ADAPT_ON_EDGE] >= limit ? (int8_t)0 : move.on,
+        .off = move.off * now[ADAPT_OFF_EDGE] >= limit ? (int8_t)0 : move.off,
+    };
+}
+
+// Where the frequency lies on a point, the point below it may have become the next one meanwhile.
+static void move_back(adapt_t *self) {
+    for (uint32_t i = 0; i < 2u && gap_u32(self->moved_index, self->index) <= 1u; i++) {
+        int16_t *value = point_at(self, self->moved_index + i)->value;
+        value[ADAPT_ON_EDGE] = self->from[i].on;
+        value[ADAPT_OFF_EDGE] = self->from[i].off;
+    }
+    self->moved_index = NOWHERE;
+}
+
+static int32_t drift_q20(const adapt_t *self, adapt_effect_t now) {
+    return relative_q20(self->before.reach_um_s2,
+                        (int64_t)now.reach_um_s2 - self->before.reach_um_s2);
 }
 
 // The trial lies between two measurements without its change.
-static void judge(adapt_t *self, adapt_goal_t goal) {
-    const adapt_effect_t after = self->meter.effect;
-    const int32_t drift_q20 = abs_i32(relative_q20(
-        self->before.reach_um_s2, (int64_t)after.reach_um_s2 - self->before.reach_um_s2));
+static void judge_trial(adapt_t *self, adapt_effect_t after, adapt_goal_t goal) {
+    const int32_t apart_q20 = abs_i32(drift_q20(self, after));
     // What two measurements of the same differ by is no gain.
-    const int32_t gain_q20 = GAIN_q20 + drift_q20;
+    const int32_t gain_q20 = GAIN_q20 + apart_q20;
     self->trials = increment_sat_u32(self->trials);
-    if (drift_q20 > DISTURBED_q20) {
+    if (apart_q20 > DISTURBED_q20) {
         self->before = after;
     } else if (cost_q20(after, self->trial, goal) < -gain_q20 &&
                cost_q20(self->before, self->trial, goal) < -gain_q20) {
@@ -179,28 +247,114 @@ static void judge(adapt_t *self, adapt_goal_t goal) {
         self->before = after;
         fail(self);
     }
+    try_next(self);
+}
+
+// Whether more rounds would tell more.
+static bool is_sure(const adapt_t *self) {
+    return self->square.rounds == ADAPT_MOST_ROUNDS ||
+           adapt_square_chance_q20(&self->square, self->noise_q20) <= GAIN_q20 / 2;
+}
+
+// Whether large steps would cost more than what they tell is worth: four times as much as small
+// ones.
+static bool is_steep(const adapt_t *self) {
+    return adapt_square_bend_q20(&self->square) > STEEP_q20;
+}
+
+// Steps of this size gain nothing: others, or the next part.
+static void end_size(adapt_t *self) {
+    if (self->size == ADAPT_FIRST && !is_steep(self)) {
+        resize(self, ADAPT_LARGE);
+    } else if (self->size == ADAPT_LARGE && !is_noisy(self)) {
+        resize(self, ADAPT_LAST);
+    } else {
+        start_part(self, self->part + 1u);
+    }
+}
+
+// The corners lie between two measurements of the centre.
+static void judge_corners(adapt_t *self, adapt_effect_t after, adapt_goal_t goal) {
+    self->trials = increment_sat_u32(self->trials);
+    if (abs_i32(drift_q20(self, after)) > DISTURBED_q20 + self->noise_q20) {
+        self->before = after;
+        adapt_square_restart(&self->square);
+        try_next(self);
+        return;
+    }
+    adapt_square_close(&self->square, cost_q20(self->before, after, goal));
+    self->before = after;
+    const adapt_move_t wanted = adapt_square_move(&self->square, self->noise_q20, GAIN_q20);
+    const adapt_move_t move = within_limits(self, adapt_square_forward(&self->square, wanted));
+    if (adapt_is_move(move)) {
+        const bool may_grow = self->size == ADAPT_FIRST && !is_steep(self);
+        move_edges(self, move);
+        self->size = may_grow ? ADAPT_LARGE : self->size;
+        wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
+        return;
+    }
+    if (adapt_is_move(wanted) || self->failures >= LOST_CORNERS) {
+        shrink(self);
+    } else if (is_sure(self)) {
+        end_size(self);
+    }
+    self->failures = 0;
+    try_next(self);
+}
+
+// After a move: worse than before it, and it is taken back.
+static void judge_move(adapt_t *self, adapt_effect_t now, adapt_goal_t goal) {
+    const int32_t cost = cost_q20(self->before, now, goal);
+    if (cost > 0) {
+        move_back(self);
+        shrink(self);
+        wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
+        return;
+    }
+    self->before = now;
+    try_next(self);
+}
+
+// A corner's cost, or that of a trial: unless it is clearly worse it is checked.
+static void take_trial(adapt_t *self, adapt_effect_t effect, adapt_goal_t goal) {
+    const int32_t cost = cost_q20(self->before, effect, goal);
+    if (self->part == ADAPT_TRY_EDGES) {
+        adapt_square_take(&self->square, cost);
+        const bool is_last = self->square.corner == ADAPT_CORNERS;
+        wait_for(self, is_last ? ADAPT_CHECKING : ADAPT_TRYING, self->cfg.settle_ticks);
+    } else if (cost <= CLEARLY_WORSE_q20) {
+        self->trial = effect;
+        wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
+    } else {
+        self->trials = increment_sat_u32(self->trials);
+        fail(self);
+        // It may be worse because something else has changed: what comes next is judged anew.
+        wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
+    }
+}
+
+// 5/8 of what both parts of a measurement differ by, on average: their mean's standard deviation.
+static void note_noise(adapt_t *self, adapt_goal_t goal) {
+    const int32_t apart_q20 = abs_i32(cost_q20(self->meter.part[0], self->meter.part[1], goal));
+    self->noise_q20 += (apart_q20 * 5 / 8 - self->noise_q20) >> NOISE_SHIFT;
 }
 
 static void conclude(adapt_t *self, adapt_goal_t goal) {
-    switch (self->state) {
-    case ADAPT_TRYING:
-        self->trial = self->meter.effect;
-        if (cost_q20(self->before, self->trial, goal) <= CLEARLY_WORSE_q20) {
-            wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
-            return;
-        }
-        give_up(self);
-        // It may be worse because something else has changed: what comes next is judged anew.
-        wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
-        return;
-    case ADAPT_CHECKING:
-        judge(self, goal);
-        break;
-    default:
-        self->before = self->meter.effect;
-        break;
+    const adapt_effect_t effect = adapt_meter_effect(&self->meter);
+    note_noise(self, goal);
+    if (self->state == ADAPT_TRYING) {
+        take_trial(self, effect, goal);
+    } else if (self->square.corner == ADAPT_CORNERS) {
+        judge_corners(self, effect, goal);
+    } else if (self->state == ADAPT_CHECKING && self->part == ADAPT_TRY_EDGES) {
+        judge_move(self, effect, goal);
+    } else if (self->state == ADAPT_CHECKING) {
+        judge_trial(self, effect, goal);
+    } else {
+        self->freq_mHz = self->now_mHz; // at first the lock may still have been settling
+        self->before = effect;
+        try_next(self);
     }
-    try_next(self);
 }
 
 static void measure(adapt_t *self, const adapt_in_t *in) {
@@ -209,26 +363,46 @@ static void measure(adapt_t *self, const adapt_in_t *in) {
     }
 }
 
-// A trial that ends like this is not tried again at once: it may be what ended it.
-void adapt_pause(adapt_t *self) {
-    if (self->state == ADAPT_TRYING) {
-        give_up(self);
+// A trial that loses the lock is not tried again at once: what it changes may be why.
+void adapt_pause(adapt_t *self, bool has_lost_lock) {
+    if (self->state == ADAPT_TRYING && self->part != ADAPT_TRY_EDGES) {
+        self->trials = increment_sat_u32(self->trials);
+        fail(self);
+    } else if (self->state == ADAPT_TRYING && has_lost_lock) {
+        adapt_square_take(&self->square, LOST_q20);
+        self->failures++;
+    } else if (has_lost_lock && (self->state == ADAPT_MEASURING || self->state == ADAPT_CHECKING)) {
+        move_back(self);
     }
     wait_for(self, ADAPT_WAITING, 0);
 }
 
+// The lock's frequency has just been found, or is a half cycle older.
+static void follow_freq(adapt_t *self, const adapt_in_t *in) {
+    if (self->state == ADAPT_WAITING) {
+        self->now_mHz = in->freq_mHz;
+    } else if (in->half != NULL) {
+        self->now_mHz += (uint32_t)((int32_t)(in->freq_mHz - self->now_mHz) / FREQ_MEAN);
+    }
+}
+
 void adapt_step(adapt_t *self, const adapt_in_t *in) {
-    self->index = in->index;
-    self->nearest = in->index + (in->part_q16 >= HALF_q16 ? 1u : 0u);
+    follow_freq(self, in);
+    self->index = (uint8_t)in->index;
+    self->nearest = (uint8_t)(in->index + (in->part_q16 >= HALF_q16 ? 1u : 0u));
     if (!in->may_try) {
-        adapt_pause(self);
+        adapt_pause(self, false);
     } else if (self->state == ADAPT_WAITING) {
         wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
-    } else if (self->ticks > 0 &&
-               !(self->state == ADAPT_RESTING && has_moved(self, in->freq_mHz))) {
+    } else if (self->ticks > 0 && !(self->state == ADAPT_RESTING && has_moved(self))) {
         self->ticks--;
-    } else if (has_moved(self, in->freq_mHz)) {
-        start_search_at(self, in->freq_mHz);
+    } else if (has_moved(self)) {
+        // It may be what is tried: then the frequency comes back.
+        if (self->state == ADAPT_TRYING) {
+            adapt_pause(self, true);
+        } else {
+            start_search(self);
+        }
     } else if (self->state == ADAPT_RESTING) {
         wait_for(self, ADAPT_MEASURING, 0);
     } else {
@@ -243,11 +417,7 @@ adapt_trim_t adapt_trim_at(const adapt_t *self, uint32_t index, uint32_t part_q1
         const int32_t change = self->trim[index + 1u].value[i] - from;
         trim.value[i] = (int16_t)(from + ((change * (int32_t)(part_q16 >> 1) + HALF_q15) >> 15));
     }
-    if (self->state == ADAPT_TRYING) {
-        const int32_t tried = trim.value[self->coordinate] + step_of(self);
-        trim.value[self->coordinate] = (int16_t)limited(&self->cfg, self->coordinate, tried);
-    }
-    return trim;
+    return self->state == ADAPT_TRYING ? changed(self, trim) : trim;
 }
 
 bool adapt_is_allowed(const adapt_cfg_t *cfg, const adapt_trim_t *trim) {

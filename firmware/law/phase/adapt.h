@@ -1,5 +1,5 @@
-/// Adapts pulses to the plant by trying: move an edge or the level a little, wait until the
-/// vibration has settled, measure, go back, measure again; keep what lowers the cost against both.
+/// Adapts pulses to the plant by trying: change a pulse a little, wait until the vibration has
+/// settled, measure, and keep what lowers the cost.
 ///
 ///   cost = relative change of the reach
 ///          + accel_weight x relative change of what RMS acceleration exceeds accel_shape x reach
@@ -10,14 +10,19 @@
 /// the fundamental) over half cycles. Both are relative changes, so the unit does not matter and
 /// neither does a calibration.
 ///
-/// The first trial of all is the pulse without its gap: edges that are moved little by little find
-/// the best pulse near the one that they start from, and on another plant a plain constant current
-/// may be better than that.
+/// A search has three parts. First the pulse without its gap: edges that are moved little by little
+/// find the best pulse near the one that they start from, and on another plant a plain constant
+/// current may be better than that. Then both edges at once (adapt_square.h). Last the level. A
+/// pulse without its gap and a level are tried between two measurements of the pulse as it was, and
+/// kept where they are better than both; a move of the edges is taken back where the pulse then
+/// measures worse than before.
+///
+/// How much of a difference is noise is measured, too: each measurement is made in two halves.
 ///
 /// What is learnt is kept for each point of the pulse table; it is bounded by adapt_cfg_t, and can
 /// be frozen, cleared, taken out and put back. A trial is given up, and nothing learnt, when the
 /// lock is lost, a fault is present, the frequency has moved by 2 % once it is to be measured, or
-/// the two measurements around it differ by more than 2 %: then something else has changed.
+/// two measurements of the same pulse differ by more than 2 %: then something else has changed.
 ///
 /// Formats: edges in half turns Q16 (364 is one degree), level as a factor Q15; accelerations
 /// um/s2. Bounded: a few instructions a tick, 300 at most at the end of a cycle, spread over
@@ -26,6 +31,7 @@
 #define ADAPT_H
 
 #include "adapt_effect.h"
+#include "adapt_square.h"
 
 #define ADAPT_POINTS 64u
 
@@ -55,25 +61,39 @@ typedef enum {
     ADAPT_RESTING = 4,   ///< nothing left to gain
 } adapt_state_t;
 
+/// Parts of a search, in their order.
+enum { ADAPT_TRY_WHOLE, ADAPT_TRY_EDGES, ADAPT_TRY_LEVEL, ADAPT_TRY_NOTHING };
+
+/// Steps of the edges: small, after a gain large, then small again.
+enum { ADAPT_FIRST, ADAPT_LARGE, ADAPT_LAST };
+
+/// Both edges of a pulse.
+typedef struct {
+    int16_t on;
+    int16_t off;
+} adapt_edges_t;
+
 typedef struct {
     adapt_cfg_t cfg;
     adapt_trim_t trim[ADAPT_POINTS]; ///< learnt
-    adapt_state_t state;
-    uint32_t ticks; ///< left to settle or rest
     adapt_meter_t meter;
-    adapt_effect_t before; ///< without the trial's change
-    adapt_effect_t trial;  ///< with it
-    uint32_t coordinate;   ///< tried
-    int32_t direction;     ///< 1 or -1
-    uint32_t failures;     ///< of this coordinate with this step
-    uint32_t barren;       ///< coordinates in a row without a gain
-    uint32_t shrink;       ///< steps are the largest >> shrink
-    bool is_exhausted;     ///< the smallest steps gain nothing
-    bool has_tried_whole;  ///< in this search
-    uint32_t index;        ///< of the point below the frequency
-    uint32_t nearest;      ///< of the point nearest to it
+    uint32_t ticks;        ///< left to settle or rest
+    adapt_effect_t before; ///< without a trial's change
+    adapt_effect_t trial;  ///< with it: whole pulse or level
+    int32_t noise_q20;     ///< of a measurement, standard deviation
+    adapt_square_t square; ///< edges
+    adapt_edges_t from[2]; ///< edges at both points before the last move
+    uint8_t state;         ///< adapt_state_t
+    uint8_t part;          ///< of the search
+    uint8_t size;          ///< of the edges' steps
+    uint8_t failures;      ///< of this part: directions, trials that were cut short
+    uint8_t index;         ///< of the point below the frequency
+    uint8_t nearest;       ///< of the point nearest to it
+    uint8_t moved_index;   ///< the first of them, or UINT8_MAX: there was none
+    int8_t direction;      ///< of the level, 1 or -1
     uint32_t freq_mHz;     ///< that the search is for
-    uint32_t trials;       ///< finished, saturating
+    uint32_t now_mHz;      ///< mean over some half cycles: each one's own is some 1 % off
+    uint32_t trials;       ///< finished, saturating: a round of the edges is one
     uint32_t gains;        ///< of them that lowered the cost, saturating
 } adapt_t;
 
@@ -101,7 +121,7 @@ void adapt_init(adapt_t *self, const adapt_cfg_t *cfg);
 void adapt_clear(adapt_t *self);
 
 /// Gives a trial up; what was learnt stays.
-void adapt_pause(adapt_t *self);
+void adapt_pause(adapt_t *self, bool has_lost_lock);
 
 /// One tick.
 void adapt_step(adapt_t *self, const adapt_in_t *in);

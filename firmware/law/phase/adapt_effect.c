@@ -4,6 +4,7 @@
 
 void adapt_meter_reset(adapt_meter_t *self) {
     self->is_collecting = false;
+    self->done = 0;
     self->stage = 0;
     self->sums = (harmonic_sums_t){0};
 }
@@ -19,7 +20,7 @@ static uint32_t peak_turn(const adapt_meter_t *self, uint32_t cos, uint32_t sin)
 // Half peak-to-peak of the displacement, times (2 pi f)^2: the third harmonic counts a ninth.
 static void start_search(adapt_meter_t *self) {
     const uint32_t third_turn = peak_turn(self, HARMONIC_COS3, HARMONIC_SIN3);
-    harmonic_span_start(&self->span, self->first_um_s2, self->third_um_s2 / 9,
+    harmonic_span_start(&self->span, self->span.first, self->span.third / 9,
                         3u * self->peak_turn - third_turn);
 }
 
@@ -33,10 +34,10 @@ static bool work(adapt_meter_t *self) {
     }
     switch (stage - HARMONIC_PRODUCTS) {
     case 1:
-        self->first_um_s2 = amp_um_s2(self, HARMONIC_COS1, HARMONIC_SIN1);
+        self->span.first = amp_um_s2(self, HARMONIC_COS1, HARMONIC_SIN1);
         return false;
     case 2:
-        self->third_um_s2 = amp_um_s2(self, HARMONIC_COS3, HARMONIC_SIN3);
+        self->span.third = amp_um_s2(self, HARMONIC_COS3, HARMONIC_SIN3);
         return false;
     case 3:
         self->peak_turn = peak_turn(self, HARMONIC_COS1, HARMONIC_SIN1);
@@ -45,7 +46,7 @@ static bool work(adapt_meter_t *self) {
         start_search(self);
         return false;
     case 5:
-        self->effect.rms_um_s2 = harmonic_rms_um_s2(&self->sums);
+        self->part[self->done].rms_um_s2 = harmonic_rms_um_s2(&self->sums);
         return false;
     default:
         return harmonic_span_step(&self->span);
@@ -59,7 +60,7 @@ static void collect(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t m
         return;
     }
     harmonic_sums_add(&self->sums, half);
-    self->stage = self->sums.ticks >= measure_ticks ? 1u : 0u;
+    self->stage = self->sums.ticks >= (measure_ticks + 1u) / 2u ? 1 : 0;
 }
 
 bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t measure_ticks) {
@@ -72,6 +73,17 @@ bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t
     if (!work(self)) {
         return false;
     }
-    self->effect.reach_um_s2 = (uint32_t)self->span.largest;
-    return true;
+    self->part[self->done].reach_um_s2 = (uint32_t)self->span.largest;
+    self->done++;
+    self->stage = 0;
+    self->sums = (harmonic_sums_t){0};
+    return self->done == 2u;
+}
+
+adapt_effect_t adapt_meter_effect(const adapt_meter_t *self) {
+    const adapt_effect_t *part = self->part;
+    return (adapt_effect_t){
+        .reach_um_s2 = (part[0].reach_um_s2 + part[1].reach_um_s2) / 2u,
+        .rms_um_s2 = (part[0].rms_um_s2 + part[1].rms_um_s2) / 2u,
+    };
 }

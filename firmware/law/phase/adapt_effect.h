@@ -1,5 +1,5 @@
 /// What a pulse does to the vibration, measured over half cycles: how far the displacement reaches,
-/// and the RMS acceleration.
+/// and the RMS acceleration. A measurement is made in two halves: what they differ by is noise.
 ///
 /// Reach is half peak-to-peak displacement times (2 pi f)^2, from the fundamental and the third
 /// harmonic, which counts a ninth. Formats: um/s2. Bounded: an addition of sums at the end of a
@@ -18,21 +18,24 @@ typedef struct {
 /// A measurement under way.
 typedef struct {
     bool is_collecting;   ///< half cycles are added up
+    uint8_t done;         ///< parts that are finished
+    uint8_t stage;        ///< of the work on this one; 0: none
     harmonic_sums_t sums; ///< so far
-    uint32_t stage;       ///< of the work on them; 0: none
     harmonic_parts_t parts;
-    int32_t first_um_s2; ///< amplitudes of fundamental and third harmonic
-    int32_t third_um_s2;
     uint32_t peak_turn; ///< where the fundamental is largest
     harmonic_span_t span;
-    adapt_effect_t effect; ///< that comes out
+    adapt_effect_t part[2]; ///< that come out
 } adapt_meter_t;
 
 /// Starts anew.
 void adapt_meter_reset(adapt_meter_t *self);
 
 /// One tick. half: half a cycle that ended in it, or NULL; the first one counts as begun too early.
-/// Returns true iff at least measure_ticks have been taken in and self->effect is complete.
+/// Returns true iff at least measure_ticks have been taken in, half of them for either part, and
+/// both are complete.
 bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t measure_ticks);
+
+/// The mean of both parts.
+adapt_effect_t adapt_meter_effect(const adapt_meter_t *self);
 
 #endif

@@ -47,6 +47,6 @@ bool adapt_restore(adapt_t *self, adapt_owner_t owner, const uint32_t *words) {
     for (uint32_t i = 0; i < ADAPT_POINTS; i++) {
         self->trim[i] = trim_of(words, i);
     }
-    adapt_pause(self);
+    adapt_pause(self, false);
     return true;
 }

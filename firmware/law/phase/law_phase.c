@@ -93,7 +93,7 @@ static void let_go(phase_t *self, bool is_locked) {
     const uint32_t step_q16 = self->blend_step_q16;
     self->blend_q16 = is_locked && self->blend_q16 > step_q16 ? self->blend_q16 - step_q16 : 0;
     self->is_stale = true;
-    adapt_pause(&self->adapt);
+    adapt_pause(&self->adapt, !is_locked);
 }
 
 static int32_t blended(phase_t *self, int32_t from_mA, int32_t to_mA) {

@@ -13,7 +13,8 @@ enum {
     HALF_TICKS = 20,
     SETTLE_TICKS = 200,
     MEASURE_TICKS = 100,
-    TRIAL_TICKS = 2 * (SETTLE_TICKS + MEASURE_TICKS + 2 * HALF_TICKS + 40), // at most
+    TRIAL_TICKS = 2 * (SETTLE_TICKS + MEASURE_TICKS + 6 * HALF_TICKS + 80), // at most
+    ROUND_TICKS = 3 * TRIAL_TICKS, // of the edges, and more than that
     WHOLE_ppm = 1000000,
     DEGREE_q16 = 364,
 };
@@ -334,12 +335,12 @@ static void test_adapt_does_not_learn_a_drift_of_the_excitation(void) {
 static void test_adapt_does_not_learn_a_step_of_the_excitation(void) {
     const int32_t steps_ppm[] = {-500000, -50000, -21000, -15000, -3000, 3000, 15000, 50000};
     for (uint32_t i = 0; i < sizeof steps_ppm / sizeof steps_ppm[0]; i++) {
-        for (uint32_t when = 0; when < TRIAL_TICKS; when += 3u * HALF_TICKS) {
+        for (uint32_t when = 0; when < ROUND_TICKS; when += 3u * HALF_TICKS) {
             setUp();
             TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 3 * TRIAL_TICKS));
             run(when);
             plant.excitation_ppm += steps_ppm[i];
-            run(2 * TRIAL_TICKS);
+            run(2 * ROUND_TICKS);
             assert_nothing_learnt();
         }
     }
@@ -347,7 +348,7 @@ static void test_adapt_does_not_learn_a_step_of_the_excitation(void) {
 
 static void run_until_edge_is_tried(void) {
     for (uint32_t i = 0;
-         i < 9u * TRIAL_TICKS && (adapt.state != ADAPT_TRYING || adapt.coordinate != ADAPT_ON_EDGE);
+         i < 9u * TRIAL_TICKS && (adapt.state != ADAPT_TRYING || adapt.part != ADAPT_TRY_EDGES);
          i++) {
         tick();
     }
@@ -365,14 +366,14 @@ static void test_adapt_repeats_a_trial_that_was_disturbed(void) {
         const uint32_t trials = adapt.trials;
         const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
         TEST_ASSERT_GREATER_THAN_INT32(0, tried.value[ADAPT_ON_EDGE]);
-        TEST_ASSERT_TRUE(run_until(ADAPT_CHECKING, TRIAL_TICKS));
+        TEST_ASSERT_TRUE(run_until(ADAPT_CHECKING, ROUND_TICKS));
         plant.excitation_ppm += sign * 50000;
         TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
         assert_nothing_learnt();
         TEST_ASSERT_EQUAL_UINT32(trials + 1u, adapt.trials);
         const adapt_trim_t again = adapt_trim_at(&adapt, in.index, 0);
         TEST_ASSERT_EQUAL_INT16_ARRAY(tried.value, again.value, ADAPT_COORDINATES);
-        run(2 * TRIAL_TICKS);
+        run(2 * ROUND_TICKS);
         TEST_ASSERT_GREATER_THAN_INT32(0, learnt()->value[ADAPT_ON_EDGE]);
     }
 }
@@ -394,14 +395,22 @@ static void assert_trial_is_undone(const adapt_trim_t *before) {
     TEST_ASSERT_EQUAL_INT16_ARRAY(learnt()->value, now.value, ADAPT_COORDINATES);
 }
 
-static void test_adapt_trial_changes_one_thing(void) {
-    learn_something();
-    const adapt_trim_t now = adapt_trim_at(&adapt, in.index, part_q16);
-    uint32_t changed = 0;
-    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
-        changed += now.value[i] != learnt()->value[i] ? 1u : 0u;
+static void test_adapt_trial_changes_one_part(void) {
+    const uint32_t parts[] = {1u << ADAPT_WHOLE, 1u << ADAPT_ON_EDGE | 1u << ADAPT_OFF_EDGE,
+                              1u << ADAPT_LEVEL};
+    uint32_t seen = 0;
+    plant.reach = (bowl_t){{20 * DEGREE_q16, -20 * DEGREE_q16, -9000}, {300000, 300000, 300000}};
+    for (uint32_t i = 0; i < 100u * TRIAL_TICKS && adapt.state != ADAPT_RESTING; i++) {
+        tick();
+        const adapt_trim_t now = adapt_trim_at(&adapt, in.index, 0);
+        uint32_t changed = 0;
+        for (uint32_t k = 0; k < ADAPT_COORDINATES; k++) {
+            changed |= (now.value[k] != learnt()->value[k] ? 1u : 0u) << k;
+        }
+        TEST_ASSERT_EQUAL_UINT32(adapt.state == ADAPT_TRYING ? parts[adapt.part] : 0u, changed);
+        seen |= changed;
     }
-    TEST_ASSERT_EQUAL_UINT32(1, changed);
+    TEST_ASSERT_EQUAL_UINT32((1u << ADAPT_COORDINATES) - 1u, seen);
 }
 
 static void test_adapt_fault_keeps_what_was_learnt_and_undoes_the_trial(void) {
@@ -418,20 +427,51 @@ static void test_adapt_fault_keeps_what_was_learnt_and_undoes_the_trial(void) {
     assert_trial_is_undone(before);
     in.may_try = true;
     TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
+    run(cfg.rest_ticks + 100); // what the fault cut short is tried again
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
     TEST_ASSERT_LESS_THAN_INT32(WHOLE_ppm + 10000, bowl_ppm(&plant.reach, learnt()));
 }
 
 static void test_adapt_pause_in_any_state_undoes_the_trial(void) {
-    for (uint32_t ticks = 0; ticks < TRIAL_TICKS; ticks += 37u) {
+    for (uint32_t ticks = 0; ticks < ROUND_TICKS; ticks += 37u) {
         setUp();
         learn_something();
         run(ticks);
         adapt_trim_t before[ADAPT_POINTS];
         memcpy(before, adapt.trim, sizeof before);
-        adapt_pause(&adapt);
+        adapt_pause(&adapt, false);
         TEST_ASSERT_EQUAL(ADAPT_WAITING, adapt.state);
         assert_trial_is_undone(before);
     }
+}
+
+// Under a pulse that has just been learnt the lock is lost: it is taken back, once.
+static void test_adapt_takes_a_move_back_under_which_the_lock_is_lost(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, -30 * DEGREE_q16, 0}, {300000, 300000, 0}};
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 2 * TRIAL_TICKS));
+    for (uint32_t i = 0; i < 50u * TRIAL_TICKS && adapt.gains == 0; i++) {
+        tick();
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, adapt.gains);
+    TEST_ASSERT_NOT_EQUAL(0, learnt()->value[ADAPT_ON_EDGE]);
+    adapt_pause(&adapt, true);
+    for (uint32_t i = 0; i < ADAPT_POINTS; i++) {
+        TEST_ASSERT_EQUAL_INT16(0, adapt.trim[i].value[ADAPT_ON_EDGE]);
+        TEST_ASSERT_EQUAL_INT16(0, adapt.trim[i].value[ADAPT_OFF_EDGE]);
+    }
+}
+
+// A move that cannot be told from a gain by its corners, and measures worse.
+static void test_adapt_takes_a_move_back_that_measures_worse(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 0, 0}};
+    for (uint32_t i = 0; i < 50u * TRIAL_TICKS && adapt.gains == 0; i++) {
+        tick();
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, adapt.gains);
+    plant.reach.best[ADAPT_ON_EDGE] = -30 * DEGREE_q16;
+    TEST_ASSERT_EQUAL(ADAPT_CHECKING, adapt.state);
+    TEST_ASSERT_TRUE(run_until(ADAPT_MEASURING, TRIAL_TICKS));
+    TEST_ASSERT_EQUAL_INT16(0, learnt()->value[ADAPT_ON_EDGE]);
 }
 
 // What was tried may be what the lock was lost of.
@@ -439,7 +479,7 @@ static void test_adapt_goes_on_with_another_trial_after_a_lost_lock(void) {
     plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
     run_until_edge_is_tried();
     const adapt_trim_t tried = adapt_trim_at(&adapt, in.index, 0);
-    adapt_pause(&adapt);
+    adapt_pause(&adapt, true);
     TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 3 * TRIAL_TICKS));
     const adapt_trim_t next = adapt_trim_at(&adapt, in.index, 0);
     TEST_ASSERT_FALSE(memcmp(tried.value, next.value, sizeof tried.value) == 0);
@@ -468,19 +508,44 @@ static void test_adapt_gives_up_where_the_frequency_moves_by_2_percent(void) {
         learn_something();
         adapt_trim_t before[ADAPT_POINTS];
         memcpy(before, adapt.trim, sizeof before);
-        const uint32_t trials = adapt.trials;
-        in.freq_mHz = (uint32_t)(10000 + sign * 200);
-        tick();
+        const uint32_t trials = adapt.trials + (adapt.part == ADAPT_TRY_LEVEL ? 1u : 0u);
+        in.freq_mHz = (uint32_t)(10000 + sign * 190);
+        run(SETTLE_TICKS);
         TEST_ASSERT_EQUAL(ADAPT_TRYING, adapt.state);
-        in.freq_mHz = (uint32_t)(10000 + sign * 201);
-        run(SETTLE_TICKS + 1); // by when it would be measured
+        in.freq_mHz = (uint32_t)(10000 + sign * 300);
+        run(2 * SETTLE_TICKS); // by when it would be measured, and the frequency might be back
         TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
+        TEST_ASSERT_EQUAL(ADAPT_TRY_WHOLE, adapt.part);
         assert_trial_is_undone(before);
         TEST_ASSERT_EQUAL_UINT32(trials, adapt.trials);
         run(cfg.start_ticks - SETTLE_TICKS); // it must last anew
         TEST_ASSERT_EQUAL(ADAPT_MEASURING, adapt.state);
         TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, TRIAL_TICKS));
     }
+}
+
+// A corner may disturb the lock's frequency: it comes back, and the search goes on.
+static void test_adapt_goes_on_where_the_frequency_comes_back(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
+    run_until_edge_is_tried();
+    in.freq_mHz = 10500;
+    run(SETTLE_TICKS + 1);
+    in.freq_mHz = 10000;
+    TEST_ASSERT_TRUE(run_until(ADAPT_TRYING, 2 * TRIAL_TICKS));
+    TEST_ASSERT_EQUAL(ADAPT_TRY_EDGES, adapt.part);
+    TEST_ASSERT_EQUAL(1, adapt.square.corner);
+}
+
+// Each half cycle's own frequency is some 1 % off.
+static void test_adapt_is_not_misled_by_a_frequency_that_wobbles(void) {
+    plant.reach = (bowl_t){{30 * DEGREE_q16, 0, 0}, {400000, 100000, 100000}};
+    in.freq_mHz = 10180; // when the search begins
+    tick();
+    for (uint32_t i = 0; i < 50u * TRIAL_TICKS && adapt.gains < 2u; i++) {
+        in.freq_mHz = i / HALF_TICKS % 2u == 0 ? 9850 : 10150;
+        tick();
+    }
+    TEST_ASSERT_EQUAL_UINT32(2, adapt.gains);
 }
 
 // Hops between two frequencies, faster than a trial takes.
@@ -672,9 +737,13 @@ int main(void) {
     RUN_TEST(test_adapt_does_not_learn_a_drift_of_the_excitation);
     RUN_TEST(test_adapt_does_not_learn_a_step_of_the_excitation);
     RUN_TEST(test_adapt_repeats_a_trial_that_was_disturbed);
-    RUN_TEST(test_adapt_trial_changes_one_thing);
+    RUN_TEST(test_adapt_trial_changes_one_part);
     RUN_TEST(test_adapt_fault_keeps_what_was_learnt_and_undoes_the_trial);
     RUN_TEST(test_adapt_pause_in_any_state_undoes_the_trial);
+    RUN_TEST(test_adapt_takes_a_move_back_under_which_the_lock_is_lost);
+    RUN_TEST(test_adapt_takes_a_move_back_that_measures_worse);
+    RUN_TEST(test_adapt_goes_on_where_the_frequency_comes_back);
+    RUN_TEST(test_adapt_is_not_misled_by_a_frequency_that_wobbles);
     RUN_TEST(test_adapt_goes_on_with_another_trial_after_a_lost_lock);
     RUN_TEST(test_adapt_clear_forgets);
     RUN_TEST(test_adapt_gives_up_where_the_frequency_moves_by_2_percent);

@@ -386,7 +386,7 @@ static void test_law_phase_adapt_on_tries(void) {
     make_adapt_quick(QUIESCE_ADAPT_ON);
     lock_at(5000);
     bool has_tried = false;
-    for (uint32_t i = 0; i < 3000u; i++) {
+    for (uint32_t i = 0; i < 9000u; i++) {
         tick();
         has_tried = has_tried || has_trim();
     }

@@ -23,7 +23,7 @@ from quiesce.tune.work import bound_works, candidate_of, figures, pulse_works
 SETTLED_DECAYS = 3.0
 # A vibration must last this many settlings, and at least so long, before it is adapted to.
 START_SETTLINGS, LEAST_START_MS = 15.0, 10_000
-MEASURED_CYCLES, LEAST_MEASURE_MS = 2.0, 500
+MEASURED_CYCLES, LEAST_MEASURE_MS = 2.0, 1000
 MODE_REACH = 1.25  # modes up to this part of the band's end decide how slowly things settle
 
 
