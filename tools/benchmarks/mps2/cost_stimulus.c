@@ -29,7 +29,7 @@ typedef struct {
 } segment_t;
 
 static const segment_t segments[] = {
-    {2000, CLEAN, AMPLITUDE_COUNTS, NOISE_COUNTS, {0, 0}},
+    {3500, CLEAN, AMPLITUDE_COUNTS, NOISE_COUNTS, {0, 0}},
     {1000, CLEAN, AMPLITUDE_COUNTS, NOISE_COUNTS, {0, 0}},
     {500, CLEAN, AMPLITUDE_COUNTS, NOISE_COUNTS, {0, 0}},
     {3000, CLEAN, AMPLITUDE_COUNTS, NOISE_COUNTS, {1618, 2900}},
