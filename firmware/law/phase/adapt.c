@@ -210,11 +210,13 @@ static void move_edges(adapt_t *self, adapt_move_t move) {
 // The move without an edge that is at its limit.
 static adapt_move_t within_limits(const adapt_t *self, adapt_move_t move) {
     const int16_t *now = self->trim[self->nearest].value;
-    const int32_t limit = self->cfg.edge_limit_q16;
-    return (adapt_move_t){
-        .on = move.on * now[ADAPT_ON_EDGE] >= limit ? (int8_t)0 : move.on,
-        .off = move.off * now[ADAPT_OFF_EDGE] >= limit ? (int8_t)0 : move.off,
-    };
+    if (move.on * now[ADAPT_ON_EDGE] >= self->cfg.edge_limit_q16) {
+        move.on = 0;
+    }
+    if (move.off * now[ADAPT_OFF_EDGE] >= self->cfg.edge_limit_q16) {
+        move.off = 0;
+    }
+    return move;
 }
 
 // Where the frequency lies on a point, the point below it may have become the next one meanwhile.

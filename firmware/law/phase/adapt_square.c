@@ -10,8 +10,12 @@ void adapt_square_restart(adapt_square_t *self) {
 }
 
 void adapt_square_moved(adapt_square_t *self, adapt_move_t move) {
-    self->last.on = move.on != 0 ? move.on : self->last.on;
-    self->last.off = move.off != 0 ? move.off : self->last.off;
+    if (move.on != 0) {
+        self->last.on = move.on;
+    }
+    if (move.off != 0) {
+        self->last.off = move.off;
+    }
     adapt_square_restart(self);
 }
 
@@ -73,8 +77,11 @@ adapt_move_t adapt_square_move(const adapt_square_t *self, int32_t noise_q20, in
 }
 
 adapt_move_t adapt_square_forward(const adapt_square_t *self, adapt_move_t move) {
-    return (adapt_move_t){
-        .on = move.on == -self->last.on ? (int8_t)0 : move.on,
-        .off = move.off == -self->last.off ? (int8_t)0 : move.off,
-    };
+    if (move.on == -self->last.on) {
+        move.on = 0;
+    }
+    if (move.off == -self->last.off) {
+        move.off = 0;
+    }
+    return move;
 }
