@@ -69,12 +69,15 @@ static int64_t excess_um_s2(adapt_effect_t effect, uint32_t shape_q14) {
     return clamp_i64(effect.rms_um_s2 - free_um_s2, 0, INT32_MAX);
 }
 
+// Limited, whatever weight a table brings, so that the sums of a square fit their words.
 static int32_t cost_q20(adapt_effect_t from, adapt_effect_t to, adapt_goal_t goal) {
     const int64_t excess =
         excess_um_s2(to, goal.accel_shape_q14) - excess_um_s2(from, goal.accel_shape_q14);
     const int64_t accel_q20 = relative_q20(from.rms_um_s2, excess);
-    return relative_q20(from.reach_um_s2, (int64_t)to.reach_um_s2 - from.reach_um_s2) +
-           (int32_t)((accel_q20 * goal.accel_weight_q8) >> 8);
+    const int64_t reach_q20 =
+        relative_q20(from.reach_um_s2, (int64_t)to.reach_um_s2 - from.reach_um_s2);
+    return (int32_t)clamp_i64(reach_q20 + ((accel_q20 * goal.accel_weight_q8) >> 8),
+                              -ADAPT_MOST_COST_Q20, ADAPT_MOST_COST_Q20);
 }
 
 static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t value) {
@@ -88,28 +91,29 @@ static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t valu
     }
 }
 
-static int32_t edge_step_q16(const adapt_t *self) {
-    return self->size == ADAPT_LARGE ? EDGE_STEP_q16 : EDGE_STEP_q16 / 2;
+static void change(const adapt_t *self, adapt_trim_t *trim, uint32_t coordinate, int32_t by) {
+    int16_t *value = &trim->value[coordinate];
+    *value = (int16_t)limited(&self->cfg, coordinate, *value + by);
+}
+
+static void change_edges(const adapt_t *self, adapt_trim_t *trim, adapt_move_t move) {
+    const int32_t step_q16 = self->size == ADAPT_LARGE ? EDGE_STEP_q16 : EDGE_STEP_q16 / 2;
+    change(self, trim, ADAPT_ON_EDGE, move.on * step_q16);
+    change(self, trim, ADAPT_OFF_EDGE, move.off * step_q16);
 }
 
 // The pulse with the change that is tried.
 static adapt_trim_t changed(const adapt_t *self, adapt_trim_t trim) {
-    const adapt_move_t at = adapt_square_corner(self->square.corner);
-    int32_t change[ADAPT_COORDINATES] = {0};
     switch (self->part) {
     case ADAPT_TRY_WHOLE:
-        change[ADAPT_WHOLE] = trim.value[ADAPT_WHOLE] == 0 ? 1 : -1;
+        change(self, &trim, ADAPT_WHOLE, trim.value[ADAPT_WHOLE] == 0 ? 1 : -1);
         break;
     case ADAPT_TRY_EDGES:
-        change[ADAPT_ON_EDGE] = at.on * edge_step_q16(self);
-        change[ADAPT_OFF_EDGE] = at.off * edge_step_q16(self);
+        change_edges(self, &trim, adapt_square_corner(self->square.corner));
         break;
     default:
-        change[ADAPT_LEVEL] = self->direction * LEVEL_STEP_q15;
+        change(self, &trim, ADAPT_LEVEL, self->direction * LEVEL_STEP_q15);
         break;
-    }
-    for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
-        trim.value[i] = (int16_t)limited(&self->cfg, i, trim.value[i] + change[i]);
     }
     return trim;
 }
@@ -153,12 +157,17 @@ static bool is_noisy(const adapt_t *self) {
     return self->noise_q20 > NOISY_q20;
 }
 
-static void try_next(adapt_t *self) {
-    for (uint32_t i = 0;
-         i < DIRECTIONS * ADAPT_TRY_NOTHING && self->part != ADAPT_TRY_NOTHING && !has_room(self);
-         i++) {
-        self->part == ADAPT_TRY_EDGES ? start_part(self, ADAPT_TRY_LEVEL) : fail(self);
+static void skip_what_has_no_room(adapt_t *self) {
+    if (self->part == ADAPT_TRY_EDGES && !has_room(self)) {
+        start_part(self, ADAPT_TRY_LEVEL);
     }
+    for (uint32_t i = 0; i < DIRECTIONS && self->part == ADAPT_TRY_LEVEL && !has_room(self); i++) {
+        fail(self);
+    }
+}
+
+static void try_next(adapt_t *self) {
+    skip_what_has_no_room(self);
     if (self->part == ADAPT_TRY_NOTHING) {
         const bool is_whole = self->trim[self->nearest].value[ADAPT_WHOLE] != 0;
         start_part(self, is_whole ? ADAPT_TRY_WHOLE : ADAPT_TRY_EDGES);
@@ -170,15 +179,11 @@ static void try_next(adapt_t *self) {
     }
 }
 
-static adapt_trim_t *point_at(adapt_t *self, uint32_t index) {
-    return &self->trim[index < ADAPT_POINTS ? index : ADAPT_POINTS - 1u];
-}
-
 // A whole pulse or a level is better.
 static void keep(adapt_t *self) {
     const adapt_trim_t now = changed(self, self->trim[self->nearest]);
     for (uint32_t i = 0; i < 2u; i++) {
-        adapt_trim_t *point = point_at(self, self->index + i);
+        adapt_trim_t *point = &self->trim[self->index + i];
         if (self->part == ADAPT_TRY_WHOLE) { // at both: between them it is as at the nearer one
             point->value[ADAPT_WHOLE] = now.value[ADAPT_WHOLE];
         } else {
@@ -195,12 +200,9 @@ static void keep(adapt_t *self) {
 
 static void move_edges(adapt_t *self, adapt_move_t move) {
     for (uint32_t i = 0; i < 2u; i++) {
-        int16_t *value = point_at(self, self->index + i)->value;
-        self->from[i] = (adapt_edges_t){value[ADAPT_ON_EDGE], value[ADAPT_OFF_EDGE]};
-        value[ADAPT_ON_EDGE] = (int16_t)limited(
-            &self->cfg, ADAPT_ON_EDGE, value[ADAPT_ON_EDGE] + move.on * edge_step_q16(self));
-        value[ADAPT_OFF_EDGE] = (int16_t)limited(
-            &self->cfg, ADAPT_OFF_EDGE, value[ADAPT_OFF_EDGE] + move.off * edge_step_q16(self));
+        adapt_trim_t *point = &self->trim[self->index + i];
+        self->from[i] = (adapt_edges_t){point->value[ADAPT_ON_EDGE], point->value[ADAPT_OFF_EDGE]};
+        change_edges(self, point, move);
     }
     self->moved_index = self->index;
     adapt_square_moved(&self->square, move);
@@ -222,7 +224,7 @@ static adapt_move_t within_limits(const adapt_t *self, adapt_move_t move) {
 // Where the frequency lies on a point, the point below it may have become the next one meanwhile.
 static void move_back(adapt_t *self) {
     for (uint32_t i = 0; i < 2u && gap_u32(self->moved_index, self->index) <= 1u; i++) {
-        int16_t *value = point_at(self, self->moved_index + i)->value;
+        int16_t *value = self->trim[self->moved_index + i].value;
         value[ADAPT_ON_EDGE] = self->from[i].on;
         value[ADAPT_OFF_EDGE] = self->from[i].off;
     }
@@ -365,12 +367,14 @@ static void measure(adapt_t *self, const adapt_in_t *in) {
     }
 }
 
-// A trial that loses the lock is not tried again at once: what it changes may be why.
+// A trial that loses the lock is not tried again at once: what it changes may be why. Neither is a
+// whole pulse, whose current may be why the output was taken away.
 void adapt_pause(adapt_t *self, bool has_lost_lock) {
-    if (self->state == ADAPT_TRYING && self->part != ADAPT_TRY_EDGES) {
+    const bool is_own_fault = has_lost_lock || self->part == ADAPT_TRY_WHOLE;
+    if (self->state == ADAPT_TRYING && self->part != ADAPT_TRY_EDGES && is_own_fault) {
         self->trials = increment_sat_u32(self->trials);
         fail(self);
-    } else if (self->state == ADAPT_TRYING && has_lost_lock) {
+    } else if (self->state == ADAPT_TRYING && self->part == ADAPT_TRY_EDGES && has_lost_lock) {
         adapt_square_take(&self->square, LOST_q20);
         self->failures++;
     } else if (has_lost_lock && (self->state == ADAPT_MEASURING || self->state == ADAPT_CHECKING)) {

@@ -25,7 +25,7 @@
 /// two measurements of the same pulse differ by more than 2 %: then something else has changed.
 ///
 /// Formats: edges in half turns Q16 (364 is one degree), level as a factor Q15; accelerations
-/// um/s2. Bounded: a few instructions a tick, 300 at most at the end of a cycle, spread over
+/// um/s2. Bounded: some 35 instructions a tick, 300 at most at the end of a cycle, spread over
 /// several ticks.
 #ifndef ADAPT_H
 #define ADAPT_H

@@ -8,13 +8,18 @@
 /// centre add up until little is left of that.
 ///
 /// Source: two-level factorial design (Box, Hunter and Hunter, Statistics for Experimenters). Costs
-/// are relative changes in Q20, within +-2^19. Bounded: some 30 instructions a corner, 150 a round.
+/// are relative changes in Q20, within +-ADAPT_MOST_COST_Q20. Bounded: some 35 instructions a
+/// corner, 170 a round.
 #ifndef ADAPT_SQUARE_H
 #define ADAPT_SQUARE_H
 
 #include "fixq.h"
 
-enum { ADAPT_CORNERS = 4, ADAPT_MOST_ROUNDS = 3 };
+enum {
+    ADAPT_CORNERS = 4,
+    ADAPT_MOST_ROUNDS = 3,
+    ADAPT_MOST_COST_Q20 = 1 << 25, ///< 32 times as much as the centre
+};
 
 /// Steps of either edge: -1, 0 or 1, later is positive.
 typedef struct {

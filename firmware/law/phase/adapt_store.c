@@ -44,9 +44,9 @@ bool adapt_restore(adapt_t *self, adapt_owner_t owner, const uint32_t *words) {
             return false;
         }
     }
+    adapt_clear(self); // a search, and where its last move came from, belong to what was there
     for (uint32_t i = 0; i < ADAPT_POINTS; i++) {
         self->trim[i] = trim_of(words, i);
     }
-    adapt_pause(self, false);
     return true;
 }

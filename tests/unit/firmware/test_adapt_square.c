@@ -132,9 +132,9 @@ static void test_the_largest_costs_do_not_overflow(void) {
         for (uint32_t round = 0; round < ADAPT_MOST_ROUNDS; round++) {
             int32_t cost_q20[ADAPT_CORNERS];
             for (uint32_t i = 0; i < ADAPT_CORNERS; i++) {
-                cost_q20[i] = signal_noise(&seed, 1 << 25);
+                cost_q20[i] = signal_noise(&seed, ADAPT_MOST_COST_Q20);
             }
-            take_round(cost_q20, signal_noise(&seed, 1 << 25));
+            take_round(cost_q20, signal_noise(&seed, ADAPT_MOST_COST_Q20));
             const adapt_move_t move = adapt_square_move(&square, 1 << 24, LEAST_q20);
             TEST_ASSERT_INT_WITHIN(1, 0, move.on);
             TEST_ASSERT_INT_WITHIN(1, 0, move.off);

@@ -54,6 +54,26 @@ static void test_adapt_store_comes_back_whole(void) {
     TEST_ASSERT_EQUAL_INT16_ARRAY(adapt.trim[1].value, now.value, ADAPT_COORDINATES);
 }
 
+// A search under way, and where its last move came from, do not outlive it.
+static void test_adapt_store_is_not_moved_back(void) {
+    adapt_t other;
+    adapt_init(&other, &cfg);
+    other.state = ADAPT_MEASURING;
+    other.index = 1;
+    other.moved_index = 1;
+    other.from[0] = (adapt_edges_t){5000, -5000};
+    other.square.corner = 3;
+    TEST_ASSERT_TRUE(adapt_restore(&other, owner, words));
+    const adapt_in_t in = {.may_try = true, .freq_mHz = 10000, .index = 1};
+    for (uint32_t i = 0; i < 3u; i++) {
+        adapt_step(&other, &in);
+    }
+    TEST_ASSERT_EQUAL(ADAPT_MEASURING, other.state);
+    adapt_pause(&other, true);
+    TEST_ASSERT_EQUAL_MEMORY(adapt.trim, other.trim, sizeof adapt.trim);
+    TEST_ASSERT_EQUAL_UINT32(0, other.square.corner);
+}
+
 static void test_adapt_store_has_its_version_and_crc(void) {
     TEST_ASSERT_EQUAL_HEX32(ADAPT_STORE_MAGIC, words[0]);
     TEST_ASSERT_EQUAL_HEX32(crc32_words(&words[2], ADAPT_STORE_WORDS - 2u), words[1]);
@@ -97,7 +117,7 @@ static void test_adapt_store_of_any_content_stays_within_the_limits(void) {
         setUp();
         for (uint32_t flips = round % 3u; flips > 0; flips--) {
             const uint32_t word = 4u + (uint32_t)abs_i32(signal_noise(&seed, 127));
-            words[word] ^= 1u << abs_i32(signal_noise(&seed, 31));
+            words[word] ^= 1u << ((uint32_t)signal_noise(&seed, 31) & 31u);
         }
         seal();
         adapt_t other;
@@ -118,6 +138,7 @@ static void test_adapt_store_of_any_content_stays_within_the_limits(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_adapt_store_comes_back_whole);
+    RUN_TEST(test_adapt_store_is_not_moved_back);
     RUN_TEST(test_adapt_store_has_its_version_and_crc);
     RUN_TEST(test_adapt_store_with_any_bit_flipped_is_refused);
     RUN_TEST(test_adapt_store_of_another_table_setting_or_version_is_refused);
