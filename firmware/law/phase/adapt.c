@@ -420,8 +420,8 @@ adapt_trim_t adapt_trim_at(const adapt_t *self, uint32_t index, uint32_t part_q1
     adapt_trim_t trim;
     for (uint32_t i = 0; i < ADAPT_COORDINATES; i++) {
         const int32_t from = self->trim[index].value[i];
-        const int32_t change = self->trim[index + 1u].value[i] - from;
-        trim.value[i] = (int16_t)(from + ((change * (int32_t)(part_q16 >> 1) + HALF_q15) >> 15));
+        const int32_t rise = self->trim[index + 1u].value[i] - from;
+        trim.value[i] = (int16_t)(from + ((rise * (int32_t)(part_q16 >> 1) + HALF_q15) >> 15));
     }
     return self->state == ADAPT_TRYING ? changed(self, trim) : trim;
 }
