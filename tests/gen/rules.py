@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from quiesce.rules.formats.files import read_rules
-from quiesce.rules.integers.c_files import table_c
+from quiesce.rules.integers.c_files import table_text
 from quiesce.rules.integers.compile import compile_base
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import straight_line_c, why_not_straight
@@ -146,7 +146,7 @@ def case_c(case: Case) -> tuple[str, str]:
     compiled, name = case.compiled, f"case_{case.name}"
     is_straight = case.wants_straight and not why_not_straight(compiled)
     lines, defaults = rows(case)
-    text = "static " + table_c(compiled, name)
+    text = "static " + table_text(table_words(compiled), name)
     if is_straight:
         text += "\nstatic " + straight_line_c(compiled, name)
     text += f"\nstatic const rule_point_t {name}_points[] = {{\n" + "\n".join(lines) + "\n};\n"

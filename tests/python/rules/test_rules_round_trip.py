@@ -160,7 +160,7 @@ def with_rule(base: RuleBase, *conditions: Condition) -> RuleBase:
         (replace(TANK, rules=(Rule((Condition(0, 0),), (1,), weight=1.5),)), "fcl", ["1.5"]),
         (with_rule(TANK, *[Condition(0, 0)] * 9), "fcl", ["9 conditions"]),
         (with_output(TANK, maximum=math.inf), "fcl", ["inf"]),
-        (with_output(TANK, default=math.nan), "fcl", ["nan"]),
+        (with_output(GAPS, default=math.nan), "fcl", ["default of output valve"]),
         (replace(TANK, rules=(Rule((Condition(0, 0),), (None,)),)), "fcl", ["';'"]),
     ],
 )  # fmt: skip

@@ -4,20 +4,8 @@
 // The input is a list: parameters first, then stretches of ticks, each with its signal and inputs.
 #include "quiesce.h"
 
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "fuzz_bytes.h"
 #include "test_signal.h"
-
-#define REQUIRE(holds)                                                                             \
-    do {                                                                                           \
-        if (!(holds)) {                                                                            \
-            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #holds);                            \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
@@ -30,11 +18,6 @@ enum {
     LONGEST_WINDOW_ms = 1024,
     MOVE_TICKS = 7, // between copies of the state, where the input asks for them
 };
-
-typedef struct {
-    const uint8_t *at;
-    size_t left;
-} bytes_t;
 
 // One stretch of equal ticks.
 typedef struct {
@@ -70,15 +53,6 @@ typedef struct {
     uint32_t ticks_left;
     uint32_t seed;
 } fuzz_t;
-
-// Little-endian; 0 beyond the end.
-static uint32_t take(bytes_t *bytes, uint32_t width) {
-    uint32_t value = 0;
-    for (uint32_t i = 0; i < width && bytes->left > 0; i++, bytes->left--) {
-        value |= (uint32_t)*bytes->at++ << (8u * i);
-    }
-    return value;
-}
 
 static int32_t take_counts(bytes_t *bytes) {
     return (int32_t)(take(bytes, 3) << 8) >> 8;

@@ -5,45 +5,19 @@
 //
 // The input: law, tracker, seed of the pictures, then changes of single words of the law's table or
 // of the map; or, with a law above 127, the words of its table themselves behind a good magic.
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "fuzz_bytes.h"
 #include "law_trial.h"
 #include "law_words.h"
 #include "table.h"
-
-#define REQUIRE(holds)                                                                             \
-    do {                                                                                           \
-        if (!(holds)) {                                                                            \
-            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #holds);                            \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum { RAW = 128, OF_MAP = 128, TICKS = 64, CHANGE_BYTES = 6 };
 
 typedef struct {
-    const uint8_t *at;
-    size_t left;
-} bytes_t;
-
-typedef struct {
     uint32_t *words; // as long as the table, so that the sanitizer sees every read beyond it
     uint32_t count;
 } copy_t;
-
-// Little-endian; 0 beyond the end.
-static uint32_t take(bytes_t *bytes, uint32_t width) {
-    uint32_t value = 0;
-    for (uint32_t i = 0; i < width && bytes->left > 0; i++, bytes->left--) {
-        value |= (uint32_t)*bytes->at++ << (8u * i);
-    }
-    return value;
-}
 
 static copy_t new_copy(const uint32_t *from, uint32_t count) {
     const copy_t copy = {malloc(count * sizeof(uint32_t)), count};

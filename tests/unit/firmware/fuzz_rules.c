@@ -6,106 +6,16 @@
 // themselves behind a good header.
 #include "fuzzy.h"
 
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "crc32.h"
+#include "fuzz_words.h"
 #include "rule_cases.h"
-
-#define REQUIRE(holds)                                                                             \
-    do {                                                                                           \
-        if (!(holds)) {                                                                            \
-            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #holds);                            \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum {
     RAW = 255,
-    MAX_RAW_WORDS = 2048,
     POINTS = 24, // inside the cells, beside their ends
 };
-
-typedef struct {
-    const uint8_t *at;
-    size_t left;
-} bytes_t;
-
-typedef struct {
-    uint32_t *words; // as long as the table, so that the sanitizer sees every read beyond it
-    uint32_t count;
-} copy_t;
-
-// Little-endian; 0 beyond the end.
-static uint32_t take(bytes_t *bytes, uint32_t width) {
-    uint32_t value = 0;
-    for (uint32_t i = 0; i < width && bytes->left > 0; i++, bytes->left--) {
-        value |= (uint32_t)*bytes->at++ << (8u * i);
-    }
-    return value;
-}
-
-static copy_t new_copy(uint32_t count) {
-    const copy_t copy = {malloc(count * sizeof(uint32_t)), count};
-    REQUIRE(copy.words != NULL);
-    return copy;
-}
-
-static uint32_t changed(bytes_t *bytes, uint32_t kind, uint32_t word, uint32_t count) {
-    static const uint32_t special[] = {
-        0,          1,          0xFF,       0xFFFF,     0x10000,    0x003FFFFF, 0x00FFFFFE,
-        0x00FFFFFF, 0x01000000, 0x10000000, 0x10000001, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF,
-    };
-    const uint32_t shift = 8u * (kind >> 4 & 3u);
-    switch (kind & 7u) {
-    case 0:
-        return take(bytes, 4);
-    case 1:
-        return word ^ 1u << take(bytes, 1) % 32u;
-    case 2:
-        return (word & ~(0xFFu << shift)) | take(bytes, 1) << shift;
-    case 3:
-        return (word & ~(0xFFFFu << (shift & 16u))) | take(bytes, 2) << (shift & 16u);
-    case 4:
-        return special[take(bytes, 1) % (sizeof special / sizeof special[0])];
-    case 5:
-        return word + (uint32_t)(int32_t)(int8_t)take(bytes, 1);
-    case 6:
-        return count - take(bytes, 1);
-    default:
-        return word << 1;
-    }
-}
-
-// Words of the table, changed where the input says.
-static copy_t damaged_case(bytes_t *bytes, const rule_case_t *one) {
-    copy_t copy = new_copy(one->count);
-    memcpy(copy.words, one->words, one->count * sizeof(uint32_t));
-    while (bytes->left > 0) {
-        const uint32_t at = take(bytes, 2) % one->count;
-        const uint32_t kind = take(bytes, 1);
-        copy.words[at] = changed(bytes, kind, copy.words[at], one->count);
-        // The same number in a whole stretch, such as all values of a partition.
-        const uint32_t end = at + ((kind & 8u) != 0 ? take(bytes, 1) : 0);
-        for (uint32_t i = at; i < end && i + 1u < one->count; i++) {
-            copy.words[i + 1u] = copy.words[i];
-        }
-    }
-    return copy;
-}
-
-static copy_t raw_words(bytes_t *bytes) {
-    const size_t words = bytes->left / sizeof(uint32_t);
-    copy_t copy = new_copy(words < MAX_RAW_WORDS ? (uint32_t)words : MAX_RAW_WORDS);
-    for (uint32_t i = 0; i < copy.count; i++) {
-        copy.words[i] = take(bytes, 4);
-    }
-    return copy;
-}
 
 static void make_crc_right(copy_t copy, uint32_t size_words) {
     if (copy.count >= sizeof(fuzzy_table_t) / sizeof(uint32_t)) {
@@ -163,11 +73,6 @@ static void evaluate(const fuzzy_table_t *table, const int32_t *point) {
     free(output);
 }
 
-static uint32_t random_u32(uint32_t *state) {
-    *state = *state * 1664525u + 1013904223u;
-    return *state >> 16 ^ *state << 16;
-}
-
 // An end of a cell, or near it.
 static int32_t edge_of(const fuzzy_table_t *table, uint32_t i, uint32_t *state) {
     const fuzzy_axis_t axis = table->axis[i];
@@ -207,8 +112,8 @@ static void evaluate_everywhere(const fuzzy_table_t *table) {
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count) {
     bytes_t input = {bytes, count};
     const uint32_t which = take(&input, 1);
-    copy_t copy =
-        which == RAW ? raw_words(&input) : damaged_case(&input, &rule_cases[which % RULE_CASES]);
+    const rule_case_t *one = &rule_cases[which % RULE_CASES];
+    copy_t copy = which == RAW ? raw_words(&input) : damaged_words(&input, one->words, one->count);
     make_crc_right(copy, copy.count);
     const fuzzy_table_t *table = (const fuzzy_table_t *)(const void *)copy.words;
     if (fuzzy_table_check(table, copy.count) == FUZZY_TABLE_OK) {

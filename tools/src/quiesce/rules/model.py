@@ -18,8 +18,10 @@ centroid                  of max over terms of min(greatest strength of its rule
 and its default where none of its rules fires.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+
+import numpy as np
 
 MAX_INPUTS = 4
 MAX_OUTPUTS = 4
@@ -48,17 +50,21 @@ class FuzzySet:
 
     def membership(self, x: float) -> float:
         """At x, after the rules of the module's text; x is not clamped to any universe."""
-        points = self.points
-        if x < points[0][0]:
-            return points[0][1]
-        if x > points[-1][0]:
-            return points[-1][1]
-        found = max((mu for at, mu in points if at == x), default=None)
-        if found is not None:
-            return found
-        after = next(i for i, (at, _) in enumerate(points) if at > x)
-        (x0, mu0), (x1, mu1) = points[after - 1], points[after]
-        return mu0 + (mu1 - mu0) * (x - x0) / (x1 - x0)
+        return float(membership_of(self.points, np.asarray(x, dtype=float)))
+
+
+def membership_of(points: Sequence[Point], x: np.ndarray) -> np.ndarray:
+    """At every element of x."""
+    at, mu = np.array(points, dtype=float).T
+    greatest = np.array([mu[at == place].max() for place in at])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Not finite at a vertical edge, which is never the segment that is looked up.
+        slope = np.append(np.diff(mu) / np.diff(at), 0.0)
+    found = np.searchsorted(at, x, side="right") - 1  # the last point at or left of x
+    index = np.maximum(found, 0)
+    value = mu[index] + np.where(x > at[index], slope[index] * (x - at[index]), 0.0)
+    value = np.where(x == at[index], greatest[index], value)
+    return np.where(found < 0, mu[0], value)
 
 
 @dataclass(frozen=True)

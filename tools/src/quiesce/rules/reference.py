@@ -11,7 +11,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.rules.model import AND, CENTROID, WEIGHTED_SUM, FuzzySet, Output, Rule, RuleBase
+from quiesce.rules.model import (
+    AND,
+    CENTROID,
+    WEIGHTED_SUM,
+    FuzzySet,
+    Output,
+    Rule,
+    RuleBase,
+    membership_of,
+)
 
 CHUNK_POINTS = 1 << 13  # evaluated at once; bounds the memory
 
@@ -63,16 +72,7 @@ def input_memberships(sets: Sequence[FuzzySet], x: np.ndarray) -> np.ndarray:
 
 def membership(fuzzy_set: FuzzySet, x: np.ndarray) -> np.ndarray:
     """FuzzySet.membership at every element of x."""
-    at, mu = np.array(fuzzy_set.points, dtype=float).T
-    greatest = np.array([mu[at == place].max() for place in at])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        # Not finite at a vertical edge, which is never the segment that is looked up.
-        slope = np.append(np.diff(mu) / np.diff(at), 0.0)
-    found = np.searchsorted(at, x, side="right") - 1  # the last point at or left of x
-    index = np.maximum(found, 0)
-    value = mu[index] + np.where(x > at[index], slope[index] * (x - at[index]), 0.0)
-    value = np.where(x == at[index], greatest[index], value)
-    return np.where(found < 0, mu[0], value)
+    return membership_of(fuzzy_set.points, x)
 
 
 def rule_strengths(base: RuleBase, memberships: Sequence[np.ndarray]) -> np.ndarray:

@@ -4,11 +4,14 @@ import argparse
 from pathlib import Path
 
 from quiesce.base.errors import UsageError
-from quiesce.rules.formats.files import read_rules
+from quiesce.rules.engine.precise import Precise, compile_precisely
+from quiesce.rules.formats.build import NotPlain
+from quiesce.rules.formats.files import read_rules, read_system
 from quiesce.rules.integers.compile import Q15, Q16, compile_base
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.controller import compile_for_controller
 from quiesce.rules.model import RuleBase
+from quiesce.rules.system.model import System
 
 FORMATS_HELP = """integers:
   Without --lsb an input is q15, 0..32768 over its universe, and an output q16, 0..65536. With
@@ -50,7 +53,21 @@ def compiled_from(args: argparse.Namespace) -> CompiledBase:
     return compile_base(base, inputs, outputs, defaults(args, base))
 
 
-def defaults(args: argparse.Namespace, base: RuleBase) -> dict[str, float]:
+def any_compiled_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise, str]:
+    """A plain base, or a system of any kind and why it is no plain base."""
+    try:
+        return compiled_from(args), ""
+    except NotPlain as reason:
+        if args.controller or args.approximate is not None:
+            raise
+        system = read_system(args.file)
+        named = assignments("--lsb", args.lsb, system)
+        inputs = [named.get(variable.name, Q15) for variable in system.inputs]
+        outputs = [named.get(variable.name, Q16) for variable in system.outputs]
+        return compile_precisely(system, inputs, outputs, defaults(args, system)), str(reason)
+
+
+def defaults(args: argparse.Namespace, base: RuleBase | System) -> dict[str, float]:
     named = assignments("--default", args.default, base)
     for output in base.outputs:
         if output.name in named and output.default is not None:
@@ -61,7 +78,7 @@ def defaults(args: argparse.Namespace, base: RuleBase) -> dict[str, float]:
     return named
 
 
-def assignments(option: str, texts: list[str], base: RuleBase) -> dict[str, float]:
+def assignments(option: str, texts: list[str], base: RuleBase | System) -> dict[str, float]:
     known = [variable.name for variable in (*base.inputs, *base.outputs)]
     found: dict[str, float] = {}
     for text in texts:

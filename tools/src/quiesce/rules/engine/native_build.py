@@ -18,11 +18,20 @@ FIRMWARE_SOURCES = (
     "fuzzy/fuzzy_table.c",
     "base/crc32.c",
 )
+SYSTEM_SOURCES = (
+    "fuzzy/fuzzy_system.c",
+    "fuzzy/fuzzy_curve.c",
+    "fuzzy/fuzzy_system_check.c",
+    "fuzzy/fuzzy_defuzzify.c",
+    "fuzzy/fuzzy_norms.c",
+    "base/fixq.c",
+    "base/crc32.c",
+)
 FLAGS = ("-std=c11", "-O2", "-fno-strict-aliasing", "-Wall", "-Wextra", "-Werror")
 
 
-def firmware_sources() -> list[Path]:
-    return [root() / "firmware" / name for name in FIRMWARE_SOURCES]
+def firmware_sources(names: Sequence[str] = FIRMWARE_SOURCES) -> list[Path]:
+    return [root() / "firmware" / name for name in names]
 
 
 def compiler() -> str:

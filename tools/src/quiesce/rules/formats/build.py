@@ -1,10 +1,19 @@
-"""From what a rule file says to a RuleBase: everything that the formats have to check alike."""
+"""From what a rule file says to a plain RuleBase, or to a System: what the formats check alike.
+
+A reader refuses what is no rule file. What it reads and a plain rule base cannot hold it notes as
+the reason why (Builder.not_plain).
+"""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from quiesce.rules.formats.logic import Names
+import numpy as np
+
+from quiesce.base.errors import UsageError
+from quiesce.rules.formats.formula import Formula
+from quiesce.rules.formats.logic import Draft, Names
+from quiesce.rules.formats.plain import plain_rules
 from quiesce.rules.formats.scan import Source, Token
 from quiesce.rules.formats.shapes import Curve, Shape, ShapeError, chain
 from quiesce.rules.model import (
@@ -18,35 +27,57 @@ from quiesce.rules.model import (
     Input,
     Output,
     Point,
-    Rule,
     RuleBase,
     Singleton,
+    membership_of,
 )
+from quiesce.rules.system import model
+from quiesce.rules.system.model import Block, System, SystemInput, SystemOutput, SystemRule
+from quiesce.rules.system.norms import MAXIMUM, MINIMUM
 
 MAX_POINTS = 256  # of a set
 MAX_NAME = 64  # characters
+NEAREST = 2.0**-52  # of a strength to 0 or 1, of a shape that only rises or falls
 FORBIDDEN = re.compile(r"[\"'\\*%#]")  # in names: they end texts and comments, here and in C
+
+
+class NotPlain(UsageError):
+    """A rule file that a plain rule base cannot hold; says why."""
+
+
+@dataclass(frozen=True)
+class Straight:
+    """Points. word: what the file calls it; inverse: of one that only rises or falls, less its
+    height, x of a membership."""
+
+    word: str
+    points: tuple[Point, ...]
+    height: float = 1.0
+    inverse: Curve | None = None
 
 
 @dataclass(frozen=True)
 class Smooth:
-    """A curve that --approximate may replace. word: what the file calls it."""
+    """A curve that --approximate may replace."""
 
     word: str
     curve: Curve
     height: float
+    knots: tuple[float, ...] = ()
+    inverse: Curve | None = None
 
 
 @dataclass(frozen=True)
 class Line:
     """A term of first order: constant + sum of slopes x inputs."""
 
+    word: str
     slopes: tuple[float, ...]
     constant: float
 
 
-# What a file says of a term: points, a singleton's value, a smooth curve, or a straight line.
-Content = tuple[Point, ...] | float | Smooth | Line
+# What a file says of a term.
+Content = Straight | Smooth | float | Line | Formula
 
 
 @dataclass(frozen=True)
@@ -58,7 +89,8 @@ class Term:
 
 @dataclass
 class Variable:
-    """An input or output while its file is being read."""
+    """An input or output while its file is being read. method: of a plain base; the next four: of
+    a system."""
 
     name: Token
     is_input: bool
@@ -68,6 +100,10 @@ class Variable:
     range_at: Token | None = None
     method: str = ""
     method_at: Token | None = None
+    system_method: str = ""
+    aggregation: str = MAXIMUM
+    places: int = 0
+    clips: bool = False
     default: float | None = None
     default_at: Token | None = None
 
@@ -97,6 +133,13 @@ class Builder:
         self.ignore_case = ignore_case
         self.variables: list[Variable] = []
         self.notes: list[str] = []
+        self.plain_notes: list[str] = []  # of a plain base only
+        self.blocks: list[Block] = []
+        self.drafts: list[Draft] = []
+        self.reasons: list[UsageError] = []  # why it is no plain base
+
+    def not_plain(self, at: Token | int, what: str, expected: str = "") -> None:
+        self.reasons.append(self.source.error(at, what, expected))
 
     def key(self, token: Token) -> str:
         return token.text.upper() if self.ignore_case else token.text
@@ -105,20 +148,26 @@ class Builder:
         self.check_name(name, [v.name for v in self.variables], "variable")
         variable = Variable(name, is_input)
         self.variables.append(variable)
-        most = MAX_INPUTS if is_input else MAX_OUTPUTS
-        if len(self.of_kind(is_input)) > most:
-            raise self.source.error(name, f"more than {most} {variable.kind}s", f"at most {most}")
+        plain, most = (
+            (MAX_INPUTS, model.MAX_INPUTS) if is_input else (MAX_OUTPUTS, model.MAX_OUTPUTS)
+        )
+        count, kind = len(self.of_kind(is_input)), f"{variable.kind}s"
+        if count > most:
+            raise self.source.error(name, f"more than {most} {kind}", f"at most {most}")
+        if count > plain:
+            self.not_plain(name, f"more than {plain} {kind}", f"at most {plain}")
         return variable
 
     def add_term(self, variable: Variable, term: Term) -> None:
         self.check_name(term.name, [t.name for t in variable.terms], "term")
         variable.terms.append(term)
         is_set = variable.is_input or not isinstance(term.content, (float, Line))
-        most = MAX_SETS if is_set else MAX_SINGLETONS
-        if len(variable.terms) > most:
-            raise self.source.error(
-                term.name, f"more than {most} terms of {variable.shown()}", f"at most {most}"
-            )
+        plain, most = (MAX_SETS, model.MAX_TERMS) if is_set else (MAX_SINGLETONS, model.MAX_VALUES)
+        count, of = len(variable.terms), f"terms of {variable.shown()}"
+        if count > most:
+            raise self.source.error(term.name, f"more than {most} {of}", f"at most {most}")
+        if count > plain:
+            self.not_plain(term.name, f"more than {plain} {of}", f"at most {plain}")
 
     def check_name(self, name: Token, others: Sequence[Token], what: str) -> None:
         if not name.text.strip() or len(name.text) > MAX_NAME:
@@ -141,7 +190,10 @@ class Builder:
         found = {}
         for is_input in (True, False):
             for index, variable in enumerate(self.of_kind(is_input)):
-                self.check_terms(variable)
+                if variable.terms or not is_input:
+                    self.check_terms(variable)
+                else:
+                    self.not_plain(variable.name, f"{variable.shown()} has no terms", "terms")
                 terms = {self.key(term.name): i for i, term in enumerate(variable.terms)}
                 shown = tuple(term.name.text for term in variable.terms)
                 found[self.key(variable.name)] = Names(
@@ -167,43 +219,62 @@ class Builder:
 
     def shape(
         self, at: Token, shape: Shape, values: Sequence[float], height: float = 1.0
-    ) -> tuple[Point, ...] | Smooth:
+    ) -> Straight | Smooth:
         """at: the shape's name in the file."""
         try:
             made = shape(values)
         except ShapeError as error:
             raise self.source.error(at, f"{at.text} of {numbers(values)}", str(error))
+        ordered = shape.ordered(values)
+        inverse = None if shape.inverse is None else shape.inverse(*ordered)
         if callable(made):
-            return Smooth(at.text, made, height)
-        return tuple((x, height * mu) for x, mu in made)
+            return Smooth(at.text, made, height, shape.knots(*ordered), inverse)
+        return Straight(at.text, tuple((x, height * mu) for x, mu in made), height, inverse)
 
     def linear(self, at: Token, values: Sequence[float]) -> float | Line:
         """A first-order term: one whose slopes are all 0 is a constant, its last number."""
         count = len(self.of_kind(is_input=True)) + 1
         if len(values) != count:
             raise self.source.error(at, f"{len(values)} numbers of {at.text}", f"{count}")
-        if not any(values[:-1]):
-            return values[-1]
-        if not self.options.first_order:
-            raise self.source.error(at, f"{at.text} of {numbers(values)}", "slopes of 0")
-        return Line(tuple(values[:-1]), values[-1])
+        return Line(at.text, tuple(values[:-1]), values[-1]) if any(values[:-1]) else values[-1]
 
-    def finish(
-        self, name: str, at: Token, make_rules: Callable[[Sequence[Output]], list[Rule]]
-    ) -> RuleBase:
-        """at: where a message about the whole file points; make_rules: from the outputs."""
+    def check(self, at: Token) -> None:
+        """at: where a message about the whole file points."""
         for is_input in (True, False):
             if not self.of_kind(is_input):
                 kind = "input" if is_input else "output"
                 raise self.source.error(at, f"no {kind}", f"at least one {kind}")
+        if not self.drafts:
+            raise self.source.error(at, "no rules", "at least one rule")
+        for variable in self.of_kind(is_input=False):
+            low, high = self.universe(variable)
+            default = variable.default
+            if default is not None and not low <= default <= high:
+                raise self.source.error(
+                    variable.default_at or variable.name,
+                    f"default {default:g}",
+                    f"one within {low:g} .. {high:g}",
+                )
+
+    def plain(self, name: str, at: Token) -> RuleBase:
+        """NotPlain where it is none."""
+        self.check(at)
+        if self.reasons:
+            raise NotPlain(str(self.reasons[0]))
+        try:
+            return self.made_plain(name, at)
+        except UsageError as reason:
+            raise NotPlain(str(reason)) from reason
+
+    def made_plain(self, name: str, at: Token) -> RuleBase:
         inputs = tuple(self.input(variable) for variable in self.of_kind(True))
         outputs = tuple(self.output(variable) for variable in self.of_kind(False))
-        rules = make_rules(outputs)
-        if not rules:
-            raise self.source.error(at, "no rules", "at least one rule")
+        names = list(self.names().values())
+        rules = [rule for d in self.drafts for rule in plain_rules(self.source, d, outputs, names)]
         if len(rules) > MAX_RULES:
             raise self.source.error(at, f"{len(rules)} rules", f"at most {MAX_RULES}")
-        return RuleBase(name, inputs, outputs, tuple(rules), tuple(self.notes))
+        notes = (*self.notes, *self.plain_notes)
+        return RuleBase(name, inputs, outputs, tuple(rules), notes)
 
     def input(self, variable: Variable) -> Input:
         low, high = self.universe(variable)
@@ -215,41 +286,39 @@ class Builder:
             terms: tuple = self.sets(variable, low, high)
         else:
             terms = self.singletons(variable, low, high)
-        default, at = variable.default, variable.default_at
-        if default is not None and not low <= default <= high:
-            raise self.source.error(
-                at or variable.name, f"default {default:g}", f"one within {low:g} .. {high:g}"
-            )
-        return Output(variable.name.text, low, high, terms, variable.method, default)
+        return Output(variable.name.text, low, high, terms, variable.method, variable.default)
 
     def check_terms(self, variable: Variable) -> None:
         if not variable.terms:
             raise self.source.error(variable.name, f"{variable.shown()} has no terms", "terms")
 
     def universe(self, variable: Variable) -> tuple[float, float]:
-        self.check_terms(variable)
         if variable.low is not None and variable.high is not None:
             return variable.low, variable.high
+        self.check_terms(variable)
         x = extents(variable.terms)
         if not x or min(x) == max(x):
             raise self.source.error(variable.name, f"{variable.shown()} has no range", "a range")
-        self.notes.append(
+        note = (
             f"{variable.shown()}: no range given; {min(x):g} .. {max(x):g}, the extent of its terms"
         )
+        if note not in self.notes:
+            self.notes.append(note)
         return min(x), max(x)
 
     def sets(self, variable: Variable, low: float, high: float) -> tuple[FuzzySet, ...]:
         return tuple(self.set(variable, term, low, high) for term in variable.terms)
 
     def set(self, variable: Variable, term: Term, low: float, high: float) -> FuzzySet:
-        content = term.content
-        if isinstance(content, (float, Line)):
-            raise self.source.error(
-                term.at, f"{variable.shown()} has a singleton", "a set: a method with points"
-            )
-        if isinstance(content, Smooth):
-            content = self.approximated(variable, term, content, low, high)
-        made = FuzzySet(term.name.text, content)
+        content = self.set_content(variable, term)
+        if isinstance(content, Formula):
+            raise self.source.error(term.at, "a formula", "a shape")
+        points = (
+            self.approximated(variable, term, content, low, high)
+            if isinstance(content, Smooth)
+            else content.points
+        )
+        made = FuzzySet(term.name.text, points)
         if not is_above_zero(made, low, high):
             raise self.source.error(
                 term.name,
@@ -257,6 +326,13 @@ class Builder:
                 "a set inside the range",
             )
         return made
+
+    def set_content(self, variable: Variable, term: Term) -> Straight | Smooth | Formula:
+        if isinstance(term.content, (float, Line)):
+            raise self.source.error(
+                term.at, f"{variable.shown()} has a singleton", "a set: a method with points"
+            )
+        return term.content
 
     def approximated(
         self, variable: Variable, term: Term, smooth: Smooth, low: float, high: float
@@ -273,7 +349,7 @@ class Builder:
         except ShapeError as problem:
             what = f"{smooth.word} over {low:g} .. {high:g}"
             raise self.source.error(term.at, what, str(problem))
-        self.notes.append(
+        self.plain_notes.append(
             f"{variable.shown()}, set {term.name.text}: {smooth.word} as a chain of "
             f"{len(points) - 1} segments, largest error {smooth.height * error:.2g}"
         )
@@ -286,6 +362,9 @@ class Builder:
         """A straight line's values are bounded by nothing that a file says."""
         content = term.content
         if isinstance(content, Line):
+            if not self.options.first_order:
+                values = numbers((*content.slopes, content.constant))
+                raise self.source.error(term.at, f"{content.word} of {values}", "slopes of 0")
             return Singleton(term.name.text, content.constant, content.slopes)
         if not isinstance(content, float):
             raise self.source.error(
@@ -296,6 +375,95 @@ class Builder:
                 term.at, f"singleton {content:g}", f"one within {low:g} .. {high:g}"
             )
         return Singleton(term.name.text, content)
+
+    # ---- systems --------------------------------------------------------------------------------
+
+    def system(self, name: str, at: Token) -> System:
+        """UsageError where a system cannot hold it either."""
+        self.check(at)
+        inputs = tuple(self.system_input(variable) for variable in self.of_kind(True))
+        outputs = tuple(self.system_output(variable) for variable in self.of_kind(False))
+        rules = tuple(
+            SystemRule(d.block, d.expression, d.conclusions, d.weight) for d in self.drafts
+        )
+        if len(rules) > model.MAX_RULES:
+            raise self.source.error(at, f"{len(rules)} rules", f"at most {model.MAX_RULES}")
+        blocks = tuple(self.blocks) or (Block(MINIMUM, MAXIMUM, MINIMUM),)
+        return System(name, inputs, outputs, blocks, rules, tuple(self.notes))
+
+    def system_input(self, variable: Variable) -> SystemInput:
+        low, high = self.universe(variable)
+        terms = tuple(self.set_term(variable, term) for term in variable.terms)
+        return SystemInput(variable.name.text, low, high, terms)
+
+    def system_output(self, variable: Variable) -> SystemOutput:
+        low, high = self.universe(variable)
+        is_sets = variable.system_method in model.SET_METHODS
+        make = self.set_term if is_sets else self.value_term
+        terms = tuple(make(variable, term) for term in variable.terms)
+        return SystemOutput(
+            variable.name.text, low, high, terms, variable.system_method, variable.aggregation,
+            variable.places, variable.default, variable.clips,
+        )  # fmt: skip
+
+    def set_term(self, variable: Variable, term: Term) -> model.SetTerm:
+        return model.SetTerm(term.name.text, self.curve_of(variable, term))
+
+    def curve_of(self, variable: Variable, term: Term) -> model.Curve:
+        content = self.set_content(variable, term)
+        if isinstance(content, Straight):
+            points = content.points
+            return model.Curve(content.word, lambda x: membership_of(points, x), points)
+        if isinstance(content, Formula):
+            return model.Curve("Function", self.formula_of_x(term, content))
+        curve, height = content.curve, content.height
+        return model.Curve(content.word, lambda x: height * curve(x), None, content.knots)
+
+    def formula_of_x(self, term: Term, formula: Formula) -> model.Function:
+        if formula.names - {"x"}:
+            shown = ", ".join(sorted(formula.names - {"x"}))
+            raise self.source.error(term.at, f"a formula with {shown}", "a formula of x")
+        return lambda x: formula({"x": x})
+
+    def value_term(self, variable: Variable, term: Term) -> model.ValueTerm:
+        name, content = term.name.text, term.content
+        if isinstance(content, float):
+            return model.ConstantTerm(name, content)
+        if isinstance(content, Line):
+            return model.LinearTerm(name, content.slopes, content.constant)
+        if isinstance(content, Formula):
+            return self.formula_term(term, content)
+        return model.StrengthTerm(name, self.tsukamoto_of(variable, term, content))
+
+    def tsukamoto_of(
+        self, variable: Variable, term: Term, content: Straight | Smooth
+    ) -> model.Curve:
+        """A set that only rises or falls: where it reaches the strength; any other one: its
+        membership there, as FuzzyLite has it."""
+        inverse, height = content.inverse, content.height
+        if inverse is None:
+            return self.curve_of(variable, term)
+
+        def value(strength: np.ndarray) -> np.ndarray:
+            # At 0 and 1 some shapes have no end.
+            return inverse(np.clip(strength / height, NEAREST, 1.0 - NEAREST))
+
+        return model.Curve(content.word, value, None, (0.5 * height,))
+
+    def formula_term(self, term: Term, formula: Formula) -> model.ValueTerm:
+        name = term.name.text
+        inputs = {v.name.text: i for i, v in enumerate(self.of_kind(is_input=True))}
+        used = formula.names & set(inputs)
+        if not formula.names:
+            return model.ConstantTerm(name, float(formula({})))
+        if formula.names == {"x"} and "x" not in inputs:
+            return model.StrengthTerm(name, model.Curve("Function", lambda x: formula({"x": x})))
+        if len(used) == 1 and formula.names == used:
+            (only,) = used
+            curve = model.Curve("Function", lambda x: formula({only: x}))
+            return model.InputTerm(name, inputs[only], curve)
+        shown = ", ".join(sorted(formula.names))
+        raise self.source.error(term.at, f"a formula with {shown}", "one input in a formula")
 
 
 def numbers(values: Sequence[float]) -> str:
@@ -308,8 +476,8 @@ def extents(terms: Sequence[Term]) -> list[float]:
     for term in terms:
         if isinstance(term.content, float):
             x.append(term.content)
-        elif isinstance(term.content, tuple):
-            x += [at for at, _ in term.content]
+        elif isinstance(term.content, Straight):
+            x += [at for at, _ in term.content.points]
     return x
 
 

@@ -1,12 +1,15 @@
-"""Reads FCL, the fuzzy control language of IEC 61131-7, and words of jFuzzyLogic's dialect."""
+"""Reads FCL, the fuzzy control language of IEC 61131-7, with words of jFuzzyLogic's and FuzzyLite's
+dialects."""
 
 import re
-from collections.abc import Sequence
 
-from quiesce.rules.formats.build import Builder, Options, Smooth, Term, Variable
-from quiesce.rules.formats.logic import RuleParser, Words, plain_rules
+from quiesce.rules.formats.build import Builder, Content, Options, Straight, Term, Variable
+from quiesce.rules.formats.formula import read_formula
+from quiesce.rules.formats.logic import RuleParser, Words, uses
+from quiesce.rules.formats.norm_words import FCL_S_NORMS, FCL_T_NORMS
 from quiesce.rules.formats.scan import (
     END,
+    INFINITE_PATTERN,
     NAME,
     NUMBER,
     NUMBER_PATTERN,
@@ -16,20 +19,16 @@ from quiesce.rules.formats.scan import (
     Token,
     scan,
 )
-from quiesce.rules.formats.shapes import FCL_SHAPES
-from quiesce.rules.model import (
-    CENTROID,
-    WEIGHTED_MAX,
-    WEIGHTED_SUM,
-    Output,
-    Point,
-    Rule,
-    RuleBase,
-)
+from quiesce.rules.formats.shapes import FCL_SHAPES, FLL_SHAPES, SHOULDERS, Shape
+from quiesce.rules.model import CENTROID, OR, WEIGHTED_MAX, WEIGHTED_SUM
+from quiesce.rules.system import model
+from quiesce.rules.system.model import Block
+from quiesce.rules.system.norms import MAXIMUM, MINIMUM, UNBOUNDED_SUM
 
 PATTERN = re.compile(
     r"\s+|//[^\n]*|\(\*.*?\*\)|/\*.*?\*/|\{[^{}]*\}|(?P<unclosed>\(\*|/\*|\{)"
-    rf"|(?P<number>{NUMBER_PATTERN})|(?P<name>{WORD_PATTERN})|(?P<symbol>:=|\.\.|[();:,])",
+    rf"|(?P<number>{NUMBER_PATTERN}|[+-]{INFINITE_PATTERN})|(?P<name>{WORD_PATTERN})"
+    r"|(?P<symbol>:=|\.\.|[();:,|]|[-+*/^%](?=[^;\n]*;))",
     re.DOTALL,
 )
 WORDS = Words(
@@ -42,14 +41,22 @@ RESERVED = {
     "FUNCTION_BLOCK", "END_FUNCTION_BLOCK", "TERM", "RANGE", "METHOD", "ACCU", "DEFAULT", "NC",
     "RULE", "ACT", *TYPES, *WORDS.reserved(), *FCL_SHAPES,
 }  # fmt: skip
-MAX, SUM = "MAX", "SUM"
-# The one operator of each kind that the model has.
-OPERATORS = {"AND": ("MIN",), "OR": ("MAX",), "ACT": ("MIN",), "ACCU": (MAX, SUM)}
-METHODS = ("COG", "COGS")
+# FuzzyLite's shapes are written as in FLL, with their numbers in that order.
+SHAPES: dict[str, Shape] = {**{word.upper(): one for word, one in FLL_SHAPES.items()}, **FCL_SHAPES}
+SHOULDER_WORDS = {word.upper() for word in SHOULDERS}
+OPERATORS = {"AND": FCL_T_NORMS, "OR": FCL_S_NORMS, "ACT": FCL_T_NORMS, "ACCU": FCL_S_NORMS}
+# What a plain base has of each.
+PLAIN = {"AND": ("MIN",), "OR": ("MAX",), "ACT": ("MIN",), "ACCU": ("MAX", "SUM")}
+METHODS = {
+    "COG": model.CENTROID, "COGS": "", "COA": model.BISECTOR, "LM": model.SMALLEST,
+    "RM": model.LARGEST, "MM": model.MEAN, "COGSS": model.WEIGHTED,
+}  # fmt: skip
+PLAIN_METHODS = ("COG", "COGS")
+PLACES = 1000  # of sets that are looked at
 
 
-def read_fcl(source: Source, name: str, options: Options) -> RuleBase:
-    """name: of the base where the file gives it none."""
+def read_fcl(source: Source, name: str, options: Options) -> tuple[Builder, str, Token]:
+    """name: of the base where the file gives it none. Returns with it and where it begins."""
     return FclReader(source, options).read(name)
 
 
@@ -63,7 +70,7 @@ class FclReader:
         self.accumulation: dict[str, Token] = {}  # of outputs
         self.common_accumulation: Token | None = None  # of the rule blocks
 
-    def read(self, name: str) -> RuleBase:
+    def read(self, name: str) -> tuple[Builder, str, Token]:
         stream = self.stream
         start = stream.expect("FUNCTION_BLOCK")
         if stream.token.kind == NAME and stream.token.text.upper() not in RESERVED:
@@ -73,7 +80,7 @@ class FclReader:
         if stream.token.kind != END:
             raise stream.unexpected("nothing more: one FUNCTION_BLOCK in a file")
         self.check_complete()
-        return self.builder.finish(name, start, self.rules)
+        return self.builder, name, start
 
     def section(self) -> None:
         stream = self.stream
@@ -155,20 +162,56 @@ class FclReader:
         self.stream.expect(";")
         self.builder.add_term(variable, Term(name, at, content))
 
-    def content(self) -> tuple[Point, ...] | float | Smooth:
+    def content(self) -> Content:
         stream = self.stream
         if stream.token.kind == NUMBER:
             return stream.number()
         if stream.sees("("):
             return self.points()
-        if not stream.sees(*FCL_SHAPES):
-            words = ", ".join(word.lower() for word in FCL_SHAPES)
+        others = {"LINEAR": self.linear, "FUNCTION": self.function, "DISCRETE": self.discrete}
+        if stream.sees(*others):
+            at = stream.take()
+            return others[at.text.upper()](at)
+        if not stream.sees(*SHAPES):
+            words = ", ".join(word.lower() for word in (*FCL_SHAPES, *FLL_SHAPES))
             raise stream.unexpected(f"points as (x, membership), a number, or one of {words}")
         at = stream.take()
-        shape = FCL_SHAPES[at.text.upper()]
-        return self.builder.shape(at, shape, [stream.number() for _ in range(shape.parameters)])
+        shape = SHAPES[at.text.upper()]
+        is_shoulder = at.text.upper() in SHOULDER_WORDS
+        values = [stream.number(or_infinite=is_shoulder) for _ in range(shape.parameters)]
+        height = stream.number() if stream.token.kind == NUMBER else 1.0
+        if not 0 < height <= 1:
+            raise self.source.error(at, f"height {height:g}", "above 0, at most 1")
+        return self.builder.shape(at, shape, values, height)
 
-    def points(self) -> tuple[Point, ...]:
+    def numbers(self) -> list[float]:
+        """As many as there are."""
+        found = []
+        while self.stream.token.kind == NUMBER:
+            found.append(self.stream.number())
+        return found
+
+    def linear(self, at: Token) -> Content:
+        return self.builder.linear(at, self.numbers())
+
+    def discrete(self, at: Token) -> Content:
+        values = self.numbers()
+        if len(values) < 2 or len(values) % 2:
+            raise self.source.error(at, f"{len(values)} numbers of {at.text}", "pairs")
+        pairs = list(zip(values[::2], values[1::2], strict=True))
+        return Straight(at.text, self.builder.points(at, pairs, [at] * len(pairs)))
+
+    def function(self, at: Token) -> Content:
+        """Up to the semicolon."""
+        stream, start = self.stream, self.stream.token.offset
+        while not stream.sees(";"):
+            if stream.token.kind == END:
+                raise stream.unexpected("';'")
+            stream.take()
+        self.builder.not_plain(at, "a formula", "a shape")
+        return read_formula(self.source, start, stream.token.offset)
+
+    def points(self) -> Straight:
         stream, at = self.stream, self.stream.token
         points, ats = [], []
         while stream.accept("("):
@@ -177,7 +220,7 @@ class FclReader:
             stream.expect(",")
             points.append((x, stream.number()))
             stream.expect(")")
-        return self.builder.points(at, points, ats)
+        return Straight("points", self.builder.points(at, points, ats))
 
     def range(self, variable: Variable) -> None:
         stream, at = self.stream, self.stream.tokens[self.stream.at - 1]
@@ -202,24 +245,46 @@ class FclReader:
     def method(self, variable: Variable) -> None:
         if variable.method_at is not None:
             raise self.stream.unexpected("one METHOD in a DEFUZZIFY")
-        variable.method_at = self.word(*METHODS)
+        token = variable.method_at = self.word(*METHODS)
+        if token.text.upper() not in PLAIN_METHODS:
+            self.builder.not_plain(token, f"METHOD : {token.text}", "'COG' or 'COGS'")
 
     def accumulate(self, variable: Variable) -> None:
         key = self.builder.key(variable.name)
         if key in self.accumulation:
             raise self.stream.unexpected("one ACCU in a DEFUZZIFY")
-        self.accumulation[key] = self.word(*OPERATORS["ACCU"])
+        self.accumulation[key] = self.norm("ACCU")
+
+    def norm(self, kind: str) -> Token:
+        """Behind its keyword."""
+        token = self.word(*OPERATORS[kind])
+        plain = PLAIN[kind]
+        if token.text.upper() not in plain:
+            words = " or ".join(f"'{word}'" for word in plain)
+            self.builder.not_plain(token, f"{kind} : {token.text}", words)
+        return token
 
     def default(self, variable: Variable) -> None:
+        """A number, nan for none, NC for the last value."""
         stream = self.stream
         if variable.default_at is not None:
             raise stream.unexpected("one DEFAULT in a DEFUZZIFY")
         stream.expect(":=")
         variable.default_at = stream.token
-        if stream.sees("NC"):
-            raise stream.unexpected("a number: NC, which keeps the last value, is not supported")
-        variable.default = stream.number()
+        if not stream.sees("NAN", "NC"):
+            variable.default = stream.number()
+        elif stream.sees("NAN"):
+            stream.take()
+        if stream.accept("|") or stream.sees("NC"):
+            self.keep_last(variable, stream.expect("NC"))
         stream.expect(";")
+
+    def keep_last(self, variable: Variable, at: Token) -> None:
+        self.builder.not_plain(at, f"{at.text}, which keeps the last value", "a number")
+        self.builder.notes.append(
+            f"{variable.shown()} keeps its last value where no rule fires: that is left to the "
+            "caller, who is told so by a bit"
+        )
 
     def skip_rules(self) -> None:
         """Rules are read once all variables are known."""
@@ -236,40 +301,48 @@ class FclReader:
                 block = "FUZZIFY" if variable.is_input else "DEFUZZIFY"
                 what = f"{variable.shown()} has no {block}"
                 raise self.source.error(variable.name, what, f"{block} {variable.name.text}")
-        self.drafts = [draft for start in self.rule_blocks for draft in self.rule_block(start)]
+        for start in self.rule_blocks:
+            self.rule_block(start)
         for variable in self.builder.of_kind(is_input=False):
-            variable.method = self.method_of(variable)
+            self.set_method(variable)
 
-    def method_of(self, variable: Variable) -> str:
+    def set_method(self, variable: Variable) -> None:
         own = self.accumulation.get(self.builder.key(variable.name))
         common = self.common_accumulation
         if own and common and own.text.upper() != common.text.upper():
             raise self.source.error(
                 own, f"ACCU : {own.text}, but the rule block has {common.text}", "the same"
             )
-        accumulation = own or common
-        is_sum = accumulation is not None and accumulation.text.upper() == SUM
+        token = own or common
+        norm = FCL_S_NORMS[token.text.upper()] if token else MAXIMUM
         assert variable.method_at is not None
-        if variable.method_at.text.upper() == "COGS":
-            return WEIGHTED_SUM if is_sum else WEIGHTED_MAX
-        if is_sum and accumulation:
-            raise self.source.error(accumulation, "ACCU : SUM with METHOD : COG", "ACCU : MAX")
-        return CENTROID
+        word = variable.method_at.text.upper()
+        is_sum = norm == UNBOUNDED_SUM
+        variable.system_method = METHODS[word] or (model.BY_RULE if is_sum else model.BY_TERM)
+        variable.aggregation, variable.places = norm, PLACES
+        if word == "COGS":
+            variable.method = WEIGHTED_SUM if is_sum else WEIGHTED_MAX
+        else:
+            variable.method = CENTROID
+            if is_sum and token:
+                self.builder.not_plain(
+                    token, f"ACCU : SUM with METHOD : {variable.method_at.text}", "ACCU : MAX"
+                )
 
-    def rule_block(self, start: int) -> list:
-        stream = self.stream
+    def rule_block(self, start: int) -> None:
+        stream, builder = self.stream, self.builder
         stream.at = start
         if not stream.sees(*OPERATORS, "RULE", "END_RULEBLOCK"):
             self.new_name("the name of the rule block")
-        parser = RuleParser(stream, WORDS, self.builder.names())
-        drafts, operators = [], set()
+        parser = RuleParser(stream, WORDS, builder.names(), len(builder.blocks))
+        operators: dict[str, str] = {}
+        drafts = []
         while not stream.accept("END_RULEBLOCK"):
             if stream.sees(*OPERATORS):
                 kind = stream.token.text.upper()
                 if kind in operators:
                     raise stream.unexpected(f"one {kind} in a rule block")
-                operators.add(kind)
-                self.operator()
+                operators[kind] = self.operator()
                 continue
             stream.expect("RULE", after=", AND, OR, ACT, ACCU or END_RULEBLOCK")
             if stream.token.kind not in (NAME, NUMBER):
@@ -277,18 +350,34 @@ class FclReader:
             stream.take()
             stream.expect(":")
             drafts.append(parser.rule())
-            stream.expect(";")
-        return drafts
+            # FuzzyLite writes none.
+            if not stream.sees("RULE", "END_RULEBLOCK"):
+                stream.expect(";")
+        builder.drafts += drafts
+        self.check_dual(drafts, operators)
+        builder.blocks.append(
+            Block(
+                operators.get("AND", MINIMUM),
+                operators.get("OR", MAXIMUM),
+                operators.get("ACT", MINIMUM),
+            )
+        )
 
-    def operator(self) -> None:
+    def check_dual(self, drafts: list, operators: dict[str, str]) -> None:
+        """A sum without a bound is no OR."""
+        for draft in drafts:
+            if operators.get("OR") == UNBOUNDED_SUM and uses(draft.expression, OR):
+                raise self.source.error(draft.at, "OR : SUM", "a norm, such as BSUM")
+
+    def operator(self) -> str:
+        """Its norm."""
         kind = self.stream.take().text.upper()
-        token = self.word(*OPERATORS[kind])
-        if kind != "ACCU":
-            return
-        common = self.common_accumulation
-        if common and common.text.upper() != token.text.upper():
-            raise self.source.error(token, f"ACCU : {token.text} after {common.text}", "the same")
-        self.common_accumulation = token
-
-    def rules(self, outputs: Sequence[Output]) -> list[Rule]:
-        return [rule for d in self.drafts for rule in plain_rules(self.source, d, outputs)]
+        token = self.norm(kind)
+        if kind == "ACCU":
+            common = self.common_accumulation
+            if common and common.text.upper() != token.text.upper():
+                raise self.source.error(
+                    token, f"ACCU : {token.text} after {common.text}", "the same"
+                )
+            self.common_accumulation = token
+        return OPERATORS[kind][token.text.upper()]

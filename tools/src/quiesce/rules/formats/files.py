@@ -4,16 +4,17 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.rules.formats.build import Options
+from quiesce.rules.formats.build import Builder, Options
 from quiesce.rules.formats.fcl import read_fcl
 from quiesce.rules.formats.fis import read_fis
 from quiesce.rules.formats.fll import read_fll
 from quiesce.rules.formats.same import difference
-from quiesce.rules.formats.scan import Source
+from quiesce.rules.formats.scan import Source, Token
 from quiesce.rules.formats.write_fcl import fcl_text
 from quiesce.rules.formats.write_fis import fis_text
 from quiesce.rules.formats.write_fll import fll_text
 from quiesce.rules.model import RuleBase
+from quiesce.rules.system.model import System
 
 READERS = {"fcl": read_fcl, "fll": read_fll, "fis": read_fis}
 WRITERS = {"fcl": fcl_text, "fll": fll_text, "fis": fis_text}
@@ -45,10 +46,25 @@ def read_text(
     """
     if approximate is not None and not 2 <= approximate <= MAX_SEGMENTS:
         raise UsageError(f"--approximate {approximate}; 2 to {MAX_SEGMENTS} segments")
+    builder, title, at = parsed(text, format, name, file, Options(approximate, first_order))
+    return builder.plain(title, at)
+
+
+def parsed(
+    text: str, format: str, name: str, file: str | None, options: Options
+) -> tuple[Builder, str, Token]:
     source = Source(file or f"{name}.{format}", text)
     if not text.strip():
         raise source.error(0, "the file is empty", "a rule base")
-    return READERS[format](source, name, Options(approximate, first_order))
+    return READERS[format](source, name, options)
+
+
+def read_system(path: Path) -> System:
+    """All that a rule file says. UsageError, `FILE:LINE:COLUMN: ...`, for what is no rule file, or
+    more than a system can hold."""
+    format, name = format_of(path), shown(path)
+    builder, title, at = parsed(load(path, name), format, path.stem, name, Options())
+    return builder.system(title, at)
 
 
 def format_of(path: Path) -> str:

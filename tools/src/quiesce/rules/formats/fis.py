@@ -1,4 +1,4 @@
-"""Reads FIS, the files of MATLAB's Fuzzy Logic Toolbox: Mamdani and zero-order Sugeno.
+"""Reads FIS, the files of MATLAB's Fuzzy Logic Toolbox, with words of FuzzyLite's dialect.
 
 Comments begin with % as in MATLAB or # as in Octave.
 """
@@ -7,8 +7,19 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from quiesce.rules.formats.build import Builder, Content, Options, Term, Variable
-from quiesce.rules.formats.logic import Draft, Join, checked_weight, plain_rules, uses
+from quiesce.rules.formats.build import (
+    Builder,
+    Content,
+    Formula,
+    Line,
+    Options,
+    Straight,
+    Term,
+    Variable,
+)
+from quiesce.rules.formats.formula import read_formula
+from quiesce.rules.formats.logic import Draft, checked_weight, uses
+from quiesce.rules.formats.norm_words import FIS_S_NORMS, FIS_T_NORMS
 from quiesce.rules.formats.scan import (
     END,
     INFINITE_PATTERN,
@@ -23,35 +34,42 @@ from quiesce.rules.formats.scan import (
     scan,
 )
 from quiesce.rules.formats.shapes import FIS_SHAPES, SHOULDERS
-from quiesce.rules.model import (
-    AND,
-    CENTROID,
-    OR,
-    WEIGHTED_SUM,
-    Condition,
-    Output,
-    Rule,
-    RuleBase,
-)
+from quiesce.rules.model import AND, CENTROID, OR, WEIGHTED_SUM
+from quiesce.rules.system import model
+from quiesce.rules.system.model import Block, Conclusion, Expression, Join, Proposition
+from quiesce.rules.system.norms import ANY, MAXIMUM, MINIMUM, NOT
 
 PATTERN = re.compile(
     rf"\s+|(?P<number>{NUMBER_PATTERN}|{INFINITE_PATTERN})|(?P<name>{WORD_PATTERN})|(?P<string>'[^'\n]*'|\"[^\"\n]*\")"
-    r"|(?P<unclosed>['\"])|(?P<symbol>[\[\]=(),:])"
+    r"|(?P<unclosed>['\"])|(?P<symbol>[\[\]=(),:]|[-+*/^%](?=[^\[\]\n]*\]))"
 )
 SYSTEM, RULES = "System", "Rules"
 COUNTS = ("NumInputs", "NumOutputs", "NumRules")
+DEFUZZIFIERS = {
+    "centroid": model.CENTROID, "bisector": model.BISECTOR, "mom": model.MEAN,
+    "lom": model.LARGEST, "som": model.SMALLEST, "wtaver": model.BY_RULE,
+    "wtsum": model.WEIGHTED,
+}  # fmt: skip
 METHODS = {
-    "AndMethod": ("min", "prod"),
-    "OrMethod": ("max", "probor", "sum"),
-    "ImpMethod": ("min", "prod"),
-    "AggMethod": ("max", "sum", "probor"),
-    "DefuzzMethod": ("centroid", "bisector", "mom", "lom", "som", "wtaver", "wtsum"),
+    "AndMethod": FIS_T_NORMS,
+    "OrMethod": FIS_S_NORMS,
+    "ImpMethod": FIS_T_NORMS,
+    "AggMethod": FIS_S_NORMS,
+    "DefuzzMethod": DEFUZZIFIERS,
 }
-# The ones that a type must have. Sugeno systems use neither implication nor aggregation.
-REQUIRED = {
+TYPES = ("mamdani", "sugeno", "larsen", "tsukamoto", "inverse tsukamoto", "hybrid", "unknown")
+# What a plain base has of each type. Sugeno systems use neither implication nor aggregation.
+PLAIN = {
     "mamdani": {"ImpMethod": "min", "AggMethod": "max", "DefuzzMethod": "centroid"},
     "sugeno": {"DefuzzMethod": "wtaver"},
 }
+# Decimals of a term's number in a rule, in hundredths, as Octave has them; FuzzyLite writes others
+# of the same names.
+HEDGES = {5: ("somewhat",), 20: ("very",), 30: ("cubed",), 40: ("very", "very")}
+FUZZYLITE_HEDGES = {
+    **HEDGES, 1: ("seldom",), 30: ("extremely",), 99: (ANY,),
+}  # fmt: skip
+PLACES = 1000  # of sets that are looked at
 SYSTEM_KEYS = ("Name", "Type", "Version", *COUNTS, *METHODS)
 
 
@@ -63,8 +81,8 @@ class Section:
     lines: list[list[Token]] = field(default_factory=list)
 
 
-def read_fis(source: Source, name: str, options: Options) -> RuleBase:
-    """name: of the base where the file gives it none."""
+def read_fis(source: Source, name: str, options: Options) -> tuple[Builder, str, Token]:
+    """name: of the base where the file gives it none. Returns with it and where it begins."""
     return FisReader(source, options).read(name)
 
 
@@ -101,8 +119,10 @@ class FisReader:
         self.methods: dict[str, Token] = {}
         self.counts: dict[str, Token] = {}
         self.rule_lines: list[list[Token]] | None = None
+        head = source.text[: source.starts[min(3, len(source.starts) - 1)]]
+        self.is_from_fuzzylite = "fuzzylite" in head
 
-    def read(self, name: str) -> RuleBase:
+    def read(self, name: str) -> tuple[Builder, str, Token]:
         sections = split_sections(self.source)
         if not sections:
             raise self.source.error(0, "no section", "'[System]'")
@@ -118,8 +138,20 @@ class FisReader:
         for draft in drafts:
             self.check_operator(draft, AND, "AndMethod", "min")
             self.check_operator(draft, OR, "OrMethod", "max")
+        self.builder.drafts += drafts
+        self.builder.blocks.append(
+            Block(
+                self.norm("AndMethod", MINIMUM),
+                self.norm("OrMethod", MAXIMUM),
+                self.norm("ImpMethod", MINIMUM),
+            )
+        )
         title = self.title.text if self.title and self.title.text else name
-        return self.builder.finish(title, first, lambda outputs: self.rules(drafts, outputs))
+        return self.builder, title, first
+
+    def norm(self, key: str, otherwise: str) -> str:
+        token = self.methods.get(key)
+        return METHODS[key][token.text] if token else otherwise
 
     def section(self, section: Section) -> None:
         head = section.head
@@ -175,17 +207,24 @@ class FisReader:
             if token.text:
                 self.builder.check_name(token, [], "system")
             return
-        allowed = tuple(REQUIRED) if key == "Type" else METHODS[key]
+        if not token.text and key in ("AndMethod", "OrMethod", "ImpMethod", "AggMethod"):
+            return  # none: no rule needs it
+        allowed = TYPES if key == "Type" else METHODS[key]
         if token.text not in allowed:
             words = " or ".join(f"'{word}'" for word in allowed)
             raise self.source.error(token, f"{key} {token.shown()}", words)
         if key == "Type":
             self.type = token
+            if token.text not in PLAIN:
+                self.builder.not_plain(
+                    token, f"Type '{token.text}'", " or ".join(f"'{one}'" for one in PLAIN)
+                )
         else:
             self.methods[key] = token
 
     def variable(self, section: Section, is_input: bool) -> None:
-        entries = self.entries(section, ("Name", "Range", "NumMFs", "MF"))
+        others = ("Enabled",) if is_input else ("Enabled", "Default", "LockPrevious", "LockRange")
+        entries = self.entries(section, ("Name", "Range", "NumMFs", "MF", *others))
         for key in ("Name", "Range"):
             if key not in entries:
                 raise self.source.error(section.head, f"no {key}", f"'{key}=...'")
@@ -197,6 +236,34 @@ class FisReader:
         values = self.vector(stream, 2)
         self.builder.set_range(variable, at, *values)
         self.terms(variable, entries)
+        self.others(variable, entries)
+
+    def others(self, variable: Variable, entries: dict[str, Stream]) -> None:
+        """FuzzyLite's keys."""
+        if "Default" in entries:
+            stream = entries["Default"]
+            variable.default_at = stream.token
+            if not stream.accept("nan"):
+                variable.default = stream.number("a number or nan")
+            self.finish_line(stream)
+        if self.flag(entries, "Enabled", True) is False:
+            raise self.source.error(variable.name, "'Enabled=0'", "what is disabled taken out")
+        variable.clips = self.flag(entries, "LockRange", False)
+        if self.flag(entries, "LockPrevious", False):
+            self.builder.not_plain(variable.name, "'LockPrevious=1' keeps a value", "0")
+            self.builder.notes.append(
+                f"{variable.shown()} keeps its last value where no rule fires: that is left to the "
+                "caller, who is told so by a bit"
+            )
+
+    def flag(self, entries: dict[str, Stream], key: str, otherwise: bool) -> bool:
+        if key not in entries:
+            return otherwise
+        token = entries[key].expect_kind(NUMBER, "0 or 1")
+        if token.text not in ("0", "1"):
+            raise self.source.error(token, f"{key}={token.text}", "0 or 1")
+        self.finish_line(entries[key])
+        return token.text == "1"
 
     def terms(self, variable: Variable, entries: dict[str, Stream]) -> None:
         streams = [(k, s) for k, s in entries.items() if k.startswith("MF")]
@@ -223,6 +290,14 @@ class FisReader:
         if at.text == "linear" and not variable.is_input:
             inputs = len(self.builder.of_kind(is_input=True))
             return self.builder.linear(at, self.vector(stream, inputs + 1))
+        if at.text == "function":
+            return self.formula(at, stream)
+        if at.text == "discretemf":
+            values, _ = self.values(stream)
+            if len(values) < 2 or len(values) % 2:
+                raise self.source.error(at, f"{len(values)} numbers of {at.text}", "pairs")
+            pairs = list(zip(values[::2], values[1::2], strict=True))
+            return Straight(at.text, self.builder.points(at, pairs, [at] * len(pairs)))
         if at.text not in FIS_SHAPES:
             words = ", ".join((*(() if variable.is_input else ("constant", "linear")), *FIS_SHAPES))
             raise self.source.error(at, f"membership function {at.shown()}", f"one of {words}")
@@ -230,30 +305,77 @@ class FisReader:
         values = self.vector(stream, shape.parameters, at.text in SHOULDERS)
         return self.builder.shape(at, shape, values)
 
-    def vector(self, stream: Stream, count: int, or_infinite: bool = False) -> list[float]:
-        """`[a b ...]`, also with commas, to the end of the line; one number may stand bare."""
-        is_bare = count == 1 and stream.token.kind == NUMBER
-        if not is_bare:
-            stream.expect("[")
-        values = [stream.number(f"{count} numbers", or_infinite)]
-        while len(values) < count:
-            stream.accept(",")
-            values.append(stream.number(f"{count} numbers", or_infinite))
-        if not is_bare:
-            stream.expect("]", after=f" behind {count} numbers")
+    def formula(self, at: Token, stream: Stream) -> Formula:
+        """All between the brackets."""
+        stream.expect("[")
+        start = stream.token.offset
+        while not stream.sees("]"):
+            if stream.token.kind == END:
+                raise stream.unexpected("']'")
+            stream.take()
+        self.builder.not_plain(at, "a formula", "a shape")
+        found = read_formula(self.source, start, stream.take().offset)
         self.finish_line(stream)
-        return values
+        return found
+
+    def vector(self, stream: Stream, count: int, or_infinite: bool = False) -> list[float]:
+        """`[a b ...]`, also with commas, to the end of the line; one number may stand bare. Zeros
+        that MATLAB pads it with are left out."""
+        if count == 1 and stream.token.kind == NUMBER:
+            values = [stream.number(f"{count} numbers", or_infinite)]
+            self.finish_line(stream)
+            return values
+        values, ats = self.values(stream, count, or_infinite)
+        if any(values[count:]):
+            at = ats[count]
+            raise self.source.error(at, f"found {at.shown()}", f"']' behind {count} numbers")
+        return values[:count]
+
+    def values(
+        self, stream: Stream, least: int = 1, or_infinite: bool = False
+    ) -> tuple[list[float], list[Token]]:
+        """At least so many, and where each begins."""
+        what = f"{least} numbers"
+        stream.expect("[")
+        found: list[float] = []
+        ats: list[Token] = []
+        while len(found) < least or not stream.sees("]"):
+            stream.accept(*([","] if found else []))
+            ats.append(stream.token)
+            found.append(self.value(stream, what, or_infinite))
+        stream.expect("]", after=f" behind {what}")
+        self.finish_line(stream)
+        return found, ats
+
+    def value(self, stream: Stream, what: str, or_infinite: bool) -> float:
+        """A number, or numbers with operators and no space between, such as -pi/4."""
+        start = stream.token
+        end = re.compile(r"[^\s,\]]+").match(self.source.text, start.offset)
+        is_number = start.kind == NUMBER and (
+            end is None or end.end() == start.offset + len(start.text)
+        )
+        if is_number or end is None or not re.search(r"[A-Za-z]|[-+*/^]", end.group()):
+            return stream.number(what, or_infinite)
+        formula = read_formula(self.source, start.offset, end.end())
+        if formula.names:
+            raise stream.unexpected(what)
+        while stream.token.kind != END and stream.token.offset < end.end():
+            stream.take()
+        return float(formula({}))
 
     def check_complete(self, at: Token) -> None:
         if self.type is None:
             raise self.source.error(at, "no Type", "Type='mamdani' or Type='sugeno'")
-        for key, wanted in REQUIRED[self.type.text].items():
-            token = self.methods.get(key)
-            if token is None:
+        plain = PLAIN.get(self.type.text, {})
+        for key in ("DefuzzMethod",) if self.type.text != "mamdani" else PLAIN["mamdani"]:
+            if key not in self.methods:
+                wanted = plain.get(key, "wtaver")
                 raise self.source.error(at, f"no {key}", f"{key}='{wanted}'")
+        for key, wanted in plain.items():
+            token = self.methods[key]
             if token.text != wanted:
                 what = f"{key} '{token.text}' of a {self.type.text} system"
-                raise self.source.error(token, what, f"'{wanted}'")
+                self.builder.not_plain(token, what, f"'{wanted}'")
         if self.rule_lines is None:
             raise self.source.error(at, "no section [Rules]", "'[Rules]'")
         for variable in self.builder.of_kind(is_input=False):
@@ -261,12 +383,19 @@ class FisReader:
 
     def set_method(self, variable: Variable) -> None:
         assert self.type is not None and variable.low is not None and variable.high is not None
+        is_value = all(isinstance(t.content, float | Line | Formula) for t in variable.terms)
+        method = DEFUZZIFIERS[self.methods["DefuzzMethod"].text]
+        if is_value and method in model.SET_METHODS:
+            method = model.BY_RULE
         variable.method = CENTROID if self.type.text == "mamdani" else WEIGHTED_SUM
-        variable.default = 0.5 * (variable.low + variable.high)
-        self.builder.notes.append(
-            f"{variable.shown()}: where no rule fires {variable.default:g}, the middle of its "
-            "range, as in MATLAB"
-        )
+        variable.system_method, variable.places = method, PLACES
+        variable.aggregation = self.norm("AggMethod", MAXIMUM)
+        if variable.default is None and variable.default_at is None:
+            variable.default = 0.5 * (variable.low + variable.high)
+            self.builder.notes.append(
+                f"{variable.shown()}: where no rule fires {variable.default:g}, the middle of its "
+                "range, as in MATLAB"
+            )
 
     def check_counts(self) -> None:
         actual = {
@@ -286,11 +415,13 @@ class FisReader:
         """`1 -2, 3 (0.5) : 1`: sets, terms, weight, connective."""
         stream = Stream(self.source, tokens)
         at = stream.token
-        conditions = []
+        conditions: list[Expression] = []
         for index, variable in enumerate(self.builder.of_kind(is_input=True)):
-            place = self.index(stream, variable)
-            if place:
-                conditions.append(Condition(index, abs(place) - 1, place < 0))
+            token = stream.token
+            place, hedges = self.index(stream, variable)
+            if place or ANY in hedges:
+                term, places = max(0, abs(place) - 1), (token.offset, token.offset)
+                conditions.append(Proposition(True, index, term, hedges, places))
         if not conditions:
             raise self.source.error(at, "a rule without a condition", "a set of an input")
         stream.expect(",", after=" and the terms of the outputs")
@@ -304,30 +435,39 @@ class FisReader:
         expression = conditions[0] if len(conditions) == 1 else Join(connective, tuple(conditions))
         return Draft(at, expression, conclusions, weight)
 
-    def conclusions(self, stream: Stream) -> dict[int, int]:
-        at, found = stream.token, {}
+    def conclusions(self, stream: Stream) -> tuple[Conclusion, ...]:
+        at, found = stream.token, []
         for index, variable in enumerate(self.builder.of_kind(is_input=False)):
             token = stream.token
-            place = self.index(stream, variable)
-            if place < 0:
+            place, hedges = self.index(stream, variable)
+            if place < 0 or ANY in hedges:
                 raise self.source.error(token, f"negated term {token.text}", "a term or 0")
             if place:
-                found[index] = place - 1
+                found.append(Conclusion(index, place - 1, hedges[::-1], token.offset))
         if not found:
             raise self.source.error(at, "a rule without a conclusion", "a term of an output")
-        return found
+        return tuple(found)
 
-    def index(self, stream: Stream, variable: Variable) -> int:
-        """The number of a term, negative where negated, 0 for none."""
+    def index(self, stream: Stream, variable: Variable) -> tuple[int, tuple[str, ...]]:
+        """The number of a term, negative where negated, 0 for none; hedges as written: NOT first,
+        then what the decimals mean."""
         most = len(variable.terms)
         token = stream.expect_kind(NUMBER, f"the number of a term of {variable.shown()}")
         value = self.source.number(token)
-        if value != int(value):
-            raise self.source.error(token, f"{token.text} has a hedge", "a whole number")
-        if abs(value) > most:
+        place = int(value)
+        if abs(place) > most:
             what = f"no term {token.text} of {variable.shown()}"
             raise self.source.error(token, what, f"0 to {most}")
-        return int(value)
+        hedges = (NOT,) if value < 0 else ()
+        decimals = round(100 * (abs(value) - abs(place)))
+        if decimals == 0:
+            return place, hedges
+        words = (FUZZYLITE_HEDGES if self.is_from_fuzzylite else HEDGES).get(decimals)
+        if words is None or abs(100 * (abs(value) - abs(place)) - decimals) > 1e-6:
+            known = ", ".join(f".{one:02d}" for one in HEDGES)
+            raise self.source.error(token, f"{token.text} has a hedge", f"one of {known}, or none")
+        self.builder.not_plain(token, f"{token.text} has a hedge", "a whole number")
+        return place, (*hedges, *words)
 
     def connective(self, stream: Stream) -> str:
         token = stream.expect_kind(NUMBER, "1 (and) or 2 (or)")
@@ -341,7 +481,6 @@ class FisReader:
         if uses(draft.expression, connective) and (token is None or token.text != wanted):
             named = f"'{token.text}'" if token else "missing"
             what = f"{key} {named}, and a rule has '{connective}'"
-            raise self.source.error(token or draft.at, what, f"'{wanted}'")
-
-    def rules(self, drafts: Sequence[Draft], outputs: Sequence[Output]) -> list[Rule]:
-        return [rule for d in drafts for rule in plain_rules(self.source, d, outputs)]
+            if token is None or (connective == OR and token.text == "sum"):
+                raise self.source.error(token or draft.at, what, f"'{wanted}'")
+            self.builder.not_plain(token, what, f"'{wanted}'")

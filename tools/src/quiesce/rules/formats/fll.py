@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from quiesce.rules.formats.build import Builder, Content, Options, Term, Variable
+from quiesce.rules.formats.build import Builder, Content, Options, Straight, Term, Variable
 from quiesce.rules.formats.fll_lines import (
     BLOCK,
     ENGINE,
@@ -14,7 +14,8 @@ from quiesce.rules.formats.fll_lines import (
     split_lines,
     split_sections,
 )
-from quiesce.rules.formats.logic import Draft, RuleParser, Words, plain_rules, uses
+from quiesce.rules.formats.formula import Formula, read_formula
+from quiesce.rules.formats.logic import HEDGE_WORDS, Draft, RuleParser, Words, uses
 from quiesce.rules.formats.scan import (
     END,
     INFINITE_PATTERN,
@@ -28,42 +29,32 @@ from quiesce.rules.formats.scan import (
     scan,
 )
 from quiesce.rules.formats.shapes import FLL_SHAPES, SHOULDERS
-from quiesce.rules.model import (
-    AND,
-    CENTROID,
-    OR,
-    WEIGHTED_MAX,
-    WEIGHTED_SUM,
-    Output,
-    Point,
-    Rule,
-    RuleBase,
-)
+from quiesce.rules.model import AND, CENTROID, OR, WEIGHTED_MAX, WEIGHTED_SUM
+from quiesce.rules.system import model
+from quiesce.rules.system.model import Block
+from quiesce.rules.system.norms import MAXIMUM, MINIMUM, S_NORMS, T_NORMS, UNBOUNDED_SUM
 
 PATTERN = re.compile(
     rf"\s+|(?P<number>{NUMBER_PATTERN}|{INFINITE_PATTERN})|(?P<name>{WORD_PATTERN})"
     r"|(?P<symbol>[()])"
 )
-HEDGES = ("any", "extremely", "seldom", "somewhat", "very")
-WORDS = Words(
-    "if", "then", "is", "not", "and", "or", "with", ("and",), ignore_case=False, refused=HEDGES
-)
-RESERVED = WORDS.reserved()
-OTHER_TERMS = ("Constant", "Linear", "Discrete")
-T_NORMS = (
-    "Minimum", "AlgebraicProduct", "BoundedDifference", "DrasticProduct", "EinsteinProduct",
-    "HamacherProduct", "NilpotentMinimum",
-)  # fmt: skip
-S_NORMS = (
-    "Maximum", "AlgebraicSum", "BoundedSum", "DrasticSum", "EinsteinSum", "HamacherSum",
-    "NilpotentMaximum", "NormalizedSum", "UnboundedSum",
-)  # fmt: skip
+# A hedge of a conclusion lasts on as it does in FuzzyLite.
+WORDS = Words("if", "then", "is", "not", "and", "or", "with", ("and",), False, hedges_last_on=True)
+RESERVED = {*WORDS.reserved(), *HEDGE_WORDS}
+OTHER_TERMS = ("Constant", "Linear", "Discrete", "Function")
+DEFUZZIFIERS = {
+    "Centroid": model.CENTROID, "Bisector": model.BISECTOR, "SmallestOfMaximum": model.SMALLEST,
+    "LargestOfMaximum": model.LARGEST, "MeanOfMaximum": model.MEAN,
+    "WeightedAverage": "", "WeightedSum": model.WEIGHTED,
+}  # fmt: skip
+DEFAULT_PLACES = 1000  # FuzzyLite's, of a file that does not say
+FUNCTION_LINE = re.compile(rf"\s*{WORD_PATTERN}\s+Function\s+(?P<formula>\S.*)")
 NONE = "none"
 PRECISE_FROM = 2  # resolutions of a centroid, which is exact here
 
 
-def read_fll(source: Source, name: str, options: Options) -> RuleBase:
-    """name: of the base where the file gives it none."""
+def read_fll(source: Source, name: str, options: Options) -> tuple[Builder, str, Token]:
+    """name: of the base where the file gives it none. Returns with it and where it begins."""
     return FllReader(source, options).read(name)
 
 
@@ -71,11 +62,10 @@ class FllReader:
     def __init__(self, source: Source, options: Options) -> None:
         self.source = source
         self.builder = Builder(source, options)
-        self.drafts: list[Draft] = []
         self.implications: list[Token | None] = []  # of the rule blocks
         self.blocks: list[Section] = []
 
-    def read(self, name: str) -> RuleBase:
+    def read(self, name: str) -> tuple[Builder, str, Token]:
         sections = split_sections(self.source, split_lines(self.source))
         if not sections:
             raise self.source.error(0, "no line but comments", "'Engine: name' first")
@@ -90,7 +80,7 @@ class FllReader:
         title = Token(NAME, self.source.text[first.start : first.end].strip(), first.start)
         if title.text:
             self.builder.check_name(title, [], "engine")
-        return self.builder.finish(title.text or name, first.key, self.rules)
+        return self.builder, title.text or name, first.key
 
     def section(self, section: Section) -> None:
         kind = section.head.key.text
@@ -110,8 +100,15 @@ class FllReader:
         if kind == OUTPUT:
             self.set_method(variable, section)
 
-    def stream(self, line: Line) -> Stream:
-        return Stream(self.source, scan(self.source, PATTERN, line.start, line.end))
+    def stream(self, line: Line, end: int | None = None) -> Stream:
+        return Stream(self.source, scan(self.source, PATTERN, line.start, end or line.end))
+
+    def formula(self, line: Line) -> Formula:
+        found = FUNCTION_LINE.match(self.source.text, line.start, line.end)
+        if found is None:
+            raise self.source.error(line.end, "found the end of the line", "a formula")
+        self.builder.not_plain(line.key, "a formula", "a shape")
+        return read_formula(self.source, found.start("formula"), line.end)
 
     def finish_line(self, stream: Stream) -> None:
         if stream.token.kind != END:
@@ -140,7 +137,7 @@ class FllReader:
         elif key == "enabled":
             self.enabled(line)
         elif key == "lock-range":
-            self.word(line, ("true", "false"))
+            variable.clips = self.word(line, ("true", "false")).text == "true"
 
     def range(self, variable: Variable, line: Line) -> None:
         stream = self.stream(line)
@@ -155,17 +152,23 @@ class FllReader:
             variable.default = stream.number("a number or 'nan'")
         self.finish_line(stream)
 
-    def lock_previous(self, _variable: Variable, line: Line) -> None:
+    def lock_previous(self, variable: Variable, line: Line) -> None:
         if self.word(line, ("true", "false")).text == "true":
-            raise self.source.error(line.key, "'lock-previous: true' keeps a value", "'false'")
+            self.builder.not_plain(line.key, "'lock-previous: true' keeps a value", "'false'")
+            self.builder.notes.append(
+                f"{variable.shown()} keeps its last value where no rule fires: that is left to the "
+                "caller, who is told so by a bit"
+            )
 
     def term(self, variable: Variable, line: Line) -> None:
-        stream = self.stream(line)
+        found = FUNCTION_LINE.match(self.source.text, line.start, line.end)
+        stream = self.stream(line, found.start("formula") if found else line.end)
         name = stream.expect_kind(NAME, "the name of a term")
         if name.text in RESERVED:
             raise self.source.error(name, f"{name.shown()} is a word of FLL", "another name")
         at = stream.token
-        self.builder.add_term(variable, Term(name, at, self.content(stream)))
+        content = self.formula(line) if at.text == "Function" else self.content(stream)
+        self.builder.add_term(variable, Term(name, at, content))
 
     def content(self, stream: Stream) -> Content:
         if not stream.sees(*FLL_SHAPES, *OTHER_TERMS):
@@ -196,14 +199,14 @@ class FllReader:
             raise self.source.error(token, f"height {value:g}", "above 0, at most 1")
         return value
 
-    def discrete(self, at: Token, tokens: Sequence[Token]) -> tuple[Point, ...]:
+    def discrete(self, at: Token, tokens: Sequence[Token]) -> Straight:
         """Pairs, then perhaps a height."""
         height = self.height(tokens[-1]) if len(tokens) % 2 else 1.0
         ats = tokens[: len(tokens) // 2 * 2 : 2]
         values = [self.source.number(token) for token in tokens]
         pairs = zip(values[::2], values[1::2], strict=False)
         points = self.builder.points(at, list(pairs), ats)
-        return tuple((x, height * mu) for x, mu in points)
+        return Straight(at.text, tuple((x, height * mu) for x, mu in points), height)
 
     def set_method(self, variable: Variable, section: Section) -> None:
         lines = {line.key.text: line for line in section.lines}
@@ -215,42 +218,66 @@ class FllReader:
         if "aggregation" in lines:
             aggregation = self.word(lines["aggregation"], (*S_NORMS, NONE))
         stream = self.stream(lines["defuzzifier"])
-        method = stream.expect("Centroid", "WeightedAverage")
-        if method.text == "Centroid":
-            self.resolution(variable, stream)
+        method = stream.expect(*DEFUZZIFIERS)
+        is_sets = DEFUZZIFIERS[method.text] in model.SET_METHODS
+        if is_sets:
+            self.resolution(variable, method, stream)
         else:
-            stream.accept("Automatic", "TakagiSugeno")
+            stream.accept("Automatic", "TakagiSugeno", "Tsukamoto")
         self.finish_line(stream)
         variable.method_at = method
-        variable.method = self.method(method, aggregation)
+        self.set_system_method(variable, method, aggregation)
+        if method.text in ("Centroid", "WeightedAverage"):
+            variable.method = self.method(method, aggregation)
+        else:
+            self.builder.not_plain(
+                method, f"found {method.shown()}", "'Centroid' or 'WeightedAverage'"
+            )
 
-    def resolution(self, variable: Variable, stream: Stream) -> None:
+    def set_system_method(
+        self, variable: Variable, method: Token, aggregation: Token | None
+    ) -> None:
+        norm = aggregation.text if aggregation and aggregation.text != NONE else ""
+        if DEFUZZIFIERS[method.text] in model.SET_METHODS and not norm:
+            raise self.source.error(
+                aggregation or method, f"aggregation {NONE} with {method.text}", "a norm"
+            )
+        variable.system_method = DEFUZZIFIERS[method.text] or (
+            model.BY_TERM if norm and norm != UNBOUNDED_SUM else model.BY_RULE
+        )
+        variable.aggregation = norm or UNBOUNDED_SUM
+
+    def resolution(self, variable: Variable, method: Token, stream: Stream) -> None:
+        variable.places = DEFAULT_PLACES
         if stream.token.kind != NUMBER:
             return
         at = stream.token
         value = stream.number()
         if value != int(value) or value < PRECISE_FROM:
             raise self.source.error(at, f"resolution {at.text}", "a whole number from 2 on")
-        self.builder.notes.append(
-            f"{variable.shown()}: an exact centroid in place of {value:g} samples"
-        )
+        variable.places = min(int(value), model.MAX_PLACES)
+        if method.text == "Centroid":
+            self.builder.plain_notes.append(
+                f"{variable.shown()}: an exact centroid in place of {value:g} samples"
+            )
 
     def method(self, method: Token, aggregation: Token | None) -> str:
+        """Of a plain base."""
         text = aggregation.text if aggregation else NONE
-        allowed = {"Maximum": WEIGHTED_MAX, NONE: WEIGHTED_SUM, "UnboundedSum": WEIGHTED_SUM}
+        allowed = {MAXIMUM: WEIGHTED_MAX, NONE: WEIGHTED_SUM, UNBOUNDED_SUM: WEIGHTED_SUM}
         if method.text == "Centroid":
-            allowed = {"Maximum": CENTROID}
+            allowed = {MAXIMUM: CENTROID}
         if text not in allowed:
             words = " or ".join(f"'{word}'" for word in allowed)
-            raise self.source.error(
+            self.builder.not_plain(
                 aggregation or method, f"aggregation {text} with {method.text}", words
             )
-        return allowed[text]
+        return allowed.get(text, "")
 
     def rule_block(self, section: Section) -> None:
         operators: dict[str, Token] = {}
-        parser_names = self.builder.names()
-        first = len(self.drafts)
+        builder, number = self.builder, len(self.builder.blocks)
+        parser_names, first = builder.names(), len(builder.drafts)
         for line in section.lines:
             key = line.key.text
             if key == "enabled":
@@ -263,33 +290,45 @@ class FllReader:
                 operators[key] = self.word(line, (*S_NORMS, NONE))
             elif key == "rule":
                 stream = self.stream(line)
-                self.drafts.append(RuleParser(stream, WORDS, parser_names).rule())
+                builder.drafts.append(RuleParser(stream, WORDS, parser_names, number).rule())
                 self.finish_line(stream)
         if "activation" not in operators:
             raise self.source.error(section.head.key, "no activation", "'activation: General'")
         self.implications.append(operators.get("implication"))
-        for draft in self.drafts[first:]:
-            self.check_operator(draft, AND, operators.get("conjunction"), "Minimum")
-            self.check_operator(draft, OR, operators.get("disjunction"), "Maximum")
+        words = [
+            named(operators.get("conjunction"), MINIMUM),
+            named(operators.get("disjunction"), MAXIMUM),
+            named(operators.get("implication"), MINIMUM),
+        ]
+        builder.blocks.append(Block(*words))
+        for draft in builder.drafts[first:]:
+            self.check_operator(draft, AND, operators.get("conjunction"), MINIMUM)
+            self.check_operator(draft, OR, operators.get("disjunction"), MAXIMUM)
 
     def check_operator(
         self, draft: Draft, connective: str, operator: Token | None, wanted: str
     ) -> None:
         """An operator that no rule needs may be any."""
         if uses(draft.expression, connective) and (operator is None or operator.text != wanted):
-            named = operator.text if operator else NONE
-            what = f"'{connective}' with the operator {named}"
-            raise self.source.error(operator or draft.at, what, f"'{wanted}'")
+            text = operator.text if operator else NONE
+            what, at = f"'{connective}' with the operator {text}", operator or draft.at
+            if text in (NONE, UNBOUNDED_SUM):
+                raise self.source.error(at, what, f"'{wanted}'")
+            self.builder.not_plain(at, what, f"'{wanted}'")
 
     def check_implications(self) -> None:
         """Weighted averages take no implication."""
-        if all(v.method != CENTROID for v in self.builder.of_kind(is_input=False)):
+        sets = [v for v in self.builder.of_kind(False) if v.system_method in model.SET_METHODS]
+        if not sets:
             return
+        assert sets[0].method_at is not None
         for block, implication in zip(self.blocks, self.implications, strict=True):
-            if implication is None or implication.text != "Minimum":
-                named = implication.text if implication else NONE
+            if implication is None or implication.text != MINIMUM:
+                text = implication.text if implication else NONE
                 at = implication or block.head.key
-                raise self.source.error(at, f"implication {named} with Centroid", "'Minimum'")
+                what = f"implication {text} with {sets[0].method_at.text}"
+                self.builder.not_plain(at, what, f"'{MINIMUM}'")
 
-    def rules(self, outputs: Sequence[Output]) -> list[Rule]:
-        return [rule for d in self.drafts for rule in plain_rules(self.source, d, outputs)]
+
+def named(operator: Token | None, otherwise: str) -> str:
+    return otherwise if operator is None or operator.text == NONE else operator.text

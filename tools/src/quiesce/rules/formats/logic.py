@@ -1,36 +1,15 @@
-"""Rules as text: conditions with AND, OR, NOT and parentheses, and their split into plain rules.
-
-FCL and FLL share it. A rule of the model joins its conditions with one connective. A mixed
-expression becomes the rules of its disjunctive form, one for each conjunction; that is exact where
-an output takes the greatest strength of a term's rules, as the strength of an expression is a
-maximum of minima, but not where each rule adds to a sum.
-"""
+"""Rules as text: conditions with AND, OR, NOT, hedges and parentheses. FCL and FLL share it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from quiesce.rules.formats.scan import NAME, Source, Stream, Token
-from quiesce.rules.model import (
-    AND,
-    MAX_CONDITIONS,
-    MAX_RULES,
-    OR,
-    WEIGHTED_SUM,
-    Condition,
-    Output,
-    Rule,
-)
+from quiesce.rules.model import AND, OR
+from quiesce.rules.system.model import Complement, Conclusion, Expression, Join, Proposition
+from quiesce.rules.system.norms import ANY, NOT
 
 MAX_DEPTH = 32  # of parentheses and NOTs
-
-
-@dataclass(frozen=True)
-class Join:
-    connective: str
-    parts: tuple["Expression", ...]
-
-
-Expression = Condition | Join
+HEDGE_WORDS = (ANY, "very", "somewhat", "extremely", "seldom")
 
 
 @dataclass(frozen=True)
@@ -46,11 +25,10 @@ class Words:
     with_: str
     separators: tuple[str, ...]  # of conclusions
     ignore_case: bool
-    refused: tuple[str, ...] = ()  # hedges that the format knows and the model does not
+    hedges_last_on: bool = False  # those of a conclusion count for the ones behind it, too
 
     def reserved(self) -> set[str]:
-        own = {self.if_, self.then, self.is_, self.not_, self.and_, self.or_, self.with_}
-        return own | set(self.refused)
+        return {self.if_, self.then, self.is_, self.not_, self.and_, self.or_, self.with_}
 
 
 @dataclass(frozen=True)
@@ -70,15 +48,19 @@ class Draft:
 
     at: Token
     expression: Expression
-    conclusions: dict[int, int]  # output -> term
+    conclusions: tuple[Conclusion, ...]
     weight: float
+    block: int = 0
 
 
 class RuleParser:
-    def __init__(self, stream: Stream, words: Words, names: dict[str, Names]) -> None:
+    def __init__(
+        self, stream: Stream, words: Words, names: dict[str, Names], block: int = 0
+    ) -> None:
         self.stream = stream
         self.words = words
         self.names = names
+        self.block = block
         self.depth = 0
 
     def rule(self) -> Draft:
@@ -91,7 +73,7 @@ class RuleParser:
         stream.take()
         conclusions = self.conclusions()
         weight = self.weight() if stream.accept(words.with_) else 1.0
-        return Draft(at, expression, conclusions, weight)
+        return Draft(at, expression, conclusions, weight, self.block)
 
     def alternatives(self) -> Expression:
         parts = [self.conjunction()]
@@ -117,22 +99,46 @@ class RuleParser:
             assert at is not None
             expected = f"at most {MAX_DEPTH} nested NOTs and parentheses"
             raise stream.source.error(at, f"found {at.shown()}", expected)
-        found = negated(self.factor()) if is_not else self.alternatives()
+        found = complement(self.factor()) if is_not else self.alternatives()
         if opened:
             stream.expect(")")
         self.depth -= 1
         return found
 
-    def condition(self) -> Condition:
-        variable = self.variable(is_input=True)
+    def condition(self) -> Proposition:
+        start = self.stream.token
+        variable = self.variable(is_input=None)
         self.stream.expect(self.words.is_)
-        is_negated = False
-        while self.stream.accept(self.words.not_):
-            is_negated = not is_negated
-        return Condition(variable.index, self.term(variable), is_negated)
+        hedged = self.stream.token
+        hedges = self.hedges(variable)
+        is_complete = ANY in hedges and hedges[-1] == ANY
+        term = 0 if is_complete else self.term(variable)
+        return Proposition(
+            variable.is_input, variable.index, term, hedges, (start.offset, hedged.offset)
+        )
 
-    def conclusions(self) -> dict[int, int]:
-        found: dict[int, int] = {}
+    def hedges(self, variable: Names) -> tuple[str, ...]:
+        """Words before a term. `any` stands for all of the term."""
+        found: list[str] = []
+        while True:
+            token = self.stream.token
+            if self.stream.accept(self.words.not_):
+                found.append(NOT)
+            elif token.kind == NAME and self.is_hedge(token, variable):
+                found.append(self.stream.take().text.lower())
+                if found[-1] == ANY:
+                    return tuple(found)
+            else:
+                return tuple(found)
+
+    def is_hedge(self, token: Token, variable: Names) -> bool:
+        """Where a format does not reserve the words a term may be called like one."""
+        text = token.text.lower() if self.words.ignore_case else token.text
+        return text in HEDGE_WORDS and self.key(token) not in variable.terms
+
+    def conclusions(self) -> tuple[Conclusion, ...]:
+        found: dict[int, Conclusion] = {}
+        before: tuple[str, ...] = ()
         while True:
             at = self.stream.token
             variable = self.variable(is_input=False)
@@ -141,23 +147,34 @@ class RuleParser:
                     at, f"output {at.text} is named twice", "each output once in a rule"
                 )
             self.stream.expect(self.words.is_)
-            found[variable.index] = self.term(variable)
+            hedged = self.stream.token
+            words = self.hedges(variable)
+            if ANY in words:
+                raise self.stream.source.error(hedged, "'any' in a conclusion", "a term")
+            hedges = (*before, *reversed(words))
+            before = hedges if self.words.hedges_last_on else ()
+            term = self.term(variable)
+            found[variable.index] = Conclusion(variable.index, term, hedges, hedged.offset)
             if not self.stream.accept(*self.words.separators):
-                return found
+                return tuple(found.values())
 
-    def variable(self, is_input: bool) -> Names:
-        kind = "input" if is_input else "output"
-        token = self.name(f"the name of an {kind}")
+    def variable(self, is_input: bool | None) -> Names:
+        """is_input: None where it may be either."""
+        kind = "an output" if is_input is False else "an input"
+        token = self.name(f"the name of {kind}")
         found = self.names.get(self.key(token))
-        if found is None or found.is_input != is_input:
-            known = ", ".join(v.shown for v in self.names.values() if v.is_input == is_input)
-            what = "no variable" if found is None else f"not an {kind}:"
+        if found is None or is_input not in (None, found.is_input):
+            wanted = is_input is not False
+            known = ", ".join(v.shown for v in self.names.values() if v.is_input == wanted)
+            what = "no variable" if found is None else f"not {kind}:"
             raise self.stream.source.error(token, f"{what} {token.shown()}", f"one of {known}")
         return found
 
     def term(self, variable: Names) -> int:
         token = self.name(f"a term of {variable.shown}")
         found = variable.terms.get(self.key(token))
+        if not variable.terms:
+            raise self.stream.source.error(token, f"{variable.shown} has no terms", "terms")
         if found is None:
             terms = ", ".join(variable.shown_terms)
             raise self.stream.source.error(
@@ -167,10 +184,6 @@ class RuleParser:
 
     def name(self, expected: str) -> Token:
         token = self.stream.token
-        if token.kind == NAME and self.key(token) in self.words.refused:
-            raise self.stream.source.error(
-                token, f"hedge {token.shown()} is not supported", f"a term or '{self.words.not_}'"
-            )
         if token.kind != NAME or self.key(token) in self.words.reserved():
             raise self.stream.unexpected(expected)
         return self.stream.take()
@@ -194,67 +207,22 @@ def join(connective: str, parts: Sequence[Expression]) -> Expression:
     merged: list[Expression] = []
     for part in parts:
         same = isinstance(part, Join) and part.connective == connective
-        merged += part.parts if same else [part]
+        merged += part.parts if same else [part]  # type: ignore[union-attr]
     return merged[0] if len(merged) == 1 else Join(connective, tuple(merged))
 
 
-def negated(expression: Expression) -> Expression:
-    """1 - min(a, b) = max(1 - a, 1 - b), and the other way round."""
-    if isinstance(expression, Condition):
-        return Condition(expression.input, expression.set, not expression.negated)
-    other = OR if expression.connective == AND else AND
-    return join(other, [negated(part) for part in expression.parts])
+def complement(expression: Expression) -> Expression:
+    """Of a condition: one that is negated once more."""
+    if isinstance(expression, Complement):
+        return expression.part
+    return Complement(expression)
 
 
 def uses(expression: Expression, connective: str) -> bool:
-    if isinstance(expression, Condition):
+    if isinstance(expression, Proposition):
         return False
+    if isinstance(expression, Complement):
+        return uses(expression.part, connective)
     return expression.connective == connective or any(
         uses(part, connective) for part in expression.parts
     )
-
-
-def plain_rules(source: Source, draft: Draft, outputs: Sequence[Output]) -> list[Rule]:
-    """The rules of the model that mean this one."""
-    conclusions = tuple(draft.conclusions.get(i) for i in range(len(outputs)))
-    found = plain(draft.expression)
-    if found is None:
-        summed = [outputs[i].name for i in draft.conclusions if outputs[i].method == WEIGHTED_SUM]
-        if summed:
-            raise source.error(
-                draft.at,
-                f"AND and OR are mixed, and output {summed[0]} adds up its rules one by one, "
-                "so that they cannot be split",
-                "one connective in a rule",
-            )
-        found = [(AND, part) for part in disjunctive(source, draft.at, draft.expression)]
-    longest = max(len(conditions) for _, conditions in found)
-    if longest > MAX_CONDITIONS:
-        raise source.error(draft.at, f"{longest} conditions", f"at most {MAX_CONDITIONS} in a rule")
-    return [Rule(tuple(c), conclusions, connective, draft.weight) for connective, c in found]
-
-
-def plain(expression: Expression) -> list[tuple[str, tuple[Condition, ...]]] | None:
-    """None where connectives are mixed."""
-    if isinstance(expression, Condition):
-        return [(AND, (expression,))]
-    if all(isinstance(part, Condition) for part in expression.parts):
-        return [(expression.connective, expression.parts)]
-    return None
-
-
-def disjunctive(source: Source, at: Token, expression: Expression) -> list[tuple[Condition, ...]]:
-    """Conjunctions whose maximum is the expression; each without repeats."""
-    if isinstance(expression, Condition):
-        return [(expression,)]
-    parts = [disjunctive(source, at, part) for part in expression.parts]
-    found: list[tuple[Condition, ...]] = [] if expression.connective == OR else [()]
-    for part in parts:
-        if expression.connective == OR:
-            found = [*found, *part]
-        else:
-            found = [tuple(dict.fromkeys((*a, *b))) for a in found for b in part]
-        found = list(dict.fromkeys(found))
-        if len(found) > MAX_RULES:
-            raise source.error(at, f"more than {MAX_RULES} rules once split", "a simpler rule")
-    return found

@@ -9,7 +9,7 @@ import numpy as np
 from quiesce.rules.model import Point, ramp, trapezoid, triangle
 
 Curve = Callable[[np.ndarray], np.ndarray]  # membership at each x
-SHOULDERS = ("Trapezoid", "trapmf")  # whose flanks may be infinite
+SHOULDERS = ("Trapezoid", "trapmf", "Binary", "binarymf")  # whose numbers may be infinite
 ERROR_STEPS = 20000  # of the universe, at which an approximation's error is taken
 GRID_STEPS = 2000  # of the universe, where breakpoints may lie
 
@@ -40,6 +40,13 @@ def trapezoid_points(a: float, b: float, c: float, d: float) -> tuple[Point, ...
 def rectangle_points(start: float, end: float) -> tuple[Point, ...]:
     require(start < end, "a start below the end")
     return trapezoid("", start, start, end, end).points
+
+
+def binary_points(start: float, direction: float) -> tuple[Point, ...]:
+    """1 from start on, to infinity or from minus infinity."""
+    require(math.isinf(direction), "inf or -inf for its direction")
+    edge = ((start, 0.0), (start, 1.0))
+    return edge if direction > 0 else edge[::-1]
 
 
 def ramp_points(zero: float, one: float) -> tuple[Point, ...]:
@@ -124,17 +131,70 @@ def concave(inflection: float, end: float) -> Curve:
     return lambda x: reach / (reach + np.maximum(sign * (end - x), 0.0))
 
 
+def arc(start: float, end: float) -> Curve:
+    """A quarter of a circle, from 0 at its start to 1 at its end."""
+    require(start != end, "two different ends")
+    return lambda x: np.sqrt(np.maximum(0.0, 1.0 - np.square(beyond(x, start, end))))
+
+
+def beyond(x: np.ndarray, start: float, end: float) -> np.ndarray:
+    """How far before the end: 0 from there on, 1 up to the start."""
+    return np.clip((end - x) / (end - start), 0.0, 1.0)
+
+
+def semi_ellipse(one: float, other: float) -> Curve:
+    require(one != other, "two different ends")
+    centre, radius = 0.5 * (one + other), 0.5 * abs(other - one)
+    return lambda x: np.sqrt(np.maximum(0.0, 1.0 - np.square((x - centre) / radius)))
+
+
+# x of a membership, of shapes that only rise or only fall: what Tsukamoto's method takes.
+
+
+def ramp_inverse(zero: float, one: float) -> Curve:
+    return lambda mu: zero + (one - zero) * mu
+
+
+def sigmoid_inverse(inflection: float, slope: float) -> Curve:
+    return lambda mu: inflection - np.log(1.0 / mu - 1.0) / slope
+
+
+def s_inverse(start: float, end: float) -> Curve:
+    """From the value 0 at start to 1 at end, whichever is the larger."""
+    low = lambda mu: start + (end - start) * np.sqrt(0.5 * mu)  # noqa: E731
+    high = lambda mu: end - (end - start) * np.sqrt(0.5 * np.maximum(0.0, 1.0 - mu))  # noqa: E731
+    return lambda mu: np.where(mu <= 0.5, low(mu), high(mu))
+
+
+def z_inverse(start: float, end: float) -> Curve:
+    return s_inverse(end, start)
+
+
+def concave_inverse(inflection: float, end: float) -> Curve:
+    return lambda mu: (inflection - end) / mu + 2.0 * end - inflection
+
+
+def arc_inverse(start: float, end: float) -> Curve:
+    return lambda mu: end - (end - start) * np.sqrt(np.maximum(0.0, 1.0 - np.square(mu)))
+
+
 @dataclass(frozen=True)
 class Shape:
-    """make(*parameters[i] for i in order) gives points (straight) or a curve."""
+    """make(*parameters[i] for i in order) gives points (straight) or a curve. knots: where a curve
+    may bend or jump; inverse: of one that only rises or falls; both of its parameters."""
 
     make: Callable[..., tuple[Point, ...] | Curve]
     parameters: int
     order: tuple[int, ...] = ()
     is_smooth: bool = False
+    knots: Callable[..., tuple[float, ...]] = lambda *_: ()
+    inverse: Callable[..., Curve] | None = None
+
+    def ordered(self, values: Sequence[float]) -> list[float]:
+        return [values[i] for i in self.order or range(self.parameters)]
 
     def __call__(self, values: Sequence[float]) -> tuple[Point, ...] | Curve:
-        return self.make(*(values[i] for i in self.order or range(self.parameters)))
+        return self.make(*self.ordered(values))
 
 
 def straight(make: Callable[..., tuple[Point, ...]], parameters: int) -> Shape:
@@ -143,14 +203,42 @@ def straight(make: Callable[..., tuple[Point, ...]], parameters: int) -> Shape:
 
 def smooth(make: Callable[..., Curve], *order: int) -> Shape:
     """order: where the file has each of the function's parameters."""
-    return Shape(make, len(order), order, is_smooth=True)
+    return Shape(make, len(order), order, True, *MORE.get(make, ()))
+
+
+def ends(*parameters: float) -> tuple[float, ...]:
+    return parameters
+
+
+def halves(start: float, end: float) -> tuple[float, ...]:
+    return start, 0.5 * (start + end), end
+
+
+# Knots and inverses of those that have any.
+MORE: dict[Callable, tuple] = {
+    two_gaussians: (lambda mean_a, _a, mean_b, _b: (mean_a, mean_b),),
+    bell: (lambda centre, _width, _slope: (centre,),),
+    sigmoid: (lambda *_: (), sigmoid_inverse),
+    s_shape: (halves, s_inverse),
+    z_shape: (halves, z_inverse),
+    pi_shape: (lambda a, b, c, d: (*halves(a, b), *halves(c, d)),),
+    cosine: (lambda centre, width: (centre - 0.5 * width, centre + 0.5 * width),),
+    spike: (lambda centre, _width: (centre,),),
+    concave: (lambda _inflection, end: (end,), concave_inverse),
+    arc: (ends, arc_inverse),
+    semi_ellipse: (ends,),
+}
+RAMP = Shape(ramp_points, 2, inverse=ramp_inverse)
 
 
 FLL_SHAPES = {
     "Triangle": straight(triangle_points, 3),
     "Trapezoid": straight(trapezoid_points, 4),
     "Rectangle": straight(rectangle_points, 2),
-    "Ramp": straight(ramp_points, 2),
+    "Ramp": RAMP,
+    "Binary": straight(binary_points, 2),
+    "Arc": smooth(arc, 0, 1),
+    "SemiEllipse": smooth(semi_ellipse, 0, 1),
     "Gaussian": smooth(gaussian, 0, 1),
     "GaussianProduct": smooth(two_gaussians, 0, 1, 2, 3),
     "Bell": smooth(bell, 0, 1, 2),
@@ -179,6 +267,15 @@ FIS_SHAPES = {
     "smf": smooth(s_shape, 0, 1),
     "zmf": smooth(z_shape, 0, 1),
     "pimf": smooth(pi_shape, 0, 1, 2, 3),
+    # FuzzyLite's
+    "rampmf": RAMP,
+    "rectmf": straight(rectangle_points, 2),
+    "cosinemf": smooth(cosine, 0, 1),
+    "concavemf": smooth(concave, 0, 1),
+    "spikemf": smooth(spike, 0, 1),
+    "binarymf": straight(binary_points, 2),
+    "arcmf": smooth(arc, 0, 1),
+    "semiellipsemf": smooth(semi_ellipse, 0, 1),
 }
 
 # Words of jFuzzyLogic's dialect.

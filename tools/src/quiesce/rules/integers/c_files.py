@@ -1,5 +1,7 @@
 """A compiled base as C: its table, its straight-line function, a header for both."""
 
+from collections.abc import Sequence
+
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import straight_line_c, why_not_straight
 from quiesce.rules.integers.table import table_words
@@ -7,9 +9,9 @@ from quiesce.rules.integers.table import table_words
 WORDS_A_LINE = 6
 
 
-def table_c(compiled: CompiledBase, name: str) -> str:
-    """`const uint32_t NAME_table[]`: words of a fuzzy_table_t."""
-    words = [f"0x{word:08X}u," for word in table_words(compiled)]
+def table_text(values: Sequence[int], name: str) -> str:
+    """`const uint32_t NAME_table[]`."""
+    words = [f"0x{word:08X}u," for word in values]
     lines = [
         "    " + " ".join(words[start : start + WORDS_A_LINE])
         for start in range(0, len(words), WORDS_A_LINE)
@@ -54,7 +56,7 @@ def header_c(compiled: CompiledBase, name: str, banner: str) -> str:
 
 def source_c(compiled: CompiledBase, name: str, banner: str) -> str:
     """Table, and straight-line function where the base has one."""
-    parts = [f'{banner}#include "{name}.h"\n', table_c(compiled, name)]
+    parts = [f'{banner}#include "{name}.h"\n', table_text(table_words(compiled), name)]
     if not why_not_straight(compiled):
         parts[0] += '\n#include "fuzzy_math.h"\n'
         parts.append(straight_line_c(compiled, name))

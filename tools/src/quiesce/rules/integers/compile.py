@@ -149,18 +149,22 @@ def default_of(output: Output, defaults: Mapping[str, float], notes: list[str]) 
     return value
 
 
-def make_output(output: Output, form: float | str, default: float) -> IntegerOutput:
+def output_axis(output: Output, form: float | str) -> Axis:
     low, high = exact(output.minimum), exact(output.maximum)
     if form == Q16:
-        axis = Axis(low, (high - low) / 65536)
-    else:
-        axis = Axis(Fraction(0), physical_lsb(output.name, form))
+        return Axis(low, (high - low) / 65536)
+    axis = Axis(Fraction(0), physical_lsb(output.name, form))
     counts = [axis.position(output.minimum), axis.position(output.maximum)]
     if (
         max(abs(count) for count in counts) > INT32_LIMIT
         or counts[1] - counts[0] > MAX_OUTPUT_COUNTS - 2
     ):
         raise UsageError(f"output {output.name}: more than 2^24 counts of {form}; use a larger LSB")
+    return axis
+
+
+def make_output(output: Output, form: float | str, default: float) -> IntegerOutput:
+    axis = output_axis(output, form)
     default_count = nearest(axis.position(default))
     if abs(default_count) > INT32_LIMIT:
         raise UsageError(f"output {output.name}: its default does not fit int32")

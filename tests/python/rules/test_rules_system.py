@@ -1,0 +1,431 @@
+"""Fuzzy systems of any kind: what readers make of other tools' files, what the integers answer
+against float64, C that stands alone, and what is refused."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from quiesce.base.errors import UsageError
+from quiesce.cli.main import main
+from quiesce.rules.engine.precise import GOOD, compile_precisely, judged
+from quiesce.rules.engine.system_engine import SystemEngine
+from quiesce.rules.formats.build import NotPlain
+from quiesce.rules.formats.files import read_rules, read_system
+from quiesce.rules.formats.formula import read_formula
+from quiesce.rules.formats.scan import Source
+from quiesce.rules.formats.shapes import FLL_SHAPES
+from quiesce.rules.model import AND, OR, membership_of
+from quiesce.rules.system import model
+from quiesce.rules.system.compile import compile_system
+from quiesce.rules.system.model import (
+    BISECTOR,
+    BY_RULE,
+    BY_TERM,
+    CENTROID,
+    WEIGHTED,
+    Block,
+    Complement,
+    Conclusion,
+    ConstantTerm,
+    Curve,
+    Join,
+    LinearTerm,
+    Proposition,
+    SetTerm,
+    System,
+    SystemInput,
+    SystemOutput,
+    SystemRule,
+)
+from quiesce.rules.system.norms import HEDGES, S_NORMS, T_NORMS, UNBOUNDED_SUM
+from quiesce.rules.system.pieces import ONE_q30, PieceError, pieces_of
+from quiesce.rules.system.reference import evaluate
+
+SYSTEMS = sorted((ROOT / "tests/unit/firmware/systems").iterdir())
+POINTS = 400
+RANDOM_SYSTEMS = 40
+CONTINUOUS = [name for name in (*T_NORMS, *S_NORMS) if not name.startswith(("Drastic", "Nilp"))]
+
+
+# ---- integers against float64 -------------------------------------------------------------------
+
+
+def random_curve(rng: np.random.Generator, low: float, high: float) -> Curve:
+    """Of any of FuzzyLite's shapes."""
+    span = high - low
+    centre, width = rng.uniform(low, high), rng.uniform(0.1, 0.5) * span
+    sorted_four = np.sort(rng.uniform(low - 0.2 * span, high + 0.2 * span, 4)).tolist()
+    parameters = {
+        "Triangle": sorted_four[:3], "Trapezoid": sorted_four, "Rectangle": sorted_four[:2],
+        "Ramp": sorted_four[:2], "Binary": [centre, np.inf], "Arc": [centre, centre + width],
+        "SemiEllipse": [centre - width, centre + width], "Gaussian": [centre, 0.5 * width],
+        "GaussianProduct": [sorted_four[1], 0.5 * width, sorted_four[2], width],
+        "Bell": [centre, width, rng.uniform(1, 4)], "Sigmoid": [centre, 10.0 / span],
+        "SigmoidDifference": [sorted_four[0], 20 / span, 15 / span, sorted_four[3]],
+        "SigmoidProduct": [sorted_four[0], 20 / span, -15 / span, sorted_four[3]],
+        "SShape": sorted_four[:2], "ZShape": sorted_four[2:], "PiShape": sorted_four,
+        "Cosine": [centre, 2 * width], "Spike": [centre, width],
+        "Concave": [centre, centre + width],
+    }  # fmt: skip
+    word = str(rng.choice(list(FLL_SHAPES)))
+    shape, values = FLL_SHAPES[word], parameters[word]
+    made = shape(values)
+    if callable(made):
+        return Curve(word, made, None, shape.knots(*shape.ordered(values)))
+    points = tuple(made)
+    return Curve(word, lambda x: membership_of(points, x), points)
+
+
+def random_expression(rng: np.random.Generator, terms: list[int], depth: int = 0):
+    if depth == 2 or rng.random() < 0.4:
+        variable = int(rng.integers(len(terms)))
+        hedges = tuple(rng.choice(list(HEDGES), rng.integers(0, 3)).tolist())
+        return Proposition(True, variable, int(rng.integers(terms[variable])), hedges)
+    parts = tuple(random_expression(rng, terms, depth + 1) for _ in range(int(rng.integers(2, 4))))
+    joined = Join(str(rng.choice([AND, OR])), parts)
+    return Complement(joined) if rng.random() < 0.2 else joined
+
+
+def random_output(rng: np.random.Generator, number: int, inputs: int) -> SystemOutput:
+    method = str(rng.choice([BY_RULE, BY_TERM, WEIGHTED, CENTROID, BISECTOR]))
+    low, high = -float(rng.uniform(0, 5)), float(rng.uniform(1, 5))
+    name, count = f"out{number}", int(rng.integers(2, 5))
+    s_norm = str(rng.choice([one for one in S_NORMS if one in CONTINUOUS]))
+    if method in (CENTROID, BISECTOR):
+        sets = tuple(SetTerm(f"s{k}", random_curve(rng, low, high)) for k in range(count))
+        return SystemOutput(name, low, high, sets, method, s_norm, 64, 0.0)
+    terms = tuple(
+        LinearTerm(f"l{k}", tuple(rng.uniform(-1, 1, inputs).tolist()), 0.5)
+        if k % 2
+        else ConstantTerm(f"c{k}", float(rng.uniform(low, high)))
+        for k in range(count)
+    )
+    norm = UNBOUNDED_SUM if method != BY_TERM else s_norm
+    return SystemOutput(name, low, high, terms, method, norm, 0, 0.0, bool(rng.random() < 0.3))
+
+
+def random_system(number: int) -> System:
+    rng = np.random.default_rng([51, number])
+    inputs = []
+    for i in range(int(rng.integers(1, 4))):
+        low = float(rng.uniform(-10, 10))
+        high = low + float(rng.uniform(0.5, 20))
+        sets = tuple(
+            SetTerm(f"t{k}", random_curve(rng, low, high)) for k in range(rng.integers(2, 5))
+        )
+        inputs.append(SystemInput(f"in{i}", low, high, sets))
+    outputs = tuple(random_output(rng, k, len(inputs)) for k in range(int(rng.integers(1, 3))))
+    t_norms = [one for one in T_NORMS if one in CONTINUOUS]
+    s_norms = [one for one in S_NORMS if one in CONTINUOUS and one != UNBOUNDED_SUM]
+    blocks = tuple(
+        Block(*(str(rng.choice(norms)) for norms in (t_norms, s_norms, t_norms)))
+        for _ in range(int(rng.integers(1, 3)))
+    )
+    rules = tuple(
+        SystemRule(
+            block,
+            random_expression(rng, [len(one.terms) for one in inputs]),
+            tuple(
+                Conclusion(k, int(rng.integers(len(one.terms))), ("very",) * int(rng.integers(2)))
+                for k, one in enumerate(outputs)
+            ),
+            float(rng.choice([1.0, 0.5])),
+        )
+        for block in range(len(blocks))
+        for _ in range(int(rng.integers(2, 7)))
+    )
+    return System(f"random {number}", tuple(inputs), outputs, blocks, rules)
+
+
+@pytest.mark.parametrize("number", range(RANDOM_SYSTEMS))
+def test_random_systems_answer_like_float64(number: int) -> None:
+    found = judged(compile_system(random_system(number), tolerance=2.0**-18))
+    # A bisector moves most where its sets are weakest.
+    assert found.error < 2e-3 and found.mistaken == 0
+
+
+@pytest.mark.parametrize("file", SYSTEMS, ids=lambda file: file.name)
+def test_systems_of_the_firmware_s_tests_answer_like_float64(file: Path) -> None:
+    system = read_system(file)
+    found = judged(compile_system(system, tolerance=2.0**-18))
+    assert found.error < 1e-3 and found.mistaken == 0
+
+
+def test_maxima_are_those_of_float64_but_where_two_are_alike() -> None:
+    compiled = compile_system(read_system(SYSTEMS[2]), tolerance=2.0**-20)
+    system = compiled.system
+    rng = np.random.default_rng(11)
+    counts = [
+        compiled.input_integer(i, rng.uniform(one.minimum, one.maximum, POINTS))
+        for i, one in enumerate(system.inputs)
+    ]
+    out, _ = SystemEngine(compiled).evaluate(counts)
+    wanted = evaluate(system, [compiled.input_value(i, one) for i, one in enumerate(counts)])
+    for i, output in enumerate(system.outputs):
+        off = np.abs(compiled.output_value(i, out[i]) - wanted.outputs[i])
+        place = (output.maximum - output.minimum) / output.places
+        assert (off <= 1.01 * place).mean() > 0.98, output.name
+
+
+def test_tables_are_as_fine_as_needed() -> None:
+    gaussians = next(file for file in SYSTEMS if file.stem == "gaussians")
+    system = read_system(gaussians)
+    found = compile_precisely(system)
+    assert found.error <= GOOD and found.mistaken == 0
+    coarser = compile_system(system, tolerance=2.0**-12)
+    assert len(coarser.words) < len(found.compiled.words)
+    assert judged(coarser).error > GOOD
+
+
+# ---- pieces -------------------------------------------------------------------------------------
+
+
+def test_pieces_keep_their_tolerance_at_every_integer() -> None:
+    shape = FLL_SHAPES["Gaussian"]
+    curve = Curve("Gaussian", shape([500.0, 90.0]))
+    for tolerance in (2.0**-10, 2.0**-16):
+        found = pieces_of(curve, lambda x: x, lambda n: n, 0, 1000, tolerance)
+        n = np.arange(1001)
+        off = np.abs(found.values_q30(n) / ONE_q30 - curve.function(n))
+        assert off.max() <= tolerance
+        assert found.error == pytest.approx(off.max(), rel=1e-6)
+
+
+def test_a_vertical_edge_is_exact_and_holds_the_greater_value() -> None:
+    points = ((2.0, 0.0), (2.0, 1.0), (5.0, 1.0), (5.0, 0.25))
+    curve = Curve("points", lambda x: membership_of(points, x), points)
+    found = pieces_of(curve, lambda x: x, lambda n: n, 0, 10, 1e-4)
+    quarters = (4 * found.values_q30(np.arange(11)) / ONE_q30).round().tolist()
+    assert quarters == [0, 0, 4, 4, 4, 4, 1, 1, 1, 1, 1]
+
+
+def test_a_curve_that_is_no_number_is_refused() -> None:
+    curve = Curve("Function", lambda x: np.log(x - 3.0))
+    with pytest.raises(PieceError, match="not a number everywhere"):
+        pieces_of(curve, lambda x: x, lambda n: n, 0, 10, 1e-4)
+
+
+# ---- readers ------------------------------------------------------------------------------------
+
+
+def written(folder: Path, name: str, text: str) -> Path:
+    file = folder / name
+    file.write_text(text)
+    return file
+
+
+def test_padded_parameters_and_expressions_of_matlab() -> None:
+    system = read_system(next(file for file in SYSTEMS if file.suffix == ".fis"))
+    angle = system.inputs[0]
+    assert (angle.minimum, angle.maximum) == pytest.approx((-np.pi / 4, np.pi / 4))
+    assert angle.terms[1].curve.points == ((-0.3, 0.0), (0.0, 1.0), (0.3, 0.0))
+    at = np.array([-np.pi / 8, -np.pi / 8 + 0.2])
+    assert angle.terms[0].curve.function(at) == pytest.approx([1.0, np.exp(-0.5)])
+    rules = system.rules
+    assert rules[1].expression == Proposition(True, 0, 1, ("very",))
+    assert rules[2].expression.parts[0] == Proposition(True, 0, 2, ("not",))
+    assert rules[2].expression.parts[1] == Proposition(True, 1, 1, ("somewhat",))
+    assert rules[3].conclusions[1].hedges == ("very",)
+    assert system.blocks[0] == Block("AlgebraicProduct", "AlgebraicSum", "Minimum")
+
+
+def test_extremely_is_each_tool_s_own(tmp_path: Path) -> None:
+    text = next(file for file in SYSTEMS if file.suffix == ".fis").read_text()
+    text = text.replace("2.2 0, 2 1", "2.3 0, 2 1")
+    octave = read_system(written(tmp_path, "octave.fis", text))
+    head = "#Code automatically generated with fuzzylite 6.0.\n"
+    fuzzylite = read_system(written(tmp_path, "fuzzylite.fis", head + text))
+    assert octave.rules[1].expression.hedges == ("cubed",)
+    assert fuzzylite.rules[1].expression.hedges == ("extremely",)
+
+
+def test_words_of_other_dialects_in_fcl() -> None:
+    system = read_system(next(file for file in SYSTEMS if file.suffix == ".fcl"))
+    assert [one.method for one in system.outputs] == [
+        model.SMALLEST, model.LARGEST, model.MEAN, model.BISECTOR,
+    ]  # fmt: skip
+    assert system.outputs[1].default is None and system.outputs[3].default == 0.5
+    assert (system.inputs[0].minimum, system.inputs[0].maximum) == (-2.0, 100.0)
+    assert any("keeps its last value" in note for note in system.notes)
+    assert system.blocks[0].implication == "AlgebraicProduct"
+    assert system.rules[1].weight == 0.5 and len(system.rules) == 3
+
+
+def test_a_hedge_of_a_conclusion_lasts_on_in_fll(tmp_path: Path) -> None:
+    text = next(file for file in SYSTEMS if file.stem == "norms").read_text()
+    rule = "rule: if x is low2 and y is few then u is very back and v is small"
+    text = text.replace("rule: if x is low2 and y is few then u is back and v is small", rule)
+    first, second = read_system(written(tmp_path, "a.fll", text)).rules[0].conclusions
+    assert (first.hedges, second.hedges) == (("very",), ("very",))
+
+
+def test_what_is_no_plain_base_says_why() -> None:
+    for file in SYSTEMS:
+        with pytest.raises(NotPlain):
+            read_rules(file)
+
+
+def test_fuzzylite_s_chained_outputs_count_with_what_activates_them() -> None:
+    """By hand: u.on by 0.5, then v.big by that."""
+
+    def system(hedges: tuple[str, ...]) -> System:
+        curve = Curve("Ramp", lambda x: x, ((0.0, 0.0), (1.0, 1.0)))
+        inputs = (SystemInput("x", 0.0, 1.0, (SetTerm("on", curve),)),)
+        u = SystemOutput("u", 0.0, 1.0, (ConstantTerm("on", 1.0),), BY_RULE, UNBOUNDED_SUM, 0, 0.0)
+        v = SystemOutput(
+            "v", 0.0, 1.0, (ConstantTerm("big", 1.0),), WEIGHTED, UNBOUNDED_SUM, 0, 0.0
+        )
+        rules = (
+            SystemRule(0, Proposition(True, 0, 0), (Conclusion(0, 0),), 0.5),
+            SystemRule(0, Proposition(False, 0, 0, hedges), (Conclusion(1, 0),)),
+        )
+        return System("chain", inputs, (u, v), (Block("Minimum", "Maximum", "Minimum"),), rules)
+
+    for hedges, wanted in (((), 0.5), (("very",), 0.25), (("not",), 0.5)):
+        compiled = compile_system(system(hedges))
+        out, _ = SystemEngine(compiled).evaluate([np.array([32768])])
+        assert compiled.output_value(1, out[1])[0] == pytest.approx(wanted, abs=1e-4)
+        assert evaluate(system(hedges), [np.array([1.0])]).outputs[1, 0] == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("2*x + 1", 7.0),
+        ("-x^2", -9.0),
+        ("x^-1*3", 1.0),
+        ("sin(pi/2) - cos(0)", 0.0),
+        ("max(x, 2) - min(x, 2)", 1.0),
+        ("gt(x, 2) + lt(x, 2)", 1.0),
+        ("(x + 1) % 3", 1.0),
+        ("8/2/2 - 1 - 1", 0.0),
+    ],
+)
+def test_formulas(text: str, wanted: float) -> None:
+    formula = read_formula(Source("f", text), 0, len(text))
+    assert float(formula({"x": np.array(3.0)})) == pytest.approx(wanted)
+    assert formula.names <= {"x"}
+
+
+# ---- what is refused ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("Linear 0.05 0.01 0.25", "Function f*a", "one input in a formula"),
+        ("Linear 0.05 0.01 0.25", "Function log(f-3)", "not a number everywhere"),
+        ("Linear -0.02 0.1 2.5", "Linear 1 1", "2 numbers of Linear, expected 3"),
+        ("conjunction: AlgebraicProduct", "conjunction: none", "'and' with the operator none"),
+        ("disjunction: AlgebraicSum", "disjunction: UnboundedSum", "'or' with the operator"),
+        ("activation: General", "activation: Highest 1", "expected 'General'"),
+        ("range: 0.000 25.000", "range: 25 25", "minimum < maximum"),
+        ("WeightedAverage TakagiSugeno", "Centroid", "aggregation none with Centroid"),
+    ],
+)
+def test_what_no_system_can_hold_is_refused(
+    capsys, tmp_path: Path, old: str, new: str, words
+) -> None:
+    text = next(file for file in SYSTEMS if file.stem == "gaussians").read_text()
+    assert old in text
+    file = written(tmp_path, "bad.fll", text.replace(old, new, 1))
+    out = tmp_path / "out"
+    assert main(["rules", "compile", str(file), "--out", str(out)]) == 2
+    message = capsys.readouterr().err
+    assert words in message and len(message.splitlines()) == 1
+    assert not out.exists()
+
+
+def test_rules_that_must_be_aggregated_one_by_one_are_bounded() -> None:
+    system = random_system(2)
+    sets = (SetTerm("s", random_curve(np.random.default_rng(1), 0.0, 1.0)),)
+    output = SystemOutput("y", 0.0, 1.0, sets, CENTROID, "AlgebraicSum", 50, 0.0)
+    rule = SystemRule(0, Proposition(True, 0, 0), (Conclusion(0, 0),))
+    many = System("many", system.inputs, (output,), system.blocks, (rule,) * 65)
+    with pytest.raises(UsageError, match="65 rules, and an output aggregates them one by one"):
+        compile_system(many)
+
+
+# ---- the command --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("file", SYSTEMS, ids=lambda file: file.name)
+def test_compiled_folder_stands_alone(capsys, tmp_path: Path, file: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["rules", "compile", str(file), "--out", str(out)]) == 0
+    printed = capsys.readouterr()
+    assert "taken: the engine for any system" in printed.err
+    assert "against float64" in printed.out
+    flags = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffreestanding"]
+    sources = sorted(str(one) for one in out.glob("*.c"))
+    demo = str(tmp_path / "demo")
+    subprocess.run(["cc", *flags, "-c", *sources], check=True, cwd=tmp_path)
+    subprocess.run(["cc", *flags[:-1], *sources, str(out / "demo/main.c"), "-o", demo], check=True)
+    answer = subprocess.run([demo], capture_output=True, text=True)
+    assert answer.returncode == 0
+    assert answer.stdout.endswith("32 points, 0 values that differ from what they should be\n")
+
+
+def test_plain_folder_stands_alone_with_cmake(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    rules = ROOT / "tools/benchmarks/rules/reference_singleton.fcl"
+    assert main(["rules", "compile", str(rules), "--out", str(out)]) == 0
+    if shutil.which("cmake") is None:
+        pytest.skip("no cmake")
+    build = str(tmp_path / "build")
+    for command in (["cmake", "-S", str(out), "-B", build], ["cmake", "--build", build]):
+        subprocess.run(command, check=True, capture_output=True)
+    result = subprocess.run(["ctest", "--test-dir", build], capture_output=True, text=True)
+    assert "100% tests passed" in result.stdout
+
+
+def test_a_wrong_answer_fails_the_demo(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["rules", "compile", str(SYSTEMS[1]), "--out", str(out)]) == 0
+    main_c = out / "demo/main.c"
+    text = main_c.read_text()
+    row = next(line for line in text.splitlines() if line.startswith("    {{"))
+    values = row.split("{")[-1].split("}")[0]
+    main_c.write_text(text.replace(row, row.replace(f"{{{values}}}", f"{{{int(values) + 1}}}"), 1))
+    demo = str(tmp_path / "demo")
+    sources = [str(one) for one in out.glob("*.c")]
+    subprocess.run(["cc", *sources, str(main_c), "-o", demo], check=True)
+    answer = subprocess.run([demo], capture_output=True, text=True)
+    assert answer.returncode == 1 and "1 values that differ" in answer.stdout
+
+
+def test_answers_that_integers_cannot_give_are_refused(capsys, tmp_path: Path) -> None:
+    file = next(file for file in SYSTEMS if file.stem == "gaussians")
+    out = tmp_path / "out"
+    assert main(["rules", "compile", str(file), "--out", str(out), "--max-error", "1e-6"]) == 2
+    message = capsys.readouterr().err
+    assert "--max-error 1 takes it as it is" in message and len(message.splitlines()) == 1
+    assert not out.exists()
+    assert main(["rules", "compile", str(file), "--out", str(out), "--max-error", "100"]) == 0
+
+
+def test_tsukamoto_of_one_input_is_a_function_of_it() -> None:
+    """The inverse of a sigmoid at a strength next to 1 turns on its last digits."""
+    curve = Curve("Bell", lambda x: 1.0 / (1.0 + np.abs(x / 0.5) ** 6), None, (0.0,))
+    inputs = (SystemInput("x", -1.0, 1.0, (SetTerm("near", curve),)),)
+    value = Curve("Sigmoid", lambda w: 0.5 + np.log(1.0 / np.clip(w, 1e-9, 1 - 1e-9) - 1.0) / -30.0)
+    output = SystemOutput(
+        "y", 0.0, 1.0, (model.StrengthTerm("a", value),), BY_TERM, "Maximum", 0, 0.0
+    )
+    rules = (SystemRule(0, Proposition(True, 0, 0), (Conclusion(0, 0),)),)
+    blocks = (Block("Minimum", "Maximum", "Minimum"),)
+    system = System("one", inputs, (output,), blocks, rules)
+    assert compile_precisely(system).error < GOOD
+    twice = System("two", inputs, (output,), blocks, rules * 2)
+    assert compile_precisely(twice).error > GOOD
+
+
+def test_what_asks_for_a_plain_base_says_so(capsys) -> None:
+    file = str(SYSTEMS[1])
+    for arguments in (["compile", file, "--controller"], ["convert", file, "--to", "fcl"]):
+        assert main(["rules", *arguments]) == 2
+        message = capsys.readouterr().err
+        assert len(message.splitlines()) == 1 and "gaussians.fll:" in message

@@ -1,0 +1,36 @@
+"""The firmware's engine for any fuzzy system over numpy arrays: its own C, built here."""
+
+import ctypes
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from quiesce.base.errors import UsageError
+from quiesce.rules.engine.engine import pointer
+from quiesce.rules.engine.native_build import SYSTEM_SOURCES, build, firmware_sources
+from quiesce.rules.system.compile import CompiledSystem
+
+SOURCE = Path(__file__).parent / "native/many_system.c"
+
+
+class SystemEngine:
+    def __init__(self, compiled: CompiledSystem) -> None:
+        self._outputs = len(compiled.system.outputs)
+        library = build([*firmware_sources(SYSTEM_SOURCES), SOURCE], {}, ())
+        self._library = ctypes.CDLL(str(library))
+        self._table = np.array(compiled.words, dtype=np.uint32)
+        verdict = self._library.fuzzy_system_check(pointer(self._table), len(self._table))
+        if verdict != 0:
+            raise UsageError(f"the firmware refuses the table of this system, reason {verdict}")
+
+    def evaluate(self, inputs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """inputs: int32 of one length n each. Returns int32 [outputs, n] and the uint32 mask [n]
+        of outputs that have their default."""
+        points = np.ascontiguousarray(np.stack([np.asarray(x, np.int32).ravel() for x in inputs]))
+        count = points.shape[1]
+        out = np.empty((self._outputs, count), dtype=np.int32)
+        defaults = np.empty(count, dtype=np.uint32)
+        arrays = (pointer(points), pointer(out), pointer(defaults))
+        self._library.many_system(pointer(self._table), count, *arrays)
+        return out, defaults
