@@ -46,7 +46,8 @@ FIGURES = [
     "compiled_singleton_physical_worst_instr", "runtime_singleton_worst_instr",
     "compiled_centroid_worst_instr", "runtime_centroid_worst_instr",
     "peer_fuzzylite_singleton_instr", "peer_fuzzylite_centroid_instr", "random_bases_tried",
-    "random_bases_compiled_pct", "random_bases_beyond_bound",
+    "random_bases_compiled_pct", "random_bases_beyond_bound", "foreign_files_compiled_pct",
+    "foreign_worst_error_pct", "gaussian_4x4_bytes",
 ]  # fmt: skip
 
 
@@ -354,7 +355,10 @@ def test_command_prints_every_figure_and_tells_what_is_absent(bench, tmp_path: P
     assert figures["random_bases_tried"]["value"] <= 4 and code == 1
     assert figures["random_bases_beyond_bound"]["value"] is None
     absent = "\n".join(report["context"]["absent"])
-    for words in ("--no-cost", "libfuzzylite 6: ", "pyfuzzylite 8: ", "fetch_peers fuzzylite"):
+    assert figures["foreign_files_compiled_pct"]["value"] is None
+    assert 0 < figures["gaussian_4x4_bytes"]["value"] <= 8192
+    peers = ("libfuzzylite 6: ", "pyfuzzylite 8: ", "fetch_peers fuzzylite", "fetch_peers foreign")
+    for words in ("--no-cost", *peers):
         assert words in absent
     assert json.loads((tmp_path / "out/fuzzy.json").read_text()) == report
     assert "<svg" in (tmp_path / "out/fuzzy_errors.svg").read_text()

@@ -22,6 +22,15 @@ from quiesce_benchmarks.fuzzy.cost import (
     measure_table,
     worst_instr,
 )
+from quiesce_benchmarks.fuzzy.foreign import (
+    Tried,
+    compiled_pct,
+    foreign_table,
+    gaussian_bytes,
+    measure_foreign,
+    rows,
+    worst_error_pct,
+)
 from quiesce_benchmarks.fuzzy.grid import LIBFUZZYLITE, GridResult, measure_grid
 from quiesce_benchmarks.fuzzy.plots import plot_cost, plot_errors
 from quiesce_benchmarks.fuzzy.reference import CENTROID, PHYSICAL, Q15, SINGLETON_METHODS
@@ -127,6 +136,22 @@ def random_figures(result: RandomResult | None) -> list[Figure]:
         Figure("random_bases_tried", tried, "1", 200, "higher"),
         Figure("random_bases_compiled_pct", compiled_pct, "%", 30.0, "higher"),
         Figure("random_bases_beyond_bound", beyond, "1", 0, "lower"),
+    ]
+
+
+def foreign_figures(tried: Sequence[Tried]) -> list[Figure]:
+    return [
+        Figure(
+            "foreign_files_compiled_pct",
+            compiled_pct(tried) if tried else None,
+            "%",
+            90.0,
+            "higher",
+        ),
+        Figure(
+            "foreign_worst_error_pct", worst_error_pct(tried) if tried else None, "%", 0.1, "lower"
+        ),
+        Figure("gaussian_4x4_bytes", gaussian_bytes(), "B", 8192, "lower"),
     ]
 
 
@@ -246,10 +271,21 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
     else:
         result = measure_random(args.seed, size.random, say)
         absent += result.absent
+    tried: list[Tried] = []
+    try:
+        tried = measure_foreign()
+    except UsageError as error:
+        absent.append(f"rule files of other projects: {one_line(error)}")
     costs, absent_costs = count_costs(args, size, result)
     plot_errors(folder, grid)
     if costs.engines:
         plot_cost(folder, costs.engines, costs.peers)
-    figures = [*accuracy_figures(grid), *cost_figures(costs), *random_figures(result)]
-    context = context_of(args, grid, result, costs)
-    return Report(NAME, figures, context, tables(grid, result, costs), [*absent, *absent_costs])
+    figures = [
+        *accuracy_figures(grid),
+        *cost_figures(costs),
+        *random_figures(result),
+        *foreign_figures(tried),
+    ]
+    context = {**context_of(args, grid, result, costs), "foreign": rows(tried)}
+    shown = [*tables(grid, result, costs), *([foreign_table(tried)] if tried else [])]
+    return Report(NAME, figures, context, shown, [*absent, *absent_costs])
