@@ -4,6 +4,7 @@
 
 #define CRC_FROM_WORD 2u
 #define MAX_FRACTION 24u
+#define MAX_SUM (INT64_C(1) << 61)
 
 static bool is_inside(const fuzzy_system_t *table, uint32_t offset, uint32_t words) {
     return offset >= FUZZY_HEADER_WORDS && offset <= table->size_words &&
@@ -106,6 +107,10 @@ static bool is_linear_good(const fuzzy_system_t *table, const fuzzy_value_t *val
         const int64_t end = slope[i] * range;
         least += end < 0 ? end : 0;
         most += end > 0 ? end : 0;
+        // Each end is within 2^61: sums that stay within it cannot overflow on the way.
+        if (least < -MAX_SUM || most > MAX_SUM) {
+            return false;
+        }
     }
     return is_value(value->value + (least >> value->shift)) &&
            is_value(value->value + (most >> value->shift) + 1);

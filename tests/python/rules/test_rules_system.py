@@ -429,3 +429,118 @@ def test_what_asks_for_a_plain_base_says_so(capsys) -> None:
         assert main(["rules", *arguments]) == 2
         message = capsys.readouterr().err
         assert len(message.splitlines()) == 1 and "gaussians.fll:" in message
+
+
+# ---- what was wrong once ------------------------------------------------------------------------
+
+SMALL = """Engine: small
+InputVariable: a
+  range: 0 100000
+  term: lo Gaussian 30190 5
+  term: hi Ramp 0 100000
+OutputVariable: o
+  range: 0 1
+  aggregation: none
+  defuzzifier: WeightedAverage
+  default: nan
+  term: p Constant 1
+  term: q Constant 0
+RuleBlock:
+  conjunction: AlgebraicProduct
+  disjunction: AlgebraicSum
+  implication: none
+  activation: General
+  rule: if a is lo then o is p
+  rule: if a is any then o is q with 0.2
+"""
+
+
+def edited(tmp_path: Path, *edits: tuple[str, str]) -> Path:
+    text = SMALL
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    return written(tmp_path, "small.fll", text)
+
+
+def test_a_narrow_set_in_a_wide_universe_is_not_overlooked(tmp_path: Path) -> None:
+    for term in (
+        "Gaussian 30190 5",
+        "SigmoidProduct 30170 2 -2 30200",
+        "Function ge(x,30190)*le(x,30200)",
+    ):
+        system = read_system(edited(tmp_path, ("Gaussian 30190 5", term)))
+        compiled = compile_system(system)
+        counts = np.arange(32769)
+        out, _ = SystemEngine(compiled).evaluate([counts])
+        wanted = evaluate(system, [compiled.input_value(0, counts)]).outputs[0]
+        assert wanted.max() > 0.8
+        assert np.abs(compiled.output_value(0, out[0]) - wanted).max() < 2e-3
+
+
+def answers(file: Path, *x: float) -> list[float]:
+    return evaluate(read_system(file), [np.array(x)]).outputs[0].tolist()
+
+
+def test_sets_of_takagi_and_sugeno_are_not_tsukamoto_s(tmp_path: Path) -> None:
+    value = ("term: p Constant 1\n  term: q Constant 0", "term: p Ramp 0 2")
+    rule = (
+        "rule: if a is lo then o is p\n  rule: if a is any then o is q with 0.2",
+        "rule: if a is hi then o is p",
+    )
+    x = (25000.0, 75000.0)
+    assert answers(edited(tmp_path, value, rule), *x) == pytest.approx([0.5, 1.5])
+    as_sets = (*(value, rule), ("WeightedAverage", "WeightedAverage TakagiSugeno"))
+    assert answers(edited(tmp_path, *as_sets), *x) == pytest.approx([0.125, 0.375])
+    low = (("term: p Constant 1\n  term: q Constant 0", "term: p Ramp 0 2 0.5"), rule)
+    assert answers(edited(tmp_path, *low), *x) == pytest.approx([1.0, 3.0])
+
+
+def test_smallest_and_largest_of_matlab_are_by_magnitude(tmp_path: Path) -> None:
+    text = next(file for file in SYSTEMS if file.suffix == ".fis").read_text()
+    text = text.replace("MF3='all':'constant',[9.5]", "MF3='all':'trimf',[8 9 10]")
+    text = text.replace("MF1='none':'constant',[0 0 0]", "MF1='none':'trimf',[-20 -15 -10]")
+    text = text.replace(
+        "MF2='as it moves':'linear',[4 0.25 -1]", "MF2='as it moves':'trimf',[-9 -5 0]"
+    )
+    text = text.replace("'wtaver'", "'som'").replace("Range=[-20 20]", "Range=[-20 0]")
+    found = read_system(written(tmp_path, "som.fis", text))
+    assert [one.method for one in found.outputs] == [model.SMALLEST, model.LARGEST]
+    with pytest.raises(UsageError, match="som is by magnitude, and output pull has both signs"):
+        read_system(written(tmp_path, "both.fis", text.replace("Range=[-20 0]", "Range=[-20 1]")))
+
+
+@pytest.mark.parametrize(
+    ("edits", "words"),
+    [
+        ([("q Constant 0", "q Ramp 0 1")], "terms of several types"),
+        ([("aggregation: none", "aggregation: Maximum"), ("WeightedAverage", "WeightedSum"),
+          ("any then o is q", "any then o is p")], "and two rules of a term"),
+        ([("p Constant 1", "p Function 1/0")], "a formula that is no number"),
+        ([("p Constant 1", "p Function 1" + "+1" * 201)], "at most 200 operators"),
+        ([("lo Gaussian 30190 5", "lo Function x" + "+x" * 201)], "at most 200 operators"),
+        ([("range: 0 100000", "range: 0 1e-300")], "expected a wider one"),
+        ([("p Constant 1", "p Linear 1 0"),
+          ("RuleBlock:", "InputVariable: b\n  range: 0 1\nRuleBlock:")], "2 numbers of Linear"),
+        ([("RuleBlock:\n", "RuleBlock:\n  activation: General\n" * 255 + "RuleBlock:\n")],
+         "256 rule blocks; at most 255"),
+    ],
+)  # fmt: skip
+def test_what_once_ended_in_a_trace_is_one_line(capsys, tmp_path: Path, edits, words) -> None:
+    file = edited(tmp_path, *edits)
+    assert main(["rules", "compile", str(file), "--out", str(tmp_path / "out")]) == 2
+    message = capsys.readouterr().err
+    assert words in message and len(message.splitlines()) == 1
+
+
+@pytest.mark.parametrize("number", ["1/0", "0/0", "10^400", "-10^300"])
+def test_expression_that_is_no_number_of_a_file_is_refused(tmp_path: Path, number: str) -> None:
+    text = next(file for file in SYSTEMS if file.suffix == ".fis").read_text()
+    file = written(tmp_path, "bad.fis", text.replace("[0.2 -pi/8 0 0]", f"[0.2 {number} 0 0]"))
+    with pytest.raises(UsageError, match=r"bad.fis:19:27: number '.*', expected one within"):
+        read_system(file)
+
+
+def test_an_operator_that_no_rule_needs_may_be_any(tmp_path: Path) -> None:
+    file = edited(tmp_path, ("disjunction: AlgebraicSum", "disjunction: UnboundedSum"))
+    SystemEngine(compile_system(read_system(file)))

@@ -14,7 +14,7 @@ from quiesce.base.errors import UsageError
 from quiesce.rules.formats.formula import Formula
 from quiesce.rules.formats.logic import Draft, Names
 from quiesce.rules.formats.plain import plain_rules
-from quiesce.rules.formats.scan import Source, Token
+from quiesce.rules.formats.scan import MAX_NUMBER, Source, Token
 from quiesce.rules.formats.shapes import Curve, Shape, ShapeError, chain
 from quiesce.rules.model import (
     CENTROID,
@@ -37,6 +37,8 @@ from quiesce.rules.system.norms import MAXIMUM, MINIMUM
 
 MAX_POINTS = 256  # of a set
 MAX_NAME = 64  # characters
+LEAST_RANGE = 1e-12  # of the larger end, and that is at least so much
+ENDLESS = ("Ramp", "rampmf")  # that go on beyond their height
 NEAREST = 2.0**-52  # of a strength to 0 or 1, of a shape that only rises or falls
 FORBIDDEN = re.compile(r"[\"'\\*%#]")  # in names: they end texts and comments, here and in C
 
@@ -104,6 +106,9 @@ class Variable:
     aggregation: str = MAXIMUM
     places: int = 0
     clips: bool = False
+    inverts: bool = True  # sets of a weighted output are Tsukamoto's where they can be
+    infers_type: bool = False  # all its terms are of one type
+    sums_terms: bool = False  # a weighted sum adds up terms, not rules
     default: float | None = None
     default_at: Token | None = None
 
@@ -246,7 +251,13 @@ class Builder:
                 raise self.source.error(at, f"no {kind}", f"at least one {kind}")
         if not self.drafts:
             raise self.source.error(at, "no rules", "at least one rule")
+        inputs = len(self.of_kind(is_input=True))
         for variable in self.of_kind(is_input=False):
+            for term in variable.terms:
+                if isinstance(term.content, Line) and len(term.content.slopes) != inputs:
+                    count = len(term.content.slopes) + 1
+                    what = f"{count} numbers of {term.content.word}"
+                    raise self.source.error(term.at, what, f"{inputs + 1}")
             low, high = self.universe(variable)
             default = variable.default
             if default is not None and not low <= default <= high:
@@ -391,13 +402,22 @@ class Builder:
         blocks = tuple(self.blocks) or (Block(MINIMUM, MAXIMUM, MINIMUM),)
         return System(name, inputs, outputs, blocks, rules, tuple(self.notes))
 
-    def system_input(self, variable: Variable) -> SystemInput:
+    def wide_universe(self, variable: Variable) -> tuple[float, float]:
+        """One that integers can divide."""
         low, high = self.universe(variable)
+        if high - low < LEAST_RANGE * max(abs(low), abs(high), LEAST_RANGE):
+            at = variable.range_at or variable.name
+            raise self.source.error(at, f"range {low:g} .. {high:g}", "a wider one")
+        return low, high
+
+    def system_input(self, variable: Variable) -> SystemInput:
+        low, high = self.wide_universe(variable)
         terms = tuple(self.set_term(variable, term) for term in variable.terms)
         return SystemInput(variable.name.text, low, high, terms)
 
     def system_output(self, variable: Variable) -> SystemOutput:
-        low, high = self.universe(variable)
+        low, high = self.wide_universe(variable)
+        self.check_weighted(variable)
         is_sets = variable.system_method in model.SET_METHODS
         make = self.set_term if is_sets else self.value_term
         terms = tuple(make(variable, term) for term in variable.terms)
@@ -405,6 +425,19 @@ class Builder:
             variable.name.text, low, high, terms, variable.system_method, variable.aggregation,
             variable.places, variable.default, variable.clips,
         )  # fmt: skip
+
+    def check_weighted(self, variable: Variable) -> None:
+        """What FuzzyLite refuses, or answers otherwise."""
+        at = variable.method_at or variable.name
+        kinds = {kind_of(term.content) for term in variable.terms}
+        if variable.infers_type and len(kinds) > 1:
+            what = f"{variable.shown()} has terms of several types"
+            raise self.source.error(at, what, "one, or 'TakagiSugeno' or 'Tsukamoto'")
+        index = self.of_kind(is_input=False).index(variable)
+        terms = [c.term for d in self.drafts for c in d.conclusions if c.output == index]
+        if variable.sums_terms and len(terms) != len(set(terms)):
+            what = f"{variable.shown()}: a weighted sum with aggregation {variable.aggregation}"
+            raise self.source.error(at, f"{what}, and two rules of a term", "aggregation: none")
 
     def set_term(self, variable: Variable, term: Term) -> model.SetTerm:
         return model.SetTerm(term.name.text, self.curve_of(variable, term))
@@ -441,12 +474,13 @@ class Builder:
         """A set that only rises or falls: where it reaches the strength; any other one: its
         membership there, as FuzzyLite has it."""
         inverse, height = content.inverse, content.height
-        if inverse is None:
+        if inverse is None or not variable.inverts:
             return self.curve_of(variable, term)
 
         def value(strength: np.ndarray) -> np.ndarray:
             # At 0 and 1 some shapes have no end.
-            return inverse(np.clip(strength / height, NEAREST, 1.0 - NEAREST))
+            top = np.inf if content.word in ENDLESS else 1.0 - NEAREST
+            return inverse(np.clip(strength / height, NEAREST, top))
 
         return model.Curve(content.word, value, None, (0.5 * height,))
 
@@ -455,7 +489,10 @@ class Builder:
         inputs = {v.name.text: i for i, v in enumerate(self.of_kind(is_input=True))}
         used = formula.names & set(inputs)
         if not formula.names:
-            return model.ConstantTerm(name, float(formula({})))
+            value = float(formula({}))
+            if not abs(value) <= MAX_NUMBER:
+                raise self.source.error(term.at, "a formula that is no number", "a number")
+            return model.ConstantTerm(name, value)
         if formula.names == {"x"} and "x" not in inputs:
             return model.StrengthTerm(name, model.Curve("Function", lambda x: formula({"x": x})))
         if len(used) == 1 and formula.names == used:
@@ -464,6 +501,14 @@ class Builder:
             return model.InputTerm(name, inputs[only], curve)
         shown = ", ".join(sorted(formula.names))
         raise self.source.error(term.at, f"a formula with {shown}", "one input in a formula")
+
+
+def kind_of(content: Content) -> str:
+    """Of a term of a weighted output: constant, straight line or formula; one that rises or falls;
+    any other set."""
+    if isinstance(content, float | Line | Formula):
+        return "value"
+    return "other" if content.inverse is None else "monotonic"
 
 
 def numbers(values: Sequence[float]) -> str:

@@ -23,6 +23,7 @@ from quiesce.rules.formats.norm_words import FIS_S_NORMS, FIS_T_NORMS
 from quiesce.rules.formats.scan import (
     END,
     INFINITE_PATTERN,
+    MAX_NUMBER,
     NAME,
     NUMBER,
     NUMBER_PATTERN,
@@ -359,9 +360,13 @@ class FisReader:
         formula = read_formula(self.source, start.offset, end.end())
         if formula.names:
             raise stream.unexpected(what)
+        found = float(formula({}))
+        if not abs(found) <= MAX_NUMBER:
+            shown = f"number '{end.group()}'"
+            raise self.source.error(start, shown, f"one within +-{MAX_NUMBER:g}")
         while stream.token.kind != END and stream.token.offset < end.end():
             stream.take()
-        return float(formula({}))
+        return found
 
     def check_complete(self, at: Token) -> None:
         if self.type is None:
@@ -387,6 +392,7 @@ class FisReader:
         method = DEFUZZIFIERS[self.methods["DefuzzMethod"].text]
         if is_value and method in model.SET_METHODS:
             method = model.BY_RULE
+        method = self.by_magnitude(variable, method)
         variable.method = CENTROID if self.type.text == "mamdani" else WEIGHTED_SUM
         variable.system_method, variable.places = method, PLACES
         variable.aggregation = self.norm("AggMethod", MAXIMUM)
@@ -396,6 +402,18 @@ class FisReader:
                 f"{variable.shown()}: where no rule fires {variable.default:g}, the middle of its "
                 "range, as in MATLAB"
             )
+
+    def by_magnitude(self, variable: Variable, method: str) -> str:
+        """MATLAB and Octave have som and lom by the magnitude of x."""
+        other = {model.SMALLEST: model.LARGEST, model.LARGEST: model.SMALLEST}
+        assert variable.low is not None and variable.high is not None
+        if method not in other or self.is_from_fuzzylite or variable.low >= 0:
+            return method
+        if variable.high > 0:
+            token = self.methods["DefuzzMethod"]
+            what = f"{token.text} is by magnitude, and {variable.shown()} has both signs"
+            raise self.source.error(token, what, "'mom', or a range without 0 inside")
+        return other[method]
 
     def check_counts(self) -> None:
         actual = {

@@ -223,7 +223,9 @@ class FllReader:
         if is_sets:
             self.resolution(variable, method, stream)
         else:
-            stream.accept("Automatic", "TakagiSugeno", "Tsukamoto")
+            kind = stream.accept("Automatic", "TakagiSugeno", "Tsukamoto")
+            variable.inverts = kind is None or kind.text != "TakagiSugeno"
+            variable.infers_type = kind is None or kind.text == "Automatic"
         self.finish_line(stream)
         variable.method_at = method
         self.set_system_method(variable, method, aggregation)
@@ -246,6 +248,9 @@ class FllReader:
             model.BY_TERM if norm and norm != UNBOUNDED_SUM else model.BY_RULE
         )
         variable.aggregation = norm or UNBOUNDED_SUM
+        variable.sums_terms = (
+            variable.system_method == model.WEIGHTED and variable.aggregation != UNBOUNDED_SUM
+        )
 
     def resolution(self, variable: Variable, method: Token, stream: Stream) -> None:
         variable.places = DEFAULT_PLACES

@@ -25,6 +25,7 @@ PATTERN = re.compile(
     rf"|(?P<name>{WORD_PATTERN})|(?P<symbol>[-+*/^%(),])"
 )
 MAX_DEPTH = 32
+MAX_OPERATORS = 200
 CONSTANTS = {"pi": np.pi, "Pi": np.pi}
 FUNCTIONS: dict[str, Callable] = {
     "abs": np.abs, "fabs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log,
@@ -68,6 +69,7 @@ class FormulaParser:
         self.stream = stream
         self.names: set[str] = set()
         self.depth = 0
+        self.operators = 0
 
     def sum(self) -> Evaluate:
         self.depth += 1
@@ -83,6 +85,9 @@ class FormulaParser:
     def chain(self, part: Callable[[], Evaluate], operators: Mapping[str, Callable]) -> Evaluate:
         found = part()
         while self.stream.sees(*operators):
+            self.operators += 1
+            if self.operators > MAX_OPERATORS:
+                raise self.stream.unexpected(f"at most {MAX_OPERATORS} operators in a formula")
             found = of_two(operators[self.stream.take().text], found, part())
         return found
 

@@ -214,11 +214,36 @@ def halves(start: float, end: float) -> tuple[float, ...]:
     return start, 0.5 * (start + end), end
 
 
+# Knots beside a narrow curve's middle, so that it is not overlooked in a wide universe.
+
+
+def around_gaussian(mean: float, deviation: float) -> tuple[float, ...]:
+    return mean - 4.0 * deviation, mean, mean + 4.0 * deviation
+
+
+def around_both_gaussians(
+    mean_a: float, sd_a: float, mean_b: float, sd_b: float
+) -> tuple[float, ...]:
+    return *around_gaussian(mean_a, sd_a), *around_gaussian(mean_b, sd_b)
+
+
+def around_sigmoid(inflection: float, slope: float) -> tuple[float, ...]:
+    width = 8.0 / max(abs(slope), 1e-30)
+    return inflection - width, inflection, inflection + width
+
+
+def around_both_sigmoids(left: float, rise: float, fall: float, right: float) -> tuple[float, ...]:
+    return *around_sigmoid(left, rise), *around_sigmoid(right, fall)
+
+
 # Knots and inverses of those that have any.
 MORE: dict[Callable, tuple] = {
-    two_gaussians: (lambda mean_a, _a, mean_b, _b: (mean_a, mean_b),),
-    bell: (lambda centre, _width, _slope: (centre,),),
-    sigmoid: (lambda *_: (), sigmoid_inverse),
+    gaussian: (around_gaussian,),
+    two_gaussians: (around_both_gaussians,),
+    bell: (lambda centre, width, _slope: (centre - width, centre, centre + width),),
+    sigmoid: (around_sigmoid, sigmoid_inverse),
+    sigmoid_difference: (around_both_sigmoids,),
+    sigmoid_product: (around_both_sigmoids,),
     s_shape: (halves, s_inverse),
     z_shape: (halves, z_inverse),
     pi_shape: (lambda a, b, c, d: (*halves(a, b), *halves(c, d)),),

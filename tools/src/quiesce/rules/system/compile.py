@@ -42,7 +42,15 @@ from quiesce.rules.system.model import (
     SystemRule,
     ValueTerm,
 )
-from quiesce.rules.system.norms import ANY, MAXIMUM, MINIMUM, NOT, hedge_code, norm_code
+from quiesce.rules.system.norms import (
+    ANY,
+    MAXIMUM,
+    MINIMUM,
+    NOT,
+    UNBOUNDED_SUM,
+    hedge_code,
+    norm_code,
+)
 from quiesce.rules.system.pieces import ONE_q30, PieceError, Pieces, pieces_of
 from quiesce.table.words import crc_of
 
@@ -57,6 +65,7 @@ OP_INPUT, OP_OUTPUT, OP_ANY, OP_HEDGE, OP_AND, OP_OR = range(6)
 FRESH, ONLY_HEDGE = 1 << 11, 1 << 10
 MAX_VALUE = 1 << 30
 MAX_FRACTION = 24
+MAX_BLOCKS = 255
 MAX_REACH = 4.0  # of values of the strength beyond an output's range, in ranges
 TOLERANCE = 2.0**-14
 MAX_SLOPE = (1 << 30) - 1
@@ -151,6 +160,10 @@ class Maker:
     def make(self, forms: Sequence[float | str]) -> CompiledSystem:
         system = self.system
         axes = [output_axis(one, form) for one, form in zip(system.outputs, forms, strict=True)]
+        if len(system.blocks) > MAX_BLOCKS:
+            raise UsageError(
+                f"{system.name}: {len(system.blocks)} rule blocks; at most {MAX_BLOCKS}"
+            )
         is_listed = any(self.is_by_rule(i) for i in range(len(system.outputs)))
         if is_listed and len(system.rules) > MAX_LISTED:
             raise UsageError(
@@ -160,7 +173,7 @@ class Maker:
         inputs = [word for i in range(len(system.inputs)) for word in self.input_words(i)]
         outputs = [word for i in range(len(axes)) for word in self.output_words(i, axes[i])]
         blocks = [
-            norm_code(one.conjunction) | norm_code(one.disjunction) << 8
+            norm_code(one.conjunction) | norm_code(usable(one.disjunction)) << 8
             | norm_code(one.implication) << 16
             for one in system.blocks
         ]  # fmt: skip
@@ -410,6 +423,11 @@ class Maker:
             raise UsageError(f"term {term.name}: slopes that do not fit int32; use a larger LSB")
         value = nearest((start - axis.origin) / axis.lsb * 2**fraction)
         return [LINEAR | shift << 16, value, 0, 0, self.body.add(slopes, shared=True)]
+
+
+def usable(disjunction: str) -> str:
+    """A sum without a bound is no OR; readers see to it that no rule needs it."""
+    return MAXIMUM if disjunction == UNBOUNDED_SUM else disjunction
 
 
 def product_of_strength(term: StrengthTerm) -> ProductTerm:

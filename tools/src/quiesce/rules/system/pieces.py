@@ -18,6 +18,8 @@ from quiesce.rules.system.model import Curve
 ONE_q30 = 1 << 30
 MAX_SLOPE_q24 = 1 << 29
 SAMPLES = 257  # of a piece, at which its error is taken; all of them where there are fewer
+GRID = 1 << 16  # and of the whole curve: every integer, where there are no more
+MAX_PIECES = 255
 NODES = np.cos(np.pi * (2 * np.arange(4) + 1) / 8)  # Chebyshev's, of four points
 
 
@@ -142,62 +144,86 @@ def cubics_of(
 ) -> Pieces:
     cuts = sorted({min(max(math.floor(float(position(k))), low - 1), high) for k in curve.knots})
     stretches = zip([low - 1, *cuts], [*cuts, high], strict=True)
+    target = Target(curve, x_at, low, high, tolerance)
     pieces: list[Piece] = []
     for before, last in stretches:
         start = before + 1
         while start <= last:
-            piece = longest(curve, x_at, start, last, tolerance)
+            piece = longest(target, start, last)
             pieces.append(piece)
             start = piece.last + 1
+            if len(pieces) > MAX_PIECES:
+                raise PieceError(f"more than {MAX_PIECES} pieces")
     made = tuple(pieces)
-    return Pieces(3, made, error_of(curve, x_at, made, low, high))
+    return Pieces(3, made, target.error_of(made))
 
 
-def longest(curve: Curve, x_at: Callable, start: int, last: int, tolerance: float) -> Piece:
+class Target:
+    """What pieces must follow: a curve, known on a grid over all that counts, and anywhere."""
+
+    def __init__(self, curve: Curve, x_at: Callable, low: int, high: int, tolerance: float) -> None:
+        self.curve, self.x_at, self.tolerance = curve, x_at, tolerance
+        self.grid = spread(low, high, GRID)
+        values = self.at(self.grid)
+        if values is None:
+            raise PieceError("not a number everywhere")
+        self.values = values
+
+    def at(self, n: np.ndarray) -> np.ndarray | None:
+        return values_at(self.curve, self.x_at, n)
+
+    def error(self, piece: Piece) -> float | None:
+        """The largest, at the grid's integers in the piece and at SAMPLES of its own."""
+        inside = slice(*np.searchsorted(self.grid, [piece.first, piece.last + 1]))
+        own = spread(piece.first, piece.last, SAMPLES)
+        wanted = self.at(own)
+        if wanted is None:
+            return None
+        n = np.concatenate([self.grid[inside], own])
+        off = piece.values_q30(n) / ONE_q30 - np.concatenate([self.values[inside], wanted])
+        return float(np.abs(off).max())
+
+    def error_of(self, pieces: Sequence[Piece]) -> float:
+        return max(self.error(piece) or 0.0 for piece in pieces)
+
+
+def longest(target: Target, start: int, last: int) -> Piece:
     """From start as far as one polynomial is good enough, by halving."""
-    good = fitted(curve, x_at, start, start, tolerance)
+    good = fitted(target, start, start)
     if good is None:
         raise PieceError("not a number everywhere")
     most, least = last, start
     while least < most:
         end = most if most == last and least == start else (least + most + 1) // 2
-        found = fitted(curve, x_at, start, end, tolerance)
+        found = fitted(target, start, end)
         if found is not None:
             good, least = found, end
-        elif end == last:
-            most = last - 1
         else:
             most = end - 1
     return good
 
 
-def fitted(curve: Curve, x_at: Callable, first: int, last: int, tolerance: float) -> Piece | None:
+def fitted(target: Target, first: int, last: int) -> Piece | None:
     """None where the error is above the tolerance, or a coefficient too large."""
     length = last - first
     shift = shift_for(length)
-    n = sampled(first, last)
-    wanted = values_at(curve, x_at, n)
-    if wanted is None:
+    places = np.arange(first, last + 1) if length < 4 else first + 0.5 * length * (1.0 + NODES)
+    values = target.at(places)
+    if values is None:
         return None
-    if length < 4:
-        coefficients = through(n - first, wanted, shift)
-    else:
-        places = first + 0.5 * length * (1.0 + NODES)
-        nodes = values_at(curve, x_at, places)
-        if nodes is None:
-            return None
-        coefficients = through(places - first, nodes, shift)
+    coefficients = through(places - first, values, shift)
     if max(map(abs, coefficients[1:])) > MAX_SLOPE_q24:
         return None
     piece = Piece(first, last, shift, coefficients)
-    error = np.abs(piece.values_q30(n) / ONE_q30 - wanted).max()
-    return piece if error <= tolerance else None
+    error = target.error(piece)
+    return piece if error is not None and error <= target.tolerance else None
 
 
-def sampled(first: int, last: int) -> np.ndarray:
-    if last - first < SAMPLES:
+def spread(first: int, last: int, most: int) -> np.ndarray:
+    """Integers first .. last: all, or so many."""
+    if last - first < most:
         return np.arange(first, last + 1)
-    return np.unique(np.rint(np.linspace(first, last, SAMPLES)).astype(np.int64))
+    return np.unique(np.rint(np.linspace(first, last, most + 1)).astype(np.int64))
 
 
 def values_at(curve: Curve, x_at: Callable, n: np.ndarray) -> np.ndarray | None:
@@ -224,7 +250,7 @@ def error_of(curve: Curve, x_at: Callable, pieces: Sequence[Piece], low: int, hi
     """The largest, at each piece's samples."""
     worst = 0.0
     for piece in pieces:
-        n = sampled(max(piece.first, low), min(piece.last, high))
+        n = spread(max(piece.first, low), min(piece.last, high), SAMPLES)
         wanted = values_at(curve, x_at, n)
         if wanted is None:
             raise PieceError("not a number everywhere")
