@@ -1,6 +1,6 @@
 /// Fuzzy systems of any kind in integers, over a table: up to eight inputs with terms of any shape,
 /// all usual norms, hedges, rule blocks one after the other, outputs that conditions may name, and
-/// all usual ways to a number. What fuzzy.h can do it does ten times as fast; this is for the rest
+/// all usual ways to a number. What fuzzy.h can do it does faster; this is for the rest
 /// (`quiesce rules compile` chooses).
 ///
 /// Meaning (tools/src/quiesce/rules/system/reference.py has it in real numbers):
@@ -166,7 +166,7 @@ _Static_assert(sizeof(fuzzy_block_t) == 4, "a word");
 _Static_assert(sizeof(fuzzy_system_rule_t) == 8, "2 words");
 
 /// Evaluates a table that fuzzy_system_check() accepts. Returns a bit for each output that no rule
-/// reached, or whose sets are 0 everywhere: it has its default. Stack: about 1.3 kB. Bounded by the
+/// reached, or whose sets are 0 everywhere: it has its default. Stack: about 1.8 kB. Bounded by the
 /// table: some 60 instructions a term, 30 a condition, and for an output with sets 60 a place and
 /// term (rule, where it is by rule).
 uint32_t fuzzy_system_evaluate(const fuzzy_system_t *table, const int32_t *input, int32_t *output);

@@ -33,7 +33,7 @@ from quiesce.table.words import WORD_BYTES, require_room
 EPILOG = f"""{FORMATS_HELP}
 A file that plain tables cannot hold (other norms than minimum and maximum, smooth sets, hedges,
 values that depend on inputs, more than four inputs or seven sets, outputs that rules name) takes
-the engine for any system, fuzzy_system.c: the same answers, some ten times slower.
+the engine for any system, fuzzy_system.c, which is slower.
 
 written, into --out:
   NAME.h, NAME.c   the table NAME_table, and NAME(), straight-line C, where the base has that form
@@ -142,11 +142,10 @@ def folder_files(
 def demo_files(
     name: str, call: str, units: Sequence[str], inputs: np.ndarray, outputs: np.ndarray
 ) -> dict[str, str]:
-    own = [f"{name}.c"]
     return {
         DEMO: demo_c(name, call, inputs, outputs),
         "CMakeLists.txt": cmake_text(name),
-        "README.md": page_text(name, call, units, own),
+        "README.md": page_text(name, call, units),
     }
 
 

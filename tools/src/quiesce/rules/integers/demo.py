@@ -76,10 +76,9 @@ endif()
 """
 
 
-def page_text(name: str, call: str, units: Sequence[str], files: Sequence[str]) -> str:
+def page_text(name: str, call: str, units: Sequence[str]) -> str:
     """call: how C evaluates it."""
     shown = "\n".join(f"- {line}" for line in units)
-    sources = ", ".join(sorted(files))
     return f"""# {name}
 
 Made by `quiesce rules compile`. C11 without a library, heap or floating point.
@@ -102,6 +101,6 @@ Try it, and see that it answers here as it did where it was made:
 cc *.c demo/main.c -o demo/{name} && ./demo/{name}
 ```
 
-or `cmake -B build && cmake --build build && ctest --test-dir build`. For a controller take all .c
-files of this folder but not the demo's: {sources}.
+or `cmake -B build && cmake --build build && ctest --test-dir build`. For a device take all .c
+and .h files of this folder, but not the demo's.
 """

@@ -51,16 +51,15 @@ from quiesce.rules.system.norms import (
     hedge_code,
     norm_code,
 )
-from quiesce.rules.system.pieces import ONE_q30, PieceError, Pieces, pieces_of
+from quiesce.rules.system.pieces import MAX_PIECES, ONE_q30, PieceError, Pieces, pieces_of
 from quiesce.table.words import crc_of
 
 MAGIC = 0x31535A46
 HEADER_WORDS = 16
 MAX_WORDS = 65535
 METHODS = (BY_RULE, BY_TERM, WEIGHTED, *SET_METHODS)  # in the order of fuzzy_system_method_t
-CONSTANT, LINEAR, OF_STRENGTH, OF_INPUT, PRODUCT_OF_INPUT, PRODUCT_OF_STRENGTH = range(
-    6
-)  # fuzzy_value_kind_t
+# fuzzy_value_kind_t
+CONSTANT, LINEAR, OF_STRENGTH, OF_INPUT, PRODUCT_OF_INPUT, PRODUCT_OF_STRENGTH = range(6)
 OP_INPUT, OP_OUTPUT, OP_ANY, OP_HEDGE, OP_AND, OP_OR = range(6)
 FRESH, ONLY_HEDGE = 1 << 11, 1 << 10
 MAX_VALUE = 1 << 30
@@ -204,8 +203,8 @@ class Maker:
             is_last = number + 1 == len(pieces.pieces)
             last = (1 << 31) - 1 if is_last else piece.last
             words += [last, piece.shift, *piece.coefficients]
-        if len(pieces.pieces) > 255:
-            raise PieceError("more than 255 pieces")
+        if len(pieces.pieces) > MAX_PIECES:
+            raise PieceError(f"more than {MAX_PIECES} pieces")
         self.error = max(self.error, pieces.error)
         return self.body.add(words, shared=True) | len(pieces.pieces) << 16 | pieces.degree << 24
 
