@@ -4,13 +4,14 @@ import argparse
 from pathlib import Path
 
 from quiesce.base.errors import UsageError
-from quiesce.rules.engine.precise import Precise, compile_precisely
+from quiesce.rules.engine.precise import GOOD, Precise, compile_precisely, judged
 from quiesce.rules.formats.build import NotPlain
 from quiesce.rules.formats.files import read_rules, read_system
 from quiesce.rules.integers.compile import Q15, Q16, compile_base
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.controller import compile_for_controller
 from quiesce.rules.model import RuleBase
+from quiesce.rules.straight.compile import NotStraight, compile_straight
 from quiesce.rules.system.model import System
 
 FORMATS_HELP = """integers:
@@ -18,6 +19,9 @@ FORMATS_HELP = """integers:
   --lsb NAME=X they count X of the variable's own unit from 0. --controller takes what the firmware
   has: uHz, um/s2 and mA, from a file in Hz, m/s2 and A.
 """
+
+ENGINE_TAKEN = "taken: the engine for any system, not the fast one"
+MUCH_BETTER = 0.7  # of an error, so that another form is worth its instructions
 
 
 def add_file_options(parser: argparse.ArgumentParser) -> None:
@@ -54,17 +58,35 @@ def compiled_from(args: argparse.Namespace) -> CompiledBase:
 
 
 def any_compiled_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise, str]:
-    """A plain base, or a system of any kind and why it is no plain base."""
+    """A plain base, or a system in the form that suits it and why it is no plain base."""
     try:
         return compiled_from(args), ""
     except NotPlain as reason:
         if args.controller or args.approximate is not None:
             raise
-        system = read_system(args.file)
-        named = assignments("--lsb", args.lsb, system)
-        inputs = [named.get(variable.name, Q15) for variable in system.inputs]
-        outputs = [named.get(variable.name, Q16) for variable in system.outputs]
-        return compile_precisely(system, inputs, outputs, defaults(args, system)), str(reason)
+        found, taken = system_from(args)
+        return found, f"{reason}; {taken}"
+
+
+def system_from(args: argparse.Namespace) -> tuple[Precise, str]:
+    """Straight-line C where the system has that form and it answers well; and what was taken."""
+    system = read_system(args.file)
+    named = assignments("--lsb", args.lsb, system)
+    inputs = [named.get(variable.name, Q15) for variable in system.inputs]
+    outputs = [named.get(variable.name, Q16) for variable in system.outputs]
+    forms = (system, inputs, outputs, defaults(args, system))
+    if args.table:
+        return compile_precisely(*forms), ENGINE_TAKEN
+    try:
+        straight = judged(compile_straight(*forms))
+    except NotStraight as reason:
+        return compile_precisely(*forms), f"no straight-line C: {reason}; {ENGINE_TAKEN}"
+    if straight.error > GOOD:
+        table = compile_precisely(*forms)
+        if table.error < MUCH_BETTER * straight.error:
+            off = f"{100.0 * straight.error:.2g} % of an output's range off"
+            return table, f"straight-line C would be {off}; {ENGINE_TAKEN}"
+    return straight, "taken: straight-line C of polynomials"
 
 
 def defaults(args: argparse.Namespace, base: RuleBase | System) -> dict[str, float]:

@@ -1,7 +1,8 @@
 """Both engines of the firmware over numpy arrays: its own C, built for this machine."""
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -35,17 +36,15 @@ class Engine:
     def evaluate(self, inputs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """inputs: int32 of one length n each. Returns int32 [outputs, n] and the uint32 mask [n]
         of outputs that have their default."""
-        points = np.ascontiguousarray(np.stack([np.asarray(x, np.int32).ravel() for x in inputs]))
-        count = points.shape[1]
-        out = np.empty((len(self._compiled.outputs), count), dtype=np.int32)
-        defaults = np.empty(count, dtype=np.uint32)
-        arrays = (pointer(points), pointer(out), pointer(defaults))
+        outputs = len(self._compiled.outputs)
         if self._function is None:
-            self._library.many_table(pointer(self._table), count, *arrays)
-        else:
-            shape = (points.shape[0], out.shape[0])
-            self._library.many_function(self._function, *shape, count, *arrays)
-        return out, defaults
+            return at_points(
+                inputs, outputs, partial(self._library.many_table, pointer(self._table))
+            )
+        shape = (len(self._compiled.base.inputs), outputs)
+        return at_points(
+            inputs, outputs, partial(self._library.many_function, self._function, *shape)
+        )
 
     def fired(self, inputs: Sequence[np.ndarray]) -> np.ndarray:
         """uint64 [n]: bit i is rule i, for the first 64 rules."""
@@ -61,6 +60,19 @@ def straight_source(compiled: CompiledBase) -> str:
     """FUNCTION, complete for a compiler."""
     declaration = f"uint32_t {FUNCTION}(const int32_t *input, int32_t *output);"
     return f'#include "fuzzy_math.h"\n{declaration}\n{straight_line_c(compiled, FUNCTION)}'
+
+
+def at_points(
+    inputs: Sequence[np.ndarray], outputs: int, call: Callable
+) -> tuple[np.ndarray, np.ndarray]:
+    """call: of C, for the number of points, the inputs, the outputs and the mask of defaults. As
+    Engine.evaluate()."""
+    points = np.ascontiguousarray(np.stack([np.asarray(x, np.int32).ravel() for x in inputs]))
+    count = points.shape[1]
+    out = np.empty((outputs, count), dtype=np.int32)
+    defaults = np.empty(count, dtype=np.uint32)
+    call(count, pointer(points), pointer(out), pointer(defaults))
+    return out, defaults
 
 
 def pointer(array: np.ndarray) -> ctypes.c_void_p:

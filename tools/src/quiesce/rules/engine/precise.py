@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.rules.engine.function_engine import FunctionEngine
 from quiesce.rules.engine.system_engine import SystemEngine
+from quiesce.rules.straight.compile import StraightSystem
 from quiesce.rules.system.compile import CompiledSystem, compile_system
 from quiesce.rules.system.model import LARGEST, MEAN, SMALLEST, System
 from quiesce.rules.system.reference import evaluate
@@ -28,7 +30,7 @@ class Precise:
     points), at POINTS random counts of the inputs, where some rule of it fires by WEAKEST;
     mistaken: where it has its default and float64 does not, or the other way round."""
 
-    compiled: CompiledSystem
+    compiled: CompiledSystem | StraightSystem
     errors: tuple[float, ...]
     mistaken: int
 
@@ -61,14 +63,16 @@ def compile_precisely(
     return best
 
 
-def judged(compiled: CompiledSystem) -> Precise:
+def judged(compiled: CompiledSystem | StraightSystem) -> Precise:
     system = compiled.system
+    is_table = isinstance(compiled, CompiledSystem)
+    engine = SystemEngine(compiled) if is_table else FunctionEngine(compiled)
     rng = np.random.default_rng(SEED)
     counts = [
         compiled.input_integer(i, rng.uniform(one.minimum, one.maximum, POINTS))
         for i, one in enumerate(system.inputs)
     ]
-    out, defaults = SystemEngine(compiled).evaluate(counts)
+    out, defaults = engine.evaluate(counts)
     wanted = evaluate(system, [compiled.input_value(i, one) for i, one in enumerate(counts)])
     errors, mistaken = [], 0
     for i, output in enumerate(system.outputs):

@@ -2,12 +2,13 @@
 
 import ctypes
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.rules.engine.engine import pointer
+from quiesce.rules.engine.engine import at_points, pointer
 from quiesce.rules.engine.native_build import SYSTEM_SOURCES, build, firmware_sources
 from quiesce.rules.system.compile import CompiledSystem
 
@@ -27,10 +28,5 @@ class SystemEngine:
     def evaluate(self, inputs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """inputs: int32 of one length n each. Returns int32 [outputs, n] and the uint32 mask [n]
         of outputs that have their default."""
-        points = np.ascontiguousarray(np.stack([np.asarray(x, np.int32).ravel() for x in inputs]))
-        count = points.shape[1]
-        out = np.empty((self._outputs, count), dtype=np.int32)
-        defaults = np.empty(count, dtype=np.uint32)
-        arrays = (pointer(points), pointer(out), pointer(defaults))
-        self._library.many_system(pointer(self._table), count, *arrays)
-        return out, defaults
+        call = partial(self._library.many_system, pointer(self._table))
+        return at_points(inputs, self._outputs, call)

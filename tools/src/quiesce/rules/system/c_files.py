@@ -1,10 +1,10 @@
 """A compiled system as C: its table, and a header."""
 
 from quiesce.rules.integers.c_files import table_text
-from quiesce.rules.system.compile import CompiledSystem
+from quiesce.rules.system.compile import CompiledSystem, ScaledSystem
 
 
-def units_text(compiled: CompiledSystem) -> list[str]:
+def units_text(compiled: ScaledSystem) -> list[str]:
     """What the integers stand for, a line a variable."""
     lines = [
         f"input  {variable.name}: {float(axis.lsb):.9g} a count from {float(axis.origin):g}; "
@@ -26,14 +26,22 @@ def call_text(name: str) -> str:
 
 
 def header_c(compiled: CompiledSystem, name: str, banner: str) -> str:
+    return header_text(
+        compiled, name, f"{banner}/// Fuzzy system {compiled.system.name} in integers "
+        "(fuzzy_system.h):\n", '"fuzzy_system.h"',
+        "/// For fuzzy_system_evaluate(): the words of a fuzzy_system_t.\n"
+        f"extern const uint32_t {name}_table[{len(compiled.words)}];\n",
+    )  # fmt: skip
+
+
+def header_text(
+    compiled: ScaledSystem, name: str, heading: str, included: str, declaration: str
+) -> str:
     guard = f"{name.upper()}_H"
     units = "".join(f"///   {line}\n" for line in units_text(compiled))
     return (
-        f"{banner}/// Fuzzy system {compiled.system.name} in integers (fuzzy_system.h):\n{units}"
-        f'#ifndef {guard}\n#define {guard}\n\n#include "fuzzy_system.h"\n\n'
-        '#ifdef __cplusplus\nextern "C" {\n#endif\n\n'
-        "/// For fuzzy_system_evaluate(): the words of a fuzzy_system_t.\n"
-        f"extern const uint32_t {name}_table[{len(compiled.words)}];\n\n"
+        f"{heading}{units}#ifndef {guard}\n#define {guard}\n\n#include {included}\n\n"
+        f'#ifdef __cplusplus\nextern "C" {{\n#endif\n\n{declaration}\n'
         "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
     )
 

@@ -72,15 +72,13 @@ UINT32 = 0xFFFFFFFF
 
 
 @dataclass(frozen=True)
-class CompiledSystem:
-    """curve_error: the largest of a membership, or of a value as a share of its curve's range."""
+class ScaledSystem:
+    """A system with what its integers stand for."""
 
     system: System
     axes: tuple[Axis, ...]
     output_axes: tuple[Axis, ...]
     defaults: tuple[float, ...]
-    words: tuple[int, ...]
-    curve_error: float
     notes: tuple[str, ...]
 
     def input_integer(self, index: int, x: np.ndarray | float) -> np.ndarray:
@@ -96,6 +94,14 @@ class CompiledSystem:
     def output_value(self, index: int, n: np.ndarray | int) -> np.ndarray:
         axis = self.output_axes[index]
         return float(axis.origin) + np.asarray(n, dtype=float) * float(axis.lsb)
+
+
+@dataclass(frozen=True)
+class CompiledSystem(ScaledSystem):
+    """curve_error: the largest of a membership, or of a value as a share of its curve's range."""
+
+    words: tuple[int, ...]
+    curve_error: float
 
 
 def compile_system(
@@ -194,7 +200,7 @@ class Maker:
         rest = [*header, *self.body.words]
         return CompiledSystem(
             self.said, tuple(self.axes), tuple(axes), tuple(self.defaults),
-            (MAGIC, crc_of(rest), *rest), self.error, (*system.notes, *self.notes),
+            (*system.notes, *self.notes), (MAGIC, crc_of(rest), *rest), self.error,
         )  # fmt: skip
 
     def curve_word(self, pieces: Pieces) -> int:
