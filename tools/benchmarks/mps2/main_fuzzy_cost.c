@@ -5,10 +5,10 @@
 // lists.
 #include "counted_call.h"
 #include "fuzzy_reference.h"
+#include "input_list.h"
 #include "mailbox.h"
 #include "print.h"
 
-#define VALUES_MAX 2048u
 /// Even steps over the universe of an input of a table that is given.
 #define GIVEN_STEPS 128u
 
@@ -27,44 +27,18 @@ typedef struct {
     const uint32_t *table;
 } variant_t;
 
-typedef struct {
-    uint32_t count;
-    int32_t value[VALUES_MAX];
-} list_t;
-
 #define VARIANT(name) {name, name##_table},
 static const variant_t variants[] = {FUZZY_REFERENCES(VARIANT)};
 #define VARIANTS (sizeof variants / sizeof variants[0])
-
-static void add(list_t *list, int64_t value) {
-    if (list->count < VALUES_MAX && value >= INT32_MIN && value <= INT32_MAX) {
-        list->value[list->count++] = (int32_t)value;
-    }
-}
-
-static void add_even(list_t *list, uint32_t steps, uint32_t universe) {
-    for (uint32_t i = 0; i <= steps; i++) {
-        add(list, (int64_t)((uint64_t)universe * i / steps));
-    }
-}
 
 /// The ends of every cell, and one beside.
 static void add_borders(list_t *list, const fuzzy_table_t *table, uint32_t input) {
     const fuzzy_axis_t axis = table->axis[input];
     for (uint32_t i = 0; i < axis.cells; i++) {
         const fuzzy_cell_t *cell = fuzzy_at(table, axis.offset + i * axis.stride);
-        for (int32_t beside = -1; beside <= 1; beside++) {
-            add(list, (int64_t)cell->first + beside);
-            add(list, (int64_t)cell->last + beside);
-        }
+        list_add_around(list, cell->first);
+        list_add_around(list, cell->last);
     }
-}
-
-static void add_beyond(list_t *list, uint32_t universe) {
-    add(list, INT32_MIN);
-    add(list, -1);
-    add(list, (int64_t)universe + 1);
-    add(list, INT32_MAX);
 }
 
 typedef struct {
@@ -103,9 +77,9 @@ static void walk(const order_t *order, const list_t *lists, tally_t *tally) {
 
 static void add_all(list_t *list, const fuzzy_table_t *table, uint32_t input, uint32_t steps,
                     uint32_t universe) {
-    add_even(list, steps, universe);
+    list_add_even(list, steps, universe);
     add_borders(list, table, input);
-    add_beyond(list, universe);
+    list_add_beyond(list, universe);
 }
 
 static void walk_given(const order_t *order, const fuzzy_table_t *table, const list_t *lists,
@@ -137,7 +111,7 @@ static bool run(const order_t *order, list_t *lists, tally_t *tally) {
     for (uint32_t input = 0; input < table->inputs; input++) {
         add_all(&lists[input], table, input, is_given ? GIVEN_STEPS : order->steps,
                 order->universe[is_given ? 0 : input]);
-        if (lists[input].count == VALUES_MAX) {
+        if (lists[input].count == LIST_MAX) {
             return false;
         }
     }

@@ -34,6 +34,16 @@ from quiesce_benchmarks.fuzzy.foreign import (
 from quiesce_benchmarks.fuzzy.grid import LIBFUZZYLITE, GridResult, measure_grid
 from quiesce_benchmarks.fuzzy.plots import plot_cost, plot_errors
 from quiesce_benchmarks.fuzzy.reference import CENTROID, PHYSICAL, Q15, SINGLETON_METHODS
+from quiesce_benchmarks.fuzzy.straight import (
+    PRODUCT,
+    PRODUCT_MAX,
+    SUGENO,
+    SUGENO_MIN,
+    StraightCost,
+    measure_straights,
+    straight_table,
+    worst_of,
+)
 from quiesce_benchmarks.fuzzy.suite import Budget, RandomResult, measure_random
 from quiesce_benchmarks.fuzzy.tables import (
     beyond_lines,
@@ -78,6 +88,7 @@ class Costs:
     peers: Sequence[PeerCost] = ()
     host: Sequence[HostCount] = ()
     fallbacks: dict[int, TableCost] | None = None
+    straights: Sequence[StraightCost] = ()
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -115,6 +126,9 @@ def cost_figures(costs: Costs) -> list[Figure]:
             name, worst_instr(costs.engines, kind, methods, forms), "instr", goal, "lower"
         )
 
+    def straight(name: str, kinds: Sequence[str], goal: int | None) -> Figure:
+        return Figure(name, worst_of(costs.straights, kinds), "instr", goal, "lower")
+
     means = {one.resolution: one.mean_instr for one in costs.peers}
     singleton, centroid = SINGLETON_METHODS, [CENTROID]
     return [
@@ -123,6 +137,9 @@ def cost_figures(costs: Costs) -> list[Figure]:
         worst("runtime_singleton_worst_instr", TABLE, singleton, (), 120),
         worst("compiled_centroid_worst_instr", STRAIGHT, centroid, (), 120),
         worst("runtime_centroid_worst_instr", TABLE, centroid, (), 500),
+        straight("product_and_instr", [PRODUCT], 75),
+        straight("sugeno_first_order_instr", [SUGENO, SUGENO_MIN], 90),
+        straight("product_max_instr", [PRODUCT_MAX], None),
         Figure("peer_fuzzylite_singleton_instr", means.get(0), "instr", None, "lower"),
         Figure("peer_fuzzylite_centroid_instr", means.get(100), "instr", None, "lower"),
     ]
@@ -188,13 +205,16 @@ def count_costs(
     if bench is None:
         return Costs(), absent
     engines = attempt("instructions of the engines", lambda: measure_engines(bench, size.steps))
+    straights = attempt(
+        "instructions of straight-line C of systems", lambda: measure_straights(bench, size.steps)
+    )
     fallbacks = attempt(
         "instructions of the table engine on random bases",
         lambda: count_fallbacks(bench, result, size.fallbacks),
     )
     peers = attempt("instructions of libfuzzylite", lambda: measure_peers(bench))
     host = attempt("instructions on the host", lambda: measure_host(RESOLUTIONS))
-    return Costs(engines or (), peers or (), host or (), fallbacks), absent
+    return Costs(engines or (), peers or (), host or (), fallbacks, straights or ()), absent
 
 
 def context_of(
@@ -208,6 +228,7 @@ def context_of(
         "singleton_semantics_difference_A": grid.worst_A("semantics", SINGLETON_METHODS),
         "q15_end_to_end_error_A": grid.worst_A("end to end", SINGLETON_METHODS, form=Q15),
         "engines": [cost.row() for cost in costs.engines],
+        "straights": [cost.row() for cost in costs.straights],
         "peers": [asdict(cost) for cost in costs.peers],
         "host_instr": [asdict(cost) for cost in costs.host],
         "ratios": ratios(costs),
@@ -249,6 +270,8 @@ def tables(grid: GridResult, result: RandomResult | None, costs: Costs) -> list[
         found.append(f"sum per rule and maximum per term differ by up to {difference_A:.3f} A here")
     if costs.engines:
         found.append(engine_table(costs.engines))
+    if costs.straights:
+        found.append(straight_table(costs.straights))
     if costs.peers:
         found.append(peer_table(costs.peers, costs.engines))
     if costs.host:
