@@ -45,6 +45,13 @@ from quiesce_benchmarks.fuzzy.straight import (
     worst_of,
 )
 from quiesce_benchmarks.fuzzy.suite import Budget, RandomResult, measure_random
+from quiesce_benchmarks.fuzzy.systems import (
+    SystemCost,
+    figure_names,
+    measure_systems,
+    system_table,
+    worst_of_system,
+)
 from quiesce_benchmarks.fuzzy.tables import (
     beyond_lines,
     engine_table,
@@ -89,6 +96,7 @@ class Costs:
     host: Sequence[HostCount] = ()
     fallbacks: dict[int, TableCost] | None = None
     straights: Sequence[StraightCost] = ()
+    systems: Sequence[SystemCost] = ()
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -140,6 +148,10 @@ def cost_figures(costs: Costs) -> list[Figure]:
         straight("product_and_instr", [PRODUCT], 75),
         straight("sugeno_first_order_instr", [SUGENO, SUGENO_MIN], 90),
         straight("product_max_instr", [PRODUCT_MAX], None),
+        *(
+            Figure(figure, worst_of_system(costs.systems, name), "instr", None, "lower")
+            for name, figure in figure_names().items()
+        ),
         Figure("peer_fuzzylite_singleton_instr", means.get(0), "instr", None, "lower"),
         Figure("peer_fuzzylite_centroid_instr", means.get(100), "instr", None, "lower"),
     ]
@@ -208,13 +220,15 @@ def count_costs(
     straights = attempt(
         "instructions of straight-line C of systems", lambda: measure_straights(bench, size.steps)
     )
+    systems = attempt("instructions of the engine for any system", lambda: measure_systems(bench))
     fallbacks = attempt(
         "instructions of the table engine on random bases",
         lambda: count_fallbacks(bench, result, size.fallbacks),
     )
     peers = attempt("instructions of libfuzzylite", lambda: measure_peers(bench))
     host = attempt("instructions on the host", lambda: measure_host(RESOLUTIONS))
-    return Costs(engines or (), peers or (), host or (), fallbacks, straights or ()), absent
+    found = Costs(engines or (), peers or (), host or (), fallbacks, straights or (), systems or ())
+    return found, absent
 
 
 def context_of(
@@ -228,6 +242,7 @@ def context_of(
         "singleton_semantics_difference_A": grid.worst_A("semantics", SINGLETON_METHODS),
         "q15_end_to_end_error_A": grid.worst_A("end to end", SINGLETON_METHODS, form=Q15),
         "engines": [cost.row() for cost in costs.engines],
+        "systems": [cost.row() for cost in costs.systems],
         "straights": [cost.row() for cost in costs.straights],
         "peers": [asdict(cost) for cost in costs.peers],
         "host_instr": [asdict(cost) for cost in costs.host],
@@ -272,6 +287,8 @@ def tables(grid: GridResult, result: RandomResult | None, costs: Costs) -> list[
         found.append(engine_table(costs.engines))
     if costs.straights:
         found.append(straight_table(costs.straights))
+    if costs.systems:
+        found.append(system_table(costs.systems))
     if costs.peers:
         found.append(peer_table(costs.peers, costs.engines))
     if costs.host:
