@@ -7,9 +7,11 @@ as attachments.
 
 import contextlib
 import heapq
+import io
 import itertools
 import logging
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from functools import cache
 from hashlib import md5
@@ -130,11 +132,7 @@ def samples_of(frames: Sequence[Any]) -> Any:
 
 def read_mdf(file: Path) -> Iterator[Any]:
     """Frames of every CAN bus in the file, by time. Exceptions as asammdf has them."""
-    with extra(*FILES):
-        from asammdf import MDF
-
-    quiet()
-    with MDF(file) as mdf:
+    with open_mdf(file) as mdf:
         groups = [
             group_frames(mdf, index, group.channel_group.cycles_nr)
             for index, group in enumerate(mdf.groups)
@@ -145,10 +143,26 @@ def read_mdf(file: Path) -> Iterator[Any]:
         yield from heapq.merge(*groups, key=lambda one: one.timestamp)
 
 
+def open_mdf(file: Path) -> Any:
+    """An asammdf.MDF, to be closed. Exceptions as asammdf has them."""
+    with extra(*FILES):
+        from asammdf import MDF
+
+    quiet()
+    with silent():
+        return MDF(file)
+
+
+def silent() -> AbstractContextManager[Any]:
+    """asammdf prints traces of what it stumbles over and goes on."""
+    return contextlib.redirect_stdout(io.StringIO())
+
+
 def group_frames(mdf: Any, group: int, count: int) -> Iterator[Any]:
     start_s = mdf.header.start_time.timestamp()
     for offset in range(0, count, CHUNK):
-        part = mdf.get(FRAME, group=group, raw=True, record_offset=offset, record_count=CHUNK)
+        with silent():
+            part = mdf.get(FRAME, group=group, raw=True, record_offset=offset, record_count=CHUNK)
         yield from frames_of(part, start_s)
 
 
