@@ -24,7 +24,7 @@ needs_of() {
     "identify "*) echo dampers ;;
     "tune law") echo bench ;;
     "tune "*) echo bench plant dampers ;;
-    "can "*) ;;
+    "can "* | "report "*) ;;
     "completion "*) ;;
     esac
 }

@@ -48,6 +48,7 @@ GROUPS = {
     "verify": (
         ("plant", "plant", "is a plant file right?"),
         ("chain", "chain", "magnitude and phase of the conditioning"),
+        ("report", "report", "two recordings, before and after: figures, limits, a page"),
     ),
     "shell": (
         ("completion", "completion", "commands, options and files by TAB, in bash, zsh and tcsh"),
@@ -67,6 +68,7 @@ EPILOG = """examples:
   quiesce sweep --identify FILE.csv             a plant file from a recorded sweep
   quiesce identify FILE.csv --model all         damper models from a test rig's recording
   quiesce tune my_plant.toml                    pulses of current for my own plant
+  quiesce report before.mf4 after.mf4           what changed, as a page to hand over
   quiesce can monitor --bus socketcan:can0      state, fault and currents, live
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,
