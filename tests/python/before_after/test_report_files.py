@@ -4,6 +4,7 @@ import json
 import sys
 from pathlib import Path
 
+import can
 import numpy as np
 import pytest
 from before_after.recordings import (
@@ -21,7 +22,8 @@ from before_after.recordings import (
 )
 from conftest import Result
 from quiesce.before_after.files.open_file import How, open_file
-from quiesce.before_after.motion import scale_in_name
+from quiesce.before_after.motion import scale_in_name, wanted
+from quiesce.can.mdf import write_mdf as write_bus_mdf
 from quiesce.cli.main import main
 
 REPORT = ("--json", "--out", "page.html")
@@ -169,6 +171,41 @@ def test_invalid_samples_of_a_logger_are_missing_ones(tmp_path: Path) -> None:
         mdf.save(tmp_path / "a.mf4")
     found, _ = open_file(tmp_path / "a.mf4", How()).samples("Roof")
     assert len(found) == len(values) - 2
+
+
+def test_a_logger_may_record_a_bus_beside_its_channels(tmp_path: Path) -> None:
+    from asammdf import MDF
+
+    log = record(tmp_path / "bus.mf4", sample_frames(np.arange(300)))
+    logger = write_mdf(tmp_path / "logger.mf4", {"CAN:1.acc": ("g", noise(1))}, RATE_Hz)
+    MDF.stack([logger, log], version="4.10").save(tmp_path / "both.mf4")
+    found = open_file(tmp_path / "both.mf4", How())
+    assert found.known("CAN:1.acc") and not [name for name in found.scales if "Frame" in name]
+    assert len(found.samples("CAN:1.acc")[1]) == len(noise(1))
+    assert wanted("--channel", "CAN:1.acc:").before == "CAN:1.acc"
+
+
+FOREIGN_DBC = """VERSION ""
+BU_: Box
+BO_ 291 Tip: 4 Box
+ SG_ tip_acc : 0|32@1- (0.001,0) [0|0] "m/s^2" Box
+"""
+
+
+def test_another_bus_is_read_by_the_database_in_its_log(tmp_path: Path) -> None:
+    values = np.round(1000.0 * noise(1)).astype("<i4")
+    frames = [
+        can.Message(
+            arbitration_id=291, data=one.tobytes(), timestamp=i / RATE_Hz, is_extended_id=False
+        )
+        for i, one in enumerate(values)
+    ]
+    dbc = ("box.dbc", FOREIGN_DBC.encode(), "application/octet-stream")
+    write_bus_mdf(tmp_path / "a.mf4", frames, [dbc], "")
+    found = open_file(tmp_path / "a.mf4", How())
+    scale = found.scales["tip_acc"]
+    assert scale is not None and scale.motion.name == "acceleration" and scale.per_one == 1.0
+    assert found.samples("tip_acc")[1] == pytest.approx(1e-3 * values)
 
 
 # Logs of the bus

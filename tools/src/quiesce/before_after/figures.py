@@ -120,35 +120,46 @@ def band_of(pairs: list[Pair], low_Hz: float | None, high_Hz: float | None) -> t
 
 def found(pair: Pair, reference: Pair | None, settings: Settings) -> Found:
     """All of it. UsageError as together() has it."""
-    doubts = list(pair.doubts)
-    figures = list(_motions(pair, settings))
-    measured = [_moved(side, pair.motion, pair.motion, settings.band_Hz) for side in pair.sides]
-    for side, values in zip(SIDES, measured, strict=True):
+    band_Hz = settings.band_Hz
+    figures, doubts = list(_motions(pair, settings)), list(pair.doubts)
+    before, after = (_moved(side, pair.motion, pair.motion, band_Hz) for side in pair.sides)
+    for side, values in zip(SIDES, (before, after), strict=True):
         doubts += [f"{side}: {line}" for line in levels.unsteady(values)]
-    blocks = [
-        pair.motion.per_si * np.sqrt(np.mean(levels.blocks(values) ** 2, axis=1))
-        for values in measured
-    ]
-    zones = None
-    if settings.machine is not None and pair.motion.order <= VELOCITY.order:
-        zoned, doubt = _zoned(pair, settings.machine)
-        doubts += doubt
-        if zoned is not None:
-            figures.append(zoned)
-            zones = settings.machine.zone(zoned.before), settings.machine.zone(zoned.after)
-    if settings.has_comfort and pair.motion is ACCELERATION:
-        figures.append(_comfort(pair, settings.band_Hz[0]))
-    size = segment_samples(tuple(len(side.values) for side in pair.sides), pair.before.rate_Hz)
-    spectra = [segments(side.values, side.rate_Hz, size) for side in pair.sides]
-    answer = None
-    if reference is not None and reference.name != pair.name:
-        answer, more = _answer(pair, reference, settings.band_Hz)
-        figures += _answer_figures(answer, pair.motion.unit, settings.band_Hz)
-        doubts += more
+    zoned, of_zone = _zoned(pair, settings.machine)
+    answer, of_answer = _answer(pair, reference, band_Hz)
+    figures += [zoned] if zoned else []
+    figures += [_comfort(pair, band_Hz[0])] if _is_felt(pair, settings) else []
+    figures += _answer_figures(answer, pair.motion.unit, band_Hz) if answer else []
     return Found(
-        pair, figures, _bands(pair, settings.band_Hz), (spectra[0], spectra[1]),
-        (blocks[0], blocks[1]), zones, answer, doubts,
-    )  # fmt: skip
+        pair=pair,
+        figures=figures,
+        bands=_bands(pair, band_Hz),
+        spectra=_spectra(pair),
+        block_rms=(_block_rms(pair.motion, before), _block_rms(pair.motion, after)),
+        zones=_zones(zoned, settings.machine),
+        answer=answer,
+        doubts=[*doubts, *of_zone, *of_answer],
+    )
+
+
+def _block_rms(motion: Motion, values: np.ndarray) -> np.ndarray:
+    return motion.per_si * np.sqrt(np.mean(levels.blocks(values) ** 2, axis=1))
+
+
+def _spectra(pair: Pair) -> tuple[Segments, Segments]:
+    size = segment_samples(tuple(len(side.values) for side in pair.sides), pair.before.rate_Hz)
+    before, after = (segments(side.values, side.rate_Hz, size) for side in pair.sides)
+    return before, after
+
+
+def _is_felt(pair: Pair, settings: Settings) -> bool:
+    return settings.has_comfort and pair.motion is ACCELERATION
+
+
+def _zones(zoned: Figure | None, machine: Machine | None) -> tuple[str, str] | None:
+    if zoned is None or machine is None:
+        return None
+    return machine.zone(zoned.before), machine.zone(zoned.after)
 
 
 def _moved(side: Side, own: Motion, motion: Motion, band_Hz: tuple[float, float]) -> np.ndarray:
@@ -174,8 +185,11 @@ def _estimated(quantity: str, unit: str, sides: Sequence[Estimate]) -> Figure:
     return Figure(quantity, unit, before.value, after.value, (before, after))
 
 
-def _zoned(pair: Pair, machine: Machine) -> tuple[Figure | None, list[str]]:
-    """RMS velocity in the zones' band, of what is below HIGH_PART of the rate."""
+def _zoned(pair: Pair, machine: Machine | None) -> tuple[Figure | None, list[str]]:
+    """RMS velocity in the zones' band, of what is below HIGH_PART of the rate, and doubts about
+    it."""
+    if machine is None or pair.motion.order > VELOCITY.order:
+        return None, []
     low_Hz, high_Hz = machine.band_Hz
     measured_Hz = min(high_Hz, HIGH_PART * min(side.rate_Hz for side in pair.sides))
     shortest = min(
@@ -218,7 +232,11 @@ def _bands(pair: Pair, band_Hz: tuple[float, float]) -> dict[int, tuple[Estimate
     }
 
 
-def _answer(pair: Pair, reference: Pair, band_Hz: tuple[float, float]) -> tuple[Answer, list[str]]:
+def _answer(
+    pair: Pair, reference: Pair | None, band_Hz: tuple[float, float]
+) -> tuple[Answer | None, list[str]]:
+    if reference is None:
+        return None, []
     both = [
         together(one, other, pair.name)
         for one, other in zip(pair.sides, reference.sides, strict=True)

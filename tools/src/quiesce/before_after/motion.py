@@ -78,9 +78,10 @@ class Wanted:
 
 
 def wanted(option: str, text: str) -> Wanted:
-    """NAME, NAME:UNIT, NAME:FACTOR*UNIT, or BEFORE=AFTER with any of them. UsageError otherwise."""
+    """NAME, NAME:UNIT, NAME:FACTOR*UNIT, or BEFORE=AFTER with any of them; 'CAN:1:' is a name with
+    a colon and no unit. UsageError otherwise."""
     names, colon, end = text.rpartition(":")
-    scale = _stated(option, text, end) if colon else None
+    scale = _stated(option, text, end) if colon and end.strip() else None
     before, equals, after = (names if colon else text).partition("=")
     if not before.strip() or (equals and not after.strip()):
         raise UsageError(f"{option} {text}: a name is missing; {_FACTOR_HINT}")
@@ -92,7 +93,10 @@ def _stated(option: str, text: str, end: str) -> Scale:
     scale = scale_of(match[2]) if match else None
     if match is None or scale is None:
         known = ", ".join(unit.name for unit in UNITS.values())
-        raise UsageError(f"{option} {text}: '{end}' is no unit of motion; use one of {known}")
+        raise UsageError(
+            f"{option} {text}: '{end}' is no unit of motion; use one of {known}; a name that has a "
+            "colon itself ends in another one"
+        )
     try:
         factor = float(match[1] or 1.0)
     except ValueError:

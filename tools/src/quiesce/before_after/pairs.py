@@ -145,6 +145,10 @@ def at_rate(side: Side, rate_Hz: float) -> Side:
     """The same where the rates are one; else resampled, band-limited."""
     if abs(rate_Hz / side.rate_Hz - 1.0) < SAME_RATE:
         return side
+    return _resampled(side, rate_Hz)
+
+
+def _resampled(side: Side, rate_Hz: float) -> Side:
     return Side(side.start_s, rate_Hz, resample(side.values, side.rate_Hz, rate_Hz))
 
 
@@ -152,7 +156,8 @@ def together(one: Side, other: Side, name: str) -> tuple[Side, Side]:
     """Over the time that both cover, sample beside sample, to half a sample. UsageError where that
     is too short. name: of the channel, for the message."""
     rate_Hz = min(one.rate_Hz, other.rate_Hz)
-    one, other = at_rate(one, rate_Hz), at_rate(other, rate_Hz)
+    # Clocks that part by little part by samples in the end.
+    one, other = _resampled(one, rate_Hz), _resampled(other, rate_Hz)
     offset = round((other.start_s - one.start_s) * rate_Hz)
     first, second = one.values[max(offset, 0) :], other.values[max(-offset, 0) :]
     count = min(len(first), len(second))

@@ -48,8 +48,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("before", type=Path, metavar="BEFORE")
-    parser.add_argument("after", type=Path, metavar="AFTER")
+    parser.add_argument("before", type=Path, metavar="BEFORE", help="recording, as without control")
+    parser.add_argument("after", type=Path, metavar="AFTER", help="recording, as with it")
     parser.add_argument(
         "--channel", action="append", default=[], metavar="NAME[=NAME][:UNIT]",
         help="what to compare, repeatable (all with a known unit in both); BEFORE=AFTER where the "

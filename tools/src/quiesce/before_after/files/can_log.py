@@ -26,6 +26,10 @@ TICKS = 1 << 16  # of tick_low
 SCALE, RATE = "accel_scale_nm_s2", "tick_rate_Hz"
 
 
+class NoSamples(UsageError):
+    """A log, but not of a controller's samples."""
+
+
 class CanLog(Source):
     """Channels: `accel`, the controller's own samples (RawSample), in m/s2 where the log has the
     parameter that scales them; the messages of sensor nodes by their names, in counts. UsageError,
@@ -44,7 +48,7 @@ class CanLog(Source):
         known = Scale(ACCELERATION, 1e-9 * scale, f"{scale} nm/s2 a count") if scale else None
         self.scales = {name: known if name == ACCEL else None for name in self._samples}
         if not self._samples:
-            raise UsageError(
+            raise NoSamples(
                 f"{shown(file)}: no samples in it, neither RawSample nor those of sensor nodes; "
                 "record with 'quiesce can record --raw'"
             )

@@ -13,9 +13,12 @@ from quiesce.before_after.files.source import Origin, Source
 from quiesce.before_after.motion import scale_in_name, scale_of
 from quiesce.can.mdf import FRAME, open_mdf, silent
 
+DECODED = "from CAN"  # how asammdf calls groups that it makes of frames
+
 
 class MdfFile(Source):
-    """UsageError where it is no MDF file or cut off."""
+    """Frames that a database in the file decodes are channels, too. UsageError where it is no MDF
+    file or cut off."""
 
     def __init__(self, file: Path) -> None:
         self.file = file
@@ -54,17 +57,29 @@ def _opened(file: Path) -> Iterator[Any]:
         raise UsageError(f"{shown(file)}: not an MDF file, or cut off ({reason}); export it again")
 
 
-def has_frames(file: Path) -> bool:
-    """Whether it is a log of a CAN bus."""
+def is_bus_log(file: Path) -> bool:
+    """Whether all that it has are frames of CAN buses, and what asammdf decodes of them by the
+    databases that are attached."""
     with _opened(file) as mdf:
-        return any(channel.name == FRAME for group in mdf.groups for channel in group.channels)
+        others = [group for group in mdf.groups if not _has_frames(group)]
+        return len(others) < len(mdf.groups) and all(map(_is_decoded, others))
+
+
+def _has_frames(group: Any) -> bool:
+    return any(channel.name == FRAME for channel in group.channels)
+
+
+def _is_decoded(group: Any) -> bool:
+    return (group.channel_group.acq_name or "").startswith(DECODED)
 
 
 def _channels(mdf: Any) -> Iterator[tuple[str, tuple[int, int], str]]:
-    """Name, group and index, unit; the channels of time are none. A name that comes again has its
-    group's number."""
+    """Name, group and index, unit; channels of time and frames are none. A name that comes again
+    has its group's number."""
     seen: set[str] = set()
     for number, group in enumerate(mdf.groups):
+        if _has_frames(group):
+            continue
         for index, channel in enumerate(group.channels):
             if index == mdf.masters_db.get(number):
                 continue

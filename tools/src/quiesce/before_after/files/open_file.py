@@ -34,19 +34,31 @@ def open_file(file: Path, how: How) -> Source:
     if not start.strip():
         raise UsageError(f"{shown(file)}: the file is empty; name a recording")
     suffix = file.suffix.lower()
-    # Both are slow to import, and asammdf may not be there.
     if suffix in MDF or start.startswith(b"MDF "):
-        from quiesce.before_after.files.mdf_file import MdfFile, has_frames
+        return _open_mdf(file)
+    if suffix in CAN or start.startswith(CAN_CSV):
+        from quiesce.before_after.files.can_log import CanLog  # slow to import
 
-        if not has_frames(file):
-            return MdfFile(file)
-    elif suffix not in CAN and not start.startswith(CAN_CSV):
-        if is_trace(start):
-            return TraceFile(file)
-        return CsvFile(file, how.time, how.rate_Hz, how.skip_lines)
-    from quiesce.before_after.files.can_log import CanLog
+        return CanLog(file)
+    if is_trace(start):
+        return TraceFile(file)
+    return CsvFile(file, how.time, how.rate_Hz, how.skip_lines)
 
-    return CanLog(file)
+
+def _open_mdf(file: Path) -> Source:
+    """Imports late what is slow to import, and asammdf, which may not be there."""
+    from quiesce.before_after.files.can_log import CanLog, NoSamples
+    from quiesce.before_after.files.mdf_file import MdfFile, is_bus_log
+
+    if not is_bus_log(file):
+        return MdfFile(file)
+    try:
+        return CanLog(file)
+    except NoSamples:
+        other = MdfFile(file)  # of another bus, whose database is in the file
+        if not any(other.scales.values()):
+            raise
+        return other
 
 
 def sha256_of(file: Path) -> str:
