@@ -307,6 +307,18 @@ def test_drift_jitter_and_clipping_are_told() -> None:
     clipped = np.clip(values, -0.8, 0.8)
     assert "clipped" in even(Stamps("f", time_s, clipped)).doubts[0]
     assert even(Stamps("f", time_s, values)).doubts == []
+    rounded = np.round(8.0 * values) / 8.0  # flat tops of a coarse sensor
+    assert even(Stamps("f", time_s, rounded)).doubts == []
+
+
+@pytest.mark.parametrize("step", [1e-6, 1e-3, 1 / 128])
+@pytest.mark.parametrize("freq_Hz", [0.5, 3.0, 20.0])
+def test_flat_tops_of_a_coarse_sensor_are_not_clipped_and_stops_are(step: float, freq_Hz: float):
+    values = tone(freq_Hz, 10.0, rate_Hz=10_000.0)
+    time_s = np.arange(len(values)) / 10_000.0
+    for held, is_told in ((values, False), (np.clip(values, -0.9, 0.9), True)):
+        found = even(Stamps("f", time_s, np.round(held / step) * step))
+        assert any("clipped" in line for line in found.doubts) == is_told
 
 
 # Zones

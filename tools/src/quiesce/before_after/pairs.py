@@ -51,6 +51,7 @@ def chosen(before: Source, after: Source, wanted: Sequence[Wanted]) -> list[Want
     """Those that the user names, else all that both files have with a unit of motion. UsageError
     where there is none, or more than a page can show."""
     if wanted:
+        _check_once(before, wanted)
         return list(wanted)
     found = [
         Wanted(name, name)
@@ -69,6 +70,13 @@ def chosen(before: Source, after: Source, wanted: Sequence[Wanted]) -> list[Want
             f"{names}"
         )
     return found
+
+
+def _check_once(before: Source, wanted: Sequence[Wanted]) -> None:
+    names = [before.known(one.before) for one in wanted]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise UsageError(f"--channel: {twice} is named twice")
 
 
 def _has(source: Source) -> str:

@@ -71,7 +71,9 @@ def compared(before: Source, after: Source, options: Options) -> Report:
     reference = None
     if options.reference is not None:
         reference = pair_of(before, after, options.reference, "--reference")
-    taken = _without_reference(chosen(before, after, options.channels), options.reference)
+    taken = chosen(before, after, options.channels)
+    if options.reference is not None:
+        taken = _without(before, taken, options.reference)
     pairs = [pair_of(before, after, one, "--channel") for one in taken]
     all_pairs = [*pairs, *([reference] if reference else [])]
     settings = Settings(band_of(all_pairs, *options.band_Hz), options.machine, options.has_comfort)
@@ -91,10 +93,9 @@ def compared(before: Source, after: Source, options: Options) -> Report:
     )  # fmt: skip
 
 
-def _without_reference(taken: list[Wanted], reference: Wanted | None) -> list[Wanted]:
-    if reference is None:
-        return taken
-    rest = [one for one in taken if one.before != reference.before]
+def _without(before: Source, taken: list[Wanted], reference: Wanted) -> list[Wanted]:
+    own = before.known(reference.before)
+    rest = [one for one in taken if before.known(one.before) != own]
     if not rest:
         raise UsageError(
             f"{reference.before} is the reference and the only channel; name another: --channel"

@@ -14,6 +14,7 @@ GAP_PERIODS = 1.5
 TOLD_JITTER = 0.25
 # Samples at the very largest or smallest value, in a row, that are taken for a stop of the sensor.
 CLIPPED_RUN = 3
+CLIPPED_DROP = 8.0  # least fall beside such a run, in steps of the resolution
 # Frequency of the sampling over the first and last tenth that differ by more are told.
 TOLD_DRIFT = 1e-3
 
@@ -135,16 +136,34 @@ def _uneven(time_s: np.ndarray, index: np.ndarray, period_s: float) -> list[str]
 
 
 def _clipped(values: np.ndarray) -> list[str]:
-    """Runs of one and the same value at the very top or bottom."""
-    count = 0
-    for edge in (values.max(), values.min()):
-        at = np.concatenate([[False], values == edge, [False]]).astype(int)
-        starts, ends = np.flatnonzero(np.diff(at) == 1), np.flatnonzero(np.diff(at) == -1)
-        lengths = ends - starts
-        count += int(lengths[lengths >= CLIPPED_RUN].sum())
-    if not count or values.max() == values.min():
+    """Runs of one value at the very top or bottom that no coarse resolution explains."""
+    steps = np.abs(np.diff(values))
+    least = CLIPPED_DROP * float(steps.min(where=steps > 0.0, initial=np.inf))
+    count = sum(
+        end - start
+        for edge in (values.max(), values.min())
+        for start, end in _runs(values == edge)
+        if end - start >= CLIPPED_RUN and _drop(values, start, end) > least
+    )
+    if not count:
         return []
     return [
         f"clipped: {count} samples stand at its largest or smallest value; peaks and RMS are "
         "larger in truth"
     ]
+
+
+def _runs(is_in: np.ndarray) -> list[tuple[int, int]]:
+    """First and end of each run of True."""
+    edges = np.diff(np.concatenate([[False], is_in, [False]]).astype(int))
+    pairs = zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)
+    return [(int(start), int(end)) for start, end in pairs]
+
+
+def _drop(values: np.ndarray, start: int, end: int) -> float:
+    """How far it falls on either side within as many samples as the run has, the lesser of both. A
+    rounded parabola falls by four steps of the resolution there."""
+    length = end - start
+    sides = (values[max(start - length, 0) : start], values[end : end + length])
+    falls = [float(np.abs(side - values[start]).max()) for side in sides if len(side)]
+    return min(falls, default=0.0)
