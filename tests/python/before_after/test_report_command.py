@@ -15,8 +15,10 @@ from before_after.recordings import (
     sample_frames,
     write_csv,
 )
+from can_bus import Controller, build_peer
 from conftest import ROOT, Result
 from quiesce.base.paths import measurements
+from quiesce.can.parameters import parameters
 from quiesce.cli.main import main
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
@@ -279,6 +281,32 @@ def test_traces_of_the_bench_say_the_same_as_its_log(report, tmp_path: Path, bui
     channel = ("--channel", "a5_mm_s2")
     traced = figures(report("off.trace", "fuzzy.trace", *channel, *words).stdout)
     assert traced["acceleration_rms"]["ratio"] == pytest.approx(logged["ratio"], rel=0.01)
+
+
+@pytest.mark.slow
+def test_two_recordings_of_a_controller_on_a_bus(report, tmp_path: Path, capsys) -> None:
+    """The whole road: the firmware's node, its raw stream over SLCAN, the recorder, the report. Its
+    sensor sees 8 Hz with an amplitude of 20000 counts, and noise of four."""
+    controller = Controller(build_peer(tmp_path), tmp_path)
+    controller.start()
+    try:
+        for name in ("b.mf4", "a.mf4"):
+            words = ("record", "--out", name, "--raw", "--seconds", "5", "--bus", controller.bus)
+            assert main(["can", *words]) == 0
+    finally:
+        controller.stop()
+    capsys.readouterr()
+    result = report("b.mf4", "a.mf4", "--band", "4", "100", *REPORT)
+    assert result.returncode == 0, result.stderr
+    found = figures(result.stdout)
+    scale_nm_s2 = next(one["default"] for one in parameters() if one["name"] == "accel_scale_nm_s2")
+    expected_m_s2 = 20_000 / np.sqrt(2.0) * 1e-9 * scale_nm_s2
+    # Butterworth's high-pass at 4 Hz takes 0.2 % at 8 Hz.
+    assert found["acceleration_rms"]["before"] == pytest.approx(expected_m_s2, rel=0.005)
+    assert found["acceleration_rms"]["ratio"] == pytest.approx(1.0, abs=0.002)
+    data = json.loads(result.stdout)
+    assert data["changed_parameters"] == []
+    assert "parameters" in data["files"]["after"]["facts"]
 
 
 @pytest.mark.skipif(not MEASURED.is_dir(), reason=f"{MEASURED} is not there")

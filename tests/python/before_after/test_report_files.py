@@ -227,6 +227,19 @@ def test_a_log_has_samples_scale_and_configuration(tmp_path: Path, suffix: str) 
     assert len(found.origin.facts["parameters' hash"]) == 8
 
 
+def test_a_table_that_somebody_asked_for_is_told(tmp_path: Path) -> None:
+    """CRC of the law's table, as `quiesce can tables` asks; what else is asked for is no CRC."""
+    operation = DATABASE.number("ServiceRequest", "operation", "TABLE_INFO")
+    frames = []
+    for alive, (what, answer) in enumerate([(1, 77), (0, 0x89ABCDEF - 2**32), (2, 5)]):
+        ask = protected("ServiceRequest", alive, operation=operation, param_value=what)
+        reply = protected("ServiceReply", alive, operation=operation, param_value=answer)
+        frames += [frame("ServiceRequest", 0.1 * alive, ask)]
+        frames += [frame("ServiceReply", 0.1 * alive + 0.01, reply)]
+    file = record(tmp_path / "a.log", frames + sample_frames(np.arange(300)))
+    assert open_file(file, How()).origin.facts["table on road law"] == "89ABCDEF"
+
+
 def test_lost_and_stale_samples_are_missing_ones(tmp_path: Path) -> None:
     counts = np.arange(2000)
     frames = sample_frames(counts)
