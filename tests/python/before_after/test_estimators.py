@@ -56,7 +56,9 @@ def test_figures_of_noise_are_scipys() -> None:
     assert levels.rms(noise).value == pytest.approx(noise.std(), rel=1e-12)
     assert levels.kurtosis(noise) == pytest.approx(stats.kurtosis(noise, fisher=False), rel=1e-12)
     peaks = np.abs(noise).reshape(20, -1).max(axis=1)
-    assert levels.typical_peak(noise).value == pytest.approx(stats.gmean(peaks), rel=1e-12)
+    both = levels.typical_peaks(noise, np.concatenate([noise, noise]))
+    assert [one.value for one in both] == pytest.approx([stats.gmean(peaks)] * 2, rel=1e-12)
+    assert both[1].freedom == 39.0
 
 
 def test_error_of_white_noise_is_that_of_its_degrees_of_freedom() -> None:
@@ -81,8 +83,8 @@ def test_interval_of_a_typical_peak_holds_what_is_true() -> None:
     rng = np.random.default_rng(4)
     covered = 0
     for _ in range(TRIALS):
-        one, other = (levels.typical_peak(shaken(rng, 20_000, size)) for size in (1.0, 0.6))
-        found = levels.ratio(one, other)
+        records = shaken(rng, 20_000, 1.0), shaken(rng, 30_000, 0.6)
+        found = levels.ratio(*levels.typical_peaks(*records))
         covered += found.low <= 0.6 <= found.high
     assert covered >= LEAST_COVERED
 
@@ -94,6 +96,7 @@ def test_what_is_not_stationary_is_told_and_noise_is_not() -> None:
     noise = shaken(rng, 40_000, 1.0)
     assert "grows" in levels.unsteady(noise * np.linspace(0.5, 1.5, len(noise)))[0]
     assert "fades" in levels.unsteady(noise * np.linspace(1.5, 0.5, len(noise)))[0]
+    assert levels.unsteady(tone(12.0, 40.0) * np.linspace(1.0, 1.01, 20_000)) == []
     burst = noise * (1.0 + 5.0 * (np.abs(np.arange(len(noise)) - 20_000) < 2000))
     assert "strongest twentieth" in levels.unsteady(burst)[0]
     narrow = shaken(rng, 10_000, 1.0, damping=0.003)

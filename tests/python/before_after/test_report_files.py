@@ -323,6 +323,10 @@ def test_a_malformed_file_is_refused(refused, tmp_path: Path, change, words: str
         (("b.csv", "a.csv", "--reference", "base"), "no channel 'base'"),
         (("b.csv", "a.csv", "--band", "5", "2"), "the band 5 .. 2 Hz is empty"),
         (("b.csv", "a.csv", "--band", "1", "150"), "above half of the lowest sampling rate"),
+        (
+            ("b.csv", "a.csv", "--reference", "x_V:g", "--band", "10.01", "10.02"),
+            "no line of the spectrum of acc is in it",
+        ),
         (("b.csv", "a.csv", "--band", "0.05", "50"), "too short for a band from 0.05 Hz"),
         (("b.csv", "a.csv", "--band", "x", "50"), "--band"),
         (("b.csv", "a.csv", "--machine", "medium"), "medium:rigid"),
@@ -332,8 +336,8 @@ def test_a_malformed_file_is_refused(refused, tmp_path: Path, change, words: str
     ],
 )
 def test_a_wrong_word_is_refused(refused, tmp_path: Path, words, said: str) -> None:
-    write_csv(tmp_path / "b.csv", GOOD)
-    write_csv(tmp_path / "a.csv", {"acc_m_s2": noise(2)})
+    write_csv(tmp_path / "b.csv", {**GOOD, "x_V": noise(3)})
+    write_csv(tmp_path / "a.csv", {"acc_m_s2": noise(2), "x_V": noise(4)})
     assert said in refused(*words)
 
 

@@ -172,7 +172,7 @@ def _motions(pair: Pair, settings: Settings) -> Iterator[Figure]:
         sides = [_moved(side, pair.motion, motion, settings.band_Hz) for side in pair.sides]
         sides = [motion.per_si * values for values in sides]
         yield _estimated(f"{motion.name}_rms", motion.unit, [levels.rms(one) for one in sides])
-        peaks = [levels.typical_peak(one) for one in sides]
+        peaks = levels.typical_peaks(*sides)
         yield _estimated(f"{motion.name}_typical_peak", motion.unit, peaks)
         yield Figure(f"{motion.name}_peak", motion.unit, *map(levels.peak, sides))
         if motion is pair.motion:
@@ -248,6 +248,11 @@ def _answer(
     ]
     freq_Hz = parts[0][0].freq_Hz
     inside = (freq_Hz >= band_Hz[0]) & (freq_Hz <= band_Hz[1])
+    if not inside.any():
+        raise UsageError(
+            f"--band: no line of the spectrum of {pair.name} is in it, which has one every "
+            f"{freq_Hz[1]:.3g} Hz; widen it, or record for longer"
+        )
     density = np.mean([other.density() for _, other in parts], axis=0)
     scale = pair.motion.per_si / reference.motion.per_si
     answers = [

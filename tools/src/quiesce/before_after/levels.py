@@ -16,6 +16,8 @@ CONFIDENCE = 0.95
 FORGETTING = 2.0
 # A tone remembers itself for ever, and does no harm: its blocks' mean squares spread by less.
 WAVERING = 0.2
+# Mean squares of blocks that spread by less are one, whatever their order.
+STEADY = 0.05
 # Chance of taking a stationary signal for one that is not.
 FALSE_ALARM = 1e-3
 
@@ -95,15 +97,25 @@ def _batch_variance(values: np.ndarray, size: int) -> float:
 
 def blocks(values: np.ndarray) -> np.ndarray:
     """[BLOCKS, samples]; what is left over at the end is left out."""
-    size = len(values) // BLOCKS
-    return values[: size * BLOCKS].reshape(BLOCKS, size)
+    return _stretches(values, len(values) // BLOCKS)[:BLOCKS]
 
 
-def typical_peak(values: np.ndarray) -> Estimate:
-    """Geometric mean of the blocks' peaks: the peak of a twentieth of the record."""
-    logs = np.log(np.maximum(np.abs(blocks(values)).max(axis=1), np.finfo(float).tiny))
-    error = float(logs.std(ddof=1)) / math.sqrt(BLOCKS)
-    return Estimate(math.exp(float(logs.mean())), error, BLOCKS - 1.0)
+def _stretches(values: np.ndarray, size: int) -> np.ndarray:
+    count = len(values) // size
+    return values[: count * size].reshape(count, size)
+
+
+def typical_peaks(before: np.ndarray, after: np.ndarray) -> tuple[Estimate, Estimate]:
+    """Geometric mean of the peaks of stretches as long as a twentieth of the shorter record, for
+    those of longer stretches are larger."""
+    size = min(len(before), len(after)) // BLOCKS
+    return _typical_peak(_stretches(before, size)), _typical_peak(_stretches(after, size))
+
+
+def _typical_peak(stretches: np.ndarray) -> Estimate:
+    logs = np.log(np.maximum(np.abs(stretches).max(axis=1), np.finfo(float).tiny))
+    error = float(logs.std(ddof=1)) / math.sqrt(len(logs))
+    return Estimate(math.exp(float(logs.mean())), error, len(logs) - 1.0)
 
 
 def peak(values: np.ndarray) -> float:
@@ -137,12 +149,12 @@ def memory_samples(values: np.ndarray) -> float:
 def unsteady(values: np.ndarray) -> list[str]:
     """Lines about what a stationary signal of this spectrum would hardly do."""
     means = np.mean(blocks(values) ** 2, axis=1)
-    if means.max() <= 0.0:
+    spread = float(means.std(ddof=1) / means.mean())
+    if spread < STEADY:
         return []
     size = len(values) // BLOCKS
     memory = memory_samples(values)
     lines = []
-    spread = float(means.std(ddof=1) / means.mean())
     if size < FORGETTING * memory and spread > WAVERING:
         lines.append("short for its narrow spectrum: the intervals of RMS are too narrow")
     trend = stats.kendalltau(np.arange(BLOCKS), means)

@@ -118,8 +118,8 @@ def _lengths(pairs: Sequence[Pair]) -> list[str]:
     if short >= (1.0 - SAME_LENGTH) * long:
         return []
     return [
-        f"the recordings are {longest['before']:.4g} s and {longest['after']:.4g} s long: a longer "
-        "one has larger peaks whatever the structure does; compare RMS"
+        f"the recordings are {longest['before']:.4g} s and {longest['after']:.4g} s long: the peak "
+        "of a longer one is larger whatever the structure does; compare RMS and typical peaks"
     ]
 
 
