@@ -101,6 +101,10 @@ class Database:
     def unit(self, frame_id: int, signal: str) -> str:
         return self._codecs[frame_id].get_signal_by_name(signal).unit or ""
 
+    def signals(self, frame_id: int) -> list[Any]:
+        """cantools' signals of a message."""
+        return self._codecs[frame_id].signals
+
     def label(self, name: str, signal: str, value: int) -> str:
         choices = self._codecs[self.by_name[name].frame_id].get_signal_by_name(signal).choices
         return str((choices or {}).get(value, value))

@@ -82,20 +82,16 @@ def is_confirmed(name: str) -> bool:
 
 def press(link: Any, database: Any, timeout_s: float, stop: Any) -> str | None:
     """Presses until it is reported. Returns the state, None: not in time."""
-    from quiesce.can.e2e import ALIVE_PERIOD, protect
+    from quiesce.can.emergency import StopFrames
     from quiesce.can.traffic import Traffic
 
-    message = database.by_name["EmergencyStop"]
-    code = database.number("EmergencyStop", "code", "STOP")
-    data = database.encode("EmergencyStop", code=code)
+    frames = StopFrames(database)
     start_s = time.monotonic()
-    alive = 0
     while time.monotonic() - start_s < timeout_s and not stop.is_set():
         # A new look each time: only a report from after the press counts.
         traffic = Traffic(database)
-        link.send(message.frame_id, protect(message.protection, alive, data))
-        alive = (alive + 1) % ALIVE_PERIOD
-        end_s = time.monotonic() + message.cycle_ms / 1000.0
+        link.send(frames.frame_id, frames.next())
+        end_s = time.monotonic() + frames.cycle_s
         while (left_s := end_s - time.monotonic()) > 0.0:
             event = link.receive(left_s)
             if hasattr(event, "arbitration_id"):
