@@ -17,6 +17,13 @@ install(DIRECTORY firmware/plants COMPONENT python DESTINATION ${tree}/firmware)
 install(FILES firmware/param/parameters.toml COMPONENT python DESTINATION ${tree}/firmware/param)
 install(FILES firmware/comm/quiesce.dbc COMPONENT python DESTINATION ${tree}/firmware/comm)
 
+# What draws the page of `quiesce live`, where it was fetched (tools/lib/uplot.sh).
+set(uplot ${PROJECT_SOURCE_DIR}/build/deps/uplot)
+if(EXISTS ${uplot})
+  install(FILES ${uplot}/uPlot.iife.min.js ${uplot}/uPlot.min.css ${uplot}/LICENSE COMPONENT python
+          DESTINATION ${tree}/build/deps/uplot)
+endif()
+
 # What `quiesce hil` drives in the emulator, where somebody has built it: no compiler for this
 # machine can.
 set(QUIESCE_IMAGES "" CACHE PATH "Folder with the images of the preset mps2")

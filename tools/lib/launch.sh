@@ -25,9 +25,13 @@ python_is_usable() {
 # needed and .venv is there, no lock is taken and nothing is waited for. A stop does not wait for
 # newer packages either: any environment that was complete will do.
 launch_prepare() {
-    local needs=()
-    read -ra needs <<<"$1" || true
+    local needs=() all=" $1 "
+    # The page is fetched, not built.
+    read -ra needs <<<"${all/ page / }" || true
     shift
+    if [[ "$all" = *" page "* ]] && ! asks_for_help "$@"; then
+        "$ROOT/tools/setup" page
+    fi
     if ((${#needs[@]} > 0 && $# > 0)) && ! asks_for_help "$@"; then
         "$ROOT/tools/setup" run
         needs_build "${needs[@]}"

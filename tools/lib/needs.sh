@@ -5,6 +5,7 @@
 #   plant    the library of quiesce.plant      linux    the Linux controller
 #   dampers  the module of quiesce.damper          trust    what its benchmark abuses and mutates
 #   tables   what its benchmark loads tables into
+#   page     nothing compiled: what draws the page of `quiesce live`; node: what its benchmark shows
 
 # needs_of COMMAND [ACTION] ...: of `quiesce`; nothing where it starts without a build. A command
 # that is not here needs nothing: `quiesce` refuses what it does not know.
@@ -25,6 +26,7 @@ needs_of() {
     "tune law") echo bench ;;
     "tune "*) echo bench plant dampers ;;
     "can "* | "report "*) ;;
+    "live "*) echo page ;;
     "completion "*) ;;
     esac
 }
@@ -54,6 +56,7 @@ needs_of_benchmark() {
     controller) echo bench dampers images ;;
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
+    live) echo node page ;;
     trust) echo bench images trust ;;
     tables) echo bench plant dampers images linux tables ;;
     *) echo bench plant dampers ;;
@@ -69,6 +72,7 @@ needs_build() {
         plant) host+=(quiesce_plant) ;;
         dampers) host+=(quiesce_dampers) ;;
         linux) host+=(quiesced) ;;
+        node) host+=(live_node) ;;
         tables) host+=(table_node) mps2+=(quiesce_mps2_node) ;;
         trust) host+=(all trust_programs) mps2+=(all) ;;
         images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
