@@ -44,6 +44,7 @@ GROUPS = {
         ("params", "params", "parameters of the controller: unit, range, default"),
         ("table", "table.command", "table files: show, check, diff, stamp"),
         ("can", "can.command", "CAN bus: monitor, record, decode, parameters, emergency stop"),
+        ("live", "live", "a page on which a controller is seen, stopped and commanded"),
     ),
     "verify": (
         ("plant", "plant", "is a plant file right?"),

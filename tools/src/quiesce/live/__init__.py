@@ -1,0 +1,1 @@
+"""The page of `quiesce live`: what a controller does, seen and commanded in a browser."""

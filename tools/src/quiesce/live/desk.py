@@ -1,0 +1,178 @@
+"""What a server knows of its bus. The link's thread reads; all here runs in the server's loop."""
+
+import math
+import time
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from quiesce.can.database import Database
+from quiesce.can.e2e import JUMPED, OK
+from quiesce.can.link import Back, Link, Lost
+from quiesce.can.recorder import Preamble, RawStream
+from quiesce.can.services import IDENTIFICATION, REPLY, VERSION_PARTS
+from quiesce.can.traffic import Traffic
+from quiesce.live.freeze import FirstFault
+from quiesce.live.jobs import Jobs
+from quiesce.live.protocol import Block
+from quiesce.live.rings import Ring
+from quiesce.live.series import catalogue, preferred
+from quiesce.live.stop import Stop
+
+RING_SAMPLES = 32768  # half a minute at 1 kHz
+MOST_EVENTS = 20_000  # a drain: a storm does not keep the loop from its viewers
+MOST_SAMPLES = 4096  # of a message in one packet
+HISTORY_S = 30.0  # for a viewer that comes
+NONE = "NONE"
+FLAGS = ("is_enabled", "is_estop", "lock_is_on", "freq_is_valid", "raw_is_streaming", "fault_count")
+
+
+class Desk:
+    """drain() takes what has come; the rest answers what viewers ask."""
+
+    def __init__(self, link: Link, database: Database, is_raw: bool = False) -> None:
+        self.database = database
+        self.series = catalogue(database)
+        self.stop = Stop(link, database)
+        self.preamble = Preamble(link, database)
+        self.jobs = Jobs(link, database, self.preamble)
+        self.first_fault = FirstFault(database)
+        self.traffic = Traffic(database)
+        self.newest_s = math.nan  # arrival of the newest frame that can be trusted
+        self.stored: list[int] = []  # parameters to revert to: of the start, or the last save
+        self._rings = {one.frame_id: Ring(RING_SAMPLES) for one in self.series}
+        self._link = link
+        self._raw = RawStream(link, database) if is_raw else None
+        self._status: dict[str, Any] = {}
+        self._status_s = math.nan
+        self._faults: dict[str, int] = {}  # how often each was entered since the start
+        self._lost = ""
+        self._losses = 0
+        ids = {name: database.by_name[name].frame_id for name in ("Status", REPLY, IDENTIFICATION)}
+        self._status_id = ids.pop("Status")
+        self._asked_ids = set(ids.values())
+
+    # What comes
+
+    def drain(self) -> None:
+        for _ in range(MOST_EVENTS):
+            event = self._link.receive_now()
+            if event is None:
+                break
+            self.take(event)
+        self.stop.poll()
+        if not self.jobs.tap.is_open:
+            self.preamble.poll()
+        if self._raw is not None and self.preamble.may_ask and self.preamble.is_over:
+            self._raw.poll()
+        if not self.stored and self.preamble.values:
+            self.stored = list(self.preamble.values)
+
+    def take(self, event: Any) -> None:
+        """A frame, or the loss or return of the bus."""
+        if isinstance(event, Lost):
+            self._lost, self._losses = event.reason, self._losses + 1
+            self.jobs.tap.feed(event)
+        elif isinstance(event, Back):
+            self._lost = ""
+            self.traffic.forget()
+            self.preamble.read_again()
+            self.jobs.tap.feed(event)
+        elif self.traffic.take(event) in (OK, JUMPED):
+            self._take_trusted(event)
+
+    def _take_trusted(self, frame: Any) -> None:
+        frame_id, data = frame.arbitration_id, bytes(frame.data)
+        self.newest_s = frame.timestamp
+        if frame_id in self._rings:
+            self._rings[frame_id].add(frame.timestamp, data)
+        if frame_id == self._status_id:
+            self._take_status(frame.timestamp, data)
+        elif frame_id in self._asked_ids:
+            self.preamble.take(frame)
+            self.jobs.tap.feed(frame)
+        else:
+            self.first_fault.take(frame_id, data)
+
+    def _take_status(self, time_s: float, data: bytes) -> None:
+        before = self._status.get("fault", NONE)
+        self._status, self._status_s = self.database.decode(self._status_id, data), time_s
+        fault = str(self._status["fault"])
+        self.stop.reported(fault)
+        if fault == NONE:
+            self.first_fault.healthy()
+        elif fault != str(before):
+            self._faults[fault] = self._faults.get(fault, 0) + 1
+
+    # What viewers are told
+
+    @property
+    def heard(self) -> set[int]:
+        """Ids of the messages that the bus carries and that can be drawn."""
+        return {frame_id for frame_id, ring in self._rings.items() if ring.count}
+
+    def fault_names(self) -> list[str]:
+        """In the order of their numbers, without NONE."""
+        signals = {one.name: one for one in self.database.signals(self._status_id)}
+        choices = signals["fault"].choices or {}
+        return [str(choices[number]) for number in sorted(choices) if str(choices[number]) != NONE]
+
+    def start_of_history(self) -> dict[int, int]:
+        """Where a viewer that comes begins, a sample's number by id."""
+        since_s = time.time() - HISTORY_S
+        return {frame_id: ring.first_kept(since_s) for frame_id, ring in self._rings.items()}
+
+    def blocks(self, shown: tuple[int, ...], cursors: dict[int, int]) -> Iterator[Block]:
+        """What is new of the series since the cursors, which move on."""
+        for frame_id in dict.fromkeys(self.series[number].frame_id for number in shown):
+            ring = self._rings[frame_id]
+            first, times_s, words = ring.read(cursors[frame_id], MOST_SAMPLES)
+            cursors[frame_id] = first + len(times_s)
+            if len(times_s):
+                mine = (one for one in shown if self.series[one].frame_id == frame_id)
+                columns = [(one, self.series[one].values(words)) for one in mine]
+                yield Block(frame_id, first, times_s, columns)
+
+    def told(self) -> dict[str, Any]:
+        """All that is no sample, as values of JSON."""
+        return {
+            "bus": self._bus_told(),
+            "controller": self._controller_told(),
+            "faults": self._faults,
+            "first_fault": self.first_fault.frame,
+            "later_faults": self.first_fault.later,
+            "stop": self.stop.told(),
+            "job": self.jobs.name,
+            "heard": sorted(self.heard),
+            "preferred": preferred(self.series, self.heard),
+        }
+
+    def _bus_told(self) -> dict[str, Any]:
+        now_s = time.time()
+        return {
+            "name": self._link.bus.name,
+            "is_up": self._link.is_up,
+            "lost": self._lost,
+            "losses": self._losses,
+            "age_s": age_of(self.newest_s, now_s),
+            "status_age_s": age_of(self._status_s, now_s),
+            "frames": self.traffic.frames,
+            "frames_lost": self.traffic.total("lost"),
+            "wrong_crc": self.traffic.total("wrong_crc"),
+            "malformed": self._link.malformed + self.traffic.total("wrong_length"),
+        }
+
+    def _controller_told(self) -> dict[str, Any]:
+        identity: Mapping[str, int] = self.preamble.identification
+        parts = [str(identity[f"version_{part}"]) for part in VERSION_PARTS] if identity else []
+        return {
+            "version": ".".join(parts),
+            "misunderstood": self.preamble.misunderstood,
+            "state": str(self._status.get("state", "")),
+            "fault": str(self._status.get("fault", "")),
+            **{name: self._status.get(name) for name in FLAGS},
+        }
+
+
+def age_of(time_s: float, now_s: float) -> float | None:
+    """None where there was nothing. Rounded to ms."""
+    return None if math.isnan(time_s) else round(max(0.0, now_s - time_s), 3)

@@ -1,0 +1,102 @@
+"""What goes over the websocket: docs/reference/live-protocol.md.
+
+Samples are binary, little-endian; all else is a JSON object in a text message.
+"""
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+VERSION = 1
+SAMPLES = 1
+MOST_SERIES = 8
+MAX_MESSAGE_BYTES = 4096  # of what a viewer sends
+MOST_SETTINGS = 64
+MOST_MALFORMED = 20  # then the viewer is sent away
+# Kind, version, blocks; number of the message; time of sending; arrival of the newest frame.
+HEAD = struct.Struct("<BBHIdd")
+# CAN id, series; samples; number of the first; its time.
+BLOCK = struct.Struct("<HHIId")
+
+
+class Malformed(Exception):
+    """A viewer's message that is none; the text says why."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Samples of one message, and of it the series that are drawn."""
+
+    frame_id: int
+    first: int
+    times_s: np.ndarray
+    columns: Sequence[tuple[int, np.ndarray]]  # number of the series, float32
+
+
+@dataclass(frozen=True)
+class Command:
+    """What a viewer asks for; `series` of show, `settings` of set."""
+
+    do: str
+    series: tuple[int, ...] = ()
+    settings: tuple[str, ...] = ()  # NAME=VALUE
+
+
+def pack_samples(number: int, sent_s: float, newest_s: float, blocks: Sequence[Block]) -> bytes:
+    """newest_s: NaN where no frame has come yet."""
+    parts = [HEAD.pack(SAMPLES, VERSION, len(blocks), number % 2**32, sent_s, newest_s)]
+    for block in blocks:
+        start_s = float(block.times_s[0])
+        offsets_us = np.rint((block.times_s - start_s) * 1e6).astype("<i4")
+        head = (block.frame_id, len(block.columns), len(offsets_us), block.first % 2**32)
+        parts.append(BLOCK.pack(*head, start_s))
+        parts.append(np.array([one for one, _ in block.columns], "<u4").tobytes())
+        parts.append(offsets_us.tobytes())
+        parts += [values.astype("<f4").tobytes() for _, values in block.columns]
+    return b"".join(parts)
+
+
+def command_of(text: str | None, series_count: int) -> Command:
+    """Malformed where it is none. text: None where the message was binary."""
+    said = object_of(text)
+    do = said.get("do")
+    extra = {"show": {"series"}, "set": {"settings"}}
+    if do not in ("stop", "take", "release", "show", "set", "save", "revert"):
+        raise Malformed("'do' is none of stop, take, release, show, set, save, revert")
+    if set(said) != {"do"} | extra.get(do, set()):
+        raise Malformed(f"'{do}' has other keys than it may have")
+    if do == "show":
+        return Command(do, series=shown_of(said["series"], series_count))
+    if do == "set":
+        return Command(do, settings=settings_of(said["settings"]))
+    return Command(do)
+
+
+def object_of(text: str | None) -> dict[str, Any]:
+    if text is None:
+        raise Malformed("binary; commands are text")
+    try:
+        said = json.loads(text)
+    except (ValueError, RecursionError):
+        raise Malformed("not JSON")
+    if not isinstance(said, dict):
+        raise Malformed("not a JSON object")
+    return said
+
+
+def shown_of(value: Any, series_count: int) -> tuple[int, ...]:
+    is_list = isinstance(value, list) and len(value) <= MOST_SERIES
+    if not is_list or not all(type(one) is int and 0 <= one < series_count for one in value):
+        raise Malformed(f"'series' is a list of at most {MOST_SERIES} numbers of series")
+    return tuple(dict.fromkeys(value))
+
+
+def settings_of(value: Any) -> tuple[str, ...]:
+    is_small = isinstance(value, dict) and 0 < len(value) <= MOST_SETTINGS
+    if not is_small or not all(isinstance(one, str) for one in value.values()):
+        raise Malformed("'settings' is an object of values as text by name")
+    return tuple(f"{name}={text}" for name, text in value.items())

@@ -1,0 +1,90 @@
+"""What all viewers share: the desk, who holds control, the beat in which they are told."""
+
+import asyncio
+import time
+from dataclasses import asdict
+from typing import Any
+
+from quiesce import __version__
+from quiesce.engine.params import parameters
+from quiesce.live.control import Control
+from quiesce.live.desk import Desk
+from quiesce.live.protocol import MOST_SERIES, VERSION
+
+DRAIN_S = 0.01
+BEAT_DRAINS = 4  # 25 messages a second to each viewer
+MOST_VIEWERS = 16
+
+
+class Room:
+    """run() for as long as the server does."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.control = Control()
+        self.viewers: set[int] = set()
+        self.is_news = False  # somebody did something: all are told in this beat
+        self._is_news_next = False
+        self._beat = 0
+        self._beaten = asyncio.Condition()
+        self._came = 0
+
+    @property
+    def hello(self) -> dict[str, Any]:
+        """What does not change while the server runs."""
+        return {
+            "protocol": VERSION,
+            "version": __version__,
+            "most_series": MOST_SERIES,
+            "series": [asdict(one) for one in self.desk.series],
+            "parameters": list(parameters()),
+            "faults": self.desk.fault_names(),
+        }
+
+    def come(self) -> int | None:
+        """A viewer's number; None where there are enough."""
+        if len(self.viewers) == MOST_VIEWERS:
+            return None
+        self._came += 1
+        self.viewers.add(self._came)
+        self.tell_now()
+        return self._came
+
+    def go(self, viewer: int) -> None:
+        self.viewers.discard(viewer)
+        self.control.release(viewer)
+        self.tell_now()
+
+    def tell_now(self) -> None:
+        """With the next beat, whatever its turn."""
+        self._is_news_next = True
+
+    def told(self) -> dict[str, Any]:
+        control = {"holder": self.control.holder, "viewers": len(self.viewers)}
+        return {**self.desk.told(), **control}
+
+    async def next_beat(self) -> int:
+        """Waits for it; returns its number."""
+        async with self._beaten:
+            await self._beaten.wait()
+        return self._beat
+
+    async def run(self) -> None:
+        due_s = time.monotonic()
+        drains = 0
+        while True:
+            due_s = max(due_s + DRAIN_S, time.monotonic() - DRAIN_S)
+            await asyncio.sleep(max(0.0, due_s - time.monotonic()))
+            stop_was = self.desk.stop.state
+            self.desk.drain()
+            if self.desk.stop.state != stop_was:
+                self.tell_now()
+            drains += 1
+            if drains % BEAT_DRAINS == 0:
+                await self._tell()
+
+    async def _tell(self) -> None:
+        self.is_news, self._is_news_next = self._is_news_next, False
+        self._beat += 1
+        async with self._beaten:
+            self._beaten.notify_all()

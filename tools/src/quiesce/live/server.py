@@ -1,0 +1,137 @@
+"""The server of the page: its files, the websocket, STOP by HTTP where that is lost."""
+
+import asyncio
+import contextlib
+import json
+import socket
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import uvicorn
+from fastapi import FastAPI, Request, Response, WebSocket
+from fastapi.responses import FileResponse, JSONResponse
+
+from quiesce.base.errors import UsageError, one_line
+from quiesce.live.access import COOKIE, App, Door, Policy
+from quiesce.live.desk import Desk
+from quiesce.live.protocol import MAX_MESSAGE_BYTES
+from quiesce.live.room import Room
+from quiesce.live.viewer import Viewer
+
+PAGE = Path(__file__).with_name("page")
+TRY_AGAIN_LATER = 1013
+PING_S = 5.0  # a viewer who does not answer for as long is gone, and with him his control
+END_S = 2
+STOP_LOOK_S = 0.1
+CONNECTIONS = 64
+
+
+def application(room: Room, policy: Policy, plots: Path) -> App:
+    """plots: the folder with uPlot."""
+    app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
+    for file in sorted(PAGE.iterdir()):
+        add_file(app, f"/{file.stem}" if file.suffix == ".html" else f"/{file.name}", file)
+    add_file(app, "/", PAGE / "index.html")
+    for name in ("uPlot.iife.min.js", "uPlot.min.css"):
+        add_file(app, f"/{name}", plots / name)
+
+    @app.post("/stop")
+    async def stop() -> Response:
+        room.desk.stop.press()
+        room.tell_now()
+        return JSONResponse(room.desk.stop.told())
+
+    @app.post("/login")
+    async def login(request: Request) -> Response:
+        if not policy.is_token(await token_in(request)):
+            return Response("the token is wrong\n", 403)
+        answer = Response(status_code=204)
+        answer.set_cookie(COOKIE, policy.token, httponly=True, samesite="strict")
+        return answer
+
+    @app.websocket("/socket")
+    async def viewer(socket: WebSocket) -> None:
+        number = room.come()
+        if number is None:
+            await socket.close(TRY_AGAIN_LATER, "there are enough viewers")
+            return
+        try:
+            await socket.accept()
+            await Viewer(socket, room, number).serve()
+        finally:
+            room.go(number)
+
+    return Door(app, policy)
+
+
+def add_file(app: FastAPI, path: str, file: Path) -> None:
+    app.add_api_route(path, lambda: FileResponse(file), methods=["GET", "HEAD"])
+
+
+async def token_in(request: Request) -> str:
+    """Of a body {"token": "..."}; empty where it is something else, or long."""
+    body = b""
+    async for part in request.stream():
+        body += part
+        if len(body) > MAX_MESSAGE_BYTES:
+            return ""
+    try:
+        token = json.loads(body)["token"]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return ""
+    return token if isinstance(token, str) else ""
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """UsageError where that address cannot be had."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        return socket.create_server((host, port), family=family)
+    except (OSError, OverflowError, UnicodeError) as error:
+        raise UsageError(
+            f"cannot listen on {host} port {port}: {one_line(error)}; choose others with --host "
+            "and --port"
+        )
+
+
+class Server(uvicorn.Server):
+    """Ends when it is told to, and leaves signals to who started it."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
+
+
+async def serve(
+    desk: Desk, policy: Policy, plots: Path, at: socket.socket, stop: threading.Event
+) -> None:
+    """Until `stop` is set."""
+    room = Room(desk)
+    config = uvicorn.Config(
+        application(room, policy, plots),
+        loop="asyncio",
+        http="h11",
+        ws="websockets-sansio",
+        ws_max_size=MAX_MESSAGE_BYTES,
+        ws_ping_interval=PING_S,
+        ws_ping_timeout=PING_S,
+        ws_per_message_deflate=False,
+        lifespan="off",
+        log_level="error",
+        access_log=False,
+        server_header=False,
+        limit_concurrency=CONNECTIONS,
+        timeout_graceful_shutdown=END_S,
+    )
+    server = Server(config)
+    working = [asyncio.create_task(room.run()), asyncio.create_task(server.serve([at]))]
+    try:
+        while not stop.is_set() and not any(one.done() for one in working):
+            await asyncio.sleep(STOP_LOOK_S)
+        server.should_exit = True
+        await working[1]
+    finally:
+        working[0].cancel()
+    if working[0].done() and not working[0].cancelled():
+        working[0].result()  # what ended it

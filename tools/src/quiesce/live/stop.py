@@ -1,0 +1,52 @@
+"""STOP: pressed once, repeated on the bus until the controller reports fault ESTOP."""
+
+import time
+from typing import Any
+
+from quiesce.can.database import Database
+from quiesce.can.emergency import StopFrames
+from quiesce.can.link import Link
+
+IDLE, PRESSED, CONFIRMED = "idle", "pressed", "confirmed"
+ESTOP = "ESTOP"
+
+
+class Stop:
+    """Never given up: a bus that comes back gets it, too."""
+
+    def __init__(self, link: Link, database: Database) -> None:
+        self._link = link
+        self._frames = StopFrames(database)
+        self._pressed_s = 0.0
+        self._due_s = 0.0
+        self._is_sent = False  # since the press
+        self.state = IDLE
+
+    def press(self) -> None:
+        """Sends at once."""
+        self._pressed_s = time.monotonic()
+        self._is_sent = False
+        self.state = PRESSED
+        self._send(self._pressed_s)
+
+    def poll(self) -> None:
+        """Sends again where it is time to. Called more often than frames are due."""
+        now_s = time.monotonic()
+        if self.state == PRESSED and now_s >= self._due_s:
+            self._send(now_s)
+
+    def reported(self, fault: str) -> None:
+        """Of each Status that can be trusted."""
+        if self.state == PRESSED and fault == ESTOP:
+            self.state = CONFIRMED
+        elif self.state == CONFIRMED and fault != ESTOP:
+            self.state = IDLE
+
+    def told(self) -> dict[str, Any]:
+        waited_s = time.monotonic() - self._pressed_s if self.state == PRESSED else 0.0
+        return {"state": self.state, "is_sent": self._is_sent, "waited_s": round(waited_s, 1)}
+
+    def _send(self, now_s: float) -> None:
+        self._due_s = now_s + self._frames.cycle_s
+        message = self._link.send(self._frames.frame_id, self._frames.next())
+        self._is_sent = self._is_sent or message is not None

@@ -1,0 +1,152 @@
+"""One viewer's websocket: what he is sent, what he asks for."""
+
+import asyncio
+import json
+import time
+from typing import Any
+
+from fastapi import WebSocket, WebSocketDisconnect
+
+from quiesce.base.errors import UsageError
+from quiesce.live.jobs import change, store, wanted
+from quiesce.live.protocol import MOST_MALFORMED, Command, Malformed, command_of, pack_samples
+from quiesce.live.room import Room
+from quiesce.live.series import preferred
+
+MOST_NOTES = 100  # that wait for a viewer who does not read
+TOLD_BEATS = 5  # all that is no sample: every so many beats
+TOO_MANY_MALFORMED = 1008
+
+
+class Viewer:
+    """serve() until he is gone. Only send_all() writes to the socket."""
+
+    def __init__(self, socket: WebSocket, room: Room, number: int) -> None:
+        self._socket = socket
+        self._room = room
+        self._desk = room.desk
+        self._number = number
+        self._shown: tuple[int, ...] | None = None  # None: nothing was chosen yet
+        self._cursors = room.desk.start_of_history()
+        self._notes: list[dict[str, Any]] = []
+        self._values: list[int] | None = None  # of the parameters, as he was told
+        self._stored: list[int] | None = None
+        self._packets = 0
+        self._malformed = 0
+        self._works: set[asyncio.Task[None]] = set()
+
+    async def serve(self) -> None:
+        both = [asyncio.create_task(one) for one in (self._send_all(), self._receive_all())]
+        try:
+            await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in both:
+                task.cancel()
+            ends = await asyncio.gather(*both, return_exceptions=True)
+        for end in ends:
+            if isinstance(end, Exception) and not isinstance(end, WebSocketDisconnect):
+                raise end
+
+    # What he asks for
+
+    async def _receive_all(self) -> None:
+        while self._malformed < MOST_MALFORMED:
+            message = await self._socket.receive()
+            if message["type"] == "websocket.disconnect":
+                return
+            try:
+                self._obey(command_of(message.get("text"), len(self._desk.series)))
+            except Malformed as error:
+                self._malformed += 1
+                self._note(False, f"not understood: {error}")
+        await self._socket.close(TOO_MANY_MALFORMED, "not one of ours")
+
+    def _obey(self, command: Command) -> None:
+        room = self._room
+        if command.do == "stop":
+            room.desk.stop.press()
+        elif command.do == "show":
+            self._shown = command.series
+        elif command.do == "release":
+            room.control.release(self._number)
+        elif command.do == "take":
+            if not room.control.take(self._number):
+                self._note(False, f"viewer {room.control.holder} holds control")
+        elif room.control.holder != self._number:
+            self._note(False, "take control first")
+        else:
+            self._start(command)
+        room.tell_now()
+
+    def _start(self, command: Command) -> None:
+        """A change takes a while; meanwhile he may ask for other things, and stop."""
+        task = asyncio.create_task(self._work(command))
+        self._works.add(task)
+        task.add_done_callback(self._works.discard)
+
+    async def _work(self, command: Command) -> None:
+        try:
+            is_done, text = await self._do(command)
+        except UsageError as error:
+            is_done, text = False, str(error)
+        self._note(is_done, text)
+
+    async def _do(self, command: Command) -> tuple[bool, str]:
+        """Whether it came about, and a line about it. UsageError for values not allowed."""
+        desk, jobs = self._desk, self._desk.jobs
+        values = desk.preamble.values
+        if not values or not desk.preamble.may_ask:
+            why = desk.preamble.misunderstood or "the controller's parameters are not read yet"
+            return False, why
+        if command.do == "save":
+            is_done, text = await jobs.run("storing", store)
+            desk.stored = list(values) if is_done else desk.stored
+            return is_done, text
+        settings = self._settings(command, values)
+        if not settings:
+            return True, "nothing differs"
+        return await jobs.run("a change", change(values, settings))
+
+    def _settings(self, command: Command, values: list[int]) -> dict[int, int]:
+        if command.do == "set":
+            return wanted(command.settings, values)
+        stored = enumerate(zip(values, self._desk.stored, strict=True))
+        return {index: want for index, (value, want) in stored if value != want}
+
+    def _note(self, is_ok: bool, text: str) -> None:
+        if len(self._notes) < MOST_NOTES:
+            self._notes.append({"note": {"is_ok": is_ok, "text": text}})
+        self._room.tell_now()
+
+    # What he is sent
+
+    async def _send_all(self) -> None:
+        await self._send_text({"hello": {**self._room.hello, "viewer": self._number}})
+        told_beat = -TOLD_BEATS
+        while True:
+            beat = await self._room.next_beat()
+            notes, self._notes = self._notes, []
+            if notes or self._room.is_news or beat - told_beat >= TOLD_BEATS:
+                told_beat = beat
+                await self._send_text({"state": self._room.told()})
+                await self._send_parameters()
+            for note in notes:  # after what they are about
+                await self._send_text(note)
+            await self._socket.send_bytes(self._packet())
+
+    async def _send_parameters(self) -> None:
+        values, stored = self._desk.preamble.values, self._desk.stored
+        if values is not self._values or stored is not self._stored:
+            self._values, self._stored = values, stored
+            await self._send_text({"parameters": {"values": values, "stored": stored}})
+
+    def _packet(self) -> bytes:
+        shown = self._shown
+        if shown is None:
+            shown = tuple(preferred(self._desk.series, self._desk.heard))
+        blocks = list(self._desk.blocks(shown, self._cursors))
+        self._packets += 1
+        return pack_samples(self._packets - 1, time.time(), self._desk.newest_s, blocks)
+
+    async def _send_text(self, value: dict[str, Any]) -> None:
+        await self._socket.send_text(json.dumps(value, allow_nan=False))
