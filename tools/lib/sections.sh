@@ -5,7 +5,7 @@
 WHOLE=1
 # The full one of identify takes hours, that of laws half an hour.
 BENCHMARKS=(house signal fuzzy controller control sweep "identify --quick" can trust papers "laws --quick" "tables --quick"
-    "install --quick" lock)
+    "install --quick" lock "live --quick")
 
 run_ctest() {
     ctest --preset "$1" --parallel "$(nproc)" --no-tests=error
@@ -79,7 +79,8 @@ section_lint() {
 section_python() {
     wants pytest && build host && build mps2 && step pytest run_pytest "not slow"
     ((WHOLE == 1)) && wants pytest-slow && build host && build mps2 && build m32 &&
-        step bench-images "$ROOT/tools/benchmarks/build_images" && step pytest-slow run_pytest slow
+        step bench-images "$ROOT/tools/benchmarks/build_images" &&
+        step browser "$ROOT/tools/benchmarks/fetch_peers" browser && step pytest-slow run_pytest slow
 }
 
 section_proofs() {

@@ -17,6 +17,7 @@ from quiesce_benchmarks.fuzzy import benchmark as fuzzy_benchmark
 from quiesce_benchmarks.house import benchmark as house_benchmark
 from quiesce_benchmarks.install import benchmark as install_benchmark
 from quiesce_benchmarks.laws import benchmark as laws_benchmark
+from quiesce_benchmarks.live import benchmark as live_benchmark
 from quiesce_benchmarks.lock import benchmark as lock_benchmark
 from quiesce_benchmarks.papers import benchmark as papers_benchmark
 from quiesce_benchmarks.signal import benchmark as signal_benchmark
@@ -41,6 +42,7 @@ BENCHMARKS = (
     tables_benchmark,
     install_benchmark,
     lock_benchmark,
+    live_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,

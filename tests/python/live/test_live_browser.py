@@ -1,0 +1,109 @@
+"""The page of `quiesce live` in Chromium, beside a real controller."""
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from can_bus import Controller, build_peer
+from live_page import Page
+from quiesce_benchmarks.live.browser import Browser, opened
+from quiesce_benchmarks.live.rig import PATIENCE_S, Network
+
+pytestmark = pytest.mark.slow
+SERIES = 8
+SERIOUS = ("serious", "critical")
+
+
+@pytest.fixture(scope="module")
+def peer(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_peer(tmp_path_factory.mktemp("live_peer"))
+
+
+@pytest.fixture
+def controller(peer: Path, tmp_path: Path) -> Iterator[Controller]:
+    one = Controller(peer, tmp_path)
+    one.start()
+    yield one
+    one.stop()
+
+
+@pytest.fixture
+def page(controller: Controller, tmp_path: Path) -> Iterator[Page]:
+    one = Page(tmp_path, "--bus", controller.bus, "--raw")
+    yield one
+    one.end()
+
+
+def until(browser: Browser, accept: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+    """What the page says, once it is accepted."""
+    end_s = time.monotonic() + PATIENCE_S
+    while time.monotonic() < end_s:
+        said = browser.do("said")
+        if accept(said):
+            assert said["is_enabled"] and not said["errors"]
+            return said
+        time.sleep(0.05)
+    raise AssertionError(f"the page says {said}")
+
+
+def test_every_sample_of_eight_signals_is_drawn(controller: Controller, tmp_path: Path) -> None:
+    network = Network(controller.path)
+    page = Page(tmp_path, *network.options, "--raw")
+    with opened(page.address) as browser:
+        found = browser.do("draw", 5)
+    assert len(found["drawn"]) == SERIES and not found["errors"]
+    assert found["lost"] == 0
+    assert min(found["drawn"]) > 1000 and sum(found["ages_ms"]) == sum(found["drawn"])
+    assert max(found["undrawn"]) <= 500  # what came since the last frame
+    assert page.end() == 0
+    network.end()
+
+
+@pytest.mark.parametrize("way", ["click", "key"])
+def test_stop_is_confirmed_on_the_page(page: Page, way: str) -> None:
+    with opened(page.address) as browser, page.viewer() as viewer:
+        viewer.until("state", lambda state: state["controller"]["state"] == "RUN")
+        browser.do(way)
+        viewer.until("state", lambda state: state["controller"]["fault"] == "ESTOP")
+        until(browser, lambda said: "Stopped" in said["stop"])
+
+
+def test_stop_is_tried_again_while_the_server_is_away(controller: Controller, page: Page) -> None:
+    with opened(page.address) as browser:
+        until(browser, lambda said: "newest sample" in said["bus"])
+        browser.do("offline")
+        page.end()
+        until(browser, lambda said: "NO CONNECTION" in said["bus"] or "NOTHING" in said["bus"])
+        browser.do("click")
+        until(browser, lambda said: "STOP NOT SENT" in said["stop"])
+        again = Page(
+            controller.path.parent, "--bus", controller.bus, "--port", str(page.port)
+        )  # the last --port counts
+        browser.do("online")
+        until(browser, lambda said: "Stopped" in said["stop"])
+        with again.viewer() as viewer:
+            viewer.until("state", lambda state: state["controller"]["fault"] == "ESTOP")
+        assert again.end() == 0
+
+
+def test_loss_of_the_bus_is_shown_and_stop_waits_for_it(controller: Controller, page: Page) -> None:
+    with opened(page.address) as browser:
+        until(browser, lambda said: "newest sample" in said["bus"])
+        controller.stop()
+        until(browser, lambda said: "BUS LOST" in said["bus"])
+        browser.do("click")
+        until(browser, lambda said: "STOP NOT CONFIRMED (not sent" in said["stop"])
+        controller.start()
+        until(browser, lambda said: "Stopped" in said["stop"])
+
+
+@pytest.mark.parametrize("options", [(), ("--size", "390x844", "--dark")])
+def test_nothing_serious_for_axe(page: Page, options: tuple[str, ...]) -> None:
+    with opened(page.address, *options) as browser:
+        until(browser, lambda said: "newest sample" in said["bus"])
+        assert [one for one in browser.do("axe") if one[0] in SERIOUS] == []
+        browser.do("click")
+        until(browser, lambda said: "Stopped" in said["stop"])
+        assert [one for one in browser.do("axe") if one[0] in SERIOUS] == []
