@@ -227,15 +227,24 @@ def test_desk_takes_any_frame_and_trusts_none_that_is_wrong() -> None:
     assert desk.traffic.total("wrong_crc") > 300 and desk.traffic.frames == 20_000
 
 
-def test_stop_is_repeated_until_it_is_reported() -> None:
+def test_stop_is_repeated_until_it_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = SimpleNamespace(now_s=1000.0)
+    monkeypatch.setattr("quiesce.live.stop.time", SimpleNamespace(monotonic=lambda: clock.now_s))
     link = SilentLink()
     stop = Desk(link, DATABASE).stop
     stop.poll()
     assert link.sent == [] and stop.state == "idle"
     stop.reported("ESTOP")  # by somebody else's button
     assert stop.state == "idle"
-    stop.press()
-    stop.press()
+    for _ in range(1000):
+        stop.press()
+    assert [frame_id for frame_id, _ in link.sent] == [0x20]
+    clock.now_s += 0.049
+    stop.poll()
+    assert len(link.sent) == 1
+    clock.now_s += 0.002
+    stop.poll()
+    stop.poll()
     assert [frame_id for frame_id, _ in link.sent] == [0x20, 0x20]
     assert link.sent[0] != link.sent[1]  # another alive counter
     stop.reported("SENSOR_LOST")

@@ -19,7 +19,7 @@ from quiesce.live.series import catalogue, preferred
 from quiesce.live.stop import Stop
 
 RING_SAMPLES = 32768  # half a minute at 1 kHz
-MOST_EVENTS = 20_000  # a drain: a storm does not keep the loop from its viewers
+MOST_EVENTS = 2000  # a drain: a storm does not keep the loop from a STOP
 MOST_SAMPLES = 4096  # of a message in one packet
 HISTORY_S = 30.0  # for a viewer that comes
 NONE = "NONE"

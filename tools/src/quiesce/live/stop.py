@@ -9,6 +9,7 @@ from quiesce.can.link import Link
 
 IDLE, PRESSED, CONFIRMED = "idle", "pressed", "confirmed"
 ESTOP = "ESTOP"
+LEAST_S = 0.01  # from one frame to the next
 
 
 class Stop:
@@ -18,21 +19,24 @@ class Stop:
         self._link = link
         self._frames = StopFrames(database)
         self._pressed_s = 0.0
-        self._due_s = 0.0
+        self._sent_s = 0.0
         self._is_sent = False  # since the press
         self.state = IDLE
 
     def press(self) -> None:
-        """Sends at once."""
-        self._pressed_s = time.monotonic()
+        """Sends at once; a storm of presses is no storm on the bus."""
+        now_s = time.monotonic()
+        if self.state == PRESSED and now_s < self._sent_s + LEAST_S:
+            return
+        self._pressed_s = now_s
         self._is_sent = False
         self.state = PRESSED
-        self._send(self._pressed_s)
+        self._send(now_s)
 
     def poll(self) -> None:
         """Sends again where it is time to. Called more often than frames are due."""
         now_s = time.monotonic()
-        if self.state == PRESSED and now_s >= self._due_s:
+        if self.state == PRESSED and now_s >= self._sent_s + self._frames.cycle_s:
             self._send(now_s)
 
     def reported(self, fault: str) -> None:
@@ -47,6 +51,6 @@ class Stop:
         return {"state": self.state, "is_sent": self._is_sent, "waited_s": round(waited_s, 1)}
 
     def _send(self, now_s: float) -> None:
-        self._due_s = now_s + self._frames.cycle_s
+        self._sent_s = now_s
         message = self._link.send(self._frames.frame_id, self._frames.next())
         self._is_sent = self._is_sent or message is not None

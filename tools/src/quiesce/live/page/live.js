@@ -96,6 +96,7 @@ function choose(number, box) {
 
 function show(numbers) {
   isChosen = true;
+  for (const number of numbers.filter((one) => !shown.includes(one))) samples.resume(hello.series[number].frame_id);
   shown = numbers;
   link.send({ do: "show", series: shown });
   showCharts();

@@ -4,6 +4,7 @@ const KIND = 1;
 const VERSION = 1;
 const HEAD_BYTES = 24;
 const BLOCK_BYTES = 20;
+const DRIFT_s = 4e-6; // that two clocks may part between two packets: 100 ppm
 const SIZE = 65536; // samples of a message: a minute at 1 kHz
 
 // A packet's blocks; null where it is none that this page understands.
@@ -71,12 +72,13 @@ export class Samples {
     this.lost = 0; // samples that the numbers say are missing
     this.ages_ms = new Uint32Array(2000); // how many samples were drawn how old; the last: older
     this.drawn = 0;
-    this.clockAhead_s = -Infinity; // of the server's clock
     this.restart();
   }
 
-  // After a connection anew: numbers go on from anywhere.
+  // After a connection anew: the server begins with its history.
   restart() {
+    this.tracks.clear();
+    this.clockAhead_s = -Infinity; // of the server's clock
     this.expected = new Map(); // the next sample's number, by message
     this.packet = null;
   }
@@ -84,13 +86,19 @@ export class Samples {
   add(packet) {
     if (this.packet !== null && packet.number !== (this.packet + 1) % 2 ** 32) this.lost++;
     this.packet = packet.number;
-    this.clockAhead_s = Math.max(this.clockAhead_s, packet.sent_s - performance.now() / 1000);
+    const ahead_s = packet.sent_s - performance.now() / 1000;
+    this.clockAhead_s = Math.max(this.clockAhead_s - DRIFT_s, ahead_s);
     for (const block of packet.blocks) {
       const expected = this.expected.get(block.id);
       if (expected !== undefined) this.lost += (block.first - expected + 2 ** 32) % 2 ** 32;
       this.expected.set(block.id, (block.first + block.offsets_us.length) % 2 ** 32);
       block.series.forEach((number, i) => this.track(number).add(block, block.values[i]));
     }
+  }
+
+  // A message that was not drawn: its numbers went on meanwhile.
+  resume(id) {
+    this.expected.delete(id);
   }
 
   track(number) {
