@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from can_bus import Controller
 from quiesce.live.protocol import BLOCK, HEAD
 from quiesce_benchmarks.live import rig
 from quiesce_benchmarks.live.rig import PATIENCE_S
@@ -105,6 +106,12 @@ class Viewer:
 
 
 FAST = ("CurrentDemand", "RawSample")
+
+
+def pull(controller: Controller) -> None:
+    """Its cable; the name goes, too: its number may be that of another test's line at once."""
+    controller.stop()
+    controller.path.unlink()
 
 
 class Page(rig.Page):

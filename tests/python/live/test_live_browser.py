@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from can_bus import Controller, build_peer
-from live_page import Page
+from live_page import Page, pull
 from quiesce_benchmarks.live.browser import Browser, opened
 from quiesce_benchmarks.live.rig import PATIENCE_S, Network
 
@@ -91,7 +91,7 @@ def test_stop_is_tried_again_while_the_server_is_away(controller: Controller, pa
 def test_loss_of_the_bus_is_shown_and_stop_waits_for_it(controller: Controller, page: Page) -> None:
     with opened(page.address) as browser:
         until(browser, lambda said: "newest sample" in said["bus"])
-        controller.stop()
+        pull(controller)
         until(browser, lambda said: "BUS LOST" in said["bus"])
         browser.do("click")
         until(browser, lambda said: "STOP NOT CONFIRMED (not sent" in said["stop"])

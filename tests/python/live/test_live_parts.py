@@ -7,11 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from live_page import packet_of
+from quiesce.base.errors import UsageError
 from quiesce.can.database import load
 from quiesce.can.link import Back, Lost
+from quiesce.can.parameters import parameters
 from quiesce.live.control import Control
 from quiesce.live.desk import Desk
 from quiesce.live.freeze import FirstFault
+from quiesce.live.jobs import wanted
 from quiesce.live.protocol import (
     MOST_SERIES,
     Block,
@@ -177,6 +180,19 @@ def test_first_fault_stays_until_the_next_after_health() -> None:
     assert (first.frame["fault"], first.later) == ("COIL_OPEN", 0)
     first.take(frame_id, b"\xff" * 8)  # of no page that there is
     assert first.frame["fault"] == "COIL_OPEN"
+
+
+# Changes
+
+
+def test_wanted_is_what_differs_or_is_not_there() -> None:
+    values = [one["default"] for one in parameters()]
+    law = next(one for one in parameters() if one["name"] == "law")
+    assert wanted((f"law={law['labels'][law['default']]}",), values) == {}
+    assert wanted(("law=off",), values) == {law["index"]: 0}
+    assert wanted(("law=off",), values[: law["index"]]) == {law["index"]: 0}  # older firmware
+    with pytest.raises(UsageError, match="law is one of"):
+        wanted(("law=fast",), values)
 
 
 # The desk

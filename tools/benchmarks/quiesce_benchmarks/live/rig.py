@@ -94,11 +94,13 @@ class Node:
         os.close(master)
 
     def stop(self) -> None:
-        """As if its cable were pulled."""
+        """As if its cable were pulled. The name goes, too: the line's number may be another's at
+        once."""
         if self._process is not None:
             self._process.kill()
             self._process.wait()
             os.close(self._slave)
+            self.line.unlink()
             self._process = None
 
 

@@ -64,7 +64,7 @@ class Desk:
             self.preamble.poll()
         if self._raw is not None and self.preamble.may_ask and self.preamble.is_over:
             self._raw.poll()
-        if not self.stored and self.preamble.values:
+        if len(self.stored) != len(self.preamble.values):  # of no controller yet, or another one
             self.stored = list(self.preamble.values)
 
     def take(self, event: Any) -> None:

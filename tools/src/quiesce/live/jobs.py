@@ -110,5 +110,7 @@ def store(services: Services) -> str:
 
 
 def wanted(words: tuple[str, ...], values: list[int]) -> dict[int, int]:
-    """Those of NAME=VALUE that differ. UsageError where one is not allowed."""
-    return {i: value for i, value in settings_of(words).items() if values[i] != value}
+    """Those of NAME=VALUE that differ, and what this firmware has not: it says so. UsageError where
+    one is not allowed."""
+    have = dict(enumerate(values))
+    return {i: value for i, value in settings_of(words).items() if have.get(i) != value}
