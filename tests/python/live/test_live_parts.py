@@ -265,6 +265,10 @@ def test_stop_is_repeated_until_it_is_reported(monkeypatch: pytest.MonkeyPatch) 
     assert link.sent[0] != link.sent[1]  # another alive counter
     stop.reported("SENSOR_LOST")
     assert stop.told()["state"] == "pressed"
+    clock.now_s += 0.949
+    stop.press()  # once more: it has still been in vain for a second
+    assert len(link.sent) == 3
+    assert stop.told() == {"state": "pressed", "is_sent": True, "waited_s": 1.0}
     stop.reported("ESTOP")
     assert stop.told() == {"state": "confirmed", "is_sent": True, "waited_s": 0.0}
     stop.reported("NONE")

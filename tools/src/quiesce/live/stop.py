@@ -20,7 +20,7 @@ class Stop:
         self._frames = StopFrames(database)
         self._pressed_s = 0.0
         self._sent_s = 0.0
-        self._is_sent = False  # since the press
+        self._is_sent = False  # since then
         self.state = IDLE
 
     def press(self) -> None:
@@ -28,8 +28,9 @@ class Stop:
         now_s = time.monotonic()
         if self.state == PRESSED and now_s < self._sent_s + LEAST_S:
             return
-        self._pressed_s = now_s
-        self._is_sent = False
+        if self.state != PRESSED:  # pressed again it has waited since the first time
+            self._pressed_s = now_s
+            self._is_sent = False
         self.state = PRESSED
         self._send(now_s)
 

@@ -21,6 +21,8 @@ export class Charts {
     this.place = place;
     this.samples = samples;
     this.panels = [];
+    this.series = []; // nothing is shown yet
+    this.factorOf = null;
     this.window_s = 10;
     this.isHeld = false;
     new ResizeObserver(() => this.fit()).observe(place);

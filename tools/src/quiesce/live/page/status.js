@@ -75,8 +75,12 @@ export function showFaults(state) {
 export function showFirstFault(frame, later) {
   const key = JSON.stringify([frame, later]);
   const place = $("first-fault");
-  if (frame === null || place.dataset.key === key) return;
+  if (place.dataset.key === key) return;
   place.dataset.key = key;
+  if (frame === null) {
+    place.replaceChildren("none"); // so far, or of a server that was started anew
+    return;
+  }
   const table = document.createElement("table");
   table.append(element("caption", `${frame.fault} in state ${frame.state_before}, when it was entered`));
   for (const [title, value, unit] of frame.values) {
