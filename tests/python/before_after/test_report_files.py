@@ -228,16 +228,22 @@ def test_a_log_has_samples_scale_and_configuration(tmp_path: Path, suffix: str) 
 
 
 def test_a_table_that_somebody_asked_for_is_told(tmp_path: Path) -> None:
-    """CRC of the law's table, as `quiesce can tables` asks; what else is asked for is no CRC."""
+    """CRC of the law's table, as `quiesce can tables` asks; what else is asked for is no CRC, and
+    a road that nobody knows is none."""
     operation = DATABASE.number("ServiceRequest", "operation", "TABLE_INFO")
     frames = []
-    for alive, (what, answer) in enumerate([(1, 77), (0, 0x89ABCDEF - 2**32), (2, 5)]):
-        ask = protected("ServiceRequest", alive, operation=operation, param_value=what)
-        reply = protected("ServiceReply", alive, operation=operation, param_value=answer)
+    asked = [(0, 1, 77), (0, 0, 0x89ABCDEF - 2**32), (0, 2, 5), (200, 0, 6)]
+    for alive, (road, what, answer) in enumerate(asked):
+        on_road = {"operation": operation, "param_index": road}
+        ask = protected("ServiceRequest", alive, **on_road, param_value=what)
+        reply = protected("ServiceReply", alive, **on_road, param_value=answer)
         frames += [frame("ServiceRequest", 0.1 * alive, ask)]
         frames += [frame("ServiceReply", 0.1 * alive + 0.01, reply)]
     file = record(tmp_path / "a.log", frames + sample_frames(np.arange(300)))
-    assert open_file(file, How()).origin.facts["table on road law"] == "89ABCDEF"
+    facts = open_file(file, How()).origin.facts
+    assert {name: text for name, text in facts.items() if "road" in name} == {
+        "table on road law": "89ABCDEF"
+    }
 
 
 def test_lost_and_stale_samples_are_missing_ones(tmp_path: Path) -> None:

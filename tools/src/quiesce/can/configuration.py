@@ -42,7 +42,8 @@ class Configuration:
         if operation == "READ":
             self.parameters[name_of(raw["param_index"])] = raw["param_value"]
         elif operation == "TABLE_INFO" and self._asked.get(raw["alive"]) == CRC:
-            self.tables[ROADS[raw["param_index"]]] = raw["param_value"] % WORD
+            if raw["param_index"] < len(ROADS):  # a newer firmware may have more
+                self.tables[ROADS[raw["param_index"]]] = raw["param_value"] % WORD
 
     def facts(self) -> dict[str, str]:
         """For people; empty where the log says nothing."""
