@@ -227,6 +227,13 @@ def test_felt_acceleration_and_zones_are_on_request(report, tmp_path: Path) -> N
     assert slow["zone_velocity_rms"]["before"] > 1.3 * found["zone_velocity_rms"]["before"]
 
 
+def test_slow_is_refused_without_a_machine(report, tmp_path: Path) -> None:
+    halved(tmp_path)
+    result = report("b.csv", "a.csv", "--slow")
+    assert result.returncode == 2 and result.stdout == ""
+    assert result.stderr.splitlines()[-1].endswith("name it, too: --machine")
+
+
 def test_json_is_what_its_page_says(report, tmp_path: Path) -> None:
     """Every key is in docs/reference/report-files.md."""
     halved(tmp_path)

@@ -126,8 +126,8 @@ def _uneven(time_s: np.ndarray, index: np.ndarray, period_s: float) -> list[str]
         return []
     if abs(drift) > TOLD_DRIFT:
         return [
-            f"its sampling drifts: the period at the end is {100 * drift:+.2f} % of that at the "
-            "start; taken as even"
+            f"its sampling drifts: the period at the end differs by {100 * drift:+.2f} % from that "
+            "at the start; taken as even"
         ]
     return [
         f"time stamps are up to {jitter:.2g} periods away from an even grid; taken as even, which "

@@ -2,11 +2,12 @@
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
 from quiesce.base.command import real_number, whole_number
-from quiesce.base.errors import EXIT_FAILED
+from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.base.table import format_table
 from quiesce.before_after.data import as_data
@@ -95,8 +96,10 @@ def add_csv_options(group: argparse._ArgumentGroup) -> None:
 
 def options_of(args: argparse.Namespace) -> Options:
     machine = machines()[args.machine] if args.machine else None
-    if machine is not None and args.slow:
-        machine = type(machine)(machine.name, machine.boundaries_mm_s, SLOW_BAND_Hz)
+    if args.slow:
+        if machine is None:
+            raise UsageError("--slow is of a machine's zones; name it, too: --machine")
+        machine = replace(machine, band_Hz=SLOW_BAND_Hz)
     reference: Wanted | None = None
     if args.reference is not None:
         reference = wanted("--reference", args.reference)
