@@ -10,7 +10,9 @@ exits 1 where the committed file differs.
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from quiesce.rules.engine.system_engine import SystemEngine
@@ -47,16 +49,18 @@ def points_of(compiled: CompiledSystem) -> np.ndarray:
 
 
 def case_text(name: str, compiled: CompiledSystem) -> str:
-    points = points_of(compiled)
-    outputs, defaults = SystemEngine(compiled).evaluate(points)
+    points = points_text("system_point_t", name, points_of(compiled), SystemEngine(compiled))
+    return f"static {table_text(compiled.words, name)}\n{points}"
+
+
+def points_text(kind: str, name: str, points: np.ndarray, engine: Any) -> str:
+    """The array NAME_points: inputs, mask of defaults and outputs of each point."""
+    outputs, defaults = engine.evaluate(points)
     rows = "\n".join(
         f"    {{{{{listed(points[:, k])}}}, {defaults[k]}u, {{{listed(outputs[:, k])}}}}},"
         for k in range(points.shape[1])
     )
-    return (
-        f"static {table_text(compiled.words, name)}\n"
-        f"static const system_point_t {name}_points[{points.shape[1]}] = {{\n{rows}\n}};\n"
-    )
+    return f"static const {kind} {name}_points[{points.shape[1]}] = {{\n{rows}\n}};\n"
 
 
 def listed(values: np.ndarray) -> str:
@@ -75,19 +79,21 @@ def text() -> str:
     return "\n".join(parts)
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def write_or_check(description: str, target: Path, text: Callable[[], str]) -> int:
+    """The exit code of a script that makes one file."""
+    parser = argparse.ArgumentParser(description=description.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="exit 1 where the file differs")
-    args = parser.parse_args()
+    is_check = parser.parse_args().check
     made = text()
-    if not args.check:
-        TARGET.write_text(made)
+    if not is_check:
+        target.write_text(made)
         return 0
-    if TARGET.read_text() == made:
+    if target.read_text() == made:
         return 0
-    print(f"{TARGET.relative_to(ROOT)} differs; run tests/gen/systems.py", file=sys.stderr)
+    script = f"tests/gen/{Path(sys.argv[0]).name}"
+    print(f"{target.relative_to(ROOT)} differs; run {script}", file=sys.stderr)
     return 1
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(__doc__, TARGET, text))
