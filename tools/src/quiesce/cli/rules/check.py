@@ -10,9 +10,11 @@ from typing import Any
 
 from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
-from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, compiled_from
+from quiesce.cli.rules.check_system import check_system
+from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, any_compiled_from
 from quiesce.rules.analysis.analyse import analyse
 from quiesce.rules.analysis.findings import ERROR, Finding
+from quiesce.rules.engine.precise import Precise
 from quiesce.rules.integers.bound import error_bounds
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.emit import why_not_straight
@@ -30,6 +32,15 @@ what is done:
     double precision: worst error and where, range of the output, agreement of the engines;
   - for a weighted average the error is also bounded from the integers' rounding alone.
 
+of a file that is no plain rule base (other norms, smooth sets, hedges, values that depend on
+inputs; the first line says why):
+  - the same findings; where no rule fires, and which never do, is proved from corners and knots of
+    the sets, whatever the norms, and sampled where that does not tell; jumps are looked for; each
+    line ends in [proved] or [sampled];
+  - the engine for any system (fuzzy_system.c), built with the sanitizer, is evaluated at every
+    input integer where they are few, else at random ones, at corners and around the worst found.
+    Points where no rule fires by a thousandth are counted, not judged.
+
 exit codes: 0 fine; 1 a finding is an error, an engine overflows or both differ, or the worst error
 is above --max-error; 2 bad input
 
@@ -37,6 +48,7 @@ examples:
   quiesce rules check tools/benchmarks/rules/reference_singleton.fcl
   quiesce rules check firmware/plants/squeeze_2012/rules.fcl --controller
   quiesce rules check fan.fis --lsb temperature=0.01 --max-error 0.5 --json
+  quiesce rules check gaussians.fll
 """
 
 
@@ -55,9 +67,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="X",
         help="fail above this error, in the output's unit",
     )
-    parser.add_argument("--jobs", type=int, default=0, metavar="N", help="at once (all processors)")
     parser.add_argument(
-        "--quick", action="store_true", help="every cell, sampled, instead of every integer"
+        "--jobs", type=int, default=0, metavar="N",
+        help="at once, of a plain rule base (all processors)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--quick", action="store_true", help="sampled instead of every integer; fewer of a system"
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=run)
@@ -68,9 +83,11 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--jobs {args.jobs}: 0 or more, please")
     if args.max_error is not None and not args.max_error >= 0:
         raise UsageError(f"--max-error {args.max_error}: 0 or more, please")
-    compiled = compiled_from(args)
-    findings = analyse(compiled.base)
+    compiled, why = any_compiled_from(args)
     progress = WalkProgress()
+    if isinstance(compiled, Precise):
+        return check_system(args, compiled, why, progress.report)
+    findings = analyse(compiled.base)
     walked = walk(compiled, args.jobs, 0 if args.quick else MAX_WALKED_POINTS, progress.report)
     bounds = error_bounds(compiled)
     problems = failures(findings, walked, bounds, args.max_error)

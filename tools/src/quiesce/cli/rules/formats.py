@@ -70,11 +70,7 @@ def any_compiled_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise,
 
 def system_from(args: argparse.Namespace) -> tuple[Precise, str]:
     """Straight-line C where the system has that form and it answers well; and what was taken."""
-    system = read_system(args.file)
-    named = assignments("--lsb", args.lsb, system)
-    inputs = [named.get(variable.name, Q15) for variable in system.inputs]
-    outputs = [named.get(variable.name, Q16) for variable in system.outputs]
-    forms = (system, inputs, outputs, defaults(args, system))
+    forms = forms_from(args)
     if args.table:
         return compile_precisely(*forms), ENGINE_TAKEN
     try:
@@ -87,6 +83,22 @@ def system_from(args: argparse.Namespace) -> tuple[Precise, str]:
             off = f"{100.0 * straight.error:.2g} % of an output's range off"
             return table, f"straight-line C would be {off}; {ENGINE_TAKEN}"
     return straight, "taken: straight-line C of polynomials"
+
+
+def precise_from(args: argparse.Namespace) -> Precise:
+    """The table of the engine for any system."""
+    return compile_precisely(*forms_from(args))
+
+
+def forms_from(
+    args: argparse.Namespace,
+) -> tuple[System, list[float | str], list[float | str], dict[str, float]]:
+    """The system, its inputs' and outputs' integers, and what an output is where nothing fires."""
+    system = read_system(args.file)
+    named = assignments("--lsb", args.lsb, system)
+    inputs = [named.get(variable.name, Q15) for variable in system.inputs]
+    outputs = [named.get(variable.name, Q16) for variable in system.outputs]
+    return system, inputs, outputs, defaults(args, system)
 
 
 def defaults(args: argparse.Namespace, base: RuleBase | System) -> dict[str, float]:

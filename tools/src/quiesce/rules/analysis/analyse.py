@@ -31,6 +31,10 @@ def analyse(base: RuleBase) -> list[Finding]:
         *pair_findings(base),
         *monotone_findings(base),
     ]
+    return worst_first(found)
+
+
+def worst_first(found: list[Finding]) -> list[Finding]:
     order = {ERROR: 0, WARNING: 1}
     return sorted(found, key=lambda finding: order.get(finding.severity, 2))
 

@@ -7,6 +7,7 @@ inputs into cells in which each rule fires everywhere or nowhere.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -19,8 +20,9 @@ from quiesce.rules.analysis.findings import (
     number,
     rule_place,
 )
-from quiesce.rules.model import AND, Condition, FuzzySet, Input, Rule, RuleBase
+from quiesce.rules.model import AND, Condition, FuzzySet, Input, Output, Rule, RuleBase
 from quiesce.rules.reference import limits
+from quiesce.rules.system.model import System, SystemInput, SystemOutput
 
 REGIONS_TOLD = 8  # of an output
 
@@ -36,6 +38,11 @@ class Piece:
         if self.start == self.end:
             return f"{name} = {number(self.start)}"
         return f"{name} {number(self.start)} .. {number(self.end)}"
+
+
+class HasPieces(Protocol):
+    @property
+    def pieces(self) -> tuple[Piece, ...]: ...
 
 
 @dataclass(frozen=True)
@@ -56,7 +63,7 @@ class Region:
     pieces: tuple[Piece, ...]  # of each input
     share: float  # of the volume of all inputs; 0 for a point or a line
 
-    def text(self, base: RuleBase) -> str:
+    def text(self, base: RuleBase | System) -> str:
         named = [
             piece.text(variable.name)
             for variable, piece in zip(base.inputs, self.pieces, strict=True)
@@ -65,7 +72,7 @@ class Region:
         return ", ".join(named) or "any input"
 
 
-def is_whole(variable: Input, piece: Piece) -> bool:
+def is_whole(variable: Input | SystemInput, piece: Piece) -> bool:
     return (piece.start, piece.end) == (variable.minimum, variable.maximum)
 
 
@@ -128,7 +135,7 @@ def uncovered(base: RuleBase, output: int, axes: Sequence[Axis]) -> np.ndarray:
     return ~covered
 
 
-def boxes(base: RuleBase, cells: np.ndarray, axes: Sequence[Axis]) -> list[Region]:
+def boxes(base: RuleBase | System, cells: np.ndarray, axes: Sequence[HasPieces]) -> list[Region]:
     """Disjoint boxes that make up the cells, largest share first."""
     left, found = cells.copy(), []
     while left.any():
@@ -145,7 +152,7 @@ def boxes(base: RuleBase, cells: np.ndarray, axes: Sequence[Axis]) -> list[Regio
     return sorted(found, key=lambda region: -region.share)
 
 
-def region_of(base: RuleBase, span: Sequence[slice], axes: Sequence[Axis]) -> Region:
+def region_of(base: RuleBase | System, span: Sequence[slice], axes: Sequence[HasPieces]) -> Region:
     pieces, share = [], 1.0
     for variable, axis, part in zip(base.inputs, axes, span, strict=True):
         first, last = axis.pieces[part.start], axis.pieces[part.stop - 1]
@@ -168,13 +175,21 @@ def coverage_findings(base: RuleBase) -> list[Finding]:
 
 
 def output_coverage(base: RuleBase, index: int) -> list[Finding]:
-    output, regions = base.outputs[index], uncovered_regions(base, index)
-    instead = (
-        "and it has no default"
-        if output.default is None
-        else f"it is its default {number(output.default)}"
-    )
-    severity = ERROR if output.default is None else WARNING
+    return region_findings(base.outputs[index], base, uncovered_regions(base, index))
+
+
+def instead_of(default: float | None) -> tuple[str, str]:
+    """What holds where no rule fires, and how bad that is."""
+    if default is None:
+        return "and it has no default", ERROR
+    return f"it is its default {number(default)}", WARNING
+
+
+def region_findings(
+    output: Output | SystemOutput, base: RuleBase | System, regions: Sequence[Region]
+) -> list[Finding]:
+    """Of regions in which no rule of an output fires."""
+    instead, severity = instead_of(output.default)
     findings = [
         Finding(
             UNCOVERED,

@@ -12,6 +12,10 @@ UNREACHABLE = "unreachable"
 CONTRADICTORY = "contradictory"
 DUPLICATE = "duplicate"
 NON_MONOTONE = "non-monotone"
+DISCONTINUOUS = "discontinuous"
+
+# How it is known
+PROVED, SAMPLED = "proved", "sampled"
 
 
 @dataclass(frozen=True)
@@ -20,6 +24,7 @@ class Finding:
     severity: str
     text: str  # one line, complete without the rest
     place: str  # `input f`, `output I`, `rule 7`, or a region of the inputs
+    basis: str = PROVED
 
 
 def rule_place(index: int) -> str:

@@ -5,19 +5,42 @@ set's level to the other's. Minimum and maximum do not promise that: it may go t
 Found on the reference, at the corners and middles of the cells of the other inputs.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.rules.analysis.findings import NON_MONOTONE, NOTE, WARNING, Finding, number
+from quiesce.rules.analysis.findings import (
+    NON_MONOTONE,
+    NOTE,
+    SAMPLED,
+    WARNING,
+    Finding,
+    number,
+)
 from quiesce.rules.model import Input, RuleBase
 from quiesce.rules.reference import evaluate
+from quiesce.rules.system.model import System
 
 STEPS = 32  # along an input, between two cores
 MAX_POINTS = 200_000  # of one sweep; places of the other inputs are thinned out to keep to it
 TOLERANCE = 1e-9  # of the output's universe
 TOLD = 0.01  # of the output's universe: a turn as large as this is a warning
+
+
+Core = tuple[float, float, str]  # where a set is greatest: start, end, name
+
+
+@dataclass(frozen=True)
+class View:
+    """What is looked at: each input's cores, ascending, and its corners; values [output, ...] over
+    a grid of open axes, NaN where no rule fires. tolerances: of each output, of its universe."""
+
+    cores: tuple[list[Core], ...]
+    corners: tuple[np.ndarray, ...]
+    values: Callable[[Sequence[np.ndarray]], np.ndarray]
+    tolerances: tuple[float, ...]
+    most_points: int = MAX_POINTS
 
 
 @dataclass(frozen=True)
@@ -42,7 +65,19 @@ class Reversal:
     of_places: int
 
 
-def cores(variable: Input) -> list[tuple[float, float, str]]:
+def view_of(base: RuleBase) -> View:
+    def values(axes: Sequence[np.ndarray]) -> np.ndarray:
+        # Where nothing fires the default stands: told as uncovered, not as a turn.
+        answer = evaluate(base, axes)
+        return np.where(answer.is_default, np.nan, answer.outputs)
+
+    tolerances = (TOLERANCE,) * len(base.outputs)
+    return View(
+        tuple(map(cores, base.inputs)), tuple(map(corners, base.inputs)), values, tolerances
+    )
+
+
+def cores(variable: Input) -> list[Core]:
     """Where each set is greatest inside the universe, in ascending order: start, end, name.
 
     A set that is as great everywhere has no core.
@@ -60,10 +95,10 @@ def cores(variable: Input) -> list[tuple[float, float, str]]:
     return sorted(found)
 
 
-def gaps(base: RuleBase) -> Iterator[Gap]:
+def gaps(base: RuleBase | System, view: View) -> Iterator[Gap]:
     for index, variable in enumerate(base.inputs):
         end, name = variable.maximum, ""
-        for next_start, next_end, next_name in cores(variable):
+        for next_start, next_end, next_name in view.cores[index]:
             if end < next_start:
                 yield Gap(index, end, next_start, (name, next_name))
             if not name or next_end > end:
@@ -78,40 +113,47 @@ def corners(variable: Input) -> np.ndarray:
     return np.sort(np.concatenate([inside, (inside[1:] + inside[:-1]) / 2]))
 
 
-def sweep_axes(base: RuleBase, gap: Gap) -> list[np.ndarray]:
+def sweep_axes(view: View, gap: Gap) -> list[np.ndarray]:
     """Places of each input: the gap's own steps, the corners of the others."""
-    axes = [corners(variable) for variable in base.inputs]
+    axes = list(view.corners)
     inside = axes[gap.input]
     inside = inside[(inside > gap.start) & (inside < gap.end)]
     axes[gap.input] = np.union1d(np.linspace(gap.start, gap.end, STEPS + 1), inside)
-    while np.prod([float(len(axis)) for axis in axes]) > MAX_POINTS:
-        others = [i for i in range(len(axes)) if i != gap.input]
+    others = [i for i in range(len(axes)) if i != gap.input]
+    while others and np.prod([float(len(axis)) for axis in axes]) > view.most_points:
         widest = max(others, key=lambda i: len(axes[i]))
         axes[widest] = axes[widest][::2]
     return axes
 
 
 def reversals(base: RuleBase) -> list[Reversal]:
+    return reversals_in(base, view_of(base))
+
+
+def reversals_in(base: RuleBase | System, view: View) -> list[Reversal]:
     found = []
-    for gap in gaps(base):
-        axes = sweep_axes(base, gap)
-        answer = evaluate(base, np.ix_(*axes))
+    for gap in gaps(base, view):
+        axes = sweep_axes(view, gap)
+        values = view.values(np.ix_(*axes))
         for output in range(len(base.outputs)):
-            # Where nothing fires the default stands: told as uncovered, not as a turn.
-            values = np.where(answer.is_default[output], np.nan, answer.outputs[output])
-            one = largest_turn(base, gap, output, axes, values)
+            one = largest_turn(base, gap, output, axes, values[output], view.tolerances[output])
             if one is not None:
                 found.append(one)
     return found
 
 
 def largest_turn(
-    base: RuleBase, gap: Gap, output: int, axes: Sequence[np.ndarray], values: np.ndarray
+    base: RuleBase | System,
+    gap: Gap,
+    output: int,
+    axes: Sequence[np.ndarray],
+    values: np.ndarray,
+    tolerance: float,
 ) -> Reversal | None:
     along = np.moveaxis(values, gap.input, 0)
     turn = np.nan_to_num(wrong_way(along), nan=0.0)
     span = base.outputs[output].maximum - base.outputs[output].minimum
-    has_turn = turn > TOLERANCE * span
+    has_turn = turn > tolerance * span
     if not has_turn.any():
         return None
     worst = np.unravel_index(int(np.argmax(turn)), turn.shape)
@@ -153,7 +195,7 @@ def monotone_findings(base: RuleBase) -> list[Finding]:
     return [finding_of(base, reversal) for reversal in reversals(base)]
 
 
-def finding_of(base: RuleBase, reversal: Reversal) -> Finding:
+def finding_of(base: RuleBase | System, reversal: Reversal) -> Finding:
     output, gap = base.outputs[reversal.output], reversal.gap
     name = base.inputs[gap.input].name
     place = ", ".join(
@@ -167,4 +209,4 @@ def finding_of(base: RuleBase, reversal: Reversal) -> Finding:
         f"({100 * height:.2g} % of its range), at {place}; "
         f"in {reversal.places} of {reversal.of_places} places"
     )
-    return Finding(NON_MONOTONE, WARNING if height >= TOLD else NOTE, text, place)
+    return Finding(NON_MONOTONE, WARNING if height >= TOLD else NOTE, text, place, SAMPLED)

@@ -12,7 +12,7 @@ from quiesce.rules.engine.system_engine import SystemEngine
 from quiesce.rules.straight.compile import StraightSystem
 from quiesce.rules.system.compile import CompiledSystem, compile_system
 from quiesce.rules.system.model import LARGEST, MEAN, SMALLEST, System
-from quiesce.rules.system.reference import evaluate
+from quiesce.rules.system.reference import WEAKEST, evaluate
 
 TOLERANCES = tuple(2.0**-bits for bits in (12, 14, 16, 18, 20, 22))
 GOOD = 3e-4  # of an output's range
@@ -20,7 +20,6 @@ POINTS = 2000
 # Of points that are judged where an output jumps from one peak to another, as like as not.
 SHARE_OF_MAXIMA = 0.99
 MAXIMA = (SMALLEST, LARGEST, MEAN)
-WEAKEST = 2.0**-10  # of an output's strongest rule: below, rounding is all that there is to see
 SEED = 1
 
 

@@ -36,6 +36,7 @@ from quiesce.rules.system.norms import ANY, HEDGES, NORMS
 
 CHUNK_POINTS = 256
 ALIKE = 2.0**-18  # heights that count as the same
+WEAKEST = 2.0**-10  # of an output's strongest rule: below, rounding is all that there is to see
 
 
 @dataclass(frozen=True)
@@ -71,11 +72,7 @@ def evaluate(system: System, inputs: Sequence[np.ndarray]) -> Answers:
 
 
 def evaluate_some(system: System, x: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    fired: list[list[Fired]] = [[] for _ in system.outputs]
-    for rule in system.rules:
-        strength = rule.weight * np.minimum(strength_of(system, rule, rule.expression, x, fired), 1)
-        for one in rule.conclusions:
-            fired[one.output].append(Fired(rule, one.term, concluded(one, strength)))
+    fired, _ = fired_at(system, x)
     values = [value_of(system, i, fired[i], x) for i in range(len(system.outputs))]
     defaults = [np.nan if one.default is None else one.default for one in system.outputs]
     missing = np.array([np.isnan(value) for value in values])
@@ -85,6 +82,19 @@ def evaluate_some(system: System, x: list[np.ndarray]) -> tuple[np.ndarray, np.n
         for rules in fired
     ]
     return filled, missing, np.array(strongest)
+
+
+def fired_at(system: System, x: list[np.ndarray]) -> tuple[list[list[Fired]], np.ndarray]:
+    """x: [point] of each input, within its universe. What each output's rules conclude, and
+    [rule, point] strengths."""
+    fired: list[list[Fired]] = [[] for _ in system.outputs]
+    strengths = np.zeros((len(system.rules), len(x[0])))
+    for number, rule in enumerate(system.rules):
+        strength = rule.weight * np.minimum(strength_of(system, rule, rule.expression, x, fired), 1)
+        strengths[number] = strength
+        for one in rule.conclusions:
+            fired[one.output].append(Fired(rule, one.term, concluded(one, strength)))
+    return fired, strengths
 
 
 def concluded(one: Conclusion, strength: np.ndarray) -> np.ndarray:
