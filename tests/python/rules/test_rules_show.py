@@ -9,13 +9,18 @@ import pytest
 from conftest import ROOT
 from matplotlib import image
 from quiesce.base.errors import UsageError
+from quiesce.rules.formats.files import read_system
 from quiesce.rules.model import WEIGHTED_MAX, Rule
+from quiesce.rules.system.reference import evaluate
+from quiesce.rules.views.plots import near
 from quiesce.rules.views.rule_text import rules_text
-from quiesce.rules.views.surface import evaluate_slice, even_points, make_slice
+from quiesce.rules.views.subject import rule_line, values_of
+from quiesce.rules.views.surface import evaluate_slice, even_points, make_slice, panels
 from quiesce.rules.views.visits import Visits, fired_rules, read_visits, visited_cells
 from rule_examples import random_base, reference_base
 
 SINGLETON = ROOT / "tools/benchmarks/rules/reference_singleton.fcl"
+SYSTEMS = ROOT / "tests/unit/firmware/systems"
 CENTROID = ROOT / "tools/benchmarks/rules/reference_centroid.fcl"
 OUTPUTS = ("index.html", "memberships.png", "memberships.svg", "surface_I.png", "surface_I.svg")
 
@@ -185,6 +190,85 @@ def test_show_refuses(refused, tmp_path: Path, options, words) -> None:
     message = refused("rules", "show", *options, "--out", "out")
     for word in words:
         assert word in message
+
+
+# Systems of any kind, and more than two inputs
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "size"), [("tsukamoto.fis", 1), ("eight.fll", 9)])
+def test_show_of_a_system(quiesce, tmp_path: Path, name: str, size: int) -> None:
+    result = quiesce("rules", "show", SYSTEMS / name, "--out", "out")
+    assert result.returncode == 0, result.stderr
+    assert result.stderr.startswith("taken: a system of any kind, as ")
+    system = read_system(SYSTEMS / name)
+    for output in system.outputs:
+        picture = image.imread(tmp_path / f"out/surface_{output.name}.png")
+        assert len(np.unique((picture[..., :3] * 255).astype(int).reshape(-1, 3), axis=0)) > 50
+    page = (tmp_path / "out/index.html").read_text()
+    assert page.count("<svg") == len(system.outputs) + 1
+    assert ("at its ends and in its middle" in page) == (size > 1)
+    assert rule_line(system, 0) in result.stdout
+
+
+def test_show_of_a_system_of_one_input_is_a_curve(quiesce, tmp_path: Path) -> None:
+    text = ONE_INPUT.replace("AND : MIN", "AND : PROD").replace("IF x IS low", "IF x IS very low")
+    (tmp_path / "one.fcl").write_text(text)
+    result = quiesce("rules", "show", "one.fcl", "--out", "o", "--json")
+    assert result.returncode == 0, result.stderr
+    told = json.loads(result.stdout)
+    assert told["rules"][0] == {"rule": 1, "text": "x IS very low THEN y IS a"}
+    assert (tmp_path / "o/surface_y.svg").read_text().count("<path") > 10
+
+
+def test_show_of_a_system_counts_rules_of_a_run(quiesce, tmp_path: Path) -> None:
+    text = ONE_INPUT.replace("IF x IS low", "IF x IS very low")
+    (tmp_path / "one.fcl").write_text(text)
+    write_run(tmp_path / "run.csv", {"x": [0.0, 2.0, 5.0, 10.0]})
+    result = quiesce("rules", "show", "one.fcl", "--run", "run.csv", "--out", "o", "--json")
+    rules = json.loads(result.stdout)["rules"]
+    assert [one["fired_pct"] for one in rules] == [50.0, 25.0]
+    assert rules[0]["mean_strength"] == pytest.approx((1.0 + 0.25) / 2)
+
+
+def test_panels_are_the_base_at_ends_and_middles() -> None:
+    base = random_base(3, WEIGHTED_MAX, input_count=4)
+    cut = make_slice(base, ["x0", "x1"], [])
+    assert cut.free == (2, 3) and cut.fixed_text(base) == ""
+    rows = panels(base, cut)
+    assert [[one.held[2] for one in row] for row in rows] == [[-1.0, 1.0, 3.0]] * 3
+    assert [row[0].held[3] for row in rows] == [3.0, 1.0, -1.0]
+    assert all(one.free == () and one.axes == (0, 1) for row in rows for one in row)
+    held = make_slice(base, ["x0", "x1"], ["x2=0.5"])
+    assert held.free == (3,) and held.fixed_text(base) == "x2 = 0.5"
+    assert [len(row) for row in panels(base, held)] == [3]
+    assert panels(base, make_slice(base, ["x0"], []))[0][0].held == cut.held
+
+
+def test_a_slice_of_a_system_is_its_reference() -> None:
+    system = read_system(SYSTEMS / "gaussians.fll")
+    cut = make_slice(system, ["a", "f"], [])
+    points = [even_points(system.inputs[1], 7), even_points(system.inputs[0], 5)]
+    found = evaluate_slice(system, cut, points).outputs[0]
+    a, f = np.meshgrid(*points, indexing="ij")
+    wanted = evaluate(system, [f.ravel(), a.ravel()]).outputs[0]
+    assert np.array_equal(found.ravel(), wanted) and found.shape == (7, 5)
+
+
+def test_visits_stand_in_the_panel_that_is_nearest() -> None:
+    base = random_base(3, WEIGHTED_MAX, input_count=3)
+    x2 = np.array([-0.9, -0.1, 0.6, 1.4, 2.9, 7.0])
+    visits = Visits("run", np.stack([np.ones(6), np.ones(6), x2]), 6, "")
+    cut = make_slice(base, [], [])
+    found = [near(base, cut, one, visits).inputs[2].tolist() for one in panels(base, cut)[0]]
+    assert found == [[-0.9, -0.1], [0.6, 1.4], [2.9, 7.0]]
+
+
+def test_values_that_depend_on_something_have_their_reach() -> None:
+    system = read_system(SYSTEMS / "gaussians.fll")
+    found = {term.name: values_of(system, term) for term in system.outputs[0].terms}
+    assert found["VL"] == (5.0, 5.0)
+    assert found["M"] == pytest.approx((2.5 - 0.02 * 25, 2.5 + 0.1 * 20))
 
 
 # What is behind it

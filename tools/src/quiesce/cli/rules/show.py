@@ -15,10 +15,12 @@ from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench
 from quiesce.engine.trace import read_trace
 from quiesce.report.page import render
-from quiesce.rules.formats.files import read_rules
+from quiesce.rules.formats.build import NotPlain
+from quiesce.rules.formats.files import read_rules, read_system
 from quiesce.rules.model import RuleBase
 from quiesce.rules.views.plots import file_name, plot_memberships, plot_output, save
 from quiesce.rules.views.rule_text import fired_text, rules_text, summary, visits_text
+from quiesce.rules.views.subject import Subject, rule_line
 from quiesce.rules.views.surface import Slice, make_slice
 from quiesce.rules.views.visits import (
     TELEMETRY,
@@ -36,8 +38,12 @@ EPILOG = """examples:
   quiesce rules show my.fcl --run step_10_20Hz
   quiesce rules show my.fll --run log.csv --column speed=rpm*0.10472 --column load=torque_Nm
   quiesce rules show big.fcl --axes speed,load --at temperature=60
+  quiesce rules show smooth.fll
 
-Written: index.html (self-contained), memberships and one surface an output, as PNG and SVG.
+Written: index.html (self-contained), memberships and one surface an output, as PNG and SVG. Of
+more than two inputs --axes vary; two others stand at their ends and in their middle, a map each,
+but where --at holds them, and the rest in the middle. A file that is no plain rule base (other
+norms, smooth sets, hedges, values that depend on inputs) is shown as it is.
 
 --run marks what a run visited and tells which rules fired there, for which share of its rows. It is
 a CSV file with a header line, a trace of the bench, or a scenario, which then runs in closed loop
@@ -62,7 +68,7 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
         "--column", action="append", default=[], metavar="INPUT=COLUMN[*SCALE]",
         help="column of the run for an input, repeatable",
     )  # fmt: skip
-    add_reading_options(parser)
+    add_reading_options(parser, "two at their ends and in the middle")
     parser.add_argument(
         "--out",
         type=Path,
@@ -73,14 +79,14 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
     parser.set_defaults(run=run)
 
 
-def add_reading_options(parser: argparse.ArgumentParser) -> None:
-    """What to draw of a rule base, and how to read it."""
+def add_reading_options(parser: argparse.ArgumentParser, held: str = "middle") -> None:
+    """What to draw of a rule base, and how to read it; held: where inputs are without --at."""
     parser.add_argument(
         "--axes", default="", metavar="NAME[,NAME]", help="inputs that vary (the first two)"
     )
     parser.add_argument(
         "--at", action="append", default=[], metavar="NAME=VALUE",
-        help="where another input is held, repeatable (middle)",
+        help=f"where another input is held, repeatable ({held})",
     )  # fmt: skip
     parser.add_argument(
         "--approximate", type=int, metavar="N",
@@ -100,11 +106,25 @@ def tell_notes(base: RuleBase, name: str) -> None:
         print(f"{name}: {note}", file=sys.stderr)
 
 
-def slice_of(args: argparse.Namespace, base: RuleBase) -> Slice:
+def read_any(file: Path, approximate: int | None) -> Subject:
+    """A plain rule base or a system, with notes."""
+    try:
+        return read_with_notes(file, approximate)
+    except NotPlain as reason:
+        if approximate is not None:
+            raise
+        system = read_system(file)
+        print(f"taken: a system of any kind, as {reason}", file=sys.stderr)
+        for note in system.notes:
+            print(f"{shown(file)}: {note}", file=sys.stderr)
+        return system
+
+
+def slice_of(args: argparse.Namespace, base: Subject) -> Slice:
     return make_slice(base, [name for name in args.axes.split(",") if name], args.at)
 
 
-def visits_of(args: argparse.Namespace, base: RuleBase) -> Visits | None:
+def visits_of(args: argparse.Namespace, base: Subject) -> Visits | None:
     if args.visited is None:
         if args.column:
             raise UsageError("--column names columns of a run; add --run FILE")
@@ -116,7 +136,7 @@ def visits_of(args: argparse.Namespace, base: RuleBase) -> Visits | None:
     return read_visits(base, Path(args.visited), args.column)
 
 
-def run_scenario(base: RuleBase, name: str) -> Visits:
+def run_scenario(base: Subject, name: str) -> Visits:
     bench = Bench()
     scenario = scenarios.load(bench, name)
     with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
@@ -128,7 +148,7 @@ def run_scenario(base: RuleBase, name: str) -> Visits:
 
 
 def write_files(
-    folder: Path, base: RuleBase, cut: Slice, visits: Visits | None, fired: list[Fired]
+    folder: Path, base: Subject, cut: Slice, visits: Visits | None, fired: list[Fired]
 ) -> None:
     surfaces = [
         (
@@ -143,7 +163,7 @@ def write_files(
         summary=summary(base),
         visited=visits and visits_text(base, visits),
         surfaces=surfaces,
-        held=cut.text(base),
+        held=cut.page_text(base),
         memberships=save(plot_memberships(base, visits), folder, "memberships"),
         rules=rules_text(base),
         fired=visits and fired_text(base, fired),
@@ -152,10 +172,10 @@ def write_files(
 
 
 def json_object(
-    args: argparse.Namespace, base: RuleBase, visits: Visits | None, fired: list[Fired]
+    args: argparse.Namespace, base: Subject, visits: Visits | None, fired: list[Fired]
 ) -> dict[str, Any]:
     rules: list[dict[str, Any]] = [
-        {"rule": i + 1, "text": base.rule_text(rule)} for i, rule in enumerate(base.rules)
+        {"rule": i + 1, "text": rule_line(base, i)} for i in range(len(base.rules))
     ]
     for rule, one in zip(rules, fired, strict=False):
         rule["fired_pct"] = round(100 * one.share, 4)
@@ -170,7 +190,7 @@ def json_object(
 
 
 def run(args: argparse.Namespace) -> int:
-    base = read_with_notes(args.file, args.approximate)
+    base = read_any(args.file, args.approximate)
     cut = slice_of(args, base)
     visits = visits_of(args, base)
     fired = fired_rules(base, visits) if visits is not None else []

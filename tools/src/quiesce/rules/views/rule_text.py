@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 
 from quiesce.base.table import format_table
-from quiesce.rules.model import AND, Output, Rule, RuleBase, Singleton
+from quiesce.rules.model import AND, Rule, RuleBase, Singleton
+from quiesce.rules.system.model import ConstantTerm
+from quiesce.rules.views.subject import AnyOutput, Subject, rule_line, terms_of
 from quiesce.rules.views.visits import Fired, Visits
 
 
@@ -11,14 +13,14 @@ def plural(count: int, word: str) -> str:
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
-def summary(base: RuleBase) -> str:
+def summary(base: Subject) -> str:
     counts = (
         plural(len(base.inputs), "input"),
         plural(len(base.outputs), "output"),
         plural(len(base.rules), "rule"),
     )
     rows = [
-        ["input", v.name, f"{v.minimum:g} .. {v.maximum:g}", ", ".join(s.name for s in v.sets)]
+        ["input", v.name, f"{v.minimum:g} .. {v.maximum:g}", ", ".join(s.name for s in terms_of(v))]
         for v in base.inputs
     ]
     rows += [
@@ -28,9 +30,9 @@ def summary(base: RuleBase) -> str:
     return f"{base.name}: {', '.join(counts)}\n\n{table}"
 
 
-def output_text(output: Output) -> str:
+def output_text(output: AnyOutput) -> str:
     terms = ", ".join(
-        f"{term.name} {term.value:g}" if isinstance(term, Singleton) else term.name
+        f"{term.name} {term.value:g}" if isinstance(term, Singleton | ConstantTerm) else term.name
         for term in output.terms
     )
     default = "no default" if output.default is None else f"default {output.default:g}"
@@ -68,15 +70,20 @@ def matrix(base: RuleBase) -> str:
     return format_table(head, rows, left=range(len(head)))
 
 
-def rule_list(base: RuleBase, indices: Sequence[int]) -> str:
-    return "\n".join(f"{i + 1:>4}  {base.rule_text(base.rules[i])}" for i in indices)
+def rule_list(base: Subject, indices: Sequence[int]) -> str:
+    return "\n".join(f"{i + 1:>4}  {rule_line(base, i)}" for i in indices)
 
 
-def rules_text(base: RuleBase) -> str:
+def rules_text(base: Subject) -> str:
     """A matrix where rules fit into one, a list of the others."""
-    others = [i for i, rule in enumerate(base.rules) if not fits_matrix(base, rule)]
+    others = [
+        i
+        for i, rule in enumerate(base.rules)
+        if not (isinstance(base, RuleBase) and fits_matrix(base, rule))
+    ]
     if len(others) == len(base.rules):
         return rule_list(base, others)
+    assert isinstance(base, RuleBase)
     names = ", ".join(output.name for output in base.outputs)
     parts = [f"{names} by {base.inputs[0].name} (rows) and {base.inputs[1].name} (columns)", ""]
     parts.append(matrix(base))
@@ -85,7 +92,7 @@ def rules_text(base: RuleBase) -> str:
     return "\n".join(parts)
 
 
-def visits_text(base: RuleBase, visits: Visits) -> str:
+def visits_text(base: Subject, visits: Visits) -> str:
     counted = visits.inputs.shape[1]
     rows = f"{counted} rows" if counted == visits.rows else f"{counted} of {visits.rows} rows"
     condition = f" ({visits.condition})" if visits.condition else ""
@@ -96,13 +103,13 @@ def visits_text(base: RuleBase, visits: Visits) -> str:
     return f"visited in {visits.name}, {rows}{condition}: {ranges}"
 
 
-def fired_text(base: RuleBase, fired: Sequence[Fired]) -> str:
+def fired_text(base: Subject, fired: Sequence[Fired]) -> str:
     """The rules that fired, most often first."""
     order = sorted(range(len(fired)), key=lambda i: (-fired[i].share, -fired[i].strongest, i))
     rows = [
         (
             i + 1,
-            base.rule_text(base.rules[i]),
+            rule_line(base, i),
             100 * one.share,
             100 * one.strongest,
             one.mean_strength,

@@ -1,16 +1,19 @@
 """A rule base over one or two of its inputs, the others held: what plots and comparisons show."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.rules.model import Input, RuleBase
-from quiesce.rules.reference import Reference, evaluate
+from quiesce.rules.reference import Reference
+from quiesce.rules.views.subject import AnyInput, Subject, answer_at, edges, is_slow
 
 CURVE_POINTS = 801
 GRID_POINTS = 241
+PANEL_POINTS = 121  # of one of several maps
+SLOW_POINTS = 61
+MOST_FREE = 2  # inputs of which each end and the middle have maps of their own
 
 
 @dataclass(frozen=True)
@@ -19,17 +22,62 @@ class Slice:
 
     axes: tuple[int, ...]  # one or two inputs
     held: tuple[float, ...]  # of every input; of those in axes without meaning
+    free: tuple[int, ...] = ()  # held, but nobody said where: at their ends, too
 
-    def text(self, base: RuleBase) -> str:
+    def text(self, base: Subject) -> str:
         """`b = 2, c = 5` of the inputs that are held."""
-        return ", ".join(
-            f"{variable.name} = {self.held[i]:g}"
-            for i, variable in enumerate(base.inputs)
-            if i not in self.axes
-        )
+        return held_text(base, self.held, [*self.axes])
+
+    def fixed_text(self, base: Subject) -> str:
+        """Of those that are held in all pictures."""
+        return held_text(base, self.held, [*self.axes, *self.free])
+
+    def page_text(self, base: Subject) -> str:
+        turns = [f"{base.inputs[i].name} at its ends and in its middle" for i in self.free]
+        return "; ".join([*turns, *filter(None, [self.fixed_text(base)])])
 
 
-def input_index(base: RuleBase, name: str) -> int:
+def held_text(base: Subject, held: Sequence[float], others: Sequence[int]) -> str:
+    return ", ".join(
+        f"{variable.name} = {held[i]:g}"
+        for i, variable in enumerate(base.inputs)
+        if i not in others
+    )
+
+
+def panels(base: Subject, cut: Slice) -> list[list[Slice]]:
+    """Rows and columns of slices: the first free input by column, the second one by row, from
+    its high end down, as axes go."""
+    columns, rows = (levels(base, cut, i) for i in range(MOST_FREE))
+    found = []
+    for row in reversed(rows):
+        found.append([])
+        for column in columns:
+            held = list(cut.held)
+            for index, value in (*column, *row):
+                held[index] = value
+            found[-1].append(replace(cut, held=tuple(held), free=()))
+    return found
+
+
+def levels(base: Subject, cut: Slice, number: int) -> list[list[tuple[int, float]]]:
+    """Of a free input, each with the input; one without any where there is none."""
+    if number >= len(cut.free):
+        return [[]]
+    index = cut.free[number]
+    variable = base.inputs[index]
+    middle = 0.5 * (variable.minimum + variable.maximum)
+    return [[(index, x)] for x in (variable.minimum, middle, variable.maximum)]
+
+
+def panel_points(base: Subject, cut: Slice) -> int:
+    """Of a map along an axis."""
+    if is_slow(base):
+        return SLOW_POINTS
+    return PANEL_POINTS if cut.free else GRID_POINTS
+
+
+def input_index(base: Subject, name: str) -> int:
     for index, variable in enumerate(base.inputs):
         if variable.name == name:
             return index
@@ -37,11 +85,11 @@ def input_index(base: RuleBase, name: str) -> int:
     raise UsageError(f"{base.name}: no input '{name}'; there are: {names}")
 
 
-def make_slice(base: RuleBase, axes: Sequence[str], settings: Sequence[str]) -> Slice:
+def make_slice(base: Subject, axes: Sequence[str], settings: Sequence[str]) -> Slice:
     """From names of the inputs that vary (none: the first two) and `NAME=VALUE` of others.
 
-    Inputs that neither names stand in the middle of their universe. UsageError for names and values
-    that do not fit.
+    Inputs that neither names stand in the middle of their universe; where two vary, the first two
+    of them are free. UsageError for names and values that do not fit.
     """
     held = [(variable.minimum + variable.maximum) / 2 for variable in base.inputs]
     named = set()
@@ -57,10 +105,12 @@ def make_slice(base: RuleBase, axes: Sequence[str], settings: Sequence[str]) -> 
         raise UsageError("one or two different inputs can vary in a picture; the others are held")
     for index in set(chosen) & named:
         raise UsageError(f"--at {base.inputs[index].name}: this input varies, it cannot be held")
-    return Slice(tuple(chosen), tuple(held))
+    others = [i for i in range(len(base.inputs)) if i not in named and i not in chosen]
+    free = others[:MOST_FREE] if len(chosen) == 2 else []
+    return Slice(tuple(chosen), tuple(held), tuple(free))
 
 
-def held_value(variable: Input, setting: str, text: str) -> float:
+def held_value(variable: AnyInput, setting: str, text: str) -> float:
     try:
         value = float(text)
     except ValueError:
@@ -73,19 +123,19 @@ def held_value(variable: Input, setting: str, text: str) -> float:
     return value
 
 
-def axis_points(variable: Input, count: int) -> np.ndarray:
+def axis_points(variable: AnyInput, count: int) -> np.ndarray:
     """Evenly spaced over the universe, with every breakpoint and both of its sides beside them."""
-    edges = np.array([x for one in variable.sets for x, _ in one.points])
-    sides = np.concatenate([np.nextafter(edges, -np.inf), edges, np.nextafter(edges, np.inf)])
+    at = edges(variable)
+    sides = np.concatenate([np.nextafter(at, -np.inf), at, np.nextafter(at, np.inf)])
     inside = sides[(sides >= variable.minimum) & (sides <= variable.maximum)]
     return np.union1d(np.linspace(variable.minimum, variable.maximum, count), inside)
 
 
-def even_points(variable: Input, count: int = GRID_POINTS) -> np.ndarray:
+def even_points(variable: AnyInput, count: int = GRID_POINTS) -> np.ndarray:
     return np.linspace(variable.minimum, variable.maximum, count)
 
 
-def evaluate_slice(base: RuleBase, cut: Slice, points: Sequence[np.ndarray]) -> Reference:
+def evaluate_slice(base: Subject, cut: Slice, points: Sequence[np.ndarray]) -> Reference:
     """Over the grid of `points`, one array for each input that varies; [.., first, second]."""
     inputs: list[np.ndarray] = []
     for index, value in enumerate(cut.held):
@@ -96,4 +146,4 @@ def evaluate_slice(base: RuleBase, cut: Slice, points: Sequence[np.ndarray]) -> 
         shape = [1] * len(points)
         shape[place] = -1
         inputs.append(points[place].reshape(shape))
-    return evaluate(base, inputs)
+    return answer_at(base, inputs)

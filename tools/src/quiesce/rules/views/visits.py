@@ -10,8 +10,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.engine.trace import Trace, read_trace
-from quiesce.rules.model import RuleBase
-from quiesce.rules.reference import evaluate
+from quiesce.rules.views.subject import Subject, strengths
 from quiesce.rules.views.surface import input_index
 from quiesce.signal.recording import read_columns
 
@@ -46,7 +45,7 @@ class Fired:
     mean_strength: float  # over the rows in which it fired; 0 where it never did
 
 
-def read_visits(base: RuleBase, file: Path, columns: Sequence[str]) -> Visits:
+def read_visits(base: Subject, file: Path, columns: Sequence[str]) -> Visits:
     """From a CSV file with a header line or a trace of the bench.
 
     columns: `INPUT=COLUMN` or `INPUT=COLUMN*SCALE`. An input without one takes the column of its
@@ -65,7 +64,7 @@ def read_visits(base: RuleBase, file: Path, columns: Sequence[str]) -> Visits:
     return Visits(shown(file), inputs, rows, "frequency valid" if wants_valid else "")
 
 
-def visits_of_trace(base: RuleBase, name: str, trace: Trace) -> Visits:
+def visits_of_trace(base: Subject, name: str, trace: Trace) -> Visits:
     """Of the controller's telemetry, while its frequency was valid."""
     if len(base.inputs) != len(TELEMETRY):
         raise UsageError(
@@ -110,7 +109,7 @@ def read_needed(file: Path, names: Sequence[str], is_trace: bool) -> Trace:
 
 
 def find_sources(
-    base: RuleBase, file: Path, names: Sequence[str], columns: Sequence[str]
+    base: Subject, file: Path, names: Sequence[str], columns: Sequence[str]
 ) -> tuple[list[Source], bool]:
     """Of every input, and whether only rows of valid frequency count."""
     given = dict(parse_column(base, text) for text in columns)
@@ -131,7 +130,7 @@ def find_sources(
     return sources, False
 
 
-def parse_column(base: RuleBase, text: str) -> tuple[int, Source]:
+def parse_column(base: Subject, text: str) -> tuple[int, Source]:
     name, equals, right = text.partition("=")
     column, star, factor = right.partition("*")
     if not equals or not column:
@@ -152,23 +151,22 @@ def no_column(file: Path, column: str, names: Sequence[str], hint: str = "") -> 
     )
 
 
-def fired_rules(base: RuleBase, visits: Visits) -> list[Fired]:
+def fired_rules(base: Subject, visits: Visits) -> list[Fired]:
     """Of every rule."""
-    strengths = evaluate(base, list(visits.inputs), want_strengths=True).strengths
-    assert strengths is not None
-    greatest = strengths.max(axis=0, initial=0.0)
+    found = strengths(base, visits.inputs)
+    greatest = found.max(axis=0, initial=0.0)
     return [
         Fired(
             float((strength > 0).mean()),
             float(((strength > 0) & (strength == greatest)).mean()),
             float(strength[strength > 0].mean()) if (strength > 0).any() else 0.0,
         )
-        for strength in strengths
+        for strength in found
     ]
 
 
 def visited_cells(
-    base: RuleBase, visits: Visits, axes: Sequence[int]
+    base: Subject, visits: Visits, axes: Sequence[int]
 ) -> tuple[list[np.ndarray], np.ndarray]:
     """Middles of the cells that were visited, along each of the axes, and each cell's share."""
     places = []

@@ -29,9 +29,11 @@ from quiesce.rules.system.model import (
     Conclusion,
     Expression,
     Proposition,
+    SetTerm,
     System,
     SystemInput,
     SystemRule,
+    ValueTerm,
 )
 from quiesce.rules.system.norms import ANY
 
@@ -136,10 +138,14 @@ def fires_at(system: System, x: Sequence[np.ndarray]) -> Fires:
 
 def corners(variable: SystemInput) -> list[float]:
     """Ends of the universe, and corners and knots of the terms within it."""
-    found = {variable.minimum, variable.maximum}
-    for term in variable.terms:
-        found |= {x for x, _ in term.curve.points or ()} | set(term.curve.knots)
+    found = {variable.minimum, variable.maximum, *places_of_terms(variable.terms)}
     return sorted(float(x) for x in found if variable.minimum <= x <= variable.maximum)
+
+
+def places_of_terms(terms: Sequence[SetTerm | ValueTerm]) -> list[float]:
+    """Corners and knots of those that are sets."""
+    curves = [term.curve for term in terms if isinstance(term, SetTerm)]
+    return [x for one in curves for x in (*(x for x, _ in one.points or ()), *one.knots)]
 
 
 def cut(variable: SystemInput) -> CutAxis:
