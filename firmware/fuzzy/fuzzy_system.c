@@ -77,6 +77,8 @@ static int32_t value_at(const fuzzy_system_t *table, const fuzzy_system_output_t
     switch (value->kind) {
     case FUZZY_VALUE_LINEAR:
         return linear_value(table, value, work);
+    case FUZZY_VALUE_FORMULA:
+        return fuzzy_formula_at(table, value, work);
     case FUZZY_VALUE_OF_STRENGTH:
     case FUZZY_PRODUCT_OF_STRENGTH:
         return curve_value(table, value, 0, (int32_t)strength_q30);
@@ -97,8 +99,9 @@ static int64_t weighted_value(const fuzzy_system_t *table, const fuzzy_system_ou
                               uint32_t spare) {
     const fuzzy_value_t *value =
         (const fuzzy_value_t *)fuzzy_system_at(table, output->terms_offset) + term;
-    const int64_t factor =
-        value->kind >= FUZZY_PRODUCT_OF_INPUT ? INT64_C(1) << 30 : (int64_t)strength_q30;
+    const bool is_product =
+        value->kind == FUZZY_PRODUCT_OF_INPUT || value->kind == FUZZY_PRODUCT_OF_STRENGTH;
+    const int64_t factor = is_product ? INT64_C(1) << 30 : (int64_t)strength_q30;
     const int32_t found =
         value_at(table, output, term, work, fuzzy_min(strength_q30, FUZZY_ONE_q30));
     return (factor >> spare) * found;
@@ -202,6 +205,7 @@ uint32_t fuzzy_system_evaluate(const fuzzy_system_t *table, const int32_t *input
             output[i] = one->value_default;
             is_default |= UINT32_C(1) << i;
         }
+        work.output[i] = output[i];
     }
     return is_default;
 }

@@ -11,7 +11,8 @@
 ///   FUZZY_WEIGHTED  sum strength * value, over rules
 ///   the rest        of the aggregation over rules, or terms, of implication(strength, set), taken
 ///                   at so many places, evenly over the output's universe
-/// A membership or a value is a polynomial of first or third degree between places.
+/// A membership or a value is a polynomial of first or third degree between places, or a formula of
+/// such, of inputs and of outputs before its own.
 ///
 /// Formats: inputs int32 in the table's units (the ends of the universe hold beyond it);
 /// memberships Q30; values int32, counts times 2^fraction; strengths in a weighted sum less
@@ -36,6 +37,8 @@
 #define FUZZY_SYSTEM_MAX_PLACES 1024u
 #define FUZZY_SYSTEM_MAX_SLOPE (INT32_C(1) << 29)
 #define FUZZY_SYSTEM_MAX_VALUE (INT32_C(1) << 30)
+#define FUZZY_FORMULA_OPS 64u
+#define FUZZY_FORMULA_LIMIT (INT32_C(1) << 29) ///< of every value on a formula's stack
 #define FUZZY_FRESH (1u << 11)
 #define FUZZY_ONLY_HEDGE (1u << 10) ///< for the next one; no conclusion
 #define FUZZY_LINE_WORDS 4u
@@ -60,8 +63,25 @@ typedef enum {
     FUZZY_VALUE_OF_INPUT,      ///< value + span x curve(input)
     FUZZY_PRODUCT_OF_INPUT,    ///< the same, and already multiplied with the strength; not BY_TERM
     FUZZY_PRODUCT_OF_STRENGTH, ///< of values that have no end where the strength ends
+    FUZZY_VALUE_FORMULA,       ///< value + span x formula 2^-shift, limited to +-2^30
     FUZZY_VALUES,
 } fuzzy_value_kind_t;
+
+/// What an op of a formula does on its stack of int32. Each result is limited to
+/// +-FUZZY_FORMULA_LIMIT, right shifts round down.
+typedef enum {
+    FUZZY_FORMULA_CONSTANT, ///< pushes value
+    FUZZY_FORMULA_INPUT,    ///< pushes value + span x (input - its least) 2^-left
+    FUZZY_FORMULA_OUTPUT,   ///< the same of an output before it, counted from 0
+    FUZZY_FORMULA_ADD,      ///< first 2^-left + second 2^-right; so are the next, but for
+    FUZZY_FORMULA_SUBTRACT,
+    FUZZY_FORMULA_MULTIPLY, ///< first x second 2^-left
+    FUZZY_FORMULA_LEAST,
+    FUZZY_FORMULA_MOST,
+    FUZZY_FORMULA_ABSOLUTE, ///< of the top
+    FUZZY_FORMULA_CURVE,    ///< value + span x curve(top); it begins at -FUZZY_FORMULA_LIMIT
+    FUZZY_FORMULA_CODES,
+} fuzzy_formula_code_t;
 
 typedef enum {
     FUZZY_OP_INPUT,  ///< pushes the membership of an input's term
@@ -129,14 +149,24 @@ typedef struct {
 
 typedef struct {
     uint8_t kind;  ///< fuzzy_value_kind_t
-    uint8_t input; ///< of the curve
-    uint8_t shift; ///< of the products with the slopes
+    uint8_t input; ///< of the curve; of a formula its ops
+    uint8_t shift; ///< of the products with the slopes, or of a formula
     uint8_t reserved;
     int32_t value;
     int32_t span;
     fuzzy_curve_t curve;
-    uint32_t slopes_offset; ///< int32 an input
+    uint32_t slopes_offset; ///< int32 an input; of a formula fuzzy_formula_op_t
 } fuzzy_value_t;
+
+typedef struct {
+    uint8_t code;   ///< fuzzy_formula_code_t
+    uint8_t number; ///< of the input or output
+    uint8_t left;   ///< right shifts
+    uint8_t right;
+    int32_t value;
+    int32_t span;
+    fuzzy_curve_t curve;
+} fuzzy_formula_op_t;
 
 typedef struct {
     uint8_t and_norm; ///< fuzzy_norm_t
@@ -162,6 +192,7 @@ _Static_assert(sizeof(fuzzy_curve_t) == 4, "a word");
 _Static_assert(sizeof(fuzzy_system_input_t) == 16, "4 words");
 _Static_assert(sizeof(fuzzy_system_output_t) == 32, "8 words");
 _Static_assert(sizeof(fuzzy_value_t) == 20, "5 words");
+_Static_assert(sizeof(fuzzy_formula_op_t) == 16, "4 words");
 _Static_assert(sizeof(fuzzy_block_t) == 4, "a word");
 _Static_assert(sizeof(fuzzy_system_rule_t) == 8, "2 words");
 

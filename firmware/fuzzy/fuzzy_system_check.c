@@ -5,6 +5,7 @@
 #define CRC_FROM_WORD 2u
 #define MAX_FRACTION 24u
 #define MAX_SUM (INT64_C(1) << 61)
+#define MAX_SHIFT 62u
 
 static bool is_inside(const fuzzy_system_t *table, uint32_t offset, uint32_t words) {
     return offset >= FUZZY_HEADER_WORDS && offset <= table->size_words &&
@@ -116,7 +117,51 @@ static bool is_linear_good(const fuzzy_system_t *table, const fuzzy_value_t *val
            is_value(value->value + (most >> value->shift) + 1);
 }
 
-static bool is_value_good(const fuzzy_system_t *table, const fuzzy_value_t *value) {
+// Whether an op finds what it names; index: of the output that it is for.
+static bool is_formula_op_good(const fuzzy_system_t *table, const fuzzy_formula_op_t *op,
+                               uint32_t index) {
+    const fuzzy_system_input_t *input = fuzzy_system_at(table, table->inputs_offset);
+    if (op->code >= FUZZY_FORMULA_CODES || op->left > MAX_SHIFT || op->right > MAX_SHIFT) {
+        return false;
+    }
+    switch (op->code) {
+    case FUZZY_FORMULA_INPUT:
+        return op->number < table->inputs &&
+               (int64_t)input[op->number].most - input[op->number].least <= INT32_MAX;
+    case FUZZY_FORMULA_OUTPUT:
+        return op->number < index && fuzzy_system_output(table, index)->method == FUZZY_BY_TERM;
+    case FUZZY_FORMULA_CURVE:
+        return is_curve_good(table, op->curve, -FUZZY_FORMULA_LIMIT, FUZZY_FORMULA_LIMIT);
+    default:
+        return true;
+    }
+}
+
+// Every op finds what it takes, and one value is left.
+static bool is_formula_good(const fuzzy_system_t *table, const fuzzy_value_t *value,
+                            uint32_t index) {
+    const uint32_t ops = value->input;
+    if (ops > FUZZY_FORMULA_OPS || value->shift > MAX_SHIFT ||
+        !is_inside(table, value->slopes_offset, 4u * ops)) {
+        return false;
+    }
+    const fuzzy_formula_op_t *op = fuzzy_system_at(table, value->slopes_offset);
+    uint32_t depth = 0;
+    for (uint32_t i = 0; i < ops; i++) {
+        if (op[i].code < FUZZY_FORMULA_ADD) {
+            depth++;
+        } else if (op[i].code < FUZZY_FORMULA_ABSOLUTE) {
+            depth = depth < 2u ? 0 : depth - 1u;
+        }
+        if (depth == 0 || depth > FUZZY_SYSTEM_MAX_STACK ||
+            !is_formula_op_good(table, &op[i], index)) {
+            return false;
+        }
+    }
+    return depth == 1u;
+}
+
+static bool is_value_good(const fuzzy_system_t *table, const fuzzy_value_t *value, uint32_t index) {
     const fuzzy_system_input_t *input = fuzzy_system_at(table, table->inputs_offset);
     const bool has_ends = is_value(value->value) && is_value((int64_t)value->value + value->span);
     switch (value->kind) {
@@ -124,6 +169,8 @@ static bool is_value_good(const fuzzy_system_t *table, const fuzzy_value_t *valu
         return is_value(value->value);
     case FUZZY_VALUE_LINEAR:
         return is_linear_good(table, value);
+    case FUZZY_VALUE_FORMULA:
+        return is_formula_good(table, value, index);
     case FUZZY_VALUE_OF_STRENGTH:
     case FUZZY_PRODUCT_OF_STRENGTH:
         return has_ends && is_curve_good(table, value->curve, 0, (int32_t)FUZZY_ONE_q30);
@@ -137,7 +184,8 @@ static bool is_value_good(const fuzzy_system_t *table, const fuzzy_value_t *valu
     }
 }
 
-static bool are_values_good(const fuzzy_system_t *table, const fuzzy_system_output_t *output) {
+static bool are_values_good(const fuzzy_system_t *table, uint32_t index) {
+    const fuzzy_system_output_t *output = fuzzy_system_output(table, index);
     const uint32_t most =
         output->method == FUZZY_BY_TERM ? FUZZY_SYSTEM_MAX_TERMS : FUZZY_SYSTEM_MAX_VALUES;
     if (output->terms > most || output->fraction > MAX_FRACTION ||
@@ -148,7 +196,7 @@ static bool are_values_good(const fuzzy_system_t *table, const fuzzy_system_outp
     for (uint32_t k = 0; k < output->terms; k++) {
         const bool is_weighed_once =
             value[k].kind != FUZZY_PRODUCT_OF_INPUT || output->method != FUZZY_BY_TERM;
-        if (!is_weighed_once || !is_value_good(table, &value[k])) {
+        if (!is_weighed_once || !is_value_good(table, &value[k], index)) {
             return false;
         }
     }
@@ -180,8 +228,7 @@ static bool are_outputs_good(const fuzzy_system_t *table) {
         if (output->first != first || all > FUZZY_SYSTEM_ALL_TERMS ||
             output->method >= FUZZY_SYSTEM_METHODS || !is_s_norm(output->aggregation) ||
             output->terms == 0 || (int64_t)output->origin + output->span > INT32_MAX ||
-            !(fuzzy_has_sets(output) ? are_sets_good(table, output)
-                                     : are_values_good(table, output))) {
+            !(fuzzy_has_sets(output) ? are_sets_good(table, output) : are_values_good(table, i))) {
             return false;
         }
     }

@@ -17,6 +17,7 @@ typedef struct {
     uint32_t term_q30[FUZZY_SYSTEM_ALL_TERMS]; ///< of the outputs: aggregated
     fuzzy_activation_t activation[FUZZY_MAX_OUTPUTS];
     uint32_t strength_q30[FUZZY_SYSTEM_LISTED]; ///< of the rules, where they are listed
+    int32_t output[FUZZY_MAX_OUTPUTS];          ///< those found so far
 } fuzzy_work_t;
 
 static inline const void *fuzzy_system_at(const fuzzy_system_t *table, uint32_t offset_words) {
@@ -73,6 +74,10 @@ static inline uint32_t fuzzy_spare_bits(const fuzzy_system_t *table) {
 
 /// x: from `least` on, where the curve begins.
 uint32_t fuzzy_curve_at(const fuzzy_system_t *table, fuzzy_curve_t curve, int32_t least, int32_t x);
+
+/// Value of a term that is a formula, counts x 2^fraction of its output.
+int32_t fuzzy_formula_at(const fuzzy_system_t *table, const fuzzy_value_t *value,
+                         const fuzzy_work_t *work);
 
 /// The number that an output with sets comes to. False where they are 0 everywhere.
 bool fuzzy_defuzzify(const fuzzy_system_t *table, uint32_t index, const fuzzy_work_t *work,

@@ -225,7 +225,7 @@ def test_formulas(text: str, wanted: float) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("Linear 0.05 0.01 0.25", "Function f*a", "one input in a formula"),
+        ("Linear 0.05 0.01 0.25", "Function f*b", "inputs and outputs before it: f, a"),
         ("Linear 0.05 0.01 0.25", "Function log(f-3)", "not a number everywhere"),
         ("Linear -0.02 0.1 2.5", "Linear 1 1", "2 numbers of Linear, expected 3"),
         ("conjunction: AlgebraicProduct", "conjunction: none", "'and' with the operator none"),

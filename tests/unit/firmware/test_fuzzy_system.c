@@ -188,6 +188,51 @@ static void test_values(void) {
     REFUSED(SYSTEM_EIGHT, value(1, 0)->curve.offset = 0, FUZZY_TABLE_OUTPUT);
 }
 
+static fuzzy_formula_op_t *formula_op(uint32_t index, uint32_t term, uint32_t number) {
+    return (fuzzy_formula_op_t *)(void *)(words() + value(index, term)->slopes_offset) + number;
+}
+
+// The first op with this code.
+static fuzzy_formula_op_t *formula_op_of(uint32_t index, uint32_t term, fuzzy_formula_code_t code) {
+    uint32_t number = 0;
+    while (number + 1u < value(index, term)->input &&
+           formula_op(index, term, number)->code != code) {
+        number++;
+    }
+    TEST_ASSERT_EQUAL_UINT8(code, formula_op(index, term, number)->code);
+    return formula_op(index, term, number);
+}
+
+// Of SYSTEM_VARIABLES: the first output's terms name inputs, the others' also outputs before them.
+static void test_formulas(void) {
+    REFUSED(SYSTEM_VARIABLES, value(0, 0)->input = 0, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, value(0, 0)->input--, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, value(0, 0)->input = FUZZY_FORMULA_OPS + 1u, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, value(0, 0)->shift = 63, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, value(0, 0)->slopes_offset = count - 1u, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op(0, 0, 0)->code = FUZZY_FORMULA_CODES, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op(0, 0, 0)->code = FUZZY_FORMULA_ADD, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op(0, 0, 0)->code = FUZZY_FORMULA_ABSOLUTE,
+            FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op(0, 0, 0)->left = 63, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op(0, 0, 0)->right = 63, FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op_of(0, 0, FUZZY_FORMULA_INPUT)->number = 3,
+            FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op_of(0, 0, FUZZY_FORMULA_CURVE)->curve.pieces = 0,
+            FUZZY_TABLE_OUTPUT);
+}
+
+static void test_formulas_name_outputs_before_their_own(void) {
+    REFUSED(SYSTEM_VARIABLES, formula_op_of(1, 0, FUZZY_FORMULA_OUTPUT)->number = 1,
+            FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, formula_op_of(2, 0, FUZZY_FORMULA_OUTPUT)->number = 2,
+            FUZZY_TABLE_OUTPUT);
+    REFUSED(SYSTEM_VARIABLES, output(1)->method = FUZZY_BY_RULE, FUZZY_TABLE_OUTPUT);
+    // An input of more than 2^31 counts would overflow.
+    REFUSED(SYSTEM_VARIABLES, (input(2)->least = INT32_MIN, input(2)->most = 1),
+            FUZZY_TABLE_OUTPUT);
+}
+
 static void test_blocks_and_rules(void) {
     REFUSED(SYSTEM_NORMS, block(0)->and_norm = FUZZY_T_NORMS, FUZZY_TABLE_RULE);
     REFUSED(SYSTEM_NORMS, block(1)->or_norm = FUZZY_MINIMUM, FUZZY_TABLE_RULE);
@@ -228,6 +273,8 @@ int main(void) {
     RUN_TEST(test_curves);
     RUN_TEST(test_outputs);
     RUN_TEST(test_values);
+    RUN_TEST(test_formulas);
+    RUN_TEST(test_formulas_name_outputs_before_their_own);
     RUN_TEST(test_blocks_and_rules);
     RUN_TEST(test_expressions);
     RUN_TEST(test_conclusions);

@@ -23,6 +23,7 @@ SYSTEM_SOURCES = (
     "fuzzy/fuzzy_curve.c",
     "fuzzy/fuzzy_system_check.c",
     "fuzzy/fuzzy_defuzzify.c",
+    "fuzzy/fuzzy_formula.c",
     "fuzzy/fuzzy_norms.c",
     "base/fixq.c",
     "base/crc32.c",

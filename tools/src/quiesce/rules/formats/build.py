@@ -39,6 +39,7 @@ MAX_POINTS = 256  # of a set
 MAX_NAME = 64  # characters
 LEAST_RANGE = 1e-12  # of the larger end, and that is at least so much
 ENDLESS = ("Ramp", "rampmf")  # that go on beyond their height
+ASIDE = 1e-8  # of a place at which a formula is no number
 NEAREST = 2.0**-52  # of a strength to 0 or 1, of a shape that only rises or falls
 FORBIDDEN = re.compile(r"[\"'\\*%#]")  # in names: they end texts and comments, here and in C
 
@@ -465,7 +466,8 @@ class Builder:
         if isinstance(content, Line):
             return model.LinearTerm(name, content.slopes, content.constant)
         if isinstance(content, Formula):
-            return self.formula_term(term, content)
+            own = self.of_kind(is_input=False).index(variable)
+            return self.formula_term(term, content, own)
         return model.StrengthTerm(name, self.tsukamoto_of(variable, term, content))
 
     def tsukamoto_of(
@@ -484,7 +486,7 @@ class Builder:
 
         return model.Curve(content.word, value, None, (0.5 * height,))
 
-    def formula_term(self, term: Term, formula: Formula) -> model.ValueTerm:
+    def formula_term(self, term: Term, formula: Formula, own: int) -> model.ValueTerm:
         name = term.name.text
         inputs = {v.name.text: i for i, v in enumerate(self.of_kind(is_input=True))}
         used = formula.names & set(inputs)
@@ -497,10 +499,40 @@ class Builder:
             return model.StrengthTerm(name, model.Curve("Function", lambda x: formula({"x": x})))
         if len(used) == 1 and formula.names == used:
             (only,) = used
-            curve = model.Curve("Function", lambda x: formula({only: x}))
+            curve = model.Curve("Function", lambda x: filled(lambda at: formula({only: at}), x))
             return model.InputTerm(name, inputs[only], curve)
-        shown = ", ".join(sorted(formula.names))
-        raise self.source.error(term.at, f"a formula with {shown}", "one input in a formula")
+        return self.formula_of_several(term, formula, inputs, own)
+
+    def formula_of_several(
+        self, term: Term, formula: Formula, inputs: dict[str, int], own: int
+    ) -> model.FormulaTerm:
+        """own: number of the term's output; only outputs before it have their values."""
+        outputs = {v.name.text: i for i, v in enumerate(self.of_kind(is_input=False))}
+        before = {name: i for name, i in outputs.items() if i < own}
+        unknown = sorted(formula.names - set(inputs) - set(before))
+        if unknown:
+            known = ", ".join((*inputs, *before))
+            raise self.source.error(
+                term.at,
+                f"a formula with {', '.join(unknown)}",
+                f"inputs and outputs before it: {known}",
+            )
+        return model.FormulaTerm(
+            term.name.text,
+            formula.tree,
+            tuple((one, i) for one, i in inputs.items() if one in formula.names),
+            tuple((one, i) for one, i in before.items() if one in formula.names),
+        )
+
+
+def filled(function: model.Function, x: np.ndarray) -> np.ndarray:
+    """A formula that is no number at a single place, as sin(x)/x at 0, has its limit there."""
+    x = np.asarray(x, dtype=float)
+    values = np.broadcast_to(np.asarray(function(x), dtype=float), x.shape)
+    aside = ASIDE * np.maximum(np.abs(x), 1.0)
+    beside = [np.broadcast_to(function(x + sign * aside), x.shape) for sign in (-1.0, 1.0)]
+    is_hole = ~np.isfinite(values) & np.isclose(*beside, rtol=1e-6, atol=1e-6)
+    return np.where(is_hole, 0.5 * (beside[0] + beside[1]), values)
 
 
 def kind_of(content: Content) -> str:

@@ -15,9 +15,22 @@ from quiesce.rules.formats.scan import (
     Stream,
     scan,
 )
+from quiesce.rules.system.formula import (
+    FUNCTIONS,
+    FUNCTIONS_OF_TWO,
+    NEGATE,
+    POWER,
+    PRODUCTS,
+    SUMS,
+    Apply,
+    Name,
+    Number,
+    Tree,
+    names_of,
+    value_of,
+)
 
 Values = Mapping[str, np.ndarray]
-Evaluate = Callable[[Values], np.ndarray]
 
 # A sign is an operator here.
 PATTERN = re.compile(
@@ -27,20 +40,6 @@ PATTERN = re.compile(
 MAX_DEPTH = 32
 MAX_OPERATORS = 200
 CONSTANTS = {"pi": np.pi, "Pi": np.pi}
-FUNCTIONS: dict[str, Callable] = {
-    "abs": np.abs, "fabs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log,
-    "log10": np.log10, "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin,
-    "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
-    "floor": np.floor, "ceil": np.ceil, "round": np.round,
-}  # fmt: skip
-FUNCTIONS_OF_TWO: dict[str, Callable] = {
-    "pow": np.power, "atan2": np.arctan2, "fmod": np.fmod, "max": np.maximum, "min": np.minimum,
-    "lt": lambda a, b: 1.0 * (a < b), "gt": lambda a, b: 1.0 * (a > b),
-    "le": lambda a, b: 1.0 * (a <= b), "ge": lambda a, b: 1.0 * (a >= b),
-    "eq": lambda a, b: 1.0 * (a == b), "neq": lambda a, b: 1.0 * (a != b),
-}  # fmt: skip
-SUMS = {"+": np.add, "-": np.subtract}
-PRODUCTS = {"*": np.multiply, "/": np.divide, "%": np.fmod}
 
 
 @dataclass(frozen=True)
@@ -48,30 +47,28 @@ class Formula:
     """names: of what it is a function of."""
 
     names: frozenset[str]
-    evaluate: Evaluate
+    tree: Tree
 
     def __call__(self, values: Values) -> np.ndarray:
-        with np.errstate(all="ignore"):
-            return self.evaluate(values)
+        return value_of(self.tree, values)
 
 
 def read_formula(source: Source, start: int, end: int) -> Formula:
     """text[start:end] of a source; UsageError, placed, for what is none."""
     parser = FormulaParser(Stream(source, scan(source, PATTERN, start, end)))
-    evaluate = parser.sum()
+    tree = parser.sum()
     if parser.stream.token.kind != END:
         raise parser.stream.unexpected("an operator or the end of the formula")
-    return Formula(frozenset(parser.names), evaluate)
+    return Formula(names_of(tree), tree)
 
 
 class FormulaParser:
     def __init__(self, stream: Stream) -> None:
         self.stream = stream
-        self.names: set[str] = set()
         self.depth = 0
         self.operators = 0
 
-    def sum(self) -> Evaluate:
+    def sum(self) -> Tree:
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise self.stream.unexpected(f"at most {MAX_DEPTH} nested parentheses")
@@ -79,38 +76,37 @@ class FormulaParser:
         self.depth -= 1
         return found
 
-    def product(self) -> Evaluate:
+    def product(self) -> Tree:
         return self.chain(self.signed, PRODUCTS)
 
-    def chain(self, part: Callable[[], Evaluate], operators: Mapping[str, Callable]) -> Evaluate:
+    def chain(self, part: Callable[[], Tree], operators: Mapping[str, Callable]) -> Tree:
         found = part()
         while self.stream.sees(*operators):
             self.operators += 1
             if self.operators > MAX_OPERATORS:
                 raise self.stream.unexpected(f"at most {MAX_OPERATORS} operators in a formula")
-            found = of_two(operators[self.stream.take().text], found, part())
+            found = Apply(self.stream.take().text, (found, part()))
         return found
 
-    def signed(self) -> Evaluate:
+    def signed(self) -> Tree:
         is_negative = False
         while self.stream.sees("-", "+"):
             is_negative ^= self.stream.take().text == "-"
         found = self.power()
-        return of_one(np.negative, found) if is_negative else found
+        return Apply(NEGATE, (found,)) if is_negative else found
 
-    def power(self) -> Evaluate:
+    def power(self) -> Tree:
         base = self.operand()
         if not self.stream.accept("^"):
             return base
         is_negative = self.stream.accept("-") is not None
         exponent = self.operand()
-        return of_two(np.power, base, of_one(np.negative, exponent) if is_negative else exponent)
+        return Apply(POWER, (base, Apply(NEGATE, (exponent,)) if is_negative else exponent))
 
-    def operand(self) -> Evaluate:
+    def operand(self) -> Tree:
         stream = self.stream
         if stream.token.kind == NUMBER:
-            value = stream.number()
-            return lambda values: np.asarray(value)
+            return Number(stream.number())
         if stream.accept("("):
             found = self.sum()
             stream.expect(")")
@@ -119,11 +115,10 @@ class FormulaParser:
         if stream.sees("("):
             return self.call(name)
         if name in CONSTANTS:
-            return lambda values: np.asarray(CONSTANTS[name])
-        self.names.add(name)
-        return lambda values: values[name]
+            return Number(CONSTANTS[name])
+        return Name(name)
 
-    def call(self, name: str) -> Evaluate:
+    def call(self, name: str) -> Tree:
         at = self.stream.tokens[self.stream.at - 1]
         if name not in FUNCTIONS and name not in FUNCTIONS_OF_TWO:
             known = ", ".join((*FUNCTIONS, *FUNCTIONS_OF_TWO))
@@ -132,16 +127,8 @@ class FormulaParser:
         first = self.sum()
         if name in FUNCTIONS:
             self.stream.expect(")")
-            return of_one(FUNCTIONS[name], first)
+            return Apply(name, (first,))
         self.stream.expect(",")
         second = self.sum()
         self.stream.expect(")")
-        return of_two(FUNCTIONS_OF_TWO[name], first, second)
-
-
-def of_one(function: Callable, part: Evaluate) -> Evaluate:
-    return lambda values: function(part(values))
-
-
-def of_two(function: Callable, first: Evaluate, second: Evaluate) -> Evaluate:
-    return lambda values: function(first(values), second(values))
+        return Apply(name, (first, second))

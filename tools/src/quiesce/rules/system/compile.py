@@ -15,7 +15,10 @@ from quiesce.base.errors import UsageError
 from quiesce.rules.integers.cells import Axis, ceil, exact, floor, nearest
 from quiesce.rules.integers.compile import Q15, Q16, input_axis, output_axis
 from quiesce.rules.model import AND
-from quiesce.rules.system.fold import folded
+from quiesce.rules.system import formula_ops
+from quiesce.rules.system.fold import deferred, folded
+from quiesce.rules.system.formula import Apply, Number
+from quiesce.rules.system.formula_ops import FormulaError, FormulaMaker, Leaf, Part, slope_of
 from quiesce.rules.system.model import (
     BY_RULE,
     BY_TERM,
@@ -30,6 +33,7 @@ from quiesce.rules.system.model import (
     ConstantTerm,
     Curve,
     Expression,
+    FormulaTerm,
     InputTerm,
     LinearTerm,
     ProductTerm,
@@ -59,7 +63,7 @@ HEADER_WORDS = 16
 MAX_WORDS = 65535
 METHODS = (BY_RULE, BY_TERM, WEIGHTED, *SET_METHODS)  # in the order of fuzzy_system_method_t
 # fuzzy_value_kind_t
-CONSTANT, LINEAR, OF_STRENGTH, OF_INPUT, PRODUCT_OF_INPUT, PRODUCT_OF_STRENGTH = range(6)
+CONSTANT, LINEAR, OF_STRENGTH, OF_INPUT, PRODUCT_OF_INPUT, PRODUCT_OF_STRENGTH, FORMULA = range(7)
 OP_INPUT, OP_OUTPUT, OP_ANY, OP_HEDGE, OP_AND, OP_OR = range(6)
 FRESH, ONLY_HEDGE = 1 << 11, 1 << 10
 MAX_VALUE = 1 << 30
@@ -144,7 +148,7 @@ class Maker:
         tolerance: float,
     ) -> None:
         self.said = system
-        system = folded(system)
+        system = deferred(folded(system))
         self.system = system
         self.tolerance = tolerance
         self.given = defaults
@@ -161,10 +165,13 @@ class Maker:
         self.error = 0.0
         self.notes: list[str] = []
         self.defaults: list[float] = []
+        self.output_axes: list[Axis] = []
+        self.formulas: dict[tuple[str, str], tuple[Part, float]] = {}
 
     def make(self, forms: Sequence[float | str]) -> CompiledSystem:
         system = self.system
         axes = [output_axis(one, form) for one, form in zip(system.outputs, forms, strict=True)]
+        self.output_axes = axes
         if len(system.blocks) > MAX_BLOCKS:
             raise UsageError(
                 f"{system.name}: {len(system.blocks)} rule blocks; at most {MAX_BLOCKS}"
@@ -350,6 +357,8 @@ class Maker:
                 term.constant + sum(end[0] for end in ends),
                 term.constant + sum(end[1] for end in ends),
             )
+        if isinstance(term, FormulaTerm):
+            return self.formula_range(output, term)
         x = self.arguments(term)
         with np.errstate(all="ignore"):
             values = np.asarray(term.curve.function(x), dtype=float)
@@ -389,6 +398,8 @@ class Maker:
             return [CONSTANT, counts(term.value), 0, 0, 0]
         if isinstance(term, LinearTerm):
             return self.linear_words(term, axis, fraction)
+        if isinstance(term, FormulaTerm):
+            return self.formula_words(output, term, axis, fraction)
         low, high = self.range_of(output, term)
         span = max(high - low, 1e-30)
         curve = Curve(
@@ -428,6 +439,59 @@ class Maker:
             raise UsageError(f"term {term.name}: slopes that do not fit int32; use a larger LSB")
         value = nearest((start - axis.origin) / axis.lsb * 2**fraction)
         return [LINEAR | shift << 16, value, 0, 0, self.body.add(slopes, shared=True)]
+
+    # ---- formulas of several variables ----------------------------------------------------------
+
+    def formula_range(self, output: SystemOutput, term: FormulaTerm) -> tuple[float, float]:
+        part, low = self.formula(output, term)
+        return low, low + part.high
+
+    def formula(self, output: SystemOutput, term: FormulaTerm) -> tuple[Part, float]:
+        """Its ops less its least value, and that."""
+        key = (output.name, term.name)
+        if key not in self.formulas:
+            leaves = {name: self.input_leaf(i) for name, i in term.inputs}
+            leaves |= {name: self.output_leaf(i) for name, i in term.outputs}
+            maker = FormulaMaker(leaves, self.formula_curve)
+            try:
+                low = maker.make(term.tree).low
+                part = maker.make(Apply("-", (term.tree, Number(low))))
+            except (FormulaError, PieceError) as error:
+                raise UsageError(f"output {output.name}, term {term.name}: Function: {error}")
+            self.formulas[key] = (part, low)
+        return self.formulas[key]
+
+    def formula_curve(self, curve: Curve, position: Callable, x_at: Callable) -> int:
+        ends = (-formula_ops.LIMIT, formula_ops.LIMIT)
+        return self.curve_word(pieces_of(curve, position, x_at, *ends, self.tolerance))
+
+    def input_leaf(self, index: int) -> Leaf:
+        variable, axis, (first, _) = self.system.inputs[index], self.axes[index], self.limits[index]
+        lsb = float(axis.lsb)
+        at_first = float(axis.origin) + first * lsb
+        return Leaf(
+            formula_ops.OF_INPUT, index, first, at_first, lsb, variable.minimum, variable.maximum
+        )
+
+    def output_leaf(self, index: int) -> Leaf:
+        """Counts from 0; of a weighted average as far as its values reach."""
+        output, axis = self.system.outputs[index], self.output_axes[index]
+        low, high = output.minimum, output.maximum
+        if output.method in VALUE_METHODS and not output.clips:
+            reach = MAX_REACH if output.method == WEIGHTED else 0.0
+            ends = [self.range_of(output, term) for term in output.terms]
+            low = min(low, *(a for a, _ in ends)) - reach * (high - low)
+            high = max(high, *(b for _, b in ends)) + reach * (output.maximum - output.minimum)
+        return Leaf(formula_ops.OF_OUTPUT, index, 0, float(axis.origin), float(axis.lsb), low, high)
+
+    def formula_words(
+        self, output: SystemOutput, term: FormulaTerm, axis: Axis, fraction: int
+    ) -> list[int]:
+        part, low = self.formula(output, term)
+        shift, span = slope_of(math.ldexp(1.0 / float(axis.lsb), fraction - part.bits))
+        ops = self.body.add([word for one in part.words for word in one], shared=True)
+        value = nearest(axis.position(low) * 2**fraction)
+        return [FORMULA | len(part.words) << 8 | shift << 16, value, span, 0, ops]
 
 
 def usable(disjunction: str) -> str:

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from quiesce.base.errors import UsageError
 from quiesce.rules.system.model import (
     BY_RULE,
     BY_TERM,
@@ -19,6 +20,7 @@ from quiesce.rules.system.model import (
     ConstantTerm,
     Curve,
     Expression,
+    FormulaTerm,
     ProductTerm,
     Proposition,
     StrengthTerm,
@@ -26,8 +28,10 @@ from quiesce.rules.system.model import (
     SystemOutput,
     SystemRule,
 )
-from quiesce.rules.system.norms import ANY
+from quiesce.rules.system.norms import ANY, UNBOUNDED_SUM
 from quiesce.rules.system.reference import concluded, strength_of
+
+MAX_SUMMED = 4  # strengths of a term, which hold up to 4 together
 
 
 def folded(system: System) -> System:
@@ -117,3 +121,32 @@ def is_named(system: System, output: int) -> bool:
         for rule in system.rules
         for one in propositions(rule.expression)
     )
+
+
+def deferred(system: System) -> System:
+    """The same answers, with outputs whose terms name other outputs weighed term by term: that is
+    done when those are known, not when a rule fires. UsageError where that is not the same."""
+    outputs = tuple(
+        deferred_output(system, i) if names_outputs(one) else one
+        for i, one in enumerate(system.outputs)
+    )
+    return replace(system, outputs=outputs)
+
+
+def names_outputs(output: SystemOutput) -> bool:
+    return any(isinstance(term, FormulaTerm) and term.outputs for term in output.terms)
+
+
+def deferred_output(system: System, index: int) -> SystemOutput:
+    output = system.outputs[index]
+    if output.method == BY_TERM:
+        return output
+    of = f"output {output.name}, whose terms name other outputs"
+    if output.method != BY_RULE or any(
+        isinstance(term, StrengthTerm | ProductTerm) for term in output.terms
+    ):
+        raise UsageError(f"{of}: only a weighted average of constants and formulas can")
+    terms = [c.term for rule in system.rules for c in rule.conclusions if c.output == index]
+    if any(terms.count(one) > MAX_SUMMED for one in terms) or is_named(system, index):
+        raise UsageError(f"{of}: at most {MAX_SUMMED} rules a term, and no condition on it")
+    return replace(output, method=BY_TERM, aggregation=UNBOUNDED_SUM)

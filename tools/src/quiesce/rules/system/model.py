@@ -10,15 +10,17 @@ WEIGHTED  sum of strength x value over its rules
 the rest  of the aggregation over its rules of implication(strength, set), taken in the middle of
           `places` equal parts of its universe
 
-A value is a constant, a straight line over the inputs, a function of one input, or of the strength
-(Tsukamoto). Where no rule fires, or sets are 0 everywhere, an output has its default. Inputs clamp
-to their universe first.
+A value is a constant, a straight line over the inputs, a function of inputs and of outputs before
+its own, or of the strength (Tsukamoto). Where no rule fires, or sets are 0 everywhere, an output
+has its default. Inputs clamp to their universe first.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from quiesce.rules.system.formula import Tree
 
 Function = Callable[[np.ndarray], np.ndarray]
 Point = tuple[float, float]
@@ -83,6 +85,16 @@ class InputTerm:
 
 
 @dataclass(frozen=True)
+class FormulaTerm:
+    """A function of several inputs, or of outputs before its own, as they come out."""
+
+    name: str
+    tree: Tree
+    inputs: tuple[tuple[str, int], ...]  # names in the tree, and what they stand for
+    outputs: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True)
 class StrengthTerm:
     """A function of the strength, 0 .. 1."""
 
@@ -101,7 +113,7 @@ class ProductTerm:
     strength: Function = field(compare=False)
 
 
-ValueTerm = ConstantTerm | LinearTerm | InputTerm | StrengthTerm | ProductTerm
+ValueTerm = ConstantTerm | LinearTerm | InputTerm | FormulaTerm | StrengthTerm | ProductTerm
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.rules.model import AND
+from quiesce.rules.system.formula import value_of as formula_value
 from quiesce.rules.system.model import (
     BISECTOR,
     BY_TERM,
@@ -23,6 +24,7 @@ from quiesce.rules.system.model import (
     ConstantTerm,
     Curve,
     Expression,
+    FormulaTerm,
     InputTerm,
     LinearTerm,
     Proposition,
@@ -73,15 +75,18 @@ def evaluate(system: System, inputs: Sequence[np.ndarray]) -> Answers:
 
 def evaluate_some(system: System, x: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     fired, _ = fired_at(system, x)
-    values = [value_of(system, i, fired[i], x) for i in range(len(system.outputs))]
-    defaults = [np.nan if one.default is None else one.default for one in system.outputs]
-    missing = np.array([np.isnan(value) for value in values])
-    filled = np.where(missing, np.array(defaults)[:, None], np.array(values))
+    filled: list[np.ndarray] = []
+    missing = []
+    for i, output in enumerate(system.outputs):
+        value = value_of(system, i, fired[i], x, filled)
+        missing.append(np.isnan(value))
+        default = np.nan if output.default is None else output.default
+        filled.append(np.where(missing[i], default, value))
     strongest = [
         np.max([one.strength for one in rules], axis=0, initial=0.0) if rules else 0.0 * x[0]
         for rules in fired
     ]
-    return filled, missing, np.array(strongest)
+    return np.array(filled), np.array(missing), np.array(strongest)
 
 
 def fired_at(system: System, x: list[np.ndarray]) -> tuple[list[list[Fired]], np.ndarray]:
@@ -150,8 +155,14 @@ def activated(
     return total
 
 
-def value_of(system: System, index: int, fired: Sequence[Fired], x: list[np.ndarray]) -> np.ndarray:
-    """NaN where there is none."""
+def value_of(
+    system: System,
+    index: int,
+    fired: Sequence[Fired],
+    x: list[np.ndarray],
+    before: Sequence[np.ndarray],
+) -> np.ndarray:
+    """NaN where there is none. before: outputs before it."""
     output = system.outputs[index]
     if output.method not in VALUE_METHODS:
         return from_sets(system, output, fired, x[0].shape)
@@ -162,20 +173,27 @@ def value_of(system: System, index: int, fired: Sequence[Fired], x: list[np.ndar
     else:
         pairs = [(output.terms[one.term], one.strength) for one in fired]
     total = sum((strength for _, strength in pairs), np.zeros_like(x[0]))
-    weighted = sum((s * term_value(term, s, x) for term, s in pairs), np.zeros_like(x[0]))
+    weighted = sum((s * term_value(term, s, x, before) for term, s in pairs), np.zeros_like(x[0]))
     safe = np.where(total > 0, total, 1.0)
     value = weighted if output.method == WEIGHTED else weighted / safe
     value = np.clip(value, output.minimum, output.maximum) if output.clips else value
     return np.where(total > 0, value, np.nan)
 
 
-def term_value(term: ValueTerm, strength: np.ndarray, x: list[np.ndarray]) -> np.ndarray:
+def term_value(
+    term: ValueTerm, strength: np.ndarray, x: list[np.ndarray], before: Sequence[np.ndarray]
+) -> np.ndarray:
     if isinstance(term, ConstantTerm):
         return np.full_like(x[0], term.value)
     if isinstance(term, LinearTerm):
         return term.constant + sum(a * b for a, b in zip(term.slopes, x, strict=True))
     if isinstance(term, InputTerm):
         return term.curve.function(x[term.input])
+    if isinstance(term, FormulaTerm):
+        names = {name: x[i] for name, i in term.inputs} | {
+            name: before[i] for name, i in term.outputs
+        }
+        return np.broadcast_to(formula_value(term.tree, names), x[0].shape)
     assert isinstance(term, StrengthTerm)
     return term.curve.function(np.minimum(strength, 1.0))
 

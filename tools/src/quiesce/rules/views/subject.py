@@ -10,9 +10,11 @@ from quiesce.rules.model import FuzzySet, Input, Output, RuleBase, Singleton
 from quiesce.rules.reference import Reference
 from quiesce.rules.reference import evaluate as evaluate_plain
 from quiesce.rules.reference import membership as membership_of_set
+from quiesce.rules.system.formula import value_of
 from quiesce.rules.system.model import (
     SET_METHODS,
     ConstantTerm,
+    FormulaTerm,
     InputTerm,
     SetTerm,
     StrengthTerm,
@@ -33,6 +35,7 @@ AnySet = FuzzySet | SetTerm
 
 STEPS = 400  # of a smooth set's curve
 VALUE_STEPS = 257  # of an input, or of the strength, along which values are taken
+FORMULA_POINTS = 4096
 STRENGTHS = (0.01, 0.99)
 
 
@@ -103,6 +106,8 @@ def values_of(subject: Subject, term: Singleton | ValueTerm) -> tuple[float, flo
     known = ends_of(subject, term)
     if known is not None:
         return known
+    if isinstance(term, FormulaTerm):
+        return reach_of_formula(subject, term)
     assert isinstance(term, InputTerm | StrengthTerm)
     ends = STRENGTHS
     if isinstance(term, InputTerm):
@@ -110,6 +115,15 @@ def values_of(subject: Subject, term: Singleton | ValueTerm) -> tuple[float, flo
     with np.errstate(all="ignore"):
         values = np.asarray(term.curve.function(np.linspace(*ends, VALUE_STEPS)), dtype=float)
     return ends_of_values(values)
+
+
+def reach_of_formula(system: System, term: FormulaTerm) -> tuple[float, float]:
+    """At random inputs, and at random values of the outputs that it names."""
+    rng = np.random.default_rng(1)
+    variables = [(name, system.inputs[i]) for name, i in term.inputs]
+    variables += [(name, system.outputs[i]) for name, i in term.outputs]
+    drawn = {name: rng.uniform(one.minimum, one.maximum, FORMULA_POINTS) for name, one in variables}
+    return ends_of_values(value_of(term.tree, drawn))
 
 
 def ends_of_values(values: np.ndarray) -> tuple[float, float]:

@@ -40,6 +40,7 @@ from quiesce.rules.system.model import (
     BY_TERM,
     SET_METHODS,
     Conclusion,
+    FormulaTerm,
     SetTerm,
     System,
     SystemInput,
@@ -140,6 +141,7 @@ def is_in_values(system: System, index: int) -> bool:
     terms = [term for output in system.outputs for term in output.terms]
     return any(
         getattr(term, "input", None) == index
+        or (isinstance(term, FormulaTerm) and index in dict(term.inputs).values())
         or (hasattr(term, "slopes") and term.slopes[index] != 0.0)
         for term in terms
     )
