@@ -1,5 +1,7 @@
 """Random fuzzy systems for tests: all shapes, norms, hedges and methods."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from quiesce.rules.formats.shapes import FLL_SHAPES
 from quiesce.rules.model import AND, OR, membership_of
@@ -16,6 +18,7 @@ from quiesce.rules.system.model import (
     Curve,
     Join,
     LinearTerm,
+    Origin,
     Proposition,
     SetTerm,
     System,
@@ -47,19 +50,24 @@ def random_curve(rng: np.random.Generator, low: float, high: float) -> Curve:
     }  # fmt: skip
     word = str(rng.choice(list(FLL_SHAPES)))
     shape, values = FLL_SHAPES[word], parameters[word]
-    made = shape(values)
+    made, origin = shape(values), Origin(shape.make, tuple(shape.ordered(values)))
     if callable(made):
-        return Curve(word, made, None, shape.knots(*shape.ordered(values)))
+        return Curve(word, made, None, shape.knots(*shape.ordered(values)), origin)
     points = tuple(made)
-    return Curve(word, lambda x: membership_of(points, x), points)
+    return Curve(word, lambda x: membership_of(points, x), points, (), origin)
 
 
-def random_expression(rng: np.random.Generator, terms: list[int], depth: int = 0):
+def random_expression(
+    rng: np.random.Generator, terms: list[int], hedge_words: Sequence[str], depth: int = 0
+):
     if depth == 2 or rng.random() < 0.4:
         variable = int(rng.integers(len(terms)))
-        hedges = tuple(rng.choice(list(HEDGES), rng.integers(0, 3)).tolist())
+        hedges = tuple(rng.choice(list(hedge_words), rng.integers(0, 3)).tolist())
         return Proposition(True, variable, int(rng.integers(terms[variable])), hedges)
-    parts = tuple(random_expression(rng, terms, depth + 1) for _ in range(int(rng.integers(2, 4))))
+    parts = tuple(
+        random_expression(rng, terms, hedge_words, depth + 1)
+        for _ in range(int(rng.integers(2, 4)))
+    )
     joined = Join(str(rng.choice([AND, OR])), parts)
     return Complement(joined) if rng.random() < 0.2 else joined
 
@@ -82,7 +90,9 @@ def random_output(rng: np.random.Generator, number: int, inputs: int) -> SystemO
     return SystemOutput(name, low, high, terms, method, norm, 0, 0.0, bool(rng.random() < 0.3))
 
 
-def random_system(number: int, any_norm: bool = False) -> System:
+def random_system(
+    number: int, any_norm: bool = False, hedge_words: Sequence[str] = tuple(HEDGES)
+) -> System:
     """any_norm: also drastic and nilpotent ones, which jump."""
     rng = np.random.default_rng([51, number])
     inputs = []
@@ -103,7 +113,7 @@ def random_system(number: int, any_norm: bool = False) -> System:
     rules = tuple(
         SystemRule(
             block,
-            random_expression(rng, [len(one.terms) for one in inputs]),
+            random_expression(rng, [len(one.terms) for one in inputs], hedge_words),
             tuple(
                 Conclusion(k, int(rng.integers(len(one.terms))), ("very",) * int(rng.integers(2)))
                 for k, one in enumerate(outputs)

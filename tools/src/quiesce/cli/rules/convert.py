@@ -2,17 +2,29 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
-from quiesce.rules.formats.files import FORMATS, format_of, read_rules, write_text
+from quiesce.rules.formats.build import NotPlain
+from quiesce.rules.formats.files import (
+    FORMATS,
+    format_of,
+    read_rules,
+    read_system,
+    write_system,
+    write_text,
+)
 
 EPILOG = """examples:
   quiesce rules convert tools/benchmarks/rules/reference_centroid.fcl --to fll
   quiesce rules convert controller.fis --to fcl --out controller.fcl
   quiesce rules convert smooth.fis --to fcl --approximate 8
+  quiesce rules convert smooth.fis --to fll --out smooth.fll
 
+A file that is no plain rule base (other norms, smooth sets, hedges, values that depend on inputs)
+is written as FLL, and must answer the same when it is read again.
 What the target format cannot hold is an error that names it. Notes go to stderr: what was
 approximated, with the largest error of each set, and what was taken for granted.
 """
@@ -41,9 +53,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> int:
     if args.out and format_of(args.out) != args.to:
         raise UsageError(f"--out {args.out}: a file of --to {args.to} ends in .{args.to}")
-    base = read_rules(args.file, args.approximate)
-    text = write_text(base, args.to)
-    for note in base.notes:
+    text, notes = converted(args)
+    for note in notes:
         print(f"{args.file}: {note}", file=sys.stderr)
     if args.out is None:
         print(text, end="")
@@ -51,3 +62,17 @@ def run(args: argparse.Namespace) -> int:
     with output_files(args.out.resolve().parent) as staging:
         (staging / args.out.name).write_text(text, encoding="utf-8")
     return 0
+
+
+def converted(args: argparse.Namespace) -> tuple[str, Sequence[str]]:
+    """Of a plain base in any format; of another system in FLL, which holds it. With notes."""
+    try:
+        base = read_rules(args.file, args.approximate)
+        return write_text(base, args.to), base.notes
+    except NotPlain as reason:
+        if args.approximate is not None:
+            raise
+        if args.to != "fll":
+            raise NotPlain(f"{reason}; or --to fll, which holds systems of any kind") from reason
+    system = read_system(args.file)
+    return write_system(system, args.to), system.notes

@@ -57,6 +57,7 @@ class Straight:
     points: tuple[Point, ...]
     height: float = 1.0
     inverse: Curve | None = None
+    origin: model.Origin | None = None
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,7 @@ class Smooth:
     height: float
     knots: tuple[float, ...] = ()
     inverse: Curve | None = None
+    origin: model.Origin | None = None
 
 
 @dataclass(frozen=True)
@@ -233,9 +235,11 @@ class Builder:
             raise self.source.error(at, f"{at.text} of {numbers(values)}", str(error))
         ordered = shape.ordered(values)
         inverse = None if shape.inverse is None else shape.inverse(*ordered)
+        origin = model.Origin(shape.make, tuple(ordered), height)
         if callable(made):
-            return Smooth(at.text, made, height, shape.knots(*ordered), inverse)
-        return Straight(at.text, tuple((x, height * mu) for x, mu in made), height, inverse)
+            return Smooth(at.text, made, height, shape.knots(*ordered), inverse, origin)
+        points = tuple((x, height * mu) for x, mu in made)
+        return Straight(at.text, points, height, inverse, origin)
 
     def linear(self, at: Token, values: Sequence[float]) -> float | Line:
         """A first-order term: one whose slopes are all 0 is a constant, its last number."""
@@ -447,11 +451,15 @@ class Builder:
         content = self.set_content(variable, term)
         if isinstance(content, Straight):
             points = content.points
-            return model.Curve(content.word, lambda x: membership_of(points, x), points)
+            return model.Curve(
+                content.word, lambda x: membership_of(points, x), points, (), content.origin
+            )
         if isinstance(content, Formula):
-            return model.Curve("Function", self.formula_of_x(term, content))
+            return formula_curve(content, self.formula_of_x(term, content))
         curve, height = content.curve, content.height
-        return model.Curve(content.word, lambda x: height * curve(x), None, content.knots)
+        return model.Curve(
+            content.word, lambda x: height * curve(x), None, content.knots, content.origin
+        )
 
     def formula_of_x(self, term: Term, formula: Formula) -> model.Function:
         if formula.names - {"x"}:
@@ -468,7 +476,8 @@ class Builder:
         if isinstance(content, Formula):
             own = self.of_kind(is_input=False).index(variable)
             return self.formula_term(term, content, own)
-        return model.StrengthTerm(name, self.tsukamoto_of(variable, term, content))
+        is_inverse = content.inverse is not None and variable.inverts
+        return model.StrengthTerm(name, self.tsukamoto_of(variable, term, content), is_inverse)
 
     def tsukamoto_of(
         self, variable: Variable, term: Term, content: Straight | Smooth
@@ -484,7 +493,7 @@ class Builder:
             top = np.inf if content.word in ENDLESS else 1.0 - NEAREST
             return inverse(np.clip(strength / height, NEAREST, top))
 
-        return model.Curve(content.word, value, None, (0.5 * height,))
+        return model.Curve(content.word, value, None, (0.5 * height,), content.origin)
 
     def formula_term(self, term: Term, formula: Formula, own: int) -> model.ValueTerm:
         name = term.name.text
@@ -496,11 +505,11 @@ class Builder:
                 raise self.source.error(term.at, "a formula that is no number", "a number")
             return model.ConstantTerm(name, value)
         if formula.names == {"x"} and "x" not in inputs:
-            return model.StrengthTerm(name, model.Curve("Function", lambda x: formula({"x": x})))
+            return model.StrengthTerm(name, formula_curve(formula, lambda x: formula({"x": x})))
         if len(used) == 1 and formula.names == used:
             (only,) = used
-            curve = model.Curve("Function", lambda x: filled(lambda at: formula({only: at}), x))
-            return model.InputTerm(name, inputs[only], curve)
+            function = lambda x: filled(lambda at: formula({only: at}), x)  # noqa: E731
+            return model.InputTerm(name, inputs[only], formula_curve(formula, function))
         return self.formula_of_several(term, formula, inputs, own)
 
     def formula_of_several(
@@ -523,6 +532,10 @@ class Builder:
             tuple((one, i) for one, i in inputs.items() if one in formula.names),
             tuple((one, i) for one, i in before.items() if one in formula.names),
         )
+
+
+def formula_curve(formula: Formula, function: model.Function) -> model.Curve:
+    return model.Curve("Function", function, origin=model.Origin(tree=formula.tree))
 
 
 def filled(function: model.Function, x: np.ndarray) -> np.ndarray:

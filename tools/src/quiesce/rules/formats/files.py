@@ -9,10 +9,12 @@ from quiesce.rules.formats.fcl import read_fcl
 from quiesce.rules.formats.fis import read_fis
 from quiesce.rules.formats.fll import read_fll
 from quiesce.rules.formats.same import difference
+from quiesce.rules.formats.same_system import system_difference
 from quiesce.rules.formats.scan import Source, Token
 from quiesce.rules.formats.write_fcl import fcl_text
 from quiesce.rules.formats.write_fis import fis_text
 from quiesce.rules.formats.write_fll import fll_text
+from quiesce.rules.formats.write_system_fll import fll_system_text
 from quiesce.rules.model import RuleBase
 from quiesce.rules.system.model import System
 
@@ -104,4 +106,24 @@ def write_text(base: RuleBase, format: str) -> str:
         raise UsageError(
             f"{base.name} cannot be written as {format.upper()}: what is lost: {different}"
         )
+    return text
+
+
+def write_system(system: System, format: str) -> str:
+    """A system of any kind, as FLL. UsageError where that cannot hold it.
+
+    What was written is read again, and must answer the same in float64.
+    """
+    if format != "fll":
+        raise UsageError(f"{system.name}: a system of any kind can be written as FLL only")
+    text = fll_system_text(system)
+    failed = f"{system.name} cannot be written as FLL"
+    try:
+        builder, title, at = parsed(text, format, system.name, None, Options())
+        again = builder.system(title, at)
+    except UsageError as error:
+        raise UsageError(f"{failed}: {error}")
+    different = system_difference(system, again)
+    if different:
+        raise UsageError(f"{failed}: what is lost: {different}")
     return text

@@ -193,6 +193,11 @@ class Shape:
     def ordered(self, values: Sequence[float]) -> list[float]:
         return [values[i] for i in self.order or range(self.parameters)]
 
+    def as_in_file(self, ordered: Sequence[float]) -> list[float]:
+        """The other way round."""
+        order = self.order or range(self.parameters)
+        return [ordered[list(order).index(i)] for i in range(self.parameters)]
+
     def __call__(self, values: Sequence[float]) -> tuple[Point, ...] | Curve:
         return self.make(*self.ordered(values))
 

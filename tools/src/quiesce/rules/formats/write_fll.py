@@ -14,6 +14,7 @@ from quiesce.rules.model import (
     RuleBase,
     Singleton,
 )
+from quiesce.rules.system.model import SystemInput, SystemOutput
 
 # Samples that fuzzylite takes of a centroid; here it is exact.
 RESOLUTION = 1000
@@ -21,9 +22,7 @@ BY_POINTS = {2: "Ramp", 3: "Triangle", 4: "Trapezoid"}
 
 
 def fll_text(base: RuleBase) -> str:
-    if base.name != base.name.strip() or not base.name or FORBIDDEN.search(base.name):
-        raise UsageError(f"the base's name '{base.name}': FLL cannot hold it; rename it")
-    lines = [f"Engine: {base.name}"]
+    lines = [engine_line(base.name)]
     for variable in base.inputs:
         lines += input_lines(variable)
     for output in base.outputs:
@@ -32,7 +31,13 @@ def fll_text(base: RuleBase) -> str:
     return "\n".join(lines) + "\n"
 
 
-def variable_lines(kind: str, variable: Input | Output) -> list[str]:
+def engine_line(name: str) -> str:
+    if name != name.strip() or not name or FORBIDDEN.search(name):
+        raise UsageError(f"the base's name '{name}': FLL cannot hold it; rename it")
+    return f"Engine: {name}"
+
+
+def variable_lines(kind: str, variable: Input | Output | SystemInput | SystemOutput) -> list[str]:
     check_identifier(variable.name, "variable", "FLL", RESERVED)
     return [
         f"{kind}: {variable.name}",

@@ -43,15 +43,27 @@ MAX_DEPTH = 8  # of an expression's stack
 
 
 @dataclass(frozen=True)
+class Origin:
+    """How a file says a curve. make: of formats/shapes.py, with its parameters and a height; tree:
+    of a formula."""
+
+    make: Callable | None = None
+    parameters: tuple[float, ...] = ()
+    height: float = 1.0
+    tree: Tree | None = None
+
+
+@dataclass(frozen=True)
 class Curve:
     """A function of one number. points: where it is made of straight lines; two of equal x are a
     vertical edge, at which the greater value holds, and both ends are held beyond them. knots:
-    where it may bend or jump otherwise."""
+    where it may bend or jump otherwise. origin: None where points say all."""
 
     word: str
     function: Function = field(compare=False)
     points: tuple[Point, ...] | None = None
     knots: tuple[float, ...] = ()
+    origin: Origin | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True)
@@ -96,10 +108,11 @@ class FormulaTerm:
 
 @dataclass(frozen=True)
 class StrengthTerm:
-    """A function of the strength, 0 .. 1."""
+    """A function of the strength, 0 .. 1. is_inverse: where its curve's origin reaches that."""
 
     name: str
     curve: Curve
+    is_inverse: bool = False
 
 
 @dataclass(frozen=True)
