@@ -131,6 +131,15 @@ def test_convert_tells_the_error_of_each_smooth_set(tmp_path: Path) -> None:
     assert "Discrete" in result.stdout
 
 
+def test_convert_says_that_smooth_sets_stay_smooth(tmp_path: Path) -> None:
+    (tmp_path / "smooth.fis").write_text(SMOOTH_FIS)
+    result = run_quiesce(tmp_path, "rules", "convert", "smooth.fis", "--to", "fcl")
+    assert result.returncode == 0 and "Gaussian" in result.stdout
+    first = result.stderr.splitlines()[0]
+    assert first.startswith("written as it is, as smooth.fis:18:11: ")
+    assert "--approximate N" in first
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -140,16 +149,14 @@ def test_convert_tells_the_error_of_each_smooth_set(tmp_path: Path) -> None:
         (["tank.txt", "--to", "fcl"], ["tank.txt", ".fcl, .fll, .fis"]),
         (["none.fis", "--to", "fcl"], ["none.fis", "No such file"]),
         (["folder.fis", "--to", "fcl"], ["folder.fis", "directory"]),
-        (
-            ["smooth.fis", "--to", "fcl", "--out", "new.fcl"],
-            ["smooth.fis:18:11", "--approximate N"],
-        ),
+        (["named.fis", "--to", "fcl", "--out", "new.fcl"], ["'low level'", "FCL names"]),
         (["max.fcl", "--to", "fis", "--out", "new.fis"], ["greatest strength"]),
     ],
 )
 def test_convert_refuses_in_one_line_and_writes_nothing(tmp_path: Path, arguments, words) -> None:
     (tmp_path / "tank.fis").write_text(FIS)
     (tmp_path / "smooth.fis").write_text(SMOOTH_FIS)
+    (tmp_path / "named.fis").write_text(SMOOTH_FIS.replace("'low'", "'low level'"))
     (tmp_path / "max.fcl").write_text(FCL.replace("SUM", "MAX"))
     (tmp_path / "folder.fis").mkdir()
     before = sorted(tmp_path.iterdir())

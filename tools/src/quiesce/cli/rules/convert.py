@@ -24,7 +24,8 @@ EPILOG = """examples:
   quiesce rules convert smooth.fis --to fll --out smooth.fll
 
 A file that is no plain rule base (other norms, smooth sets, hedges, values that depend on inputs)
-is written as FLL, and must answer the same when it is read again.
+is written as it is, and must answer the same when it is read again. FLL holds nearly all of it;
+FCL has no resolution; FIS has one block of plain rules, and no default.
 What the target format cannot hold is an error that names it. Notes go to stderr: what was
 approximated, with the largest error of each set, and what was taken for granted.
 """
@@ -55,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--out {args.out}: a file of --to {args.to} ends in .{args.to}")
     text, notes = converted(args)
     for note in notes:
-        print(f"{args.file}: {note}", file=sys.stderr)
+        print(note, file=sys.stderr)
     if args.out is None:
         print(text, end="")
         return 0
@@ -65,14 +66,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def converted(args: argparse.Namespace) -> tuple[str, Sequence[str]]:
-    """Of a plain base in any format; of another system in FLL, which holds it. With notes."""
+    """Of a plain base, or of any other system, with notes, each with its file."""
+    name = args.file
     try:
-        base = read_rules(args.file, args.approximate)
-        return write_text(base, args.to), base.notes
+        base = read_rules(name, args.approximate)
     except NotPlain as reason:
         if args.approximate is not None:
             raise
-        if args.to != "fll":
-            raise NotPlain(f"{reason}; or --to fll, which holds systems of any kind") from reason
-    system = read_system(args.file)
-    return write_system(system, args.to), system.notes
+        system = read_system(name)
+        text = write_system(system, args.to)
+        return text, [f"written as it is, as {reason}", *(f"{name}: {one}" for one in system.notes)]
+    return write_text(base, args.to), [f"{name}: {note}" for note in base.notes]

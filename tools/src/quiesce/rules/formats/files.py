@@ -14,12 +14,15 @@ from quiesce.rules.formats.scan import Source, Token
 from quiesce.rules.formats.write_fcl import fcl_text
 from quiesce.rules.formats.write_fis import fis_text
 from quiesce.rules.formats.write_fll import fll_text
+from quiesce.rules.formats.write_system_fcl import fcl_system_text
+from quiesce.rules.formats.write_system_fis import fis_system_text
 from quiesce.rules.formats.write_system_fll import fll_system_text
 from quiesce.rules.model import RuleBase
 from quiesce.rules.system.model import System
 
 READERS = {"fcl": read_fcl, "fll": read_fll, "fis": read_fis}
 WRITERS = {"fcl": fcl_text, "fll": fll_text, "fis": fis_text}
+SYSTEM_WRITERS = {"fcl": fcl_system_text, "fll": fll_system_text, "fis": fis_system_text}
 FORMATS = tuple(READERS)
 MAX_BYTES = 1 << 20
 MAX_SEGMENTS = 128  # of a chain; at least 2
@@ -110,14 +113,12 @@ def write_text(base: RuleBase, format: str) -> str:
 
 
 def write_system(system: System, format: str) -> str:
-    """A system of any kind, as FLL. UsageError where that cannot hold it.
+    """A system of any kind in this format. UsageError where that cannot hold it.
 
     What was written is read again, and must answer the same in float64.
     """
-    if format != "fll":
-        raise UsageError(f"{system.name}: a system of any kind can be written as FLL only")
-    text = fll_system_text(system)
-    failed = f"{system.name} cannot be written as FLL"
+    text = SYSTEM_WRITERS[format](system)
+    failed = f"{system.name} cannot be written as {format.upper()}"
     try:
         builder, title, at = parsed(text, format, system.name, None, Options())
         again = builder.system(title, at)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from quiesce.rules.analysis.systems.sample import draw, place_text
+from quiesce.rules.analysis.systems.support import support
 from quiesce.rules.system.model import SET_METHODS, System, SystemInput, SystemOutput
 from quiesce.rules.system.reference import evaluate
 
@@ -32,6 +33,7 @@ def system_difference(one: System, other: System) -> str | None:
         return named
     has_sets = any(output.method in SET_METHODS for output in one.outputs)
     x = draw(one, POINTS_OF_SETS if has_sets else POINTS)
+    covered = support(one).covered
     answers = [evaluate(system, list(x)) for system in (one, other)]
     for index, output in enumerate(one.outputs):
         first, second = (np.nan_to_num(answer.outputs[index]) for answer in answers)
@@ -40,6 +42,6 @@ def system_difference(one: System, other: System) -> str | None:
         if apart.any():
             at = place_text(one, x[:, np.argmax(apart)])
             return f"answers of output {output.name}, such as at {at}"
-        if output.default != other.outputs[index].default:
+        if output.default != other.outputs[index].default and not covered[index]:
             return f"the default of output {output.name}"
     return None

@@ -1,5 +1,7 @@
 """Writes FCL."""
 
+from collections.abc import Sequence
+
 from quiesce.base.errors import UsageError
 from quiesce.rules.formats.fcl import RESERVED
 from quiesce.rules.formats.scan import check_identifier, number_text
@@ -12,6 +14,7 @@ from quiesce.rules.model import (
     RuleBase,
     Singleton,
 )
+from quiesce.rules.system.model import System, SystemInput, SystemOutput
 
 
 def fcl_text(base: RuleBase) -> str:
@@ -28,7 +31,7 @@ def fcl_text(base: RuleBase) -> str:
     return "\n\n".join(blocks)
 
 
-def check_names(base: RuleBase) -> None:
+def check_names(base: RuleBase | System) -> None:
     """Names differ by more than case, and are no words of FCL."""
     check_identifier_fcl(base.name, "the base's name")
     variables = [*base.inputs, *base.outputs]
@@ -51,7 +54,9 @@ def check_distinct(names: list[str], what: str) -> None:
             raise UsageError(f"{what} '{name}': FCL takes it for '{other}'; rename one of them")
 
 
-def declarations(section: str, variables: tuple[Input, ...] | tuple[Output, ...]) -> str:
+def declarations(
+    section: str, variables: Sequence[Input | Output | SystemInput | SystemOutput]
+) -> str:
     lines = [f"    {variable.name} : REAL;" for variable in variables]
     return "\n".join([section, *lines, "END_VAR"])
 
@@ -80,7 +85,7 @@ def term_line(term: FuzzySet | Singleton) -> str:
     return f"    TERM {term.name} := {points};"
 
 
-def range_line(variable: Input | Output) -> str:
+def range_line(variable: Input | Output | SystemInput | SystemOutput) -> str:
     return f"    RANGE := ({number_text(variable.minimum)} .. {number_text(variable.maximum)});"
 
 

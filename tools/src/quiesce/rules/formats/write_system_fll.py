@@ -176,12 +176,16 @@ def block_lines(system: System, number: int) -> list[str]:
 
 
 def line(system: System, number: int, rule: SystemRule) -> str:
+    check_hedges(rule, number, "FLL")
+    return rule_text(system, rule, str.lower, " and ", number_text)
+
+
+def check_hedges(rule: SystemRule, number: int, format: str) -> None:
     hedges = {hedge for one in propositions(rule.expression) for hedge in one.hedges}
     hedges |= {hedge for one in rule.conclusions for hedge in one.hedges}
     unknown = sorted(hedges - set(HEDGES))
     if unknown:
-        raise UsageError(f"rule {number}: FLL has no hedge '{unknown[0]}'")
-    return rule_text(system, rule, str.lower, " and ", number_text)
+        raise UsageError(f"rule {number}: {format} has no hedge '{unknown[0]}'")
 
 
 def split(rule: SystemRule, number: int) -> Iterator[SystemRule]:
