@@ -189,3 +189,14 @@ def test_check_and_show_take_formulas(capsys, tmp_path: Path) -> None:
     out = capsys.readouterr().out
     assert "no rule asks for input b" not in out and out.splitlines()[-1].split()[-1] == "ok"
     assert main(["rules", "show", file, "--out", str(tmp_path / "show")]) == 0
+
+
+def test_a_formula_of_an_output_without_a_value_is_no_fault_of_the_integers(
+    capsys, tmp_path: Path
+) -> None:
+    edits = [("default: 7", "default: nan"), ("if a is any then first", "if a is on then first")]
+    small(tmp_path, *edits)
+    assert main(["rules", "check", str(tmp_path / "small.fll"), "--quick"]) == 1
+    out = capsys.readouterr().out
+    assert "error      no rule for first fires where a = -2" in out
+    assert out.splitlines()[-1].split(maxsplit=1)[1] == "1 finding is an error"

@@ -18,7 +18,7 @@ from quiesce.rules.engine.native_build import SYSTEM_SOURCES, build, firmware_so
 from quiesce.rules.engine.system_engine import SOURCE as MANY_SYSTEM
 from quiesce.rules.proof.walk import SANITIZE, OutputWalk
 from quiesce.rules.system.compile import CompiledSystem
-from quiesce.rules.system.model import SET_METHODS, System
+from quiesce.rules.system.model import SET_METHODS, VALUE_METHODS, System
 from quiesce.rules.system.reference import WEAKEST, Answers, evaluate
 
 SOURCE = Path(__file__).parent / "native/walk_system.c"
@@ -199,7 +199,10 @@ def output_walk(compiled: CompiledSystem, index: int, found: Answered) -> System
     judged = errors >= 0.0
     strong = found.wanted.strongest[index] >= WEAKEST
     is_default, wanted_default = found.is_default[index], found.wanted.is_default[index]
-    differs = (is_default != wanted_default) & strong
+    # A formula of an output that has no value, and no default, is no number in float64.
+    has_values = compiled.system.outputs[index].method in VALUE_METHODS
+    no_number = wanted_default & (found.wanted.strongest[index] > 0.0) & has_values
+    differs = (is_default != wanted_default) & strong & ~no_number
     is_weak = ~wanted_default & ~strong
     least, most = ends_of(found.values[index][~is_default & ~is_weak])
     weak_least, weak_most = ends_of(found.values[index][~is_default & is_weak])

@@ -16,7 +16,6 @@ from quiesce.rules.system.reference import WEAKEST, evaluate
 
 STEPS = 128  # along an input, beside its corners and both of their sides
 LINES, LINES_OF_SETS = 12, 3  # of an input; sets take long
-HALVINGS = 32
 CLOSE = 1e-9  # of the universe: no farther apart are a jump's ends
 BESIDE = 2.0**-32  # of the universe: a corner's two sides
 LEAST = 1e-3  # of the output's range
@@ -91,27 +90,26 @@ def jumps_along(system: System, index: int, held: np.ndarray) -> list[Jump]:
         steps = differences(values[output])
         for k in np.argsort(-steps, kind="stable")[:TRIED]:
             if steps[k] > least:
-                jump = closed_in(system, output, index, held, places[k : k + 2])
-                found += [jump] if jump and jump.height > least else []
+                jump = closed_in(system, output, index, held, places[k : k + 2], least)
+                found += [jump] if jump else []
     return found
 
 
 def closed_in(
-    system: System, output: int, index: int, held: np.ndarray, ends: np.ndarray
+    system: System, output: int, index: int, held: np.ndarray, ends: np.ndarray, least: float
 ) -> Jump | None:
+    """None where less than that is left before the ends are close."""
     low, high = ends
     variable = system.inputs[index]
     close = CLOSE * (variable.maximum - variable.minimum)
-    for _ in range(HALVINGS):
+    while high - low > close:
         middle = low + 0.5 * (high - low)
-        if high - low <= close or not low < middle < high:
-            break
         values, _ = values_along(system, index, held, np.array([low, middle, high]))
         first, second = differences(values[output])
+        if max(first, second) <= least or not low < middle < high:
+            return None
         low, high = (low, middle) if first >= second else (middle, high)
     values, is_default = values_along(system, index, held, np.array([low, high]))
-    if high - low > close:
-        return None
     at = [float(value) for value in held]
     at[index] = float(high)
     (height,) = differences(values[output]).tolist()
