@@ -477,11 +477,13 @@ class FisReader:
             what = f"no term {token.text} of {variable.shown()}"
             raise self.source.error(token, what, f"0 to {most}")
         hedges = (NOT,) if value < 0 else ()
-        decimals = round(100 * (abs(value) - abs(place)))
-        if decimals == 0:
+        hundredths = 100 * (abs(value) - abs(place))
+        decimals = round(hundredths)
+        is_whole = abs(hundredths - decimals) <= 1e-6
+        if decimals == 0 and is_whole:
             return place, hedges
         words = (FUZZYLITE_HEDGES if self.is_from_fuzzylite else HEDGES).get(decimals)
-        if words is None or abs(100 * (abs(value) - abs(place)) - decimals) > 1e-6:
+        if words is None or not is_whole:
             known = ", ".join(f".{one:02d}" for one in HEDGES)
             raise self.source.error(token, f"{token.text} has a hedge", f"one of {known}, or none")
         self.builder.not_plain(token, f"{token.text} has a hedge", "a whole number")
