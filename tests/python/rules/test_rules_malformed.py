@@ -27,9 +27,9 @@ def edited(format: str, edits: Edits) -> tuple[str, str]:
     return before + after, f"{before.count(chr(10)) + 1}:{column}"
 
 
-def convert(capsys, file: Path) -> str:
-    """Message of a conversion that must fail, by the command line."""
-    assert main(["rules", "convert", str(file), "--to", "fcl"]) == 2
+def compared(capsys, file: Path) -> str:
+    """Message of a command that asks for a plain rule base, and must fail."""
+    assert main(["rules", "diff", str(file), str(file)]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
     assert len(printed.err.splitlines()) == 1
@@ -42,7 +42,7 @@ def test_malformed_file_is_refused(capsys, monkeypatch, tmp_path: Path, format, 
     file = tmp_path / f"bad.{format}"
     file.write_bytes(text.encode())
     monkeypatch.chdir(tmp_path)
-    message = convert(capsys, Path(file.name))
+    message = compared(capsys, Path(file.name))
     assert message.startswith(f"quiesce: bad.{format}:{place}: "), message
     assert words in message
 
@@ -61,7 +61,7 @@ def test_bytes_that_are_no_text_are_placed(capsys, tmp_path: Path, format: str) 
     file.write_bytes(TEXTS[format].replace("0.125", "\xff", 1).encode("latin-1"))
     before = TEXTS[format].split("0.125")[0]
     column = len(before) - before.rfind("\n")
-    assert f"{before.count(chr(10)) + 1}:{column}: not UTF-8" in convert(capsys, file)
+    assert f"{before.count(chr(10)) + 1}:{column}: not UTF-8" in compared(capsys, file)
 
 
 @pytest.mark.parametrize("format", TEXTS)
@@ -69,14 +69,14 @@ def test_file_beyond_a_mebibyte_is_refused(capsys, tmp_path: Path, format: str) 
     comment = {"fcl": "// ", "fll": "# ", "fis": "% "}[format]
     file = tmp_path / f"big.{format}"
     file.write_text(TEXTS[format] + comment + "x" * (1 << 20) + "\n")
-    assert "1:1: the file is larger than 1 MiB" in convert(capsys, file)
+    assert "1:1: the file is larger than 1 MiB" in compared(capsys, file)
 
 
 def test_too_many_rules_are_refused(capsys, tmp_path: Path) -> None:
     rule = FIS.splitlines()[-1] + "\n"
     file = tmp_path / "many.fis"
     file.write_text(FIS.replace("NumRules=2", "NumRules=1025") + rule * 1023)
-    assert "many.fis:1:2: 1025 rules, expected at most 1024" in convert(capsys, file)
+    assert "many.fis:1:2: 1025 rules, expected at most 1024" in compared(capsys, file)
 
 
 def test_expression_that_splits_into_too_many_rules_is_refused(capsys, tmp_path: Path) -> None:
@@ -96,7 +96,7 @@ def test_expression_that_splits_into_too_many_rules_is_refused(capsys, tmp_path:
         text.replace("TERM low", terms + "\nTERM low").replace(choice, many)
         .replace("t5", "low").replace("t6", "high")
     )  # fmt: skip
-    assert ":36:17: more than 1024 rules once split" in convert(capsys, file)
+    assert ":36:17: more than 1024 rules once split" in compared(capsys, file)
 
 
 def test_whole_command_ends_in_one_line_and_exit_code_2(tmp_path: Path) -> None:
