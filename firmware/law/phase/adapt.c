@@ -17,6 +17,13 @@ enum {
     FREQ_MEAN = 8,             // half cycles
     DIRECTIONS = 2,
     NOWHERE = UINT8_MAX,
+    SEARCH_MEASUREMENTS = 19, // of full length, with their settling: so long a search may take
+    MORE_MEASUREMENTS = 6,     // after a gain at least: a round
+    LIMIT_PART = 256,         // of the limit of acceleration: so far above it is not above
+    FREE_TRIALS = 2,          // without current, that may lose the lock
+    PARTS_LOG2 = 3,           // shortest part of a measurement: an eighth of it
+    LONGEST_LOG2 = 2,         // longest: half of it
+    SQRT_HALF_q8 = 181,
     HALF_q15 = 1 << 14,
     HALF_q16 = 1 << 15,
 };
@@ -48,36 +55,34 @@ static void start_part(adapt_t *self, uint32_t part) {
     self->square = (adapt_square_t){0};
 }
 
+static uint32_t ticks_of(const adapt_t *self, uint32_t measurements) {
+    return measurements * (self->cfg.settle_ticks + self->cfg.measure_ticks);
+}
+
+// A search that has just gained something goes on.
+static void go_on(adapt_t *self) {
+    const uint32_t least_ticks = ticks_of(self, MORE_MEASUREMENTS);
+    self->left_ticks = self->left_ticks > least_ticks ? self->left_ticks : least_ticks;
+}
+
+// What is known of the vibration without current does not hold any more.
+static void forget_free(adapt_t *self) {
+    self->free_rms_um_s2 = 0;
+    self->free_failures = 0;
+}
+
 // The vibration is another one: it must last before the search starts.
 static void start_search(adapt_t *self) {
     self->freq_mHz = self->now_mHz;
     self->noise_q20 = GAIN_q20;
+    forget_free(self);
+    self->left_ticks = ticks_of(self, SEARCH_MEASUREMENTS) + self->cfg.start_ticks;
     start_part(self, ADAPT_TRY_WHOLE);
     wait_for(self, ADAPT_MEASURING, self->cfg.start_ticks);
 }
 
-// change / from in Q20, limited to something between a quarter and a half, to 2^-9 of itself; one
-// 32-bit division.
-static int32_t relative_q20(uint32_t from, int64_t change) {
-    const uint32_t up = (uint32_t)__builtin_clz(from | 1u);
-    const int64_t limited_change = clamp_i64(change * (INT64_C(1) << up) >> 2, -(1 << 28), 1 << 28);
-    return (int32_t)limited_change / (int32_t)(((from | 1u) << up) >> 22);
-}
-
-static int64_t excess_um_s2(adapt_effect_t effect, uint32_t shape_q14) {
-    const int64_t free_um_s2 = (int64_t)(((uint64_t)effect.reach_um_s2 * shape_q14) >> 14);
-    return clamp_i64(effect.rms_um_s2 - free_um_s2, 0, INT32_MAX);
-}
-
-// Limited, whatever weight a table brings, so that the sums of a square fit their words.
-static int32_t cost_q20(adapt_effect_t from, adapt_effect_t to, adapt_goal_t goal) {
-    const int64_t excess =
-        excess_um_s2(to, goal.accel_shape_q14) - excess_um_s2(from, goal.accel_shape_q14);
-    const int64_t accel_q20 = relative_q20(from.rms_um_s2, excess);
-    const int64_t reach_q20 =
-        relative_q20(from.reach_um_s2, (int64_t)to.reach_um_s2 - from.reach_um_s2);
-    return (int32_t)clamp_i64(reach_q20 + ((accel_q20 * goal.accel_weight_q8) >> 8),
-                              -ADAPT_MOST_COST_Q20, ADAPT_MOST_COST_Q20);
+static int32_t cost_q20(const adapt_t *self, adapt_effect_t from, adapt_effect_t to) {
+    return adapt_cost_q20(from, to, self->goal, self->limit_um_s2);
 }
 
 static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t value) {
@@ -102,8 +107,20 @@ static void change_edges(const adapt_t *self, adapt_trim_t *trim, adapt_move_t m
     change(self, trim, ADAPT_OFF_EDGE, move.off * step_q16);
 }
 
+// Down to no current during the first half of the time to settle: a lock does not follow a jump.
+static int16_t fading_q15(const adapt_t *self) {
+    const uint32_t ramp_ticks = self->cfg.settle_ticks;
+    const uint32_t left_ticks = self->ticks > ramp_ticks ? self->ticks - ramp_ticks : 0;
+    const uint32_t left_q15 = (uint32_t)(((uint64_t)left_ticks << 15) / (ramp_ticks | 1u));
+    return (int16_t)(clamp_i32((int32_t)left_q15, 0, 32767) + ADAPT_NO_CURRENT);
+}
+
 // The pulse with the change that is tried.
 static adapt_trim_t changed(const adapt_t *self, adapt_trim_t trim) {
+    if (self->is_free) {
+        trim.value[ADAPT_LEVEL] = fading_q15(self);
+        return trim;
+    }
     switch (self->part) {
     case ADAPT_TRY_WHOLE:
         change(self, &trim, ADAPT_WHOLE, trim.value[ADAPT_WHOLE] == 0 ? 1 : -1);
@@ -166,12 +183,30 @@ static void skip_what_has_no_room(adapt_t *self) {
     }
 }
 
+// The edges have been tried for long enough; while acceleration is above its limit it goes on.
+static bool is_over(const adapt_t *self) {
+    const uint32_t slack_um_s2 = self->limit_um_s2 / LIMIT_PART;
+    return self->left_ticks == 0 &&
+           (int64_t)self->before.rms_um_s2 - slack_um_s2 <= self->limit_um_s2;
+}
+
+static void rest(adapt_t *self) {
+    const bool is_whole = self->trim[self->nearest].value[ADAPT_WHOLE] != 0;
+    start_part(self, is_whole ? ADAPT_TRY_WHOLE : ADAPT_TRY_EDGES);
+    self->left_ticks = ticks_of(self, SEARCH_MEASUREMENTS);
+    wait_for(self, ADAPT_RESTING, self->cfg.rest_ticks);
+}
+
 static void try_next(adapt_t *self) {
+    if (self->part == ADAPT_TRY_EDGES && is_over(self)) {
+        start_part(self, ADAPT_TRY_LEVEL);
+    }
     skip_what_has_no_room(self);
-    if (self->part == ADAPT_TRY_NOTHING) {
-        const bool is_whole = self->trim[self->nearest].value[ADAPT_WHOLE] != 0;
-        start_part(self, is_whole ? ADAPT_TRY_WHOLE : ADAPT_TRY_EDGES);
-        wait_for(self, ADAPT_RESTING, self->cfg.rest_ticks);
+    if (self->goal.accel_limit_q14 != 0 && self->free_rms_um_s2 == 0) {
+        self->is_free = true;
+        wait_for(self, ADAPT_TRYING, 2u * self->cfg.settle_ticks);
+    } else if (self->part == ADAPT_TRY_NOTHING) {
+        rest(self);
     } else {
         const bool is_start = self->part == ADAPT_TRY_EDGES && self->size == ADAPT_FIRST;
         self->size = is_start && is_noisy(self) ? ADAPT_LARGE : self->size;
@@ -191,6 +226,7 @@ static void keep(adapt_t *self) {
         }
     }
     self->gains = increment_sat_u32(self->gains);
+    go_on(self);
     self->before = self->trial;
     self->failures = 0;
     if (self->part == ADAPT_TRY_WHOLE) {
@@ -205,7 +241,7 @@ static void move_edges(adapt_t *self, adapt_move_t move) {
         change_edges(self, point, move);
     }
     self->moved_index = self->index;
-    adapt_square_moved(&self->square, move);
+    self->move = move;
     self->gains = increment_sat_u32(self->gains);
 }
 
@@ -232,20 +268,20 @@ static void move_back(adapt_t *self) {
 }
 
 static int32_t drift_q20(const adapt_t *self, adapt_effect_t now) {
-    return relative_q20(self->before.reach_um_s2,
-                        (int64_t)now.reach_um_s2 - self->before.reach_um_s2);
+    return abs_i32(adapt_drift_q20(self->before, now));
 }
 
 // The trial lies between two measurements without its change.
-static void judge_trial(adapt_t *self, adapt_effect_t after, adapt_goal_t goal) {
-    const int32_t apart_q20 = abs_i32(drift_q20(self, after));
+static void judge_trial(adapt_t *self, adapt_effect_t after) {
+    const int32_t apart_q20 = drift_q20(self, after);
     // What two measurements of the same differ by is no gain.
     const int32_t gain_q20 = GAIN_q20 + apart_q20;
     self->trials = increment_sat_u32(self->trials);
     if (apart_q20 > DISTURBED_q20) {
         self->before = after;
-    } else if (cost_q20(after, self->trial, goal) < -gain_q20 &&
-               cost_q20(self->before, self->trial, goal) < -gain_q20) {
+        forget_free(self);
+    } else if (cost_q20(self, after, self->trial) < -gain_q20 &&
+               cost_q20(self, self->before, self->trial) < -gain_q20) {
         keep(self);
     } else {
         self->before = after;
@@ -254,10 +290,11 @@ static void judge_trial(adapt_t *self, adapt_effect_t after, adapt_goal_t goal) 
     try_next(self);
 }
 
-// Whether more rounds would tell more.
+// Whether more rounds would tell more than a move is worth.
 static bool is_sure(const adapt_t *self) {
     return self->square.rounds == ADAPT_MOST_ROUNDS ||
-           adapt_square_chance_q20(&self->square, self->noise_q20) <= GAIN_q20 / 2;
+           adapt_square_chance_q20(&self->square, self->noise_q20) <= GAIN_q20 ||
+           adapt_square_hope_q20(&self->square, self->noise_q20) <= 2 * GAIN_q20;
 }
 
 // Whether large steps would cost more than what they tell is worth: four times as much as small
@@ -270,31 +307,50 @@ static bool is_steep(const adapt_t *self) {
 static void end_size(adapt_t *self) {
     if (self->size == ADAPT_FIRST && !is_steep(self)) {
         resize(self, ADAPT_LARGE);
-    } else if (self->size == ADAPT_LARGE && !is_noisy(self)) {
+    } else if (self->size == ADAPT_LARGE && !is_noisy(self) &&
+               adapt_square_hope_q20(&self->square, self->noise_q20) > 2 * GAIN_q20) {
         resize(self, ADAPT_LAST);
     } else {
         start_part(self, self->part + 1u);
     }
 }
 
+// Something else has changed meanwhile, or a corner upsets the vibration for long: then, too, the
+// steps are too large.
+static void repeat_round(adapt_t *self) {
+    forget_free(self);
+    adapt_square_restart(&self->square);
+    self->failures++;
+    if (self->failures >= LOST_CORNERS) {
+        shrink(self);
+    }
+    try_next(self);
+}
+
+static void make_move(adapt_t *self, adapt_move_t move, bool is_again) {
+    move_edges(self, move);
+    self->is_again = is_again;
+    wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
+}
+
 // The corners lie between two measurements of the centre.
-static void judge_corners(adapt_t *self, adapt_effect_t after, adapt_goal_t goal) {
+static void judge_corners(adapt_t *self, adapt_effect_t after) {
     self->trials = increment_sat_u32(self->trials);
-    if (abs_i32(drift_q20(self, after)) > DISTURBED_q20 + self->noise_q20) {
+    if (drift_q20(self, after) > DISTURBED_q20 + self->noise_q20) {
         self->before = after;
-        adapt_square_restart(&self->square);
-        try_next(self);
+        repeat_round(self);
         return;
     }
-    adapt_square_close(&self->square, cost_q20(self->before, after, goal));
+    adapt_square_close(&self->square, cost_q20(self, self->before, after));
     self->before = after;
     const adapt_move_t wanted = adapt_square_move(&self->square, self->noise_q20, GAIN_q20);
     const adapt_move_t move = within_limits(self, adapt_square_forward(&self->square, wanted));
     if (adapt_is_move(move)) {
         const bool may_grow = self->size == ADAPT_FIRST && !is_steep(self);
-        move_edges(self, move);
+        self->doubt_q20 = GAIN_q20 + self->noise_q20 + self->square.unsteady_q20;
+        make_move(self, move, false);
+        adapt_square_moved(&self->square, move);
         self->size = may_grow ? ADAPT_LARGE : self->size;
-        wait_for(self, ADAPT_CHECKING, self->cfg.settle_ticks);
         return;
     }
     if (adapt_is_move(wanted) || self->failures >= LOST_CORNERS) {
@@ -306,22 +362,48 @@ static void judge_corners(adapt_t *self, adapt_effect_t after, adapt_goal_t goal
     try_next(self);
 }
 
-// After a move: worse than before it, and it is taken back.
-static void judge_move(adapt_t *self, adapt_effect_t now, adapt_goal_t goal) {
-    const int32_t cost = cost_q20(self->before, now, goal);
-    if (cost > 0) {
-        move_back(self);
+// The last move measures worse than what was before it. Where it had already gained once, the
+// corners are tried again from there.
+static void undo_move(adapt_t *self) {
+    move_back(self);
+    if (self->is_again) {
+        try_next(self);
+    } else {
         shrink(self);
         wait_for(self, ADAPT_MEASURING, self->cfg.settle_ticks);
+    }
+}
+
+// After a move. A first one has the word of all corners, so that it must be clearly worse to be
+// undone; one that gains is made again (Hooke and Jeeves, Journal of the ACM 8, 1961).
+static void judge_move(adapt_t *self, adapt_effect_t now) {
+    const int32_t cost = cost_q20(self, self->before, now);
+    if (cost > (self->is_again ? 0 : GAIN_q20 + 2 * self->noise_q20)) {
+        undo_move(self);
         return;
     }
+    if (cost < -STEEP_q20) {
+        go_on(self);
+    }
     self->before = now;
+    const adapt_move_t again = within_limits(self, self->move);
+    if (cost < -self->doubt_q20 && adapt_is_move(again)) {
+        make_move(self, again, true);
+        self->square.last = (adapt_move_t){0, 0}; // it may go too far with one of the edges
+    } else {
+        try_next(self);
+    }
+}
+
+static void take_free(adapt_t *self, adapt_effect_t effect) {
+    self->is_free = false;
+    self->free_rms_um_s2 = effect.rms_um_s2 | 1u;
     try_next(self);
 }
 
 // A corner's cost, or that of a trial: unless it is clearly worse it is checked.
-static void take_trial(adapt_t *self, adapt_effect_t effect, adapt_goal_t goal) {
-    const int32_t cost = cost_q20(self->before, effect, goal);
+static void take_trial(adapt_t *self, adapt_effect_t effect) {
+    const int32_t cost = cost_q20(self, self->before, effect);
     if (self->part == ADAPT_TRY_EDGES) {
         adapt_square_take(&self->square, cost);
         const bool is_last = self->square.corner == ADAPT_CORNERS;
@@ -337,33 +419,70 @@ static void take_trial(adapt_t *self, adapt_effect_t effect, adapt_goal_t goal) 
     }
 }
 
-// 5/8 of what both parts of a measurement differ by, on average: their mean's standard deviation.
-static void note_noise(adapt_t *self, adapt_goal_t goal) {
-    const int32_t apart_q20 = abs_i32(cost_q20(self->meter.part[0], self->meter.part[1], goal));
-    self->noise_q20 += (apart_q20 * 5 / 8 - self->noise_q20) >> NOISE_SHIFT;
+// What both parts of the measurement differ by.
+static int32_t apart_q20(const adapt_t *self) {
+    return abs_i32(cost_q20(self, self->meter.part[0], self->meter.part[1]));
 }
 
-static void conclude(adapt_t *self, adapt_goal_t goal) {
+// 5/8 of that, on average: their mean's standard deviation. Parts are as long as it wants them.
+static void note_noise(adapt_t *self) {
+    self->noise_q20 += (apart_q20(self) * 5 / 8 - self->noise_q20) >> NOISE_SHIFT;
+    if (self->noise_q20 > GAIN_q20 && self->longer_log2 < LONGEST_LOG2) {
+        self->longer_log2++;
+        self->noise_q20 = self->noise_q20 * SQRT_HALF_q8 / 256;
+    } else if (self->noise_q20 < GAIN_q20 / 2 && self->longer_log2 > 0) {
+        self->longer_log2--;
+        self->noise_q20 = self->noise_q20 * SQRT_HALF_q8 / 128;
+    }
+}
+
+static void conclude(adapt_t *self) {
     const adapt_effect_t effect = adapt_meter_effect(&self->meter);
-    note_noise(self, goal);
-    if (self->state == ADAPT_TRYING) {
-        take_trial(self, effect, goal);
+    note_noise(self);
+    if (self->is_free) {
+        take_free(self, effect);
+    } else if (self->state == ADAPT_TRYING) {
+        take_trial(self, effect);
     } else if (self->square.corner == ADAPT_CORNERS) {
-        judge_corners(self, effect, goal);
+        judge_corners(self, effect);
     } else if (self->state == ADAPT_CHECKING && self->part == ADAPT_TRY_EDGES) {
-        judge_move(self, effect, goal);
+        judge_move(self, effect);
     } else if (self->state == ADAPT_CHECKING) {
-        judge_trial(self, effect, goal);
+        judge_trial(self, effect);
     } else {
+        if (drift_q20(self, effect) > DISTURBED_q20) {
+            forget_free(self);
+        }
         self->freq_mHz = self->now_mHz; // at first the lock may still have been settling
         self->before = effect;
         try_next(self);
     }
 }
 
+// Both last parts agree, or it has been measured for as long as is allowed.
+static bool is_measured(const adapt_t *self) {
+    const uint32_t most_parts = 1u << (PARTS_LOG2 - self->longer_log2);
+    return apart_q20(self) <= GAIN_q20 + 2 * self->noise_q20 || self->meter.taken >= most_parts;
+}
+
 static void measure(adapt_t *self, const adapt_in_t *in) {
-    if (adapt_meter_step(&self->meter, in->half, self->cfg.measure_ticks)) {
-        conclude(self, in->goal);
+    const uint32_t part_ticks = (self->cfg.measure_ticks << self->longer_log2) >> PARTS_LOG2;
+    if (!adapt_meter_step(&self->meter, in->half, part_ticks)) {
+        return;
+    }
+    if (is_measured(self)) {
+        conclude(self);
+    } else {
+        adapt_meter_go_on(&self->meter);
+    }
+}
+
+// Where the lock does not hold without current, no more acceleration than now.
+static void give_free_up(adapt_t *self) {
+    self->is_free = false;
+    self->free_failures++;
+    if (self->free_failures >= FREE_TRIALS) {
+        self->free_rms_um_s2 = self->before.rms_um_s2 | 1u;
     }
 }
 
@@ -371,7 +490,9 @@ static void measure(adapt_t *self, const adapt_in_t *in) {
 // whole pulse, whose current may be why the output was taken away.
 void adapt_pause(adapt_t *self, bool has_lost_lock) {
     const bool is_own_fault = has_lost_lock || self->part == ADAPT_TRY_WHOLE;
-    if (self->state == ADAPT_TRYING && self->part != ADAPT_TRY_EDGES && is_own_fault) {
+    if (self->is_free) {
+        give_free_up(self);
+    } else if (self->state == ADAPT_TRYING && self->part != ADAPT_TRY_EDGES && is_own_fault) {
         self->trials = increment_sat_u32(self->trials);
         fail(self);
     } else if (self->state == ADAPT_TRYING && self->part == ADAPT_TRY_EDGES && has_lost_lock) {
@@ -394,6 +515,9 @@ static void follow_freq(adapt_t *self, const adapt_in_t *in) {
 
 void adapt_step(adapt_t *self, const adapt_in_t *in) {
     follow_freq(self, in);
+    self->left_ticks -= self->left_ticks > 0 && self->state != ADAPT_RESTING ? 1u : 0u;
+    self->goal = in->goal;
+    self->limit_um_s2 = adapt_limit_um_s2(in->goal, self->free_rms_um_s2);
     self->index = (uint8_t)in->index;
     self->nearest = (uint8_t)(in->index + (in->part_q16 >= HALF_q16 ? 1u : 0u));
     if (!in->may_try) {

@@ -1,23 +1,23 @@
 /// Adapts pulses to the plant by trying: change a pulse a little, wait until the vibration has
 /// settled, measure, and keep what lowers the cost.
 ///
-///   cost = relative change of the reach
-///          + accel_weight x relative change of what RMS acceleration exceeds accel_shape x reach
-///          by
+/// What counts is the reach, half peak-to-peak displacement times (2 pi f)^2, from the fundamental
+/// and the third harmonic (the fundamental alone misleads: a sticking damper's optimum cuts the
+/// peak, not the fundamental) over half cycles, and RMS acceleration beyond what is allowed
+/// (adapt_cost.h).
 ///
-/// where reach is half peak-to-peak displacement times (2 pi f)^2, from the fundamental and the
-/// third harmonic (the fundamental alone misleads: a sticking damper's optimum cuts the peak, not
-/// the fundamental) over half cycles. Both are relative changes, so the unit does not matter and
-/// neither does a calibration.
+/// A search begins, where acceleration is limited, with a trial without current, which tells the
+/// limit. Then it has three parts. First the pulse without its gap: edges that are moved little by
+/// little find the best pulse near the one that they start from, and on another plant a plain
+/// constant current may be better than that. Then both edges at once (adapt_square.h). Last the
+/// level. A pulse without its gap and a level are tried between two measurements of the pulse as it
+/// was, and kept where they are better than both; a move of the edges is taken back where the pulse
+/// then measures worse than before, and made again where it gains. A search ends when nothing is
+/// left to gain, or has lasted so long that the rest is not worth it, but not while acceleration is
+/// above its limit.
 ///
-/// A search has three parts. First the pulse without its gap: edges that are moved little by little
-/// find the best pulse near the one that they start from, and on another plant a plain constant
-/// current may be better than that. Then both edges at once (adapt_square.h). Last the level. A
-/// pulse without its gap and a level are tried between two measurements of the pulse as it was, and
-/// kept where they are better than both; a move of the edges is taken back where the pulse then
-/// measures worse than before.
-///
-/// How much of a difference is noise is measured, too: each measurement is made in two halves.
+/// A measurement goes on until its last two parts agree: then the vibration has settled. What they
+/// differ by is noise; the more of it, the longer the parts.
 ///
 /// What is learnt is kept for each point of the pulse table; it is bounded by adapt_cfg_t, and can
 /// be frozen, cleared, taken out and put back. A trial is given up, and nothing learnt, when the
@@ -30,10 +30,13 @@
 #ifndef ADAPT_H
 #define ADAPT_H
 
-#include "adapt_effect.h"
+#include "adapt_cost.h"
 #include "adapt_square.h"
 
 #define ADAPT_POINTS 64u
+
+/// Change of the level by which the pulse has no current at all, not even between pulses.
+#define ADAPT_NO_CURRENT INT16_MIN
 
 /// What is changed.
 enum { ADAPT_ON_EDGE, ADAPT_OFF_EDGE, ADAPT_LEVEL, ADAPT_WHOLE, ADAPT_COORDINATES };
@@ -47,7 +50,7 @@ typedef struct {
 typedef struct {
     uint32_t start_ticks;   ///< that a vibration lasts before the first trial
     uint32_t settle_ticks;  ///< before a measurement
-    uint32_t measure_ticks; ///< at least so long, in half cycles
+    uint32_t measure_ticks; ///< at most so long, and what completes cycles
     uint32_t rest_ticks;    ///< between trials once nothing is left to gain
     int32_t edge_limit_q16;
     int32_t level_limit_q15; ///< most that the level may be lowered
@@ -77,32 +80,35 @@ typedef struct {
     adapt_cfg_t cfg;
     adapt_trim_t trim[ADAPT_POINTS]; ///< learnt
     adapt_meter_t meter;
-    uint32_t ticks;        ///< left to settle or rest
-    adapt_effect_t before; ///< without a trial's change
-    adapt_effect_t trial;  ///< with it: whole pulse or level
-    int32_t noise_q20;     ///< of a measurement, standard deviation
-    adapt_square_t square; ///< edges
-    adapt_edges_t from[2]; ///< edges at both points before the last move
-    uint8_t state;         ///< adapt_state_t
-    uint8_t part;          ///< of the search
-    uint8_t size;          ///< of the edges' steps
-    uint8_t failures;      ///< of this part: directions, trials that were cut short
-    uint8_t index;         ///< of the point below the frequency
-    uint8_t nearest;       ///< of the point nearest to it
-    uint8_t moved_index;   ///< the first of them, or UINT8_MAX: there was none
-    int8_t direction;      ///< of the level, 1 or -1
-    uint32_t freq_mHz;     ///< that the search is for
-    uint32_t now_mHz;      ///< mean over some half cycles: each one's own is some 1 % off
-    uint32_t trials;       ///< finished, saturating: a round of the edges is one
-    uint32_t gains;        ///< of them that lowered the cost, saturating
+    uint32_t ticks;          ///< left to settle or rest
+    adapt_effect_t before;   ///< without a trial's change
+    adapt_effect_t trial;    ///< with it: whole pulse or level
+    int32_t noise_q20;       ///< of a measurement, standard deviation
+    adapt_square_t square;   ///< edges
+    adapt_edges_t from[2];   ///< edges at both points before the last move
+    adapt_move_t move;       ///< the last one
+    bool is_again;           ///< it repeats the one before
+    bool is_free;            ///< the trial is one without current
+    uint8_t free_failures;   ///< of such trials
+    uint8_t longer_log2;     ///< parts of a measurement over the shortest ones
+    int32_t doubt_q20;       ///< a gain of less is no reason to move again
+    uint32_t left_ticks;     ///< of the search
+    uint32_t limit_um_s2;    ///< of RMS acceleration
+    uint32_t free_rms_um_s2; ///< RMS acceleration without current; 0: not known
+    adapt_goal_t goal;
+    uint8_t state;       ///< adapt_state_t
+    uint8_t part;        ///< of the search
+    uint8_t size;        ///< of the edges' steps
+    uint8_t failures;    ///< of this part: directions, trials that were cut short
+    uint8_t index;       ///< of the point below the frequency
+    uint8_t nearest;     ///< of the point nearest to it
+    uint8_t moved_index; ///< the first of them, or UINT8_MAX: there was none
+    int8_t direction;    ///< of the level, 1 or -1
+    uint32_t freq_mHz;   ///< that the search is for
+    uint32_t now_mHz;    ///< mean over some half cycles: each one's own is some 1 % off
+    uint32_t trials;     ///< finished, saturating: a round of the edges is one
+    uint32_t gains;      ///< of them that lowered the cost, saturating
 } adapt_t;
-
-/// What is wanted. A shape of 0: all acceleration counts. The shape that the pulse has on the plant
-/// that it was made for: acceleration counts where it becomes worse, relatively, than there.
-typedef struct {
-    uint32_t accel_weight_q8;
-    uint32_t accel_shape_q14;
-} adapt_goal_t;
 
 /// One tick's view of the vibration.
 typedef struct {

@@ -5,6 +5,8 @@
 void adapt_meter_reset(adapt_meter_t *self) {
     self->is_collecting = false;
     self->done = 0;
+    self->taken = 0;
+    self->halves = 0;
     self->stage = 0;
     self->sums = (harmonic_sums_t){0};
 }
@@ -54,19 +56,20 @@ static bool work(adapt_meter_t *self) {
 }
 
 // Half cycles, from the first one that began after the vibration had settled.
-static void collect(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t measure_ticks) {
+static void collect(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t part_ticks) {
     if (!self->is_collecting) {
         self->is_collecting = true;
         return;
     }
     harmonic_sums_add(&self->sums, half);
-    self->stage = self->sums.ticks >= (measure_ticks + 1u) / 2u ? 1 : 0;
+    self->halves++;
+    self->stage = self->sums.ticks >= part_ticks && self->halves % 2u == 0 ? 1 : 0;
 }
 
-bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t measure_ticks) {
+bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t part_ticks) {
     if (self->stage == 0) {
         if (half != NULL) {
-            collect(self, half, measure_ticks);
+            collect(self, half, part_ticks);
         }
         return false;
     }
@@ -75,6 +78,8 @@ bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t
     }
     self->part[self->done].reach_um_s2 = (uint32_t)self->span.largest;
     self->done++;
+    self->taken++;
+    self->halves = 0;
     self->stage = 0;
     self->sums = (harmonic_sums_t){0};
     return self->done == 2u;
@@ -86,4 +91,9 @@ adapt_effect_t adapt_meter_effect(const adapt_meter_t *self) {
         .reach_um_s2 = (part[0].reach_um_s2 + part[1].reach_um_s2) / 2u,
         .rms_um_s2 = (part[0].rms_um_s2 + part[1].rms_um_s2) / 2u,
     };
+}
+
+void adapt_meter_go_on(adapt_meter_t *self) {
+    self->part[0] = self->part[1];
+    self->done = 1;
 }

@@ -1,5 +1,6 @@
 /// What a pulse does to the vibration, measured over half cycles: how far the displacement reaches,
-/// and the RMS acceleration. A measurement is made in two halves: what they differ by is noise.
+/// and the RMS acceleration. A measurement is made in two parts: what they differ by is noise,
+/// or has not settled.
 ///
 /// Reach is half peak-to-peak displacement times (2 pi f)^2, from the fundamental and the third
 /// harmonic, which counts a ninth. Formats: um/s2. Bounded: an addition of sums at the end of a
@@ -19,6 +20,8 @@ typedef struct {
 typedef struct {
     bool is_collecting;   ///< half cycles are added up
     uint8_t done;         ///< parts that are finished
+    uint8_t taken;        ///< the same, without what adapt_meter_go_on drops
+    uint8_t halves;       ///< half cycles in the sums
     uint8_t stage;        ///< of the work on this one; 0: none
     harmonic_sums_t sums; ///< so far
     harmonic_parts_t parts;
@@ -31,9 +34,12 @@ typedef struct {
 void adapt_meter_reset(adapt_meter_t *self);
 
 /// One tick. half: half a cycle that ended in it, or NULL; the first one counts as begun too early.
-/// Returns true iff at least measure_ticks have been taken in, half of them for either part, and
-/// both are complete.
-bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t measure_ticks);
+/// A part is whole cycles of at least part_ticks: what halves differ by cancels. Returns true iff
+/// two parts are complete.
+bool adapt_meter_step(adapt_meter_t *self, const harmonic_sums_t *half, uint32_t part_ticks);
+
+/// The first part is dropped for another one after the second.
+void adapt_meter_go_on(adapt_meter_t *self);
 
 /// The mean of both parts.
 adapt_effect_t adapt_meter_effect(const adapt_meter_t *self);

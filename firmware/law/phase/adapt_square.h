@@ -13,12 +13,11 @@
 #ifndef ADAPT_SQUARE_H
 #define ADAPT_SQUARE_H
 
-#include "fixq.h"
+#include "adapt_cost.h"
 
 enum {
     ADAPT_CORNERS = 4,
     ADAPT_MOST_ROUNDS = 3,
-    ADAPT_MOST_COST_Q20 = 1 << 25, ///< 32 times as much as the centre
 };
 
 /// Steps of either edge: -1, 0 or 1, later is positive.
@@ -70,5 +69,9 @@ adapt_move_t adapt_square_forward(const adapt_square_t *self, adapt_move_t move)
 
 /// What of a cost's slope may be chance after the rounds so far, one standard deviation.
 int32_t adapt_square_chance_q20(const adapt_square_t *self, int32_t noise_q20);
+
+/// What moves within a step of the centre may gain at most, by a parabola through the slopes, each
+/// with its chance, and the bend; after a round at least.
+int32_t adapt_square_hope_q20(const adapt_square_t *self, int32_t noise_q20);
 
 #endif

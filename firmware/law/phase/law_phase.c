@@ -15,7 +15,7 @@
 #include "phase_state.h"
 #include "plant_pulses.h"
 
-enum { WHOLE_q16 = 65536 };
+enum { WHOLE_q16 = 65536, SETTING_DISPLACEMENT = 0, ANY_FLOOR_pct = -100 };
 
 _Static_assert(sizeof(phase_t) <= LAW_STATE_BYTES, "the arena is too small");
 _Static_assert(ADAPT_STORE_WORDS <= QUIESCE_LEARNT_MAX_WORDS, "what is learnt, in words");
@@ -65,6 +65,11 @@ static void init(void *state, const law_setup_t *setup) {
 static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
     const int32_t width_q16 =
         (int32_t)pulse->width_q16 + trim->value[ADAPT_OFF_EDGE] - trim->value[ADAPT_ON_EDGE];
+    if (trim->value[ADAPT_LEVEL] == ADAPT_NO_CURRENT) {
+        pulse->level_mA = 0;
+        pulse->floor_mA = 0;
+        return;
+    }
     pulse->on_q16 = (uint32_t)((int32_t)pulse->on_q16 + trim->value[ADAPT_ON_EDGE]) & 0xFFFFu;
     pulse->width_q16 = trim->value[ADAPT_WHOLE] != 0
                            ? PHASE_WIDTH_ALL
@@ -102,6 +107,14 @@ static int32_t blended(phase_t *self, int32_t from_mA, int32_t to_mA) {
     return from_mA + (int32_t)(((int64_t)(to_mA - from_mA) * self->blend_q16) >> 16);
 }
 
+// Setting displacement may spend acceleration down to the floor; balanced has a table's weights.
+static uint32_t accel_limit_q14(const quiesce_params_t *params) {
+    const int32_t floor_pct = params->phase_accel_floor_pct;
+    const bool has_floor =
+        params->phase_setting == SETTING_DISPLACEMENT && floor_pct > ANY_FLOOR_pct;
+    return has_floor ? (uint32_t)((100 - floor_pct) * 16384 / 100) : 0;
+}
+
 static void adapt(phase_t *self, const quiesce_params_t *params, const view_t *view) {
     adapt_step(&self->adapt, &(adapt_in_t){
                                  .may_try = params->adapt == QUIESCE_ADAPT_ON && view->may_learn &&
@@ -109,7 +122,8 @@ static void adapt(phase_t *self, const quiesce_params_t *params, const view_t *v
                                  .freq_mHz = self->freq_mHz,
                                  .index = self->place.index,
                                  .part_q16 = self->place.part_q16,
-                                 .goal = {self->pulse.accel_weight_q8, self->pulse.accel_shape_q14},
+                                 .goal = {self->pulse.accel_weight_q8, self->pulse.accel_shape_q14,
+                                          accel_limit_q14(params)},
                                  .half = view->tone.half,
                              });
 }

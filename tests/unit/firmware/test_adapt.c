@@ -27,6 +27,7 @@ typedef struct {
 typedef struct {
     bowl_t reach;
     bowl_t rms;
+    int32_t free_rms_ppm;   // RMS without current; 0: the trim's
     int32_t third_ppm;      // amplitude of the third harmonic, in antiphase, a limit of ON_EDGE on
     int32_t excitation_ppm; // of both
     int32_t drift_ppm;      // of that, a half cycle
@@ -94,7 +95,10 @@ static harmonic_sums_t end_of_half(void) {
     const int32_t third_ppm =
         (int32_t)((int64_t)plant.third_ppm * plant.trim.value[ADAPT_ON_EDGE] / cfg.edge_limit_q16);
     plant.now_reach_ppm += (bowl_ppm(&plant.reach, &plant.trim) - plant.now_reach_ppm) / 2;
-    plant.now_rms_ppm += (bowl_ppm(&plant.rms, &plant.trim) - plant.now_rms_ppm) / 2;
+    const bool is_free = plant.trim.value[ADAPT_LEVEL] == ADAPT_NO_CURRENT;
+    const int32_t rms_ppm =
+        is_free && plant.free_rms_ppm != 0 ? plant.free_rms_ppm : bowl_ppm(&plant.rms, &plant.trim);
+    plant.now_rms_ppm += (rms_ppm - plant.now_rms_ppm) / 2;
     plant.now_third_ppm += (third_ppm - plant.now_third_ppm) / 2;
     plant.excitation_ppm += plant.drift_ppm;
     const int64_t noise_ppm = WHOLE_ppm + signal_noise(&plant.seed, plant.noise_ppm);
@@ -297,7 +301,7 @@ static int32_t on_edge_with(uint32_t weight_q8, uint32_t shape_q14) {
     setUp();
     plant.reach = (bowl_t){{20 * DEGREE_q16, 0, 0}, {300000, 100000, 100000}};
     plant.rms = (bowl_t){{-20 * DEGREE_q16, 0, 0}, {300000, 100000, 100000}};
-    in.goal = (adapt_goal_t){weight_q8, shape_q14};
+    in.goal = (adapt_goal_t){weight_q8, shape_q14, 0};
     TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 100 * TRIAL_TICKS));
     return learnt()->value[ADAPT_ON_EDGE] / DEGREE_q16;
 }
@@ -314,6 +318,91 @@ static void test_adapt_lets_acceleration_go_up_to_its_shape(void) {
     TEST_ASSERT_LESS_THAN_INT32(5, on_edge_with(7 * 256, 1 << 13));
     // At no trim it is all that is free: later is reach's gain, but more acceleration.
     TEST_ASSERT_INT32_WITHIN(4, 0, on_edge_with(20 * 256, 1 << 14));
+}
+
+// --- limit of acceleration
+
+enum { FREE_rms_ppm = 1300000, LIMIT_Q14 = 16548 }; // 1.01 times that without current
+
+// Later edges reach less but shake more; without current it shakes as much as 24 degrees later do.
+static void limit_acceleration(void) {
+    plant.reach = (bowl_t){{40 * DEGREE_q16, 0, 0}, {100000, 100000, 100000}};
+    plant.rms = (bowl_t){{-10 * DEGREE_q16, 0, 0}, {500000, 0, 0}};
+    plant.free_rms_ppm = FREE_rms_ppm;
+    in.goal = (adapt_goal_t){0, 0, LIMIT_Q14};
+}
+
+static bool is_without_current(void) {
+    return adapt_trim_at(&adapt, in.index, 0).value[ADAPT_LEVEL] == ADAPT_NO_CURRENT;
+}
+
+static void test_adapt_measures_acceleration_without_current_once(void) {
+    limit_acceleration();
+    uint32_t trials = 0;
+    bool was_free = false;
+    for (uint32_t i = 0; i < 100u * TRIAL_TICKS && adapt.state != ADAPT_RESTING; i++) {
+        tick();
+        trials += is_without_current() && !was_free ? 1u : 0u;
+        was_free = is_without_current();
+    }
+    TEST_ASSERT_EQUAL(ADAPT_RESTING, adapt.state);
+    TEST_ASSERT_EQUAL_UINT32(1, trials);
+    TEST_ASSERT_UINT32_WITHIN(FREE_rms_ppm / 200, FREE_rms_ppm, adapt.free_rms_um_s2);
+}
+
+// The current fades: a lock does not follow a jump.
+static void test_adapt_takes_the_current_away_little_by_little(void) {
+    limit_acceleration();
+    int32_t last = 0;
+    for (uint32_t i = 0; i < 3u * TRIAL_TICKS && !is_without_current(); i++) {
+        tick();
+        const int32_t now = adapt_trim_at(&adapt, in.index, 0).value[ADAPT_LEVEL];
+        TEST_ASSERT_TRUE(now <= last && now >= last - 32768 / (int32_t)SETTLE_TICKS - 1);
+        last = now;
+    }
+    TEST_ASSERT_TRUE(is_without_current());
+}
+
+static void test_adapt_spends_acceleration_up_to_its_limit(void) {
+    limit_acceleration();
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    const int32_t limit_ppm = FREE_rms_ppm / 100 * 101;
+    const int32_t rms_ppm = bowl_ppm(&plant.rms, learnt());
+    TEST_ASSERT_LESS_OR_EQUAL_INT32(limit_ppm + limit_ppm / 200, rms_ppm);
+    TEST_ASSERT_GREATER_THAN_INT32(15 * DEGREE_q16, learnt()->value[ADAPT_ON_EDGE]);
+    setUp();
+    limit_acceleration();
+    in.goal.accel_limit_q14 = 0; // none
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    TEST_ASSERT_GREATER_THAN_INT32(30 * DEGREE_q16, learnt()->value[ADAPT_ON_EDGE]);
+}
+
+// A pulse that starts far above its limit comes below it, whatever that takes.
+static void test_adapt_comes_back_below_its_limit(void) {
+    limit_acceleration();
+    plant.rms.best[ADAPT_ON_EDGE] = -40 * DEGREE_q16;
+    plant.rms.rise_ppm[ADAPT_ON_EDGE] = 900000;
+    TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
+    const int32_t limit_ppm = FREE_rms_ppm / 100 * 101;
+    TEST_ASSERT_LESS_OR_EQUAL_INT32(limit_ppm + limit_ppm / 200, bowl_ppm(&plant.rms, learnt()));
+}
+
+// Where the lock does not hold without current, nothing shakes more than before.
+static void test_adapt_gives_trials_without_current_up(void) {
+    limit_acceleration();
+    uint32_t lost = 0;
+    for (uint32_t i = 0; i < 150u * TRIAL_TICKS && adapt.state != ADAPT_RESTING; i++) {
+        tick();
+        if (is_without_current()) {
+            adapt_pause(&adapt, true);
+            TEST_ASSERT_FALSE(is_without_current());
+            lost++;
+        }
+    }
+    TEST_ASSERT_EQUAL(ADAPT_RESTING, adapt.state);
+    TEST_ASSERT_EQUAL_UINT32(2, lost);
+    const int32_t start_ppm = bowl_ppm(&plant.rms, &(adapt_trim_t){{0}});
+    TEST_ASSERT_LESS_OR_EQUAL_INT32(start_ppm / 100 * 102, bowl_ppm(&plant.rms, learnt()));
 }
 
 // --- what must not be learnt
@@ -671,7 +760,7 @@ static adapt_in_t any_input(uint32_t *seed, const harmonic_sums_t *half) {
         .goal = {change < 200u   ? UINT32_MAX
                  : change < 500u ? 65535u
                                  : 256u,
-                 change < 700u ? 65535u : 0u},
+                 change < 700u ? 65535u : 0u, change < 100u ? change * 500u : 0u},
         .half = change % 3u != 0 ? half : NULL,
     };
 }
@@ -681,7 +770,11 @@ static void assert_within_limits(const adapt_cfg_t *limits, uint32_t index) {
         TEST_ASSERT_TRUE(adapt_is_allowed(limits, &adapt.trim[i]));
     }
     for (uint32_t part = 0; part <= 65536u; part += 16384u) {
-        const adapt_trim_t trim = adapt_trim_at(&adapt, index, part);
+        adapt_trim_t trim = adapt_trim_at(&adapt, index, part);
+        if (adapt.is_free) { // less than the limit allows, down to nothing
+            TEST_ASSERT_LESS_OR_EQUAL_INT32(0, trim.value[ADAPT_LEVEL]);
+            trim.value[ADAPT_LEVEL] = 0;
+        }
         TEST_ASSERT_TRUE(adapt_is_allowed(limits, &trim));
     }
 }
@@ -735,6 +828,11 @@ int main(void) {
     RUN_TEST(test_adapt_leaves_out_the_half_cycle_in_which_it_settled);
     RUN_TEST(test_adapt_weighs_acceleration);
     RUN_TEST(test_adapt_lets_acceleration_go_up_to_its_shape);
+    RUN_TEST(test_adapt_measures_acceleration_without_current_once);
+    RUN_TEST(test_adapt_takes_the_current_away_little_by_little);
+    RUN_TEST(test_adapt_spends_acceleration_up_to_its_limit);
+    RUN_TEST(test_adapt_comes_back_below_its_limit);
+    RUN_TEST(test_adapt_gives_trials_without_current_up);
     RUN_TEST(test_adapt_does_not_learn_a_drift_of_the_excitation);
     RUN_TEST(test_adapt_does_not_learn_a_step_of_the_excitation);
     RUN_TEST(test_adapt_repeats_a_trial_that_was_disturbed);

@@ -142,6 +142,31 @@ static void test_the_largest_costs_do_not_overflow(void) {
     }
 }
 
+// A bowl s on + b (on^2 + off^2): s^2 / (4 b) below its centre, or a whole step where that is
+// nearer.
+static void test_hope_is_what_a_parabola_leaves(void) {
+    const struct {
+        int32_t slope_q20, bend_q20, expected_q20;
+    } rows[] = {
+        {0, ONE_q20, 0},
+        {ONE_q20, ONE_q20, ONE_q20 / 4},
+        {-2 * ONE_q20, 4 * ONE_q20, ONE_q20 / 4},
+        {4 * ONE_q20, ONE_q20, 3 * ONE_q20},
+        {ONE_q20, 0, ONE_q20},
+    };
+    for (uint32_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        int32_t cost_q20[ADAPT_CORNERS];
+        for (uint32_t k = 0; k < ADAPT_CORNERS; k++) {
+            cost_q20[k] = rows[i].slope_q20 * adapt_square_corner(k).on + 2 * rows[i].bend_q20;
+        }
+        take_round(cost_q20, 0);
+        TEST_ASSERT_INT32_WITHIN(2, rows[i].expected_q20, adapt_square_hope_q20(&square, 0));
+        TEST_ASSERT_GREATER_THAN_INT32(rows[i].expected_q20,
+                                       adapt_square_hope_q20(&square, ONE_q20));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_corners_go_round);
@@ -153,5 +178,6 @@ int main(void) {
     RUN_TEST(test_it_does_not_follow_the_excitation);
     RUN_TEST(test_an_edge_does_not_go_back);
     RUN_TEST(test_the_largest_costs_do_not_overflow);
+    RUN_TEST(test_hope_is_what_a_parabola_leaves);
     return UNITY_END();
 }

@@ -345,6 +345,7 @@ static void make_adapt_quick(int32_t mode) {
     params->adapt_start_ms = 100;
     params->adapt_settle_ms = 50;
     params->adapt_measure_ms = 50;
+    params->phase_accel_floor_pct = -100;
     start();
 }
 
@@ -453,6 +454,26 @@ static void test_law_phase_request_is_bounded_for_any_input(void) {
     TEST_ASSERT_GREATER_THAN_UINT32(0, state.adapt.trials);
 }
 
+// Setting displacement measures acceleration without current: not even a floor current flows.
+static void test_law_phase_with_a_floor_tries_no_current(void) {
+    make_adapt_quick(QUIESCE_ADAPT_ON);
+    params->phase_accel_floor_pct = -1;
+    start();
+    lock_at(5000);
+    int32_t lowest_mA = INT32_MAX;
+    for (uint32_t i = 0; i < 9000u; i++) {
+        const int32_t current_mA = tick();
+        lowest_mA = current_mA < lowest_mA ? current_mA : lowest_mA;
+    }
+    TEST_ASSERT_EQUAL_INT32(0, lowest_mA);
+    params->phase_setting = 1; // balanced has no floor
+    start();
+    lock_at(5000);
+    for (uint32_t i = 0; i < 9000u; i++) {
+        TEST_ASSERT_GREATER_THAN_INT32(0, tick());
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_law_phase_unlocked_requests_its_constant);
@@ -475,5 +496,6 @@ int main(void) {
     RUN_TEST(test_law_phase_lost_lock_or_fault_undoes_the_trial);
     RUN_TEST(test_law_phase_does_not_try_while_it_fades_in);
     RUN_TEST(test_law_phase_request_is_bounded_for_any_input);
+    RUN_TEST(test_law_phase_with_a_floor_tries_no_current);
     return UNITY_END();
 }

@@ -45,15 +45,15 @@ def second_amplitudes(time_s: np.ndarray, values: np.ndarray, freq_Hz: float) ->
     return sums[count > 0] / count[count > 0]
 
 
-def converge_s(amplitudes: np.ndarray) -> float:
-    """Time from which the amplitude is within 2 % of its final value, or below.
+def converge_s(amplitudes: np.ndarray, within: float = CONVERGED) -> float:
+    """Time from which the amplitude is within a share of its final value, or below.
 
     amplitudes: of each second. Over 10 s from that time on, and any later time, so that a trial of
     the adaptation, which lasts one or two, is not taken for what it has reached.
     """
     seconds = min(SETTLED_SECONDS, len(amplitudes))
     means = np.convolve(amplitudes, np.full(seconds, 1.0 / seconds), mode="valid")
-    late = np.flatnonzero(means > (1.0 + CONVERGED) * means[-1])
+    late = np.flatnonzero(means > (1.0 + within) * means[-1])
     return float(late[-1] + 1) * SECOND_s if late.size else 0.0
 
 

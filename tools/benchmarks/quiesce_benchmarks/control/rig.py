@@ -23,6 +23,8 @@ from quiesce_benchmarks.control.scenarios import Scenario
 
 DISPLACEMENT, BALANCED = "displacement", "balanced"
 SETTINGS = (DISPLACEMENT, BALANCED)
+# Bounds of the displacement are at any price in acceleration; so is the law that is judged by them.
+ANY_ACCEL = "phase_accel_floor_pct=-100"
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,8 @@ class Judged:
 
     def control(self, setting: str, adapt: str = "on") -> Control:
         own = (f"phase_setting={setting}", f"adapt={adapt}") if self.adapts else ()
-        return Control(self.law, (*self.settings, *own), self.options)
+        free = (ANY_ACCEL,) if self.adapts else ()
+        return Control(self.law, (*free, *self.settings, *own), self.options)
 
     def with_options(self, options: Sequence[str]) -> "Judged":
         return replace(self, options=tuple(options))
