@@ -18,7 +18,7 @@ enum {
     DIRECTIONS = 2,
     NOWHERE = UINT8_MAX,
     SEARCH_MEASUREMENTS = 19, // of full length, with their settling: so long a search may take
-    MORE_MEASUREMENTS = 6,     // after a gain at least: a round
+    MORE_MEASUREMENTS = 6,    // after a gain at least: a round
     LIMIT_PART = 256,         // of the limit of acceleration: so far above it is not above
     FREE_TRIALS = 2,          // without current, that may lose the lock
     PARTS_LOG2 = 3,           // shortest part of a measurement: an eighth of it
@@ -271,6 +271,18 @@ static int32_t drift_q20(const adapt_t *self, adapt_effect_t now) {
     return abs_i32(adapt_drift_q20(self->before, now));
 }
 
+// The same pulse reaches farther or less far than before: so would no current. Another trial
+// without current for every change of the excitation would be one too many.
+static void follow_excitation(adapt_t *self, adapt_effect_t now) {
+    const int64_t more_um_s2 =
+        ((int64_t)self->free_rms_um_s2 * adapt_drift_q20(self->before, now)) >> 20;
+    if (self->free_rms_um_s2 != 0) {
+        self->free_rms_um_s2 =
+            (uint32_t)clamp_i64(self->free_rms_um_s2 + more_um_s2, 1, UINT32_MAX);
+    }
+    self->before = now;
+}
+
 // The trial lies between two measurements without its change.
 static void judge_trial(adapt_t *self, adapt_effect_t after) {
     const int32_t apart_q20 = drift_q20(self, after);
@@ -278,8 +290,7 @@ static void judge_trial(adapt_t *self, adapt_effect_t after) {
     const int32_t gain_q20 = GAIN_q20 + apart_q20;
     self->trials = increment_sat_u32(self->trials);
     if (apart_q20 > DISTURBED_q20) {
-        self->before = after;
-        forget_free(self);
+        follow_excitation(self, after);
     } else if (cost_q20(self, after, self->trial) < -gain_q20 &&
                cost_q20(self, self->before, self->trial) < -gain_q20) {
         keep(self);
@@ -318,7 +329,6 @@ static void end_size(adapt_t *self) {
 // Something else has changed meanwhile, or a corner upsets the vibration for long: then, too, the
 // steps are too large.
 static void repeat_round(adapt_t *self) {
-    forget_free(self);
     adapt_square_restart(&self->square);
     self->failures++;
     if (self->failures >= LOST_CORNERS) {
@@ -337,7 +347,7 @@ static void make_move(adapt_t *self, adapt_move_t move, bool is_again) {
 static void judge_corners(adapt_t *self, adapt_effect_t after) {
     self->trials = increment_sat_u32(self->trials);
     if (drift_q20(self, after) > DISTURBED_q20 + self->noise_q20) {
-        self->before = after;
+        follow_excitation(self, after);
         repeat_round(self);
         return;
     }

@@ -387,6 +387,26 @@ static void test_adapt_comes_back_below_its_limit(void) {
     TEST_ASSERT_LESS_OR_EQUAL_INT32(limit_ppm + limit_ppm / 200, bowl_ppm(&plant.rms, learnt()));
 }
 
+// An excitation that never stays the same: the limit follows it, and one trial without current is
+// all that a search makes.
+static void test_adapt_does_without_current_once_however_the_excitation_changes(void) {
+    limit_acceleration();
+    uint32_t trials = 0;
+    bool was_free = false;
+    for (uint32_t i = 0; i < 60u * TRIAL_TICKS && adapt.state != ADAPT_RESTING; i++) {
+        if (i % (5u * TRIAL_TICKS) == 5u * TRIAL_TICKS - 1u) {
+            plant.excitation_ppm = plant.excitation_ppm / 100 * 108;
+        }
+        tick();
+        trials += is_without_current() && !was_free ? 1u : 0u;
+        was_free = is_without_current();
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, trials);
+    const uint64_t free_um_s2 =
+        (uint64_t)FREE_rms_ppm * (uint32_t)plant.excitation_ppm / (uint32_t)WHOLE_ppm;
+    TEST_ASSERT_UINT64_WITHIN(free_um_s2 / 8u, free_um_s2, adapt.free_rms_um_s2);
+}
+
 // Where the lock does not hold without current, nothing shakes more than before.
 static void test_adapt_gives_trials_without_current_up(void) {
     limit_acceleration();
@@ -832,6 +852,7 @@ int main(void) {
     RUN_TEST(test_adapt_takes_the_current_away_little_by_little);
     RUN_TEST(test_adapt_spends_acceleration_up_to_its_limit);
     RUN_TEST(test_adapt_comes_back_below_its_limit);
+    RUN_TEST(test_adapt_does_without_current_once_however_the_excitation_changes);
     RUN_TEST(test_adapt_gives_trials_without_current_up);
     RUN_TEST(test_adapt_does_not_learn_a_drift_of_the_excitation);
     RUN_TEST(test_adapt_does_not_learn_a_step_of_the_excitation);
