@@ -285,11 +285,11 @@ static void follow_excitation(adapt_t *self, adapt_effect_t now) {
 
 // The trial lies between two measurements without its change.
 static void judge_trial(adapt_t *self, adapt_effect_t after) {
-    const int32_t apart_q20 = drift_q20(self, after);
+    const int32_t change_q20 = drift_q20(self, after);
     // What two measurements of the same differ by is no gain.
-    const int32_t gain_q20 = GAIN_q20 + apart_q20;
+    const int32_t gain_q20 = GAIN_q20 + change_q20;
     self->trials = increment_sat_u32(self->trials);
-    if (apart_q20 > DISTURBED_q20) {
+    if (change_q20 > DISTURBED_q20) {
         follow_excitation(self, after);
     } else if (cost_q20(self, after, self->trial) < -gain_q20 &&
                cost_q20(self, self->before, self->trial) < -gain_q20) {
