@@ -11,7 +11,7 @@ from typing import Any
 from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.cli.rules.check_system import check_system
-from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, any_compiled_from
+from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, plain_or_table_from
 from quiesce.rules.analysis.analyse import analyse
 from quiesce.rules.analysis.findings import ERROR, Finding
 from quiesce.rules.engine.precise import Precise
@@ -83,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--jobs {args.jobs}: 0 or more, please")
     if args.max_error is not None and not args.max_error >= 0:
         raise UsageError(f"--max-error {args.max_error}: 0 or more, please")
-    compiled, why = any_compiled_from(args)
+    compiled, why = plain_or_table_from(args)
     progress = WalkProgress()
     if isinstance(compiled, Precise):
         return check_system(args, compiled, why, progress.report)

@@ -58,14 +58,28 @@ def compiled_from(args: argparse.Namespace) -> CompiledBase:
 
 
 def any_compiled_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise, str]:
-    """A plain base, or a system in the form that suits it and why it is no plain base."""
+    """With the reason why it is no plain base and what was taken instead; empty where it is one."""
     try:
         return compiled_from(args), ""
     except NotPlain as reason:
-        if args.controller or args.approximate is not None:
+        if wants_plain(args):
             raise
         found, taken = system_from(args)
         return found, f"{reason}; {taken}"
+
+
+def plain_or_table_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise, str]:
+    """With the reason why it is no plain base but a table of the engine for any system."""
+    try:
+        return compiled_from(args), ""
+    except NotPlain as reason:
+        if wants_plain(args):
+            raise
+        return precise_from(args), str(reason)
+
+
+def wants_plain(args: argparse.Namespace) -> bool:
+    return args.controller or args.approximate is not None
 
 
 def system_from(args: argparse.Namespace) -> tuple[Precise, str]:
