@@ -230,11 +230,10 @@ bool tracker_choose(tracker_t *self, const uint64_t *power) {
     return true;
 }
 
-// A sticking damper's third harmonic displaces a third of what it belongs to at most: with more it
-// is a component of its own.
+// A sticking damper's third harmonic displaces less than what it belongs to.
 static bool is_third_harmonic(const tracker_t *self, const tracker_start_t *of,
                               const tracker_start_t *tone) {
-    return gap_u32(3u * of->turn, tone->turn) < bin_turn(self) / 4u && of->amp >= tone->amp / 3u;
+    return gap_u32(3u * of->turn, tone->turn) < bin_turn(self) / 4u && of->amp >= tone->amp / 9u;
 }
 
 // Index of the one that holds nine sixteenths of the energy of all, or half of it where it was the
