@@ -81,8 +81,12 @@ static void start_search(adapt_t *self) {
     wait_for(self, ADAPT_MEASURING, self->cfg.start_ticks);
 }
 
+static uint32_t limit_um_s2(const adapt_t *self) {
+    return adapt_limit_um_s2(self->goal, self->free_rms_um_s2);
+}
+
 static int32_t cost_q20(const adapt_t *self, adapt_effect_t from, adapt_effect_t to) {
-    return adapt_cost_q20(from, to, self->goal, self->limit_um_s2);
+    return adapt_cost_q20(from, to, self->goal, limit_um_s2(self));
 }
 
 static int32_t limited(const adapt_cfg_t *cfg, uint32_t coordinate, int32_t value) {
@@ -107,18 +111,22 @@ static void change_edges(const adapt_t *self, adapt_trim_t *trim, adapt_move_t m
     change(self, trim, ADAPT_OFF_EDGE, move.off * step_q16);
 }
 
-// Down to no current during the first half of the time to settle: a lock does not follow a jump.
-static int16_t fading_q15(const adapt_t *self) {
+// From the level as it is down to no current, during the first half of the time to settle: a lock
+// does not follow a jump. Times are below 2^18 ticks.
+static int16_t fading_q15(const adapt_t *self, int16_t level_q15) {
     const uint32_t ramp_ticks = self->cfg.settle_ticks;
     const uint32_t left_ticks = self->ticks > ramp_ticks ? self->ticks - ramp_ticks : 0;
-    const uint32_t left_q15 = (uint32_t)(((uint64_t)left_ticks << 15) / (ramp_ticks | 1u));
-    return (int16_t)(clamp_i32((int32_t)left_q15, 0, 32767) + ADAPT_NO_CURRENT);
+    const int32_t left_q14 = (int32_t)((left_ticks << 14) / (ramp_ticks | 1u));
+    const int32_t now_q15 =
+        ADAPT_NO_CURRENT +
+        (((level_q15 - ADAPT_NO_CURRENT) * clamp_i32(left_q14, 0, 1 << 14)) >> 14);
+    return (int16_t)now_q15;
 }
 
 // The pulse with the change that is tried.
 static adapt_trim_t changed(const adapt_t *self, adapt_trim_t trim) {
     if (self->is_free) {
-        trim.value[ADAPT_LEVEL] = fading_q15(self);
+        trim.value[ADAPT_LEVEL] = fading_q15(self, trim.value[ADAPT_LEVEL]);
         return trim;
     }
     switch (self->part) {
@@ -185,9 +193,9 @@ static void skip_what_has_no_room(adapt_t *self) {
 
 // The edges have been tried for long enough; while acceleration is above its limit it goes on.
 static bool is_over(const adapt_t *self) {
-    const uint32_t slack_um_s2 = self->limit_um_s2 / LIMIT_PART;
+    const uint32_t most_um_s2 = limit_um_s2(self);
     return self->left_ticks == 0 &&
-           (int64_t)self->before.rms_um_s2 - slack_um_s2 <= self->limit_um_s2;
+           self->before.rms_um_s2 <= (uint64_t)most_um_s2 + most_um_s2 / LIMIT_PART;
 }
 
 static void rest(adapt_t *self) {
@@ -527,7 +535,6 @@ void adapt_step(adapt_t *self, const adapt_in_t *in) {
     follow_freq(self, in);
     self->left_ticks -= self->left_ticks > 0 && self->state != ADAPT_RESTING ? 1u : 0u;
     self->goal = in->goal;
-    self->limit_um_s2 = adapt_limit_um_s2(in->goal, self->free_rms_um_s2);
     self->index = (uint8_t)in->index;
     self->nearest = (uint8_t)(in->index + (in->part_q16 >= HALF_q16 ? 1u : 0u));
     if (!in->may_try) {

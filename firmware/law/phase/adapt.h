@@ -93,21 +93,20 @@ typedef struct {
     uint8_t longer_log2;     ///< parts of a measurement over the shortest ones
     int32_t doubt_q20;       ///< a gain of less is no reason to move again
     uint32_t left_ticks;     ///< of the search
-    uint32_t limit_um_s2;    ///< of RMS acceleration
     uint32_t free_rms_um_s2; ///< RMS acceleration without current; 0: not known
-    adapt_goal_t goal;
-    uint8_t state;       ///< adapt_state_t
-    uint8_t part;        ///< of the search
-    uint8_t size;        ///< of the edges' steps
-    uint8_t failures;    ///< of this part: directions, trials that were cut short
-    uint8_t index;       ///< of the point below the frequency
-    uint8_t nearest;     ///< of the point nearest to it
-    uint8_t moved_index; ///< the first of them, or UINT8_MAX: there was none
-    int8_t direction;    ///< of the level, 1 or -1
-    uint32_t freq_mHz;   ///< that the search is for
-    uint32_t now_mHz;    ///< mean over some half cycles: each one's own is some 1 % off
-    uint32_t trials;     ///< finished, saturating: a round of the edges is one
-    uint32_t gains;      ///< of them that lowered the cost, saturating
+    adapt_goal_t goal;       ///< of this tick
+    uint8_t state;           ///< adapt_state_t
+    uint8_t part;            ///< of the search
+    uint8_t size;            ///< of the edges' steps
+    uint8_t failures;        ///< of this part: directions, trials that were cut short
+    uint8_t index;           ///< of the point below the frequency
+    uint8_t nearest;         ///< of the point nearest to it
+    uint8_t moved_index;     ///< the first of them, or UINT8_MAX: there was none
+    int8_t direction;        ///< of the level, 1 or -1
+    uint32_t freq_mHz;       ///< that the search is for
+    uint32_t now_mHz;        ///< mean over some half cycles: each one's own is some 1 % off
+    uint32_t trials;         ///< finished, saturating: a round of the edges is one
+    uint32_t gains;          ///< of them that lowered the cost, saturating
 } adapt_t;
 
 /// One tick's view of the vibration.

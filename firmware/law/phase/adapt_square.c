@@ -86,17 +86,21 @@ adapt_move_t adapt_square_forward(const adapt_square_t *self, adapt_move_t move)
     return move;
 }
 
-// Of a parabola through an edge's slope and its bend, as far as a step: slope^2 / (4 bend).
-static int64_t hope_q20(int32_t slope_q20, int32_t bend_q20) {
-    const int64_t slope = slope_q20;
-    return slope < 2 * (int64_t)bend_q20 ? slope * slope / (4 * (int64_t)bend_q20)
-                                         : slope - bend_q20;
+// Of a parabola through an edge's slope and its bend, as far as a step: slope^2 / (4 bend), to
+// 2^-10 of the slope. From 100 % on more of it is all the same.
+static int32_t hope_q20(int32_t slope_q20, int32_t bend_q20) {
+    const int32_t slope = clamp_i32(slope_q20, 0, 1 << 20);
+    if (slope >= 2 * bend_q20) {
+        return slope - bend_q20;
+    }
+    const int32_t place_q10 = (slope << 10) / (2 * bend_q20); // of its lowest point, in steps
+    return (int32_t)(((int64_t)slope * place_q10) >> 11);
 }
 
 int32_t adapt_square_hope_q20(const adapt_square_t *self, int32_t noise_q20) {
     const int32_t corners = ADAPT_CORNERS * self->rounds;
     const int32_t bend_q20 = clamp_i32(adapt_square_bend_q20(self), 2, INT32_MAX) / 2;
     const int32_t chance_q20 = adapt_square_chance_q20(self, noise_q20);
-    return (int32_t)(hope_q20(abs_i32(self->on_q20) / corners + chance_q20, bend_q20) +
-                     hope_q20(abs_i32(self->off_q20) / corners + chance_q20, bend_q20));
+    return hope_q20(abs_i32(self->on_q20) / corners + chance_q20, bend_q20) +
+           hope_q20(abs_i32(self->off_q20) / corners + chance_q20, bend_q20);
 }

@@ -15,7 +15,7 @@
 #include "phase_state.h"
 #include "plant_pulses.h"
 
-enum { WHOLE_q16 = 65536, SETTING_DISPLACEMENT = 0, ANY_FLOOR_pct = -100 };
+enum { WHOLE_q16 = 65536, NO_FLOOR_pct = -100 };
 
 _Static_assert(sizeof(phase_t) <= LAW_STATE_BYTES, "the arena is too small");
 _Static_assert(ADAPT_STORE_WORDS <= QUIESCE_LEARNT_MAX_WORDS, "what is learnt, in words");
@@ -111,7 +111,7 @@ static int32_t blended(phase_t *self, int32_t from_mA, int32_t to_mA) {
 static uint32_t accel_limit_q14(const quiesce_params_t *params) {
     const int32_t floor_pct = params->phase_accel_floor_pct;
     const bool has_floor =
-        params->phase_setting == SETTING_DISPLACEMENT && floor_pct > ANY_FLOOR_pct;
+        params->phase_setting == QUIESCE_PHASE_SETTING_DISPLACEMENT && floor_pct > NO_FLOOR_pct;
     return has_floor ? (uint32_t)((100 - floor_pct) * 16384 / 100) : 0;
 }
 

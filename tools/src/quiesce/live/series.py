@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.can.columns import raw_column
 from quiesce.can.database import CYCLIC, Database, Message
 
 # The firmware's sub-units, as people read them.
@@ -56,11 +57,10 @@ class Series:
 
     def values(self, words: np.ndarray) -> np.ndarray:
         """The integers as float32 (exact up to 2^24; NaN: none) of messages as 64-bit words."""
-        left = words << np.uint64(64 - self.start_bit - self.bits)
-        kind = np.int64 if self.is_signed else np.uint64
-        values = (left.view(kind) >> kind(64 - self.bits)).astype(np.float32)
+        raw = raw_column(words, self.start_bit, self.bits, self.is_signed)
+        values = raw.astype(np.float32)
         if self.valid_bit is not None:
-            values[words >> np.uint64(self.valid_bit) & np.uint64(1) == 0] = np.nan
+            values[raw_column(words, self.valid_bit, 1, False) == 0] = np.nan
         return values
 
 

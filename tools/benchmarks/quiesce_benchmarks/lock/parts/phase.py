@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from quiesce.base.errors import UsageError
 from quiesce.base.table import format_table
 from quiesce.engine.trace import Trace
 
 from quiesce_benchmarks.control.measures import converge_s, reduction_pct, second_amplitudes
-from quiesce_benchmarks.control.optima import load_optima
+from quiesce_benchmarks.control.optima import COMMAND, FOLDER, load_optima
 from quiesce_benchmarks.control.rig import DISPLACEMENT, OPEN_LOOP, Plant, Rig
 from quiesce_benchmarks.control.robust import GOAL_VARIATIONS, FREQS_Hz, corners
 from quiesce_benchmarks.control.ruler import stored
@@ -109,13 +110,16 @@ def measure_kept(rig: Rig, freq_Hz: float) -> Kept:
 
 
 def bounds_of(rig: Rig, variations: Sequence[Variation]) -> dict[str, float]:
-    """Committed optimal control (docs/results/bounds)."""
+    """Committed optimal control. UsageError where it is not known of one of them."""
     optima = load_optima([])
     found = {
         f"{one.label} {freq_Hz:g}": stored(optima, varied_plant(rig, one), freq_Hz).amp_pct
         for one in variations
         for freq_Hz in FREQS_Hz
     }
+    lacking = [key for key, pct in found.items() if pct is None]
+    if lacking:
+        raise UsageError(f"no bound of {lacking[0]} in {FOLDER}; make it with {COMMAND}")
     return {key: pct for key, pct in found.items() if pct is not None}
 
 

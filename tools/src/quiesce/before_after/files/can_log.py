@@ -11,6 +11,7 @@ from quiesce.base.paths import shown
 from quiesce.base.progress import say
 from quiesce.before_after.files.source import Origin, Source
 from quiesce.before_after.motion import ACCELERATION, Scale
+from quiesce.can.columns import raw_column
 from quiesce.can.configuration import Configuration
 from quiesce.can.database import Database, load
 from quiesce.can.e2e import JUMPED, OK
@@ -123,11 +124,8 @@ def _columns(
     words = np.frombuffer(b"".join(one.ljust(8, b"\0") for one in data), "<u8")
     columns = {"time_s": np.array(times), "is_saturated": np.zeros(len(times))}
     for signal in database.codec.get_message_by_name(name).signals:
-        value = (words >> np.uint64(signal.start)) & np.uint64((1 << signal.length) - 1)
-        value = value.astype(float)
-        if signal.is_signed:
-            value -= np.where(value >= 2 ** (signal.length - 1), 2.0**signal.length, 0.0)
-        columns[NAMES.get(signal.name, signal.name)] = value
+        raw = raw_column(words, signal.start, signal.length, signal.is_signed)
+        columns[NAMES.get(signal.name, signal.name)] = raw.astype(float)
     return columns
 
 

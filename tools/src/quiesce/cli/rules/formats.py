@@ -1,6 +1,7 @@
 """Options that say in which integers a rule base is compiled: shared by compile and check."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
 from quiesce.base.errors import UsageError
@@ -58,28 +59,25 @@ def compiled_from(args: argparse.Namespace) -> CompiledBase:
 
 
 def any_compiled_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise, str]:
-    """With the reason why it is no plain base and what was taken instead; empty where it is one."""
-    try:
-        return compiled_from(args), ""
-    except NotPlain as reason:
-        if wants_plain(args):
-            raise
-        found, taken = system_from(args)
-        return found, f"{reason}; {taken}"
+    """A plain base, or a system in the form that suits it, and why; empty for a plain base."""
+    return _compiled_or(args, system_from)
 
 
 def plain_or_table_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise, str]:
-    """With the reason why it is no plain base but a table of the engine for any system."""
+    """A plain base, or a table of the engine for any system, and why it is no plain base."""
+    return _compiled_or(args, lambda args: (compile_precisely(*forms_from(args)), ""))
+
+
+def _compiled_or(
+    args: argparse.Namespace, other: Callable[[argparse.Namespace], tuple[Precise, str]]
+) -> tuple[CompiledBase | Precise, str]:
     try:
         return compiled_from(args), ""
     except NotPlain as reason:
-        if wants_plain(args):
+        if args.controller or args.approximate is not None:
             raise
-        return precise_from(args), str(reason)
-
-
-def wants_plain(args: argparse.Namespace) -> bool:
-    return args.controller or args.approximate is not None
+        found, taken = other(args)
+        return found, "; ".join(filter(None, (str(reason), taken)))
 
 
 def system_from(args: argparse.Namespace) -> tuple[Precise, str]:
@@ -97,11 +95,6 @@ def system_from(args: argparse.Namespace) -> tuple[Precise, str]:
             off = f"{100.0 * straight.error:.2g} % of an output's range off"
             return table, f"straight-line C would be {off}; {ENGINE_TAKEN}"
     return straight, "taken: straight-line C of polynomials"
-
-
-def precise_from(args: argparse.Namespace) -> Precise:
-    """The table of the engine for any system."""
-    return compile_precisely(*forms_from(args))
 
 
 def forms_from(
