@@ -23,9 +23,9 @@ from quiesce.before_after.files.open_file import How, open_file
 from quiesce.before_after.limits import judged, read_limits
 from quiesce.before_after.motion import wanted
 from quiesce.before_after.run import Options, compared
-from quiesce.before_after.zones import machines
 from quiesce.can.parameters import parameters
 from quiesce.cli.main import main
+from quiesce.compare.zones import machines
 from quiesce.engine.bench import Bench
 from quiesce.engine.params import effective_params
 from quiesce.engine.trace import read_trace

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from quiesce.compare.figures import INDEXED, columns, figures_of, index
-from quiesce.compare.weighting import velocity_rms_mm_s, vibration_dose, weighted, wk, zone
+from quiesce.compare.figures import INDEXED, columns, figures_of, index, zone_of
+from quiesce.compare.weighting import velocity_rms_mm_s, vibration_dose, weighted, wk
 
 # Magnitudes of Wk in thirds of an octave, ISO 2631-1, table 3.
 WK = {0.5: 0.418, 1.0: 0.482, 2.0: 0.531, 4.0: 0.967, 8.0: 1.036, 16.0: 0.768, 31.5: 0.405,
@@ -32,7 +32,8 @@ def test_velocity_is_that_of_a_sine_in_its_band() -> None:
     inside = 1e-3 * w * np.sin(w * t)  # 1 mm/s
     below = 5.0 * np.sin(2 * np.pi * 2.0 * t)
     assert velocity_rms_mm_s(inside + below, RATE_Hz) == pytest.approx(1 / np.sqrt(2), rel=1e-3)
-    assert [zone(v) for v in (0.1, 1.4, 2.9, 4.5)] == ["A", "B", "C", "D"]
+    found = [zone_of({"velocity_rms_mm_s": v}) for v in (0.1, 1.4, 2.9, 4.5)]
+    assert found == ["A", "B", "C", "D"]
 
 
 def trace() -> dict[str, np.ndarray]:

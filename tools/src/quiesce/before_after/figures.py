@@ -22,8 +22,8 @@ from quiesce.before_after.response import (
     segments,
 )
 from quiesce.before_after.sampling import MIN_SAMPLES
-from quiesce.before_after.zones import Machine
 from quiesce.compare.weighting import weighted
+from quiesce.compare.zones import Machine
 
 # The band of a report where none is stated: from so many periods of the shortest record on, and up
 # to this part of the lowest rate.

@@ -13,7 +13,7 @@ from quiesce.before_after import thirds
 from quiesce.before_after.figures import Figure, Found
 from quiesce.before_after.motion import scale_of
 from quiesce.before_after.words import NAMES, number
-from quiesce.before_after.zones import NAMES as ZONES
+from quiesce.compare.zones import NAMES as ZONES
 
 KEYS = ("channel", "quantity", "most", "unit", "least_fall_pct", "band_Hz", "note")
 ALL = "*"

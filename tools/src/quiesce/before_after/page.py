@@ -7,7 +7,7 @@ from quiesce.before_after.figures import Found
 from quiesce.before_after.pairs import SIDES
 from quiesce.before_after.run import Report
 from quiesce.before_after.words import HEAD, headline, number, rows
-from quiesce.before_after.zones import SOURCE
+from quiesce.compare.zones import SOURCE
 from quiesce.report.page import render
 
 Table = tuple[tuple[str, ...], list[tuple[str, ...]]]

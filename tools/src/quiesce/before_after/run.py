@@ -12,7 +12,7 @@ from quiesce.before_after.files.source import Source
 from quiesce.before_after.limits import Limit, Verdict, judged
 from quiesce.before_after.motion import Wanted
 from quiesce.before_after.pairs import SIDES, Pair, chosen, left_out, pair_of
-from quiesce.before_after.zones import Machine
+from quiesce.compare.zones import Machine
 
 SAME_LENGTH = 0.2  # of the longer record
 

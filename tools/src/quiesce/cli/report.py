@@ -17,8 +17,8 @@ from quiesce.before_after.motion import Wanted, wanted
 from quiesce.before_after.page import band_text, page, verdicts
 from quiesce.before_after.run import Options, Report, compared
 from quiesce.before_after.words import HEAD, headline, rows
-from quiesce.before_after.zones import SLOW_BAND_Hz, machines
 from quiesce.cli.terminal import show
+from quiesce.compare.zones import SLOW_BAND_Hz, machines
 
 PAGE, DATA = "report.html", "report.json"
 MOST_Hz = 1e6

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.compare.weighting import velocity_rms_mm_s, vibration_dose, weighted, zone
+from quiesce.compare.weighting import velocity_rms_mm_s, vibration_dose, weighted
+from quiesce.compare.zones import machines
 from quiesce.engine.trace import Trace
 
 # Name, unit, what it is; in this order in every table.
@@ -118,8 +119,8 @@ def _of_contacts(trace: Trace, contacts: Sequence[Contact], strokes: np.ndarray)
 
 
 def zone_of(figures: Figures) -> str:
-    """Of ISO 20816-3, for machines."""
-    return zone(figures["velocity_rms_mm_s"])
+    """Of ISO 20816-3, machines of 15 to 300 kW on a stiff foundation."""
+    return machines()["medium:rigid"].zone(figures["velocity_rms_mm_s"])
 
 
 def index(figures: Figures, all_current: Figures) -> float:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quiesce.compare.figures import Contact
-from quiesce.compare.weighting import ZONE_BAND_Hz, wk
+from quiesce.compare.weighting import wk
+from quiesce.compare.zones import BAND_Hz
 from quiesce.plant.open_loop import Motion
 
 Floats = NDArray[np.float64]
@@ -155,7 +156,7 @@ def _speeds(motion: Motion, layout: Layout) -> _Signal:
     """In mm/s, as weighting.velocity_rms_mm_s."""
     bodies, count = list(layout.bodies), len(motion.accel_m_s2)
     freq_Hz = np.fft.rfftfreq(count, 1.0 / layout.rate_Hz)
-    inside = (freq_Hz >= ZONE_BAND_Hz[0]) & (freq_Hz <= ZONE_BAND_Hz[1])
+    inside = (freq_Hz >= BAND_Hz[0]) & (freq_Hz <= BAND_Hz[1])
     response = np.zeros((len(freq_Hz), 1), complex)
     response[inside, 0] = 1e3 / (2j * np.pi * freq_Hz[inside])
 

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from quiesce.compare.zones import BAND_Hz
+
 # Corners in Hz and quality factors of ISO 2631-1, annex A: band limits, transition, step.
 LOW_Hz, HIGH_Hz, BAND_Q = 0.4, 100.0, 1.0 / np.sqrt(2.0)
 TRANSITION_Hz, TRANSITION_Q = 12.5, 0.63
@@ -36,21 +38,11 @@ def vibration_dose(weighted_m_s2: np.ndarray, rate_Hz: float) -> float:
     return float((np.sum(weighted_m_s2**4) / rate_Hz) ** 0.25)
 
 
-# RMS velocity in mm/s where zones B, C and D begin: ISO 20816-3, machines of 15 to 300 kW on a
-# stiff foundation.
-ZONES_mm_s = (1.4, 2.8, 4.5)
-ZONE_BAND_Hz = (10.0, 1000.0)
-
-
 def velocity_rms_mm_s(accel_m_s2: np.ndarray, rate_Hz: float) -> float:
-    """In the standard's band, of what is not beyond half the rate."""
+    """In the band of ISO 20816-3, of what is not beyond half the rate."""
     spectrum = np.fft.rfft(accel_m_s2)
     freq_Hz = np.fft.rfftfreq(len(accel_m_s2), 1.0 / rate_Hz)
-    inside = (freq_Hz >= ZONE_BAND_Hz[0]) & (freq_Hz <= ZONE_BAND_Hz[1])
+    inside = (freq_Hz >= BAND_Hz[0]) & (freq_Hz <= BAND_Hz[1])
     velocity = spectrum[inside] / (2j * np.pi * freq_Hz[inside])
     # Parseval, both halves of the spectrum.
     return float(1e3 * np.sqrt(2.0 * np.sum(np.abs(velocity) ** 2)) / len(accel_m_s2))
-
-
-def zone(velocity_mm_s: float) -> str:
-    return "ABCD"[sum(velocity_mm_s >= limit for limit in ZONES_mm_s)]
