@@ -233,7 +233,7 @@ bool tracker_choose(tracker_t *self, const uint64_t *power) {
 // A sticking damper's third harmonic displaces less than what it belongs to.
 static bool is_third_harmonic(const tracker_t *self, const tracker_start_t *of,
                               const tracker_start_t *tone) {
-    return gap_u32(3u * of->turn, tone->turn) < bin_turn(self) / 4u && of->amp >= tone->amp / 9u;
+    return gap_u32(3u * of->turn, tone->turn) < bin_turn(self) / 8u && of->amp >= tone->amp / 9u;
 }
 
 // Index of the one that holds nine sixteenths of the energy of all, or half of it where it was the
