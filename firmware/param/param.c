@@ -69,13 +69,17 @@ bool quiesce_param_get(const quiesce_params_t *params, uint32_t index, int32_t *
     return true;
 }
 
-static bool is_choice(const param_limits_t *limits, int32_t value) {
-    for (uint32_t i = 0; i < limits->choice_count; i++) {
-        if (param_choices[limits->first_choice + i] == value) {
-            return true;
+static bool is_choice(uint32_t index, int32_t value) {
+    bool is_free = true;
+    for (uint32_t i = 0; i < PARAM_CHOICES; i++) {
+        if (param_choices[i].index == index) {
+            if (param_choices[i].value == value) {
+                return true;
+            }
+            is_free = false;
         }
     }
-    return limits->choice_count == 0;
+    return is_free;
 }
 
 static bool is_in_range(uint32_t index, int32_t value) {
@@ -83,8 +87,7 @@ static bool is_in_range(uint32_t index, int32_t value) {
 }
 
 bool quiesce_param_allows(uint32_t index, int32_t value) {
-    return index < QUIESCE_PARAM_COUNT && is_in_range(index, value) &&
-           is_choice(&param_limits[index], value);
+    return index < QUIESCE_PARAM_COUNT && is_in_range(index, value) && is_choice(index, value);
 }
 
 static bool refuse(quiesce_param_error_t *error, uint32_t index, const char *reason) {
@@ -103,12 +106,14 @@ int32_t quiesce_params_safe_current_mA(const quiesce_params_t *params) {
 
 static bool check_each(const quiesce_params_t *params, quiesce_param_error_t *error) {
     for (uint32_t i = 0; i < QUIESCE_PARAM_COUNT; i++) {
-        const int32_t value = value_of(params, i);
-        if (!is_in_range(i, value)) {
+        if (!is_in_range(i, value_of(params, i))) {
             return refuse(error, i, "out of range");
         }
-        if (!is_choice(&param_limits[i], value)) {
-            return refuse(error, i, "not one of the allowed values");
+    }
+    for (uint32_t i = 0; i < PARAM_CHOICES; i++) {
+        const uint32_t index = param_choices[i].index;
+        if (!is_choice(index, value_of(params, index))) {
+            return refuse(error, index, "not one of the allowed values");
         }
     }
     return true;
@@ -173,7 +178,7 @@ bool quiesce_params_differ_live(const quiesce_params_t *a, const quiesce_params_
         int32_t value_b = 0;
         (void)quiesce_param_get(a, i, &value_a);
         (void)quiesce_param_get(b, i, &value_b);
-        if (value_a != value_b && !param_limits[i].is_live) {
+        if (value_a != value_b && (param_live[i / 32u] >> (i % 32u) & 1u) == 0) {
             if (index != NULL) {
                 *index = i;
             }

@@ -8,12 +8,18 @@ typedef struct {
     int32_t min;
     int32_t max;
     int32_t default_value;
-    uint8_t first_choice; ///< of param_choices
-    uint8_t choice_count; ///< 0: all of min .. max
-    bool is_live;
 } param_limits_t;
 
-extern const int32_t param_choices[];
+/// A value that a parameter may have. One without any may have all of min .. max.
+typedef struct {
+    int16_t value;
+    uint8_t index; ///< of the parameter
+} param_choice_t;
+
+enum { PARAM_CHOICES = 12 };
+
 extern const param_limits_t param_limits[QUIESCE_PARAM_COUNT];
+extern const param_choice_t param_choices[PARAM_CHOICES];
+extern const uint32_t param_live[]; ///< bit index % 32 of word index / 32
 
 #endif

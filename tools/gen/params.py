@@ -139,21 +139,24 @@ def load(text: str) -> list[dict]:
 
 
 def limits(params: list[dict], digest: str) -> str:
-    choices, rows = [], ""
-    for p in params:
-        own = p.get("choices", [])
-        live = "true" if p.get("live") else "false"
-        rows += (
-            f"    {{{p['min']}, {p['max']}, {p['default']}, {len(choices)}, {len(own)}, {live}}},"
-            f" // {p['name']}\n"
-        )
-        choices += own
-    listed = ", ".join(map(str, choices))
+    choices = [(value, i) for i, p in enumerate(params) for value in p.get("choices", [])]
+    if any(not -(2**15) <= value < 2**15 for value, _ in choices):
+        raise ValueError("a choice is beyond 16 bits: see param_choice_t")
+    live = [0] * ((len(params) + 31) // 32)
+    for i, p in enumerate(params):
+        live[i // 32] |= bool(p.get("live")) << i % 32
+    rows = "".join(
+        f"    {{{p['min']}, {p['max']}, {p['default']}}}, // {p['name']}\n" for p in params
+    )
     return f"""// clang-format off
 // {banner(digest)}
 #include "param_limits.h"
 
-const int32_t param_choices[] = {{{listed}}};
+const param_choice_t param_choices[] = {{
+    {", ".join(f"{{{value}, {i}}}" for value, i in choices)},
+}};
+
+const uint32_t param_live[] = {{{", ".join(f"0x{word:08x}" for word in live)}}};
 
 const param_limits_t param_limits[QUIESCE_PARAM_COUNT] = {{
 {rows}}};
