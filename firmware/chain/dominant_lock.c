@@ -102,11 +102,14 @@ static void lock_on(dominant_lock_state_t *self, const condition_out_t *sample, 
 // Until the estimator knows more: a few half cycles that are alike.
 static void look_for_lock(dominant_lock_state_t *self, const dominant_lock_in_t *in) {
     half_cycles_tone_t tone;
-    if (half_cycles_step(&self->half_cycles, in->velocity_um_s, &tone) &&
-        tone.alike >= self->least_alike && !self->in.is_locked && !self->is_crowded &&
-        tone.step_turn >= self->lowest_step_turn && tone.step_turn <= self->highest_step_turn &&
+    if (!half_cycles_step(&self->half_cycles, in->velocity_um_s, &tone) ||
+        tone.alike < self->least_alike || self->in.is_locked || self->is_crowded) {
+        return;
+    }
+    const uint32_t step_turn = half_cycles_step_turn(&tone);
+    if (step_turn >= self->lowest_step_turn && step_turn <= self->highest_step_turn &&
         in->rms_um_s2 >= self->min_accel_um_s2) {
-        lock_on(self, in->sample, tone.phase_turn, tone.step_turn);
+        lock_on(self, in->sample, half_cycles_phase_turn(&tone, step_turn), step_turn);
         note_others(self, in->known);
         self->least_alike =
             (uint8_t)(self->least_alike < ALIKE_MOST ? self->least_alike * ALIKE_FACTOR

@@ -10,7 +10,7 @@
 #include "view.h"
 
 /// Bytes for the state of the law that runs; its file asserts that they are enough.
-#define LAW_STATE_BYTES 848u
+#define LAW_STATE_BYTES 816u
 
 /// The same where the law demands forces; the rest is its tracker's.
 #define LAW_FORCE_STATE_BYTES 592u

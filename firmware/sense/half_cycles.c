@@ -28,16 +28,26 @@ static bool end_half(half_cycles_t *self, uint32_t length_q8, half_cycles_tone_t
     const bool is_found = is_steady(self, length_q8);
     self->alike = (uint8_t)(!is_found ? 0 : self->alike < UINT8_MAX ? self->alike + 1u : UINT8_MAX);
     if (is_found) {
-        tone->alike = self->alike;
-        const uint32_t period_q8 = (self->earlier_q8 + 2u * self->before_q8 + length_q8) / 2u;
-        tone->step_turn = (uint32_t)((UINT64_C(1) << 40) / period_q8);
-        tone->phase_turn = (uint32_t)(((uint64_t)tone->step_turn * self->since_q8) >> 8) +
-                           (self->is_up ? 0u : 0x80000000u);
+        *tone = (half_cycles_tone_t){
+            .period_q8 = (self->earlier_q8 + 2u * self->before_q8 + length_q8) / 2u,
+            .since_q8 = self->since_q8,
+            .is_up = self->is_up,
+            .alike = self->alike,
+        };
     }
     self->earlier_q8 = self->before_q8;
     self->before_q8 = length_q8;
     self->peak_um_s = 0;
     return is_found;
+}
+
+uint32_t half_cycles_step_turn(const half_cycles_tone_t *tone) {
+    return (uint32_t)((UINT64_C(1) << 40) / tone->period_q8);
+}
+
+uint32_t half_cycles_phase_turn(const half_cycles_tone_t *tone, uint32_t step_turn) {
+    return (uint32_t)(((uint64_t)step_turn * tone->since_q8) >> 8) +
+           (tone->is_up ? 0u : 0x80000000u);
 }
 
 // Ticks since the crossing between the last sample and this one, Q8, 0 .. 256.

@@ -27,9 +27,10 @@ typedef struct {
 
 /// What three half cycles say, as of now.
 typedef struct {
-    uint32_t phase_turn; ///< acceleration = amp x cos(phase)
-    uint32_t step_turn;  ///< a tick
-    uint8_t alike;       ///< 1 or more: so many half cycles in a row have said so
+    uint32_t period_q8; ///< of a cycle
+    uint32_t since_q8;  ///< the velocity crossed zero
+    bool is_up;         ///< and is positive since
+    uint8_t alike;      ///< 1 or more: so many half cycles in a row have said so
 } half_cycles_tone_t;
 
 /// Forgets what was before.
@@ -41,5 +42,11 @@ void half_cycles_skip(half_cycles_t *self, uint32_t ticks);
 /// One tick. Returns true iff a half cycle ended in it that resembles the two before it, within an
 /// eighth; *tone is then written.
 bool half_cycles_step(half_cycles_t *self, int32_t velocity_um_s, half_cycles_tone_t *tone);
+
+/// Turns a tick. A 64-bit division, so for where it is wanted.
+uint32_t half_cycles_step_turn(const half_cycles_tone_t *tone);
+
+/// Phase of the acceleration, amp x cos(phase), with turns a tick.
+uint32_t half_cycles_phase_turn(const half_cycles_tone_t *tone, uint32_t step_turn);
 
 #endif

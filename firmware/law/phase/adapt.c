@@ -40,6 +40,7 @@ void adapt_clear(adapt_t *self) {
 static void wait_for(adapt_t *self, adapt_state_t state, uint32_t ticks) {
     self->state = (uint8_t)state;
     self->ticks = ticks;
+    self->is_due = false;
     adapt_meter_reset(&self->meter);
 }
 
@@ -210,7 +211,7 @@ static void try_next(adapt_t *self) {
         start_part(self, ADAPT_TRY_LEVEL);
     }
     skip_what_has_no_room(self);
-    if (self->goal.accel_limit_q14 != 0 && self->free_rms_um_s2 == 0) {
+    if (self->goal.accel_limit_pct != 0 && self->free_rms_um_s2 == 0) {
         self->is_free = true;
         wait_for(self, ADAPT_TRYING, 2u * self->cfg.settle_ticks);
     } else if (self->part == ADAPT_TRY_NOTHING) {
@@ -437,14 +438,10 @@ static void take_trial(adapt_t *self, adapt_effect_t effect) {
     }
 }
 
-// What both parts of the measurement differ by.
-static int32_t apart_q20(const adapt_t *self) {
-    return abs_i32(cost_q20(self, self->meter.part[0], self->meter.part[1]));
-}
-
-// 5/8 of that, on average: their mean's standard deviation. Parts are as long as it wants them.
-static void note_noise(adapt_t *self) {
-    self->noise_q20 += (apart_q20(self) * 5 / 8 - self->noise_q20) >> NOISE_SHIFT;
+// 5/8 of what both parts differ by, on average: their mean's standard deviation. Parts are as long
+// as it wants them.
+static void note_noise(adapt_t *self, int32_t apart_q20) {
+    self->noise_q20 += (apart_q20 * 5 / 8 - self->noise_q20) >> NOISE_SHIFT;
     if (self->noise_q20 > GAIN_q20 && self->longer_log2 < LONGEST_LOG2) {
         self->longer_log2++;
         self->noise_q20 = self->noise_q20 * SQRT_HALF_q8 / 256;
@@ -456,7 +453,6 @@ static void note_noise(adapt_t *self) {
 
 static void conclude(adapt_t *self) {
     const adapt_effect_t effect = adapt_meter_effect(&self->meter);
-    note_noise(self);
     if (self->is_free) {
         take_free(self, effect);
     } else if (self->state == ADAPT_TRYING) {
@@ -478,20 +474,28 @@ static void conclude(adapt_t *self) {
 }
 
 // Both last parts agree, or it has been measured for as long as is allowed.
-static bool is_measured(const adapt_t *self) {
+static bool is_measured(const adapt_t *self, int32_t apart_q20) {
     const uint32_t most_parts = 1u << (PARTS_LOG2 - self->longer_log2);
-    return apart_q20(self) <= GAIN_q20 + 2 * self->noise_q20 || self->meter.taken >= most_parts;
+    return apart_q20 <= GAIN_q20 + 2 * self->noise_q20 || self->meter.taken >= most_parts;
 }
 
-static void measure(adapt_t *self, const adapt_in_t *in) {
-    const uint32_t part_ticks = (self->cfg.measure_ticks << self->longer_log2) >> PARTS_LOG2;
-    if (!adapt_meter_step(&self->meter, in->half, part_ticks)) {
-        return;
-    }
-    if (is_measured(self)) {
-        conclude(self);
+static void compare_parts(adapt_t *self) {
+    const int32_t apart_q20 = abs_i32(cost_q20(self, self->meter.part[0], self->meter.part[1]));
+    if (is_measured(self, apart_q20)) {
+        note_noise(self, apart_q20);
+        self->is_due = true;
     } else {
         adapt_meter_go_on(&self->meter);
+    }
+}
+
+// A tick compares the parts, the next one judges.
+static void measure(adapt_t *self, const adapt_in_t *in) {
+    const uint32_t part_ticks = (self->cfg.measure_ticks << self->longer_log2) >> PARTS_LOG2;
+    if (self->is_due) {
+        conclude(self);
+    } else if (adapt_meter_step(&self->meter, in->half, part_ticks)) {
+        compare_parts(self);
     }
 }
 
@@ -507,6 +511,9 @@ static void give_free_up(adapt_t *self) {
 // A trial that loses the lock is not tried again at once: what it changes may be why. Neither is a
 // whole pulse, whose current may be why the output was taken away.
 void adapt_pause(adapt_t *self, bool has_lost_lock) {
+    if (self->state == ADAPT_WAITING) {
+        return;
+    }
     const bool is_own_fault = has_lost_lock || self->part == ADAPT_TRY_WHOLE;
     if (self->is_free) {
         give_free_up(self);
@@ -531,12 +538,15 @@ static void follow_freq(adapt_t *self, const adapt_in_t *in) {
     }
 }
 
+void adapt_aim(adapt_t *self, const adapt_aim_t *aim) {
+    self->goal = aim->goal;
+    self->index = (uint8_t)aim->index;
+    self->nearest = (uint8_t)(aim->index + (aim->part_q16 >= HALF_q16 ? 1u : 0u));
+}
+
 void adapt_step(adapt_t *self, const adapt_in_t *in) {
     follow_freq(self, in);
     self->left_ticks -= self->left_ticks > 0 && self->state != ADAPT_RESTING ? 1u : 0u;
-    self->goal = in->goal;
-    self->index = (uint8_t)in->index;
-    self->nearest = (uint8_t)(in->index + (in->part_q16 >= HALF_q16 ? 1u : 0u));
     if (!in->may_try) {
         adapt_pause(self, false);
     } else if (self->state == ADAPT_WAITING) {

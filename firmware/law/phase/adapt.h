@@ -52,8 +52,8 @@ typedef struct {
     uint32_t settle_ticks;  ///< before a measurement
     uint32_t measure_ticks; ///< at most so long, and what completes cycles
     uint32_t rest_ticks;    ///< between trials once nothing is left to gain
-    int32_t edge_limit_q16;
-    int32_t level_limit_q15; ///< most that the level may be lowered
+    int16_t edge_limit_q16;
+    int16_t level_limit_q15; ///< most that the level may be lowered
 } adapt_cfg_t;
 
 typedef enum {
@@ -79,22 +79,23 @@ typedef struct {
 typedef struct {
     adapt_cfg_t cfg;
     adapt_trim_t trim[ADAPT_POINTS]; ///< learnt
+    uint32_t ticks;                  ///< left to settle or rest
     adapt_meter_t meter;
-    uint32_t ticks;          ///< left to settle or rest
     adapt_effect_t before;   ///< without a trial's change
     adapt_effect_t trial;    ///< with it: whole pulse or level
     int32_t noise_q20;       ///< of a measurement, standard deviation
     adapt_square_t square;   ///< edges
     adapt_edges_t from[2];   ///< edges at both points before the last move
-    adapt_move_t move;       ///< the last one
-    bool is_again;           ///< it repeats the one before
-    bool is_free;            ///< the trial is one without current
-    uint8_t free_failures;   ///< of such trials
-    uint8_t longer_log2;     ///< parts of a measurement over the shortest ones
     int32_t doubt_q20;       ///< a gain of less is no reason to move again
     uint32_t left_ticks;     ///< of the search
     uint32_t free_rms_um_s2; ///< RMS acceleration without current; 0: not known
-    adapt_goal_t goal;       ///< of this tick
+    adapt_goal_t goal;       ///< of this half cycle
+    adapt_move_t move;       ///< the last one
+    bool is_again;           ///< it repeats the one before
+    bool is_free;            ///< the trial is one without current
+    bool is_due;             ///< a measurement is complete, and judged in the next tick
+    uint8_t free_failures;   ///< of such trials
+    uint8_t longer_log2;     ///< parts of a measurement over the shortest ones
     uint8_t state;           ///< adapt_state_t
     uint8_t part;            ///< of the search
     uint8_t size;            ///< of the edges' steps
@@ -109,13 +110,17 @@ typedef struct {
     uint32_t gains;          ///< of them that lowered the cost, saturating
 } adapt_t;
 
+/// Where a half cycle lies in the table, and what is wanted there.
+typedef struct {
+    uint32_t index;    ///< of the point below its frequency
+    uint32_t part_q16; ///< of the way to the next point, 0 .. 65536
+    adapt_goal_t goal;
+} adapt_aim_t;
+
 /// One tick's view of the vibration.
 typedef struct {
     bool may_try; ///< locked, frequency known, no fault, not frozen
     uint32_t freq_mHz;
-    uint32_t index;    ///< of the table's point below it
-    uint32_t part_q16; ///< of the way to the next point, 0 .. 65536
-    adapt_goal_t goal;
     const harmonic_sums_t *half; ///< of half a cycle that ended in this tick, else NULL
 } adapt_in_t;
 
@@ -127,6 +132,9 @@ void adapt_clear(adapt_t *self);
 
 /// Gives a trial up; what was learnt stays.
 void adapt_pause(adapt_t *self, bool has_lost_lock);
+
+/// A half cycle begins; before its first adapt_step.
+void adapt_aim(adapt_t *self, const adapt_aim_t *aim);
 
 /// One tick.
 void adapt_step(adapt_t *self, const adapt_in_t *in);

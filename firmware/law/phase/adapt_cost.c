@@ -5,6 +5,9 @@ enum { LIMIT_WEIGHT = 2 }; // more than any pulse gains reach by acceleration
 // change / from in Q20, limited to something between a quarter and a half, to 2^-9 of itself; one
 // 32-bit division.
 static int32_t relative_q20(uint32_t from, int64_t change) {
+    if (change == 0) { // as a rule: a goal limits acceleration or weighs it
+        return 0;
+    }
     const uint32_t up = (uint32_t)__builtin_clz(from | 1u);
     const int64_t limited_change = clamp_i64(change * (INT64_C(1) << up) >> 2, -(1 << 28), 1 << 28);
     return (int32_t)limited_change / (int32_t)(((from | 1u) << up) >> 22);
@@ -21,10 +24,11 @@ static int64_t over_limit_um_s2(adapt_effect_t effect, uint32_t limit_um_s2) {
 }
 
 uint32_t adapt_limit_um_s2(adapt_goal_t goal, uint32_t free_rms_um_s2) {
-    if (goal.accel_limit_q14 == 0 || free_rms_um_s2 == 0) {
+    if (goal.accel_limit_pct == 0 || free_rms_um_s2 == 0) {
         return ADAPT_NO_LIMIT;
     }
-    const uint64_t limit_um_s2 = ((uint64_t)free_rms_um_s2 * goal.accel_limit_q14) >> 14;
+    const uint32_t limit_q14 = goal.accel_limit_pct * 16384u / 100u;
+    const uint64_t limit_um_s2 = ((uint64_t)free_rms_um_s2 * limit_q14) >> 14;
     return limit_um_s2 < ADAPT_NO_LIMIT ? (uint32_t)limit_um_s2 : ADAPT_NO_LIMIT;
 }
 

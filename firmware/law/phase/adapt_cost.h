@@ -20,9 +20,9 @@ enum { ADAPT_MOST_COST_Q20 = 1 << 25 }; ///< 32 times as much as before
 /// What is wanted. A shape of 0: all acceleration counts. The shape that the pulse has on the plant
 /// that it was made for: acceleration counts where it becomes worse, relatively, than there.
 typedef struct {
-    uint32_t accel_weight_q8;
-    uint32_t accel_shape_q14;
-    uint32_t accel_limit_q14; ///< of RMS acceleration over that without current; 0: none
+    uint16_t accel_weight_q8;
+    uint16_t accel_shape_q14;
+    uint16_t accel_limit_pct; ///< of RMS acceleration over that without current; 0: none
 } adapt_goal_t;
 
 /// Most RMS acceleration; ADAPT_NO_LIMIT without a limit, or where free_rms_um_s2, the one without

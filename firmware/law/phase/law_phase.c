@@ -43,23 +43,24 @@ static void init(void *state, const law_setup_t *setup) {
     phase_t *self = state;
     const quiesce_params_t *p = &setup->params;
     const phase_table_t *table = table_of(setup);
-    const uint32_t blend_ticks = ticks_in_ms(p->phase_blend_ms, p->tick_rate_Hz);
     const uint32_t setting = (uint32_t)p->phase_setting;
+    const uint32_t blend_ticks = ticks_in_ms(p->phase_blend_ms, p->tick_rate_Hz);
     *self = (phase_t){
-        .points = phase_table_points(table, setting),
+        .first_point = (uint16_t)(phase_table_points(table, setting) - table->point),
         .point_count = table->points[setting],
         .is_stale = true,
         .blend_step_q16 = WHOLE_q16 / (blend_ticks + 1u) + 1u,
     };
-    adapt_init(&self->adapt, &(adapt_cfg_t){
-                                 .start_ticks = ticks_in_ms(p->adapt_start_ms, p->tick_rate_Hz),
-                                 .settle_ticks = ticks_in_ms(p->adapt_settle_ms, p->tick_rate_Hz),
-                                 .measure_ticks = ticks_in_ms(p->adapt_measure_ms, p->tick_rate_Hz),
-                                 .rest_ticks = ticks_in_ms(p->adapt_rest_ms, p->tick_rate_Hz),
-                                 .edge_limit_q16 = (int32_t)((int64_t)p->adapt_edge_limit_mdeg *
-                                                             INT16_MAX / 90000),
-                                 .level_limit_q15 = p->adapt_level_limit_pct * 32768 / 100,
-                             });
+    adapt_init(
+        &self->adapt,
+        &(adapt_cfg_t){
+            .start_ticks = ticks_in_ms(p->adapt_start_ms, p->tick_rate_Hz),
+            .settle_ticks = ticks_in_ms(p->adapt_settle_ms, p->tick_rate_Hz),
+            .measure_ticks = ticks_in_ms(p->adapt_measure_ms, p->tick_rate_Hz),
+            .rest_ticks = ticks_in_ms(p->adapt_rest_ms, p->tick_rate_Hz),
+            .edge_limit_q16 = (int16_t)((int64_t)p->adapt_edge_limit_mdeg * INT16_MAX / 90000),
+            .level_limit_q15 = (int16_t)(p->adapt_level_limit_pct * 32768 / 100),
+        });
 }
 
 static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
@@ -70,7 +71,7 @@ static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
         pulse->floor_mA = 0;
         return;
     }
-    pulse->on_q16 = (uint32_t)((int32_t)pulse->on_q16 + trim->value[ADAPT_ON_EDGE]) & 0xFFFFu;
+    pulse->on_q16 = (uint16_t)(pulse->on_q16 + trim->value[ADAPT_ON_EDGE]);
     pulse->width_q16 = trim->value[ADAPT_WHOLE] != 0
                            ? PHASE_WIDTH_ALL
                            : (uint32_t)clamp_i32(width_q16, 0, (int32_t)PHASE_WIDTH_ALL);
@@ -78,17 +79,31 @@ static void trim_pulse(phase_pulse_t *pulse, const adapt_trim_t *trim) {
     pulse->level_mA = level_mA > pulse->floor_mA ? level_mA : pulse->floor_mA;
 }
 
+// Setting displacement may spend acceleration down to the floor; balanced has a table's weights.
+static uint16_t accel_limit_pct(const quiesce_params_t *params) {
+    const int32_t floor_pct = params->phase_accel_floor_pct;
+    const bool has_floor =
+        params->phase_setting == QUIESCE_PHASE_SETTING_DISPLACEMENT && floor_pct > NO_FLOOR_pct;
+    return has_floor ? (uint16_t)(100 - floor_pct) : 0;
+}
+
 // Frequency, pulse and trim of the half cycle that has begun.
-static void refresh(phase_t *self, const quiesce_params_t *params, uint32_t step_turn) {
+static void refresh(phase_t *self, const law_setup_t *setup, uint32_t step_turn) {
+    const quiesce_params_t *params = &setup->params;
+    const phase_point_t *points = &table_of(setup)->point[self->first_point];
     const uint64_t per_tick = (uint64_t)step_turn * (uint32_t)params->tick_rate_Hz;
     self->freq_mHz = (uint32_t)((per_tick * 1000u) >> 32);
-    self->place = phase_place(self->points, self->point_count, self->freq_mHz);
-    self->pulse = phase_pulse_at(self->points, self->place);
+    self->place = phase_place(points, self->point_count, self->freq_mHz, self->place.index);
+    self->pulse = phase_pulse_at(points, self->place);
     self->trim = (adapt_trim_t){{0}};
     if (params->adapt != QUIESCE_ADAPT_OFF) {
         self->trim = adapt_trim_at(&self->adapt, self->place.index, self->place.part_q16);
     }
     trim_pulse(&self->pulse, &self->trim);
+    adapt_aim(&self->adapt, &(adapt_aim_t){self->place.index,
+                                           self->place.part_q16,
+                                           {self->pulse.accel_weight_q8,
+                                            self->pulse.accel_shape_q14, accel_limit_pct(params)}});
     self->is_stale = false;
 }
 
@@ -107,35 +122,24 @@ static int32_t blended(phase_t *self, int32_t from_mA, int32_t to_mA) {
     return from_mA + (int32_t)(((int64_t)(to_mA - from_mA) * self->blend_q16) >> 16);
 }
 
-// Setting displacement may spend acceleration down to the floor; balanced has a table's weights.
-static uint32_t accel_limit_q14(const quiesce_params_t *params) {
-    const int32_t floor_pct = params->phase_accel_floor_pct;
-    const bool has_floor =
-        params->phase_setting == QUIESCE_PHASE_SETTING_DISPLACEMENT && floor_pct > NO_FLOOR_pct;
-    return has_floor ? (uint32_t)((100 - floor_pct) * 16384 / 100) : 0;
-}
-
 static void adapt(phase_t *self, const quiesce_params_t *params, const view_t *view) {
     adapt_step(&self->adapt, &(adapt_in_t){
                                  .may_try = params->adapt == QUIESCE_ADAPT_ON && view->may_learn &&
                                             self->blend_q16 == WHOLE_q16,
                                  .freq_mHz = self->freq_mHz,
-                                 .index = self->place.index,
-                                 .part_q16 = self->place.part_q16,
-                                 .goal = {self->pulse.accel_weight_q8, self->pulse.accel_shape_q14,
-                                          accel_limit_q14(params)},
                                  .half = view->tone.half,
                              });
 }
 
-static int32_t request_mA(phase_t *self, const quiesce_params_t *params, const view_t *view) {
+static int32_t request_mA(phase_t *self, const law_setup_t *setup, const view_t *view) {
+    const quiesce_params_t *params = &setup->params;
     const view_tone_t *tone = &view->tone;
     if ((view->valid & VIEW_LOCK) == 0 || !view->is_output_on) {
         let_go(self, (view->valid & VIEW_LOCK) != 0);
         return law_unlock_mA(params, view);
     }
     if (self->is_stale) {
-        refresh(self, params, tone->step_turn);
+        refresh(self, setup, tone->step_turn);
     }
     self->is_stale = tone->half != NULL;
     adapt(self, params, view);
@@ -147,7 +151,7 @@ static int32_t request_mA(phase_t *self, const quiesce_params_t *params, const v
 }
 
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {
-    law_demand_all(out, request_mA(state, &setup->params, view));
+    law_demand_all(out, request_mA(state, setup, view));
     return true;
 }
 
@@ -162,6 +166,7 @@ static uint32_t save(const void *state, const law_setup_t *setup, uint32_t *word
 
 static bool load(void *state, const law_setup_t *setup, const uint32_t *words, uint32_t count) {
     phase_t *self = state;
+    self->is_stale = true;
     if (count == 0) {
         adapt_clear(&self->adapt);
         return true;

@@ -47,7 +47,7 @@ const phase_point_t *phase_table_points(const phase_table_t *table, uint32_t set
     return &table->point[setting == 0 ? 0 : table->points[0]];
 }
 
-phase_place_t phase_place(const phase_point_t *points, uint32_t count, uint32_t freq_mHz) {
+static uint32_t index_below(const phase_point_t *points, uint32_t count, uint32_t freq_mHz) {
     uint32_t low = 0;
     uint32_t high = count - 1u;
     while (high - low > 1u) {
@@ -58,19 +58,31 @@ phase_place_t phase_place(const phase_point_t *points, uint32_t count, uint32_t 
             high = middle;
         }
     }
-    const uint32_t below = points[low].freq_mHz;
-    const uint32_t above = points[high].freq_mHz;
+    return low;
+}
+
+phase_place_t phase_place(const phase_point_t *points, uint32_t count, uint32_t freq_mHz,
+                          uint32_t last_index) {
+    const phase_point_t *last = &points[last_index];
+    const bool is_same = freq_mHz >= last[0].freq_mHz && freq_mHz < last[1].freq_mHz;
+    const uint32_t index = is_same ? last_index : index_below(points, count, freq_mHz);
+    const uint32_t below = points[index].freq_mHz;
+    const uint32_t above = points[index + 1u].freq_mHz;
     if (freq_mHz <= below) {
-        return (phase_place_t){low, 0};
+        return (phase_place_t){index, 0};
     }
     if (freq_mHz >= above) {
-        return (phase_place_t){low, 65536};
+        return (phase_place_t){index, 65536};
     }
-    return (phase_place_t){low, ((freq_mHz - below) << 16) / (above - below)};
+    return (phase_place_t){index, ((freq_mHz - below) << 16) / (above - below)};
 }
 
 static uint32_t between(uint32_t from, int32_t change, uint32_t part_q16) {
     return from + (uint32_t)(int32_t)(((int64_t)change * part_q16) >> 16);
+}
+
+static uint16_t between_u16(uint16_t from, uint16_t to, uint32_t part_q16) {
+    return (uint16_t)between(from, to - from, part_q16);
 }
 
 phase_pulse_t phase_pulse_at(const phase_point_t *points, phase_place_t place) {
@@ -82,36 +94,31 @@ phase_pulse_t phase_pulse_at(const phase_point_t *points, phase_place_t place) {
     const uint32_t centre_q16 = between(a->centre_q16, turn, part);
     const uint32_t width_q16 = between(a->width_q16, b->width_q16 - a->width_q16, part);
     return (phase_pulse_t){
-        .on_q16 = (centre_q16 - width_q16 / 2u) & 0xFFFFu,
         .width_q16 = width_q16,
         .level_mA = (int32_t)between(a->level_mA, b->level_mA - a->level_mA, part),
         .floor_mA = (int32_t)between(a->floor_mA, b->floor_mA - a->floor_mA, part),
-        .ramp_q16 = between(a->ramp_q16, b->ramp_q16 - a->ramp_q16, part),
-        .accel_weight_q8 =
-            between(a->accel_weight_q8, b->accel_weight_q8 - a->accel_weight_q8, part),
-        .accel_shape_q14 =
-            between(a->accel_shape_q14, b->accel_shape_q14 - a->accel_shape_q14, part),
+        .on_q16 = (uint16_t)(centre_q16 - width_q16 / 2u),
+        .ramp_q16 = between_u16(a->ramp_q16, b->ramp_q16, part),
+        .accel_weight_q8 = between_u16(a->accel_weight_q8, b->accel_weight_q8, part),
+        .accel_shape_q14 = between_u16(a->accel_shape_q14, b->accel_shape_q14, part),
     };
 }
 
-static uint64_t at_least_0(uint64_t from, uint64_t to) {
-    return to > from ? to - from : 0;
+static uint32_t least_u32(uint32_t a, uint32_t b) {
+    return a < b ? a : b;
 }
 
-// How much of start .. start + length lies in 0 .. width, circular over 2^32: all but the gaps.
+// How much of start .. start + length lies in 0 .. width, circular over 2^32.
 static uint32_t covered(uint32_t start, uint32_t length, uint32_t width) {
-    const uint64_t turn = UINT64_C(1) << 32;
-    const uint64_t end = (uint64_t)start + length;
-    const uint64_t gap = at_least_0(start > width ? start : width, end < turn ? end : turn) +
-                         at_least_0(turn + width, end);
-    return length - (uint32_t)gap;
+    const uint32_t end = start + length; // of the next turn where it is below start
+    const uint32_t first = start < width ? least_u32(length, width - start) : 0;
+    return first + (end < start ? least_u32(end, width) : 0);
 }
 
 // Ramps never overlap.
 static uint32_t ramp_q16(const phase_pulse_t *pulse) {
     const uint32_t gap_q16 = PHASE_WIDTH_ALL - pulse->width_q16;
-    const uint32_t least_q16 = gap_q16 < pulse->width_q16 ? gap_q16 : pulse->width_q16;
-    return pulse->ramp_q16 < least_q16 ? pulse->ramp_q16 : least_q16;
+    return least_u32(pulse->ramp_q16, least_u32(gap_q16, pulse->width_q16));
 }
 
 int32_t phase_pulse_current_mA(const phase_pulse_t *pulse, uint32_t start_turn,
@@ -123,7 +130,7 @@ int32_t phase_pulse_current_mA(const phase_pulse_t *pulse, uint32_t start_turn,
     const uint32_t ramp_turn = ramp_q16(pulse) << 16;
     const uint32_t longer = ramp_turn > length_turn ? (ramp_turn - length_turn) / 2u : 0;
     const uint32_t length = length_turn + 2u * longer;
-    const uint32_t start = start_turn - longer - (pulse->on_q16 << 16);
+    const uint32_t start = start_turn - longer - ((uint32_t)pulse->on_q16 << 16);
     const uint32_t on = covered(start, length, pulse->width_q16 << 16);
     if (on == 0) {
         return pulse->floor_mA;

@@ -52,19 +52,20 @@ typedef struct {
     uint32_t part_q16; ///< of the way to the next one, 0 .. 65536
 } phase_place_t;
 
-/// Place of a frequency among count points, at an end where it lies beyond. At most 7 comparisons
-/// and a division.
-phase_place_t phase_place(const phase_point_t *points, uint32_t count, uint32_t freq_mHz);
+/// Place of a frequency among count points, at an end where it lies beyond. last_index, 0 .. count
+/// - 2: where it was last time, looked at first. At most 9 comparisons and a division.
+phase_place_t phase_place(const phase_point_t *points, uint32_t count, uint32_t freq_mHz,
+                          uint32_t last_index);
 
 /// A pulse: on from its first edge to its last one.
 typedef struct {
-    uint32_t on_q16; ///< modulo 65536
     uint32_t width_q16;
     int32_t level_mA;
     int32_t floor_mA;
-    uint32_t ramp_q16; ///< of an edge, about its middle
-    uint32_t accel_weight_q8;
-    uint32_t accel_shape_q14;
+    uint16_t on_q16;
+    uint16_t ramp_q16; ///< of an edge, about its middle
+    uint16_t accel_weight_q8;
+    uint16_t accel_shape_q14;
 } phase_pulse_t;
 
 /// Linear between the two points; the centre the shorter way round.

@@ -54,12 +54,14 @@ static const adapt_cfg_t cfg = {
 
 static adapt_t adapt;
 static adapt_in_t in;
+static adapt_aim_t aim; // of every half cycle
 static plant_t plant;
 static uint32_t part_q16;
 
 void setUp(void) {
     adapt_init(&adapt, &cfg);
-    in = (adapt_in_t){.may_try = true, .freq_mHz = 10000, .index = 3};
+    in = (adapt_in_t){.may_try = true, .freq_mHz = 10000};
+    aim = (adapt_aim_t){.index = 3};
     part_q16 = 20000;
     plant = (plant_t){
         .excitation_ppm = WHOLE_ppm,
@@ -111,16 +113,21 @@ static inline harmonic_sums_t end_of_half(void) {
                    plant.now_rms_ppm * scale_ppm / WHOLE_ppm);
 }
 
+static inline void step(void) {
+    adapt_aim(&adapt, &aim);
+    adapt_step(&adapt, &in);
+}
+
 static inline void tick(void) {
     plant.ticks++;
     if (plant.ticks % HALF_TICKS == 0) {
         const harmonic_sums_t half = end_of_half();
         in.half = &half;
-        adapt_step(&adapt, &in);
-        plant.trim = adapt_trim_at(&adapt, in.index, part_q16);
+        step();
+        plant.trim = adapt_trim_at(&adapt, aim.index, part_q16);
     } else {
         in.half = NULL;
-        adapt_step(&adapt, &in);
+        step();
     }
 }
 
@@ -138,7 +145,7 @@ static inline bool run_until(adapt_state_t state, uint32_t most_ticks) {
 }
 
 static inline const adapt_trim_t *learnt(void) {
-    return &adapt.trim[in.index];
+    return &adapt.trim[aim.index];
 }
 
 static inline void assert_nothing_learnt(void) {

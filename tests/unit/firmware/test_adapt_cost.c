@@ -32,7 +32,7 @@ static void test_acceleration_counts_twice_beyond_its_limit(void) {
 }
 
 static void test_the_limit_is_a_factor_of_what_is_free(void) {
-    const adapt_goal_t goal = {0, 0, 16548}; // 1.01
+    const adapt_goal_t goal = {0, 0, 101};
     TEST_ASSERT_UINT32_WITHIN(100, 1010000, adapt_limit_um_s2(goal, 1000000));
     TEST_ASSERT_EQUAL_UINT32(ADAPT_NO_LIMIT, adapt_limit_um_s2(goal, 0));
     TEST_ASSERT_EQUAL_UINT32(ADAPT_NO_LIMIT, adapt_limit_um_s2(reach_only, 1000000));
@@ -49,7 +49,7 @@ static void test_it_is_bounded_for_any_effects_and_goals(void) {
         }
         const adapt_effect_t from = {word[0], word[1]};
         const adapt_effect_t to = {word[2], word[3]};
-        const adapt_goal_t goal = {word[4], word[5], word[6]};
+        const adapt_goal_t goal = {(uint16_t)word[4], (uint16_t)word[5], (uint16_t)word[6]};
         const uint32_t limit_um_s2 = adapt_limit_um_s2(goal, word[7]);
         const int32_t cost = adapt_cost_q20(from, to, goal, limit_um_s2);
         TEST_ASSERT_TRUE(abs_i32(cost) <= ADAPT_MOST_COST_Q20);

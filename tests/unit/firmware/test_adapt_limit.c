@@ -1,18 +1,18 @@
 // The limit of acceleration: measured without current, kept, given up.
 #include "adapt_plant.h"
 
-enum { FREE_rms_ppm = 1300000, LIMIT_Q14 = 16548 }; // 1.01 times that without current
+enum { FREE_rms_ppm = 1300000, LIMIT_pct = 101 }; // of that without current
 
 // Later edges reach less but shake more; without current it shakes as much as 24 degrees later do.
 static void limit_acceleration(void) {
     plant.reach = (bowl_t){{40 * DEGREE_q16, 0, 0}, {100000, 100000, 100000}};
     plant.rms = (bowl_t){{-10 * DEGREE_q16, 0, 0}, {500000, 0, 0}};
     plant.free_rms_ppm = FREE_rms_ppm;
-    in.goal = (adapt_goal_t){0, 0, LIMIT_Q14};
+    aim.goal = (adapt_goal_t){0, 0, LIMIT_pct};
 }
 
 static bool is_without_current(void) {
-    return adapt_trim_at(&adapt, in.index, 0).value[ADAPT_LEVEL] == ADAPT_NO_CURRENT;
+    return adapt_trim_at(&adapt, aim.index, 0).value[ADAPT_LEVEL] == ADAPT_NO_CURRENT;
 }
 
 static void test_adapt_measures_acceleration_without_current_once(void) {
@@ -35,7 +35,7 @@ static void test_adapt_takes_the_current_away_little_by_little(void) {
     int32_t last = 0;
     for (uint32_t i = 0; i < 3u * TRIAL_TICKS && !is_without_current(); i++) {
         tick();
-        const int32_t now = adapt_trim_at(&adapt, in.index, 0).value[ADAPT_LEVEL];
+        const int32_t now = adapt_trim_at(&adapt, aim.index, 0).value[ADAPT_LEVEL];
         TEST_ASSERT_TRUE(now <= last && now >= last - 32768 / (int32_t)SETTLE_TICKS - 1);
         last = now;
     }
@@ -51,7 +51,7 @@ static void test_adapt_fades_from_the_level_that_is_learnt(void) {
     for (uint32_t i = 0; i < 3u * TRIAL_TICKS && !is_without_current(); i++) {
         tick();
         TEST_ASSERT_LESS_OR_EQUAL_INT32(
-            -9000, adapt_trim_at(&adapt, in.index, part_q16).value[ADAPT_LEVEL]);
+            -9000, adapt_trim_at(&adapt, aim.index, part_q16).value[ADAPT_LEVEL]);
     }
     TEST_ASSERT_TRUE(is_without_current());
 }
@@ -65,7 +65,7 @@ static void test_adapt_spends_acceleration_up_to_its_limit(void) {
     TEST_ASSERT_GREATER_THAN_INT32(15 * DEGREE_q16, learnt()->value[ADAPT_ON_EDGE]);
     setUp();
     limit_acceleration();
-    in.goal.accel_limit_q14 = 0; // none
+    aim.goal.accel_limit_pct = 0; // none
     TEST_ASSERT_TRUE(run_until(ADAPT_RESTING, 150 * TRIAL_TICKS));
     TEST_ASSERT_GREATER_THAN_INT32(30 * DEGREE_q16, learnt()->value[ADAPT_ON_EDGE]);
 }

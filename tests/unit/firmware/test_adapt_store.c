@@ -64,7 +64,8 @@ static void test_adapt_store_is_not_moved_back(void) {
     other.from[0] = (adapt_edges_t){5000, -5000};
     other.square.corner = 3;
     TEST_ASSERT_TRUE(adapt_restore(&other, owner, words));
-    const adapt_in_t in = {.may_try = true, .freq_mHz = 10000, .index = 1};
+    const adapt_in_t in = {.may_try = true, .freq_mHz = 10000};
+    adapt_aim(&other, &(adapt_aim_t){.index = 1});
     for (uint32_t i = 0; i < 3u; i++) {
         adapt_step(&other, &in);
     }

@@ -224,9 +224,11 @@ static void test_phase_table_of_any_content_is_judged_right(void) {
 // --- between points
 
 static void assert_place(uint32_t freq_mHz, uint32_t index, uint32_t part_q16) {
-    const phase_place_t place = phase_place(slow_points, 3, freq_mHz);
-    TEST_ASSERT_EQUAL_UINT32(index, place.index);
-    TEST_ASSERT_EQUAL_UINT32(part_q16, place.part_q16);
+    for (uint32_t last = 0; last < 2u; last++) {
+        const phase_place_t place = phase_place(slow_points, 3, freq_mHz, last);
+        TEST_ASSERT_EQUAL_UINT32(index, place.index);
+        TEST_ASSERT_EQUAL_UINT32(part_q16, place.part_q16);
+    }
 }
 
 static void test_phase_place_at_points_and_a_milli_hertz_beside(void) {
@@ -260,7 +262,8 @@ static void test_phase_place_among_any_number_of_points(void) {
         for (uint32_t i = 0; i + 1u < length; i++) {
             const uint32_t span = points[i + 1u].freq_mHz - points[i].freq_mHz;
             const uint32_t beyond = random_u32() % span;
-            const phase_place_t place = phase_place(points, length, points[i].freq_mHz + beyond);
+            const phase_place_t place = phase_place(points, length, points[i].freq_mHz + beyond,
+                                                    random_u32() % (length - 1u));
             TEST_ASSERT_EQUAL_UINT32(i, place.index);
             TEST_ASSERT_EQUAL_UINT32(beyond * 65536u / span, place.part_q16);
         }
@@ -268,7 +271,7 @@ static void test_phase_place_among_any_number_of_points(void) {
 }
 
 static phase_pulse_t pulse_at(uint32_t freq_mHz) {
-    return phase_pulse_at(slow_points, phase_place(slow_points, 3, freq_mHz));
+    return phase_pulse_at(slow_points, phase_place(slow_points, 3, freq_mHz, 0));
 }
 
 static void test_phase_pulse_at_points_and_between(void) {
@@ -438,16 +441,15 @@ static void test_phase_current_of_any_tick_is_the_mean_over_it(void) {
     for (uint32_t round = 0; round < 20000u; round++) {
         const uint32_t floor_mA = random_u32() % 3000u;
         const phase_pulse_t pulse = {
-            .on_q16 = random_u32() >> 16,
+            .on_q16 = (uint16_t)(random_u32() >> 16),
             .width_q16 = (random_u32() >> 16) % PHASE_WIDTH_ALL,
             .level_mA = (int32_t)(floor_mA + random_u32() % 20000u),
             .floor_mA = (int32_t)floor_mA,
-            .ramp_q16 = round % 2u == 0 ? 0 : (random_u32() >> 17 >> random_u32() % 8u),
+            .ramp_q16 = round % 2u == 0 ? 0 : (uint16_t)(random_u32() >> 17 >> random_u32() % 8u),
         };
         // From 1 Hz at 4 kHz to just below half of it all; one beside an edge now and then.
         const uint32_t length = (random_u32() >> 1 >> random_u32() % 10u) | 1u << 21;
-        const uint32_t edge =
-            random_u32() % 2u == 0 ? pulse.on_q16 << 16 : (pulse.on_q16 + pulse.width_q16) << 16;
+        const uint32_t edge = (pulse.on_q16 + (random_u32() % 2u == 0 ? 0 : pulse.width_q16)) << 16;
         assert_current(&pulse, random_u32() % 4u == 0 ? edge - random_u32() % 3u : random_u32(),
                        length);
     }
@@ -492,7 +494,7 @@ static void test_phase_current_adds_up_to_the_pulse(void) {
         const uint32_t length = (uint32_t)(HALF_TURN / ticks);
         for (uint32_t offset = 0; offset < 5u; offset++) {
             int64_t sum_mA = 0;
-            pulse.ramp_q16 = offset * 2000u;
+            pulse.ramp_q16 = (uint16_t)(offset * 2000u);
             for (uint32_t k = 0; k < ticks; k++) {
                 sum_mA += phase_pulse_current_mA(&pulse, offset * 777777777u + k * length, length);
             }
