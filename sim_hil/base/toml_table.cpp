@@ -427,6 +427,19 @@ void check_nesting(const std::string &file, const std::string &text) {
     }
 }
 
+std::shared_ptr<const TomlNode> parsed(const std::string &text, const std::string &file) {
+    try {
+        check_nesting(file, text);
+        const auto table = std::make_shared<const toml::table>(toml::parse(text, file));
+        return std::shared_ptr<const TomlNode>(table, opaque(table.get()));
+    } catch (const toml::parse_error &error) {
+        const auto line = error.source().begin.line;
+        const std::string where = line > 0 ? ":" + std::to_string(line) : "";
+        throw InputError(on_one_line(file + where + ": " + std::string(error.description()) +
+                                     "; expected a TOML file"));
+    }
+}
+
 } // namespace
 
 TomlFile::TomlFile(const std::string &file) : file_(file) {
@@ -434,17 +447,14 @@ TomlFile::TomlFile(const std::string &file) : file_(file) {
     if (std::filesystem::is_directory(file, unreadable)) {
         throw InputError(on_one_line(file + ": is a folder, not a file"));
     }
-    try {
-        const std::string text = text_of(file);
-        check_nesting(file, text);
-        const auto table = std::make_shared<const toml::table>(toml::parse(text, file));
-        table_ = std::shared_ptr<const TomlNode>(table, opaque(table.get()));
-    } catch (const toml::parse_error &error) {
-        const auto line = error.source().begin.line;
-        const std::string where = line > 0 ? ":" + std::to_string(line) : "";
-        throw InputError(on_one_line(file + where + ": " + std::string(error.description()) +
-                                     "; expected a TOML file"));
-    }
+    table_ = parsed(text_of(file), file);
+}
+
+TomlFile TomlFile::of_text(const std::string &text, const std::string &name) {
+    TomlFile out;
+    out.file_ = name;
+    out.table_ = parsed(text, name);
+    return out;
 }
 
 TomlFile::TomlFile(const std::string &file, const std::string &schema, std::int64_t version)

@@ -99,9 +99,15 @@ class TomlFile {
     /// Throws InputError when the file cannot be read, is not TOML, or is of another schema.
     TomlFile(const std::string &file, const std::string &schema, std::int64_t version);
 
+    /// A text that is no file. name: what its messages begin with; paths in it are from the current
+    /// folder. Throws InputError when it is not TOML.
+    static TomlFile of_text(const std::string &text, const std::string &name);
+
     TomlTable root() const;
 
   private:
+    TomlFile() = default;
+
     std::string file_;
     std::shared_ptr<const TomlNode> table_;
 };

@@ -16,6 +16,7 @@ int cmd_board_keys(const std::vector<std::string> &words);
 int cmd_compare(const std::vector<std::string> &words);
 int cmd_count(const std::vector<std::string> &words);
 int cmd_fuzzy_surface(const std::vector<std::string> &words);
+int cmd_live(const std::vector<std::string> &words);
 int cmd_params(const std::vector<std::string> &words);
 int cmd_plant_check(const std::vector<std::string> &words);
 int cmd_replay(const std::vector<std::string> &words);

@@ -26,11 +26,44 @@ FaultInjector::FaultInjector(std::vector<PlacedFault> faults,
                      [](const PlacedFault &a, const PlacedFault &b) {
                          return a.fault.start_s < b.fault.start_s;
                      });
+    note_ends();
+}
+
+void FaultInjector::note_ends() {
     double last_end_s = -std::numeric_limits<double>::infinity();
+    last_end_s_.clear();
     for (const auto &[fault, sensor, damper] : faults_) {
         last_end_s = std::max(last_end_s, fault.start_s + fault.duration_s);
         last_end_s_.push_back(last_end_s);
     }
+}
+
+void FaultInjector::add(const PlacedFault &fault) {
+    const auto after = std::upper_bound(
+        faults_.begin(), faults_.end(), fault.fault.start_s,
+        [](double start_s, const PlacedFault &other) { return start_s < other.fault.start_s; });
+    faults_.insert(after, fault);
+    note_ends();
+}
+
+void FaultInjector::clear(double time_s) {
+    faults_.erase(std::remove_if(faults_.begin(), faults_.end(),
+                                 [time_s](const PlacedFault &placed) {
+                                     return placed.fault.start_s + placed.fault.duration_s > time_s;
+                                 }),
+                  faults_.end());
+    note_ends();
+}
+
+std::set<FaultKind> FaultInjector::present(double time_s) const {
+    std::set<FaultKind> out;
+    const auto [begin, end] = around(time_s);
+    for (auto placed = begin; placed != end; ++placed) {
+        if (is_active(placed->fault, time_s)) {
+            out.insert(placed->fault.kind);
+        }
+    }
+    return out;
 }
 
 std::pair<FaultInjector::Position, FaultInjector::Position>

@@ -24,6 +24,11 @@ const Entry kCommands[] = {
     {"count", "--image ELF [--word N]... [--data FILE] [--profile off|all|PASS] [--plugin SO]",
      quiesce::cmd_count},
     {"fuzzy-surface", "[--rules FILE]", quiesce::cmd_fuzzy_surface},
+    {"live",
+     "--plant FILE|--scenario FILE --law NAME [--board FILE] [--bus GROUP:PORT] [--ticks N] "
+     "[--set NAME=VALUE]... [--rules FILE] [--pulses FILE] [--force-map FILE] [--law-table FILE] "
+     "[--seed N] [--noise-mg X] [--dt-us N]",
+     quiesce::cmd_live},
     {"params", "", quiesce::cmd_params},
     {"plant-check", "FILE", quiesce::cmd_plant_check},
     {"replay",

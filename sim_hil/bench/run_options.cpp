@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "input_error.h"
 #include "param_options.h"
@@ -120,8 +121,12 @@ void refuse_noise(const Arguments &arguments, const Scenario &scenario) {
 } // namespace
 
 RunSetup run_setup(const Arguments &arguments) {
+    return setup_of(arguments, load_scenario(arguments.required("scenario")));
+}
+
+RunSetup setup_of(const Arguments &arguments, Scenario scenario) {
     RunSetup setup{};
-    setup.scenario = load_scenario(arguments.required("scenario"));
+    setup.scenario = std::move(scenario);
     const auto given_plant = arguments.text("plant");
     setup.plant = load_plant(given_plant ? *given_plant : plant_of(setup.scenario));
     require_base(setup.scenario, setup.plant);

@@ -26,6 +26,9 @@ void require_base(const Scenario &scenario, const PlantModel &plant);
 /// Loads scenario and plant and applies every override. Throws InputError.
 RunSetup run_setup(const Arguments &arguments);
 
+/// The same of a scenario that is no file, or of one that has been loaded.
+RunSetup setup_of(const Arguments &arguments, Scenario scenario);
+
 /// Defaults with --law and every --set applied and accepted. base: before those.
 quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base);
 

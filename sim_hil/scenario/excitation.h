@@ -18,6 +18,11 @@ class Excitation {
     /// Appends a segment; the last one goes on for ever.
     void append(std::unique_ptr<Segment> segment, double duration_s);
 
+    /// Goes on with another segment for ever from start_s > 0, in place of what was to come. What
+    /// was over before the segment that it cuts short and the one before that is forgotten, so that
+    /// changes without end take no memory to speak of: no such time may be asked for any more.
+    void change(std::unique_ptr<Segment> segment, double start_s);
+
     /// The segment that holds at time_s >= 0: it includes its start, not its end. At least one must
     /// have been appended.
     std::size_t segment_at(double time_s) const;

@@ -27,14 +27,9 @@ FaultKind read_fault_kind(TomlTable &table) {
     return static_cast<FaultKind>(index);
 }
 
-InjectedFault read_fault(TomlTable &table, double end_s) {
-    InjectedFault fault{};
-    fault.kind = read_fault_kind(table);
-    fault.start_s = table.number("t_s", {0.0, end_s, "s"});
-    fault.duration_s = table.number("duration_s", {1e-4, kLongest_s, "s"});
-    if (table.has("of")) {
-        fault.of = table.text("of");
-    }
+InjectedFault read_placed_fault(TomlTable &table, double end_s) {
+    const double start_s = table.number("t_s", {0.0, end_s, "s"});
+    const InjectedFault fault = read_fault(table, start_s);
     table.reject_unknown_keys();
     return fault;
 }
@@ -109,6 +104,21 @@ const std::string &named(const Scenario &scenario, const char *key, const std::s
 
 } // namespace
 
+const std::vector<std::string> &fault_names() {
+    return kFaultNames;
+}
+
+InjectedFault read_fault(TomlTable &table, double start_s) {
+    InjectedFault fault{};
+    fault.kind = read_fault_kind(table);
+    fault.start_s = start_s;
+    fault.duration_s = table.number("duration_s", {1e-4, kLongest_s, "s"});
+    if (table.has("of")) {
+        fault.of = table.text("of");
+    }
+    return fault;
+}
+
 bool befalls_damper(FaultKind kind) {
     return kind == FaultKind::coil_open || kind == FaultKind::driver_stuck;
 }
@@ -137,7 +147,7 @@ Scenario load_scenario(const std::string &file) {
     scenario.feed_current = root.boolean("feed_current", false);
     scenario.segments = read_segments(root, scenario.duration_s);
     for (TomlTable &table : root.tables("fault")) {
-        scenario.faults.push_back(read_fault(table, scenario.duration_s));
+        scenario.faults.push_back(read_placed_fault(table, scenario.duration_s));
     }
     scenario.windows = read_windows(root, scenario.duration_s);
     scenario.transient = read_transient(root, scenario.duration_s);

@@ -34,6 +34,12 @@ struct InjectedFault {
         of{}; ///< name of a board's sensor or damper; "": the tracked sensor, the first damper
 };
 
+/// What files call the kinds, in their order.
+const std::vector<std::string> &fault_names();
+
+/// One that begins at start_s: the keys kind, duration_s and of. Others are left for the caller.
+InjectedFault read_fault(TomlTable &table, double start_s);
+
 /// Whether it befalls a damper; else a sensor, or nothing in particular.
 bool befalls_damper(FaultKind kind);
 

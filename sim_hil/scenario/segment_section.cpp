@@ -40,11 +40,9 @@ std::string text(const Parts &...parts) {
 }
 
 SegmentSpec read_sine(TomlTable &section, const Context &context) {
-    const double freq_Hz = section.number("freq_Hz", kFrequency);
-    return {text("sine, ", freq_Hz, " Hz"), read_open_duration_s(section, context),
-            ShakenBy::shaker, [freq_Hz](const ShakerParams &shaker) {
-                return std::make_unique<SineSegment>(shaker, freq_Hz);
-            }};
+    SegmentSpec spec = lasting_sine(section.number("freq_Hz", kFrequency));
+    spec.duration_s = read_open_duration_s(section, context);
+    return spec;
 }
 
 SegmentSpec read_chirp(TomlTable &section, const Context & /*context*/) {
@@ -189,6 +187,13 @@ const Kind kKinds[] = {
 };
 
 } // namespace
+
+SegmentSpec lasting_sine(double freq_Hz) {
+    return {text("sine, ", freq_Hz, " Hz"), kLongest_s, ShakenBy::shaker,
+            [freq_Hz](const ShakerParams &shaker) {
+                return std::make_unique<SineSegment>(shaker, freq_Hz);
+            }};
+}
 
 SegmentSpec read_segment(TomlTable &section, bool is_last) {
     std::vector<std::string> names;

@@ -26,6 +26,9 @@ struct SegmentSpec {
     std::function<std::unique_ptr<Segment>(const ShakerParams &shaker)> make;
 };
 
+/// A sine through the shaker that goes on for ever.
+SegmentSpec lasting_sine(double freq_Hz);
+
 /// Reads a segment, and what it refers to. is_last: it may go on for ever, where its kind allows
 /// that. Throws InputError naming what is wrong.
 SegmentSpec read_segment(TomlTable &section, bool is_last);

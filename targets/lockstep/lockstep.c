@@ -43,24 +43,22 @@ bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
     return false;
 }
 
-static void take(quiesce_in_t *in, const lockstep_stimulus_t *stimulus) {
-    const uint32_t flags = stimulus->flags;
+void lockstep_take(const lockstep_stimulus_t *stimulus, quiesce_sample_t sensor[QUIESCE_SENSORS],
+                   quiesce_driver_t driver[QUIESCE_DAMPERS]) {
     for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
-        in->sensor[i].counts = stimulus->counts[i];
-        in->sensor[i].is_fresh = (flags & LOCKSTEP_FRESH << i) != 0;
+        sensor[i].counts = stimulus->counts[i];
+        sensor[i].is_fresh = (stimulus->flags & LOCKSTEP_FRESH << i) != 0;
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        in->driver[i].current_mA = stimulus->current_meas_mA[i];
-        in->driver[i].is_measured = (flags & LOCKSTEP_HAS_CURRENT << i) != 0;
+        driver[i].current_mA = stimulus->current_meas_mA[i];
+        driver[i].is_measured = (stimulus->flags & LOCKSTEP_HAS_CURRENT << i) != 0;
     }
-    in->enable = (flags & LOCKSTEP_ENABLE) != 0;
-    in->estop = (flags & LOCKSTEP_ESTOP) != 0;
-    in->fault_reset = (flags & LOCKSTEP_FAULT_RESET) != 0;
 }
 
-static void report(const lockstep_t *server, bool is_wanted, int32_t word[QUIESCE_REPORT_WORDS]) {
+static void report(const quiesce_t *controller, bool is_wanted,
+                   int32_t word[QUIESCE_REPORT_WORDS]) {
     if (is_wanted) {
-        quiesce_report(&server->controller, word);
+        quiesce_report(controller, word);
         return;
     }
     for (uint32_t i = 0; i < QUIESCE_REPORT_WORDS; i++) {
@@ -68,20 +66,28 @@ static void report(const lockstep_t *server, bool is_wanted, int32_t word[QUIESC
     }
 }
 
+void lockstep_tell(const quiesce_t *controller, const quiesce_out_t *out, uint32_t flags,
+                   lockstep_reply_t *reply) {
+    reply->drivers_enabled = 0;
+    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
+        reply->current_cmd_mA[i] = out->damper[i].current_cmd_mA;
+        reply->drivers_enabled |= (out->damper[i].driver_enable ? 1u : 0u) << i;
+    }
+    reply->telemetry = out->telemetry;
+    report(controller, (flags & LOCKSTEP_REPORT) != 0, reply->report);
+    if ((flags & LOCKSTEP_PICTURE) != 0) {
+        quiesce_picture(controller, &reply->picture);
+    }
+}
+
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out) {
     server->in.tick++;
     if ((in->flags & LOCKSTEP_LOST) == 0) {
-        take(&server->in, in);
+        lockstep_take(in, server->in.sensor, server->in.driver);
+        server->in.enable = (in->flags & LOCKSTEP_ENABLE) != 0;
+        server->in.estop = (in->flags & LOCKSTEP_ESTOP) != 0;
+        server->in.fault_reset = (in->flags & LOCKSTEP_FAULT_RESET) != 0;
         quiesce_step(&server->controller, &server->in, &server->out);
     }
-    out->drivers_enabled = 0;
-    for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        out->current_cmd_mA[i] = server->out.damper[i].current_cmd_mA;
-        out->drivers_enabled |= (server->out.damper[i].driver_enable ? 1u : 0u) << i;
-    }
-    out->telemetry = server->out.telemetry;
-    report(server, (in->flags & LOCKSTEP_REPORT) != 0, out->report);
-    if ((in->flags & LOCKSTEP_PICTURE) != 0) {
-        quiesce_picture(&server->controller, &out->picture);
-    }
+    lockstep_tell(&server->controller, &server->out, in->flags, out);
 }

@@ -72,6 +72,14 @@ bool lockstep_start(lockstep_t *server, const quiesce_board_t *board,
 /// one's.
 void lockstep_exchange(lockstep_t *server, const lockstep_stimulus_t *in, lockstep_reply_t *out);
 
+/// What a stimulus has for a controller: a sample of each sensor, a measurement of each driver.
+void lockstep_take(const lockstep_stimulus_t *stimulus, quiesce_sample_t sensor[QUIESCE_SENSORS],
+                   quiesce_driver_t driver[QUIESCE_DAMPERS]);
+
+/// Writes the reply of a controller whose last output is out. flags: of the stimulus.
+void lockstep_tell(const quiesce_t *controller, const quiesce_out_t *out, uint32_t flags,
+                   lockstep_reply_t *reply);
+
 #ifdef __cplusplus
 }
 #endif
