@@ -26,8 +26,16 @@ needs_of() {
     "tune law") echo bench ;;
     "tune "*) echo bench plant dampers ;;
     "can "* | "report "*) ;;
-    "live "*) echo page ;;
+    "live "*) needs_of_live "$@" ;;
     "completion "*) ;;
+    esac
+}
+
+# needs_of_live OPTION...: a rig in the computer is the bench.
+needs_of_live() {
+    case "$*" in
+    *--sim*) echo bench page ;;
+    *) echo page ;;
     esac
 }
 

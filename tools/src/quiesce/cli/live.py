@@ -2,26 +2,37 @@
 
 import argparse
 import asyncio
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from quiesce.base.errors import UsageError
 from quiesce.base.extras import extra
 from quiesce.base.paths import build_folder, is_installed
-from quiesce.cli.can.bus_options import add_bus_options, bus_of
+from quiesce.cli.can.bus_options import VARIABLE, add_bus_options, bus_of
 from quiesce.cli.can.command import with_packages
+
+if TYPE_CHECKING:
+    from quiesce.can.buses import Bus
+    from quiesce.live.rig import RigDesk
 
 EPILOG = """examples:
   quiesce live --bus socketcan:can0
   quiesce live --raw --bus slcan:/dev/ttyACM0@921600
   quiesce live --host 0.0.0.0 --bus socketcan:can0    from a phone; asks for the token it prints
+  quiesce live --sim                                  no hardware: a rig in the computer
+  quiesce live --sim my_plant.toml --law fuzzy --record quake.csv
 
 Open the address that it prints. Any number of browsers may look, up to 16; one at a time holds
 control and changes parameters. STOP (button, or the Esc key) sends the emergency stop from every
 one of them. Without a token only this computer gets in. The page is plain HTTP: over a network
 that you do not trust, leave --host alone and use 'ssh -L 8642:127.0.0.1:8642'. A bus is no
-replacement for the emergency stop's own wire. Ctrl-C ends it; the controller goes on.
-docs/howto/watch-a-controller.md explains the page.
+replacement for the emergency stop's own wire. Ctrl-C ends it; the controller goes on, but for one
+of --sim, which ends with it. docs/howto/watch-a-controller.md explains the page,
+docs/howto/rig-in-the-computer.md that rig.
 """
 
 PORT = 8642
@@ -50,7 +61,30 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--raw", action="store_true", help="every sample, too: asks for RawSample (+27 %% bus load)"
     )
     add_bus_options(parser)
+    add_rig_options(parser)
     parser.set_defaults(run=with_packages(run))
+
+
+def add_rig_options(parser: argparse.ArgumentParser) -> None:
+    rig = parser.add_argument_group("rig in the computer, in place of a bus")
+    rig.add_argument(
+        "--sim", nargs="?", const="", metavar="PLANT",
+        help="plant (TOML) and controller at the rate of the clock, to shake, disturb and command "
+        "on the page (the plant that ships)",
+    )  # fmt: skip
+    rig.add_argument("--board", type=Path, metavar="FILE", help="what is wired to it, TOML")
+    rig.add_argument("--law", metavar="NAME", help="of the firmware (phase)")
+    rig.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter; repeatable"
+    )
+    rig.add_argument(
+        "--target", choices=("host",), default="host", help="where its controller runs (host)"
+    )
+    rig.add_argument(
+        "--record", type=Path, action="append", default=[], metavar="FILE",
+        help="CSV of a ground motion to choose on the page; repeatable (all that lie beside the "
+        "project, and one that ships)",
+    )  # fmt: skip
 
 
 def run(args: argparse.Namespace) -> int:
@@ -61,20 +95,56 @@ def run(args: argparse.Namespace) -> int:
     if not 0 <= args.port <= 65535:
         raise UsageError(f"--port {args.port}: 0 .. 65535")
     given = token_of(args.token_file)
-    bus, plots = bus_of(args), plots_folder()
+    plots = plots_folder()
     with extra("live", "quiesce live"):
         from quiesce.live.access import Policy, is_local, new_token
         from quiesce.live.desk import Desk
+        from quiesce.live.room import Room
         from quiesce.live.server import listen, serve
 
     token = given or ("" if is_local(args.host) else new_token())
-    with until_stopped() as stop, listen(args.host, args.port) as at, Link(bus) as link:
+    with (
+        until_stopped() as stop,
+        listen(args.host, args.port) as at,
+        watched(args) as (bus, rig),
+        Link(bus) as link,
+    ):
         print(f"{address(args.host, at.getsockname()[1], token)}  (Ctrl-C ends it)", flush=True)
         if not is_local(args.host):
             print("quiesce: plain HTTP: who listens on the way learns the token", file=sys.stderr)
-        desk = Desk(link, load(), args.raw)
-        asyncio.run(serve(desk, Policy(args.host, token), plots, at, stop))
+        room = Room(Desk(link, load(), args.raw or rig is not None), rig)
+        asyncio.run(serve(room, Policy(args.host, token), plots, at, stop))
     return 0
+
+
+@contextmanager
+def watched(args: argparse.Namespace) -> "Iterator[tuple[Bus, RigDesk | None]]":
+    """The bus, and the rig in the computer that is on it where that is asked for."""
+    if args.sim is None:
+        refuse_rig_options(args)
+        yield bus_of(args), None
+        return
+    if args.bus != os.environ.get(VARIABLE) or args.bitrate is not None or args.bus_option:
+        raise UsageError("--sim makes a bus of its own; leave --bus and its options out")
+    from quiesce.live.rig import RigDesk
+    from quiesce.rig.options import LAW, RigSetup
+    from quiesce.rig.records import motions
+    from quiesce.rig.simulation import Simulation, bus_words, own_bus
+
+    plant = Path(args.sim) if args.sim else None
+    setup = RigSetup(plant, args.board, args.law or LAW, tuple(args.set))
+    found, bus = motions(args.record), own_bus()
+    with extra("multicast", "quiesce live --sim"):
+        import msgpack  # noqa: F401
+    with Simulation(setup.words(), bus) as simulation:
+        print(f"other commands join it with {bus_words(bus)}", file=sys.stderr)
+        yield bus, RigDesk(simulation, found)
+
+
+def refuse_rig_options(args: argparse.Namespace) -> None:
+    for option in ("board", "law", "set", "record"):
+        if getattr(args, option):
+            raise UsageError(f"--{option} is of the rig in the computer; give --sim, too")
 
 
 def token_of(file: Path | None) -> str:

@@ -6,7 +6,7 @@ Samples are binary, little-endian; all else is a JSON object in a text message.
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -39,11 +39,12 @@ class Block:
 
 @dataclass(frozen=True)
 class Command:
-    """What a viewer asks for; `series` of show, `settings` of set."""
+    """What a viewer asks for; `series` of show, `settings` of set, `order` of rig."""
 
     do: str
     series: tuple[int, ...] = ()
     settings: tuple[str, ...] = ()  # NAME=VALUE
+    order: dict[str, Any] = field(default_factory=dict)
 
 
 def pack_samples(number: int, sent_s: float, newest_s: float, blocks: Sequence[Block]) -> bytes:
@@ -64,15 +65,17 @@ def command_of(text: str | None, series_count: int) -> Command:
     """Malformed where it is none. text: None where the message was binary."""
     said = object_of(text)
     do = said.get("do")
-    extra = {"show": {"series"}, "set": {"settings"}}
-    if do not in ("stop", "take", "release", "show", "set", "save", "revert"):
-        raise Malformed("'do' is none of stop, take, release, show, set, save, revert")
+    extra = {"show": {"series"}, "set": {"settings"}, "rig": {"order"}}
+    if do not in ("stop", "take", "release", "show", "set", "save", "revert", "rig"):
+        raise Malformed("'do' is none of stop, take, release, show, set, save, revert, rig")
     if set(said) != {"do"} | extra.get(do, set()):
         raise Malformed(f"'{do}' has other keys than it may have")
     if do == "show":
         return Command(do, series=shown_of(said["series"], series_count))
     if do == "set":
         return Command(do, settings=settings_of(said["settings"]))
+    if do == "rig":
+        return Command(do, order=order_of(said["order"]))
     return Command(do)
 
 
@@ -100,3 +103,10 @@ def settings_of(value: Any) -> tuple[str, ...]:
     if not is_small or not all(isinstance(one, str) for one in value.values()):
         raise Malformed("'settings' is an object of values as text by name")
     return tuple(f"{name}={text}" for name, text in value.items())
+
+
+def order_of(value: Any) -> dict[str, Any]:
+    """What of it is allowed is for the rig to say."""
+    if not isinstance(value, dict):
+        raise Malformed("'order' is an object")
+    return value

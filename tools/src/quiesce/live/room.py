@@ -10,6 +10,7 @@ from quiesce.engine.params import parameters
 from quiesce.live.control import Control
 from quiesce.live.desk import Desk
 from quiesce.live.protocol import MOST_SERIES, VERSION
+from quiesce.live.rig import RigDesk
 
 DRAIN_S = 0.01
 BEAT_DRAINS = 4  # 25 messages a second to each viewer
@@ -19,8 +20,10 @@ MOST_VIEWERS = 16
 class Room:
     """run() for as long as the server does."""
 
-    def __init__(self, desk: Desk) -> None:
+    def __init__(self, desk: Desk, rig: RigDesk | None = None) -> None:
+        """rig: the one in the computer, where that is what is watched."""
         self.desk = desk
+        self.rig = rig
         self.control = Control()
         self.viewers: set[int] = set()
         self.is_news = False  # somebody did something: all are told in this beat
@@ -39,6 +42,7 @@ class Room:
             "series": [asdict(one) for one in self.desk.series],
             "parameters": list(parameters()),
             "faults": self.desk.fault_names(),
+            "rig": self.rig.hello() if self.rig else None,
         }
 
     def come(self) -> int | None:
@@ -61,7 +65,8 @@ class Room:
 
     def told(self) -> dict[str, Any]:
         control = {"holder": self.control.holder, "viewers": len(self.viewers)}
-        return {**self.desk.told(), **control}
+        rig = {"rig": self.rig.told()} if self.rig else {}
+        return {**self.desk.told(), **control, **rig}
 
     async def next_beat(self) -> int:
         """Waits for it; returns its number."""

@@ -12,9 +12,8 @@ import uvicorn
 from fastapi import FastAPI, Request, Response, WebSocket
 from fastapi.responses import FileResponse, JSONResponse
 
-from quiesce.base.errors import UsageError, one_line
+from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.live.access import COOKIE, App, Door, Policy
-from quiesce.live.desk import Desk
 from quiesce.live.protocol import MAX_MESSAGE_BYTES
 from quiesce.live.room import Room
 from quiesce.live.viewer import Viewer
@@ -104,10 +103,9 @@ class Server(uvicorn.Server):
 
 
 async def serve(
-    desk: Desk, policy: Policy, plots: Path, at: socket.socket, stop: threading.Event
+    room: Room, policy: Policy, plots: Path, at: socket.socket, stop: threading.Event
 ) -> None:
-    """Until `stop` is set."""
-    room = Room(desk)
+    """Until `stop` is set. BenchFailure where the room's rig is gone before."""
     config = uvicorn.Config(
         application(room, policy, plots),
         loop="asyncio",
@@ -129,9 +127,11 @@ async def serve(
     try:
         while not stop.is_set() and not any(one.done() for one in working):
             await asyncio.sleep(STOP_LOOK_S)
+            if room.rig is not None and room.rig.failure:
+                raise BenchFailure(f"the rig in the computer is gone: {room.rig.failure}")
+    finally:
         server.should_exit = True
         await working[1]
-    finally:
         working[0].cancel()
     if working[0].done() and not working[0].cancelled():
         working[0].result()  # what ended it

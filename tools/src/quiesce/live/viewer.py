@@ -7,7 +7,7 @@ from typing import Any
 
 from fastapi import WebSocket, WebSocketDisconnect
 
-from quiesce.base.errors import UsageError
+from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.live.jobs import change, store, wanted
 from quiesce.live.protocol import MOST_MALFORMED, Command, Malformed, command_of, pack_samples
 from quiesce.live.room import Room
@@ -87,12 +87,15 @@ class Viewer:
     async def _work(self, command: Command) -> None:
         try:
             is_done, text = await self._do(command)
-        except UsageError as error:
+        except (BenchFailure, UsageError) as error:
             is_done, text = False, str(error)
-        self._note(is_done, text)
+        if text:
+            self._note(is_done, text)
 
     async def _do(self, command: Command) -> tuple[bool, str]:
         """Whether it came about, and a line about it. UsageError for values not allowed."""
+        if command.do == "rig":
+            return await self._order(command.order)
         desk, jobs = self._desk, self._desk.jobs
         values = desk.preamble.values
         if not values or not desk.preamble.may_ask:
@@ -106,6 +109,11 @@ class Viewer:
         if not settings:
             return True, "nothing differs"
         return await jobs.run("a change", change(values, settings))
+
+    async def _order(self, order: dict[str, Any]) -> tuple[bool, str]:
+        if self._room.rig is None:
+            return False, "this is no rig in the computer: nothing here can be ordered"
+        return True, await asyncio.to_thread(self._room.rig.obey, order)
 
     def _settings(self, command: Command, values: list[int]) -> dict[int, int]:
         if command.do == "set":

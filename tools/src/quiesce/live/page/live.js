@@ -2,6 +2,7 @@
 import { Charts } from "./charts.js";
 import { Link } from "./link.js";
 import { Parameters } from "./parameters.js";
+import { Rig } from "./rig.js";
 import { Samples, decode } from "./samples.js";
 import * as status from "./status.js";
 import { Stop } from "./stop.js";
@@ -23,6 +24,7 @@ const samples = new Samples();
 const charts = new Charts($("charts"), samples);
 const stop = new Stop($("stop"), $("stop-said"), (object) => link.send(object));
 const parameters = new Parameters(send);
+const rig = new Rig(send);
 const link = new Link({ open: () => {}, close: lost, text: heardText, samples: heardSamples });
 
 function send(object) {
@@ -51,6 +53,7 @@ function greet(said) {
   heard = "";
   status.makeLamps(hello.faults);
   parameters.describe(hello.parameters);
+  rig.describe(hello);
   if (isChosen) link.send({ do: "show", series: shown });
 }
 
@@ -62,6 +65,7 @@ function showState(state) {
   status.showFirstFault(state.first_fault, state.later_faults);
   const isMine = status.showControl(state, hello.viewer);
   parameters.enable(isMine && !state.job);
+  rig.show(state, values, isMine);
   if (state.job) say(true, `${state.job} is under way ...`);
   if (heard !== String(state.heard)) {
     heard = String(state.heard);
@@ -125,6 +129,7 @@ function heardSamples(buffer) {
 function lost() {
   status.showBus(["NO CONNECTION to the server, trying again. What is shown is old.", true]);
   parameters.enable(false);
+  rig.enable(false);
   $("take").disabled = $("release").disabled = true;
 }
 

@@ -1,0 +1,54 @@
+"""The rig of `quiesce live --sim` on its page: what viewers are told of it, what they may order.
+
+A viewer is no user of this computer: files are those that the server was started with.
+"""
+
+from typing import Any
+
+from quiesce.base.errors import UsageError
+from quiesce.rig.records import Motion
+from quiesce.rig.simulation import Simulation, bus_words
+
+KEYS = ("control", "drive_V", "excite", "fault", "clear_faults")
+
+
+class RigDesk:
+    """simulation: at work for as long as the server is."""
+
+    def __init__(self, simulation: Simulation, motions: list[Motion]) -> None:
+        self._simulation = simulation
+        self._motions = motions
+
+    @property
+    def failure(self) -> str:
+        return self._simulation.failure
+
+    def hello(self) -> dict[str, Any]:
+        """What does not change."""
+        return {
+            **self._simulation.introduction,
+            "records": [one.name for one in self._motions],
+            "bus": bus_words(self._simulation.bus),
+        }
+
+    def told(self) -> dict[str, Any]:
+        return self._simulation.state
+
+    def obey(self, order: dict[str, Any]) -> str:
+        """Waits for the answer; a line about it. UsageError where it is refused."""
+        unknown = [key for key in order if key not in KEYS]
+        if unknown or not order:
+            raise UsageError(f"an order to the rig has keys of {', '.join(KEYS)}")
+        excite = order.get("excite")
+        if isinstance(excite, dict) and excite.get("kind") == "record":
+            order = {**order, "excite": self._record(excite)}
+        self._simulation.order(**order)
+        return ""
+
+    def _record(self, excite: dict[str, Any]) -> dict[str, Any]:
+        """{"kind": "record", "record": NUMBER, "gain": X, "time_scale": X}."""
+        number = excite.get("record")
+        if type(number) is not int or not 0 <= number < len(self._motions):
+            raise UsageError("no such record; the page lists those there are")
+        gain, time_scale = excite.get("gain", 1.0), excite.get("time_scale", 1.0)
+        return self._motions[number].order(gain, time_scale)
