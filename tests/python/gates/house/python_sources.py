@@ -28,6 +28,7 @@ ROOMS = {
     "tools/check": "check",
     "tools/lib": "lib",
     "tests": "tests",
+    "examples": "examples",
 }
 
 
