@@ -64,7 +64,7 @@ needs_of_benchmark() {
     controller) echo bench dampers images ;;
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
-    live) echo node page ;;
+    live) echo bench node page ;;
     trust) echo bench images trust ;;
     tables) echo bench plant dampers images linux tables ;;
     *) echo bench plant dampers ;;

@@ -87,6 +87,7 @@ def test_faults_reach_the_controller_and_are_acknowledged(shared: Page) -> None:
         viewer.ask("release")
 
 
+@pytest.mark.slow
 def test_stop_of_the_page_stops_it(shared: Page) -> None:
     with shared.viewer() as viewer:
         viewer.ask("take")
@@ -96,6 +97,7 @@ def test_stop_of_the_page_stops_it(shared: Page) -> None:
         viewer.ask("release")
 
 
+@pytest.mark.slow
 def test_another_law_is_for_when_control_is_off(shared: Page) -> None:
     with shared.viewer() as viewer:
         viewer.until("parameters", lambda one: one["values"])
@@ -165,6 +167,7 @@ def test_other_programs_join_its_bus(shared: Page) -> None:
     assert status.frame_id in seen
 
 
+@pytest.mark.slow
 def test_the_rig_does_not_outlive_a_page_that_is_killed(tmp_path: Path) -> None:
     page = Page(tmp_path, "--sim")
     (rig,) = children(page)

@@ -31,6 +31,7 @@ def test_variables_have_paths_and_units(rig: Rig) -> None:
     assert not any(path.endswith(("/crc", "/alive")) for path in units)
 
 
+@pytest.mark.slow
 def test_parameters_are_written_and_read(rig: Rig) -> None:
     rig.write("rig/control", False)
     rig.wait(Trigger("status/is_enabled", equal=0))
@@ -139,6 +140,7 @@ def run_example(*options: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_the_example_passes_on_the_rig_and_on_its_bus(rig: Rig, tmp_path: Path) -> None:
     done = run_example(f"--junitxml={tmp_path / 'report.xml'}")
     assert done.returncode == 0, done.stdout
@@ -152,6 +154,7 @@ def test_the_example_passes_on_the_rig_and_on_its_bus(rig: Rig, tmp_path: Path) 
     assert "2 passed, 1 skipped" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_rig_that_is_none_fails_in_one_line() -> None:
     done = run_example("--rig=nowhere")
     assert done.returncode == 1
