@@ -148,7 +148,7 @@ def test_records_are_chosen_by_number(shared: Page) -> None:
         viewer.ask("take")
         pulse = records.index("base_pulse")
         order(viewer, excite={"kind": "record", "record": pulse, "gain": 0.05, "time_scale": 5})
-        rig_state(viewer, lambda rig: "base_pulse.csv" in rig["excitation"])
+        rig_state(viewer, lambda rig: "from base_pulse, " in rig["excitation"])
         viewer.ask("release")
 
 

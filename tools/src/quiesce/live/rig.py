@@ -32,7 +32,13 @@ class RigDesk:
         }
 
     def told(self) -> dict[str, Any]:
-        return self._simulation.state
+        """Without the places of files."""
+        state = dict(self._simulation.state)
+        for motion in self._motions if state else ():
+            state["excitation"] = state["excitation"].replace(
+                str(motion.file.resolve()), motion.name
+            )
+        return state
 
     def obey(self, order: dict[str, Any]) -> str:
         """Waits for the answer; a line about it. UsageError where it is refused."""
