@@ -1,9 +1,10 @@
 # quiesce_add_unity_test(NAME SOURCES file.c ... [LIBRARIES lib ...] [INCLUDES dir ...]
 #                        [EMULATOR_ARGS arg ...] [TIMEOUT s])
 #
-# A Unity test program and its ctest entry. Native builds run it directly; the mps2 build links
-# start-up and semihosting and runs it under qemu-system-arm. main returns UNITY_END(), which is the
-# exit code on both. LIBRARIES defaults to quiesce_core.
+# A Unity test program and its ctest entry. Native builds run it directly; others link start-up and
+# semihosting where there is no operating system, and run it under the emulator of their toolchain
+# file (CMAKE_CROSSCOMPILING_EMULATOR). main returns UNITY_END(), which is the exit code of all.
+# LIBRARIES defaults to quiesce_core.
 
 function(quiesce_add_unity_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES;INCLUDES;EMULATOR_ARGS" ${ARGN})
@@ -18,27 +19,22 @@ function(quiesce_add_unity_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${ARG_INCLUDES})
   target_link_libraries(${name} PRIVATE quiesce_unity ${ARG_LIBRARIES} quiesce_warnings)
-  if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
-    quiesce_mps2_image(${name})
-    quiesce_add_emulator_test(${name} ARGS ${ARG_EMULATOR_ARGS} TIMEOUT ${ARG_TIMEOUT})
-  else()
-    add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
-  endif()
+  quiesce_add_emulated_test(${name} ARGS ${ARG_EMULATOR_ARGS} TIMEOUT ${ARG_TIMEOUT})
 endfunction()
 
-# quiesce_add_emulator_test(TARGET [ARGS arg ...] [TIMEOUT s]): runs an mps2 image as a test. Passes
-# when the image ends by itself with exit code 0; ARGS go to qemu-system-arm.
-function(quiesce_add_emulator_test name)
+# quiesce_add_emulated_test(TARGET [ARGS arg ...] [TIMEOUT s]): runs a program as a test, as an image
+# where there is no operating system. Passes when it ends by itself with exit code 0; ARGS go to the
+# emulator.
+function(quiesce_add_emulated_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "ARGS" ${ARGN})
-  find_program(QEMU_SYSTEM_ARM qemu-system-arm)
-  if(NOT QEMU_SYSTEM_ARM)
-    message(FATAL_ERROR "qemu-system-arm not found: install it (Debian: qemu-system-arm)")
+  if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
+    quiesce_image(${name})
   endif()
-  add_test(NAME ${name}
-           COMMAND ${QEMU_SYSTEM_ARM} -M mps2-an386 -display none -monitor none -serial none
-                   -semihosting-config enable=on,target=native ${ARG_ARGS}
-                   -kernel $<TARGET_FILE:${name}>)
+  if(ARG_ARGS)
+    list(INSERT CMAKE_CROSSCOMPILING_EMULATOR 1 ${ARG_ARGS})
+    set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${CMAKE_CROSSCOMPILING_EMULATOR}")
+  endif()
+  add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
 endfunction()
 
@@ -55,6 +51,6 @@ function(_quiesce_unity_library)
   target_include_directories(quiesce_unity PUBLIC ${PROJECT_SOURCE_DIR}/tests/unit/support)
   target_compile_definitions(quiesce_unity PUBLIC UNITY_INCLUDE_CONFIG_H)
   if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
-    target_link_libraries(quiesce_unity PUBLIC hal_mps2)
+    target_link_libraries(quiesce_unity PUBLIC hal_image)
   endif()
 endfunction()

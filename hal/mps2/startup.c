@@ -1,16 +1,13 @@
-// Start-up of an mps2-an386 image: vectors, memory, stack paint, main, exit with main's result.
-// No interrupt is used; every exception is a fault (fault.h).
+// Start-up of a Cortex-M image: vectors, then what all images have in common (start.h). No
+// interrupt is used; every exception is a fault (fault.h).
 #include "fault.h"
 #include "semihost.h"
-#include "stack.h"
+#include "start.h"
 
 #include <stddef.h>
 
-// Placed by mps2.ld.
-extern uint32_t stack_limit[], stack_top[];
-extern uint32_t data_load[], data_begin[], data_end[], bss_begin[], bss_end[];
+extern uint32_t stack_limit[], stack_top[]; // placed by image.ld
 
-int main(void);
 void Reset_Handler(void);
 
 #define FRAME_WORDS 8 // that an exception stacks
@@ -39,30 +36,21 @@ __attribute__((section(".vectors"), used)) static const struct {
      fault_handler, fault_handler, fault_handler},
 };
 
-static void copy_data(void) {
-    const uint32_t *from = data_load;
-    for (uint32_t *to = data_begin; to < data_end; to++) {
-        *to = *from++;
-    }
+// In a build that passes floats in registers the compiler may keep integers there, too.
+static void use_float_registers(void) {
+#ifdef __ARM_PCS_VFP
+    *(volatile uint32_t *)0xE000ED88u |= 0xFu << 20; // CPACR: coprocessors 10 and 11
+    __asm__ volatile("dsb\nisb" ::: "memory");
+#endif
 }
 
-static void clear_bss(void) {
-    for (uint32_t *word = bss_begin; word < bss_end; word++) {
-        *word = 0;
-    }
-}
-
-static void paint_stack(void) {
-    uint32_t *sp;
-    __asm__ volatile("mov %0, sp" : "=r"(sp));
-    for (volatile uint32_t *word = stack_limit; word < sp; word++) {
-        *word = STACK_PAINT;
-    }
+void semihost_trap(uint32_t operation, const void *argument) {
+    register uint32_t r0 __asm__("r0") = operation;
+    register const void *r1 __asm__("r1") = argument;
+    __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
 }
 
 void Reset_Handler(void) {
-    paint_stack();
-    copy_data();
-    clear_bss();
-    semihost_exit(main());
+    use_float_registers();
+    start_image();
 }

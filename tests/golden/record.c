@@ -1,7 +1,6 @@
 #include "record.h"
 
-#include <stdio.h>
-
+#include "put.h"
 #include "word_crc.h"
 
 // Every field by its name, in this order whatever the layout of the structure.
@@ -75,15 +74,33 @@ static const char *const names[] = {RECORD_FIELDS(FIELD_NAME)};
 _Static_assert(sizeof names / sizeof names[0] == RECORD_COLUMNS, "a field is missing or gone");
 
 void record_print_columns(void) {
-    (void)fputs("columns", stdout);
+    put_text("columns");
     for (uint32_t i = 0; i < RECORD_COLUMNS; i++) {
-        printf(" %s", names[i]);
+        put_char(' ');
+        put_text(names[i]);
     }
-    (void)putchar('\n');
+    put_char('\n');
 }
 
-void record_start(record_t *self, const char *name) {
-    *self = (record_t){.name = name};
+static uint32_t append_text(record_t *self, uint32_t length, const char *text) {
+    for (; *text != '\0' && length < RECORD_NAME_BYTES - sizeof "_00"; text++) {
+        self->name[length++] = *text;
+    }
+    return length;
+}
+
+static void name_case(record_t *self, const char *group, const char *name, uint32_t number) {
+    uint32_t length = append_text(self, 0, group);
+    length = append_text(self, length, "/");
+    length = append_text(self, length, name);
+    self->name[length++] = '_';
+    self->name[length++] = (char)('0' + number / 10u % 10u);
+    self->name[length] = (char)('0' + number % 10u);
+}
+
+void record_start(record_t *self, const char *group, const char *name, uint32_t number) {
+    *self = (record_t){0};
+    name_case(self, group, name, number);
     for (uint32_t i = 0; i < RECORD_COLUMNS; i++) {
         self->columns[i] = WORD_CRC_START;
     }
@@ -116,11 +133,14 @@ void record_word(record_t *self, uint32_t word) {
 }
 
 static void print_words(const char *name, const char *kind, const uint32_t *words, uint32_t count) {
-    printf("%s %s", name, kind);
+    put_text(name);
+    put_char(' ');
+    put_text(kind);
     for (uint32_t i = 0; i < count; i++) {
-        printf(" %08X", (unsigned)words[i]);
+        put_char(' ');
+        put_hex(words[i]);
     }
-    (void)putchar('\n');
+    put_char('\n');
 }
 
 void record_end(const record_t *self) {

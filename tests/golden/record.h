@@ -11,8 +11,11 @@
 #define RECORD_COLUMNS (2u + sizeof(quiesce_telemetry_t) / sizeof(uint32_t) + RECORD_LAW_WORDS)
 #define RECORD_LAW_WORDS 9u
 
+/// Of a case, with the end of the text; a longer name is cut.
+#define RECORD_NAME_BYTES 32u
+
 typedef struct {
-    const char *name;
+    char name[RECORD_NAME_BYTES];
     uint32_t ticks;
     uint32_t blocks[RECORD_MAX_BLOCKS];
     uint32_t columns[RECORD_COLUMNS];
@@ -21,8 +24,8 @@ typedef struct {
 /// Prints the columns' names in their order, one line.
 void record_print_columns(void);
 
-/// name stays the caller's until record_end.
-void record_start(record_t *self, const char *name);
+/// Names the case GROUP/NAME_NUMBER, of two digits.
+void record_start(record_t *self, const char *group, const char *name, uint32_t number);
 
 /// Everything that one tick put out and the law has to tell. At most RECORD_MAX_BLOCKS x
 /// RECORD_BLOCK_TICKS of them.

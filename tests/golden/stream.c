@@ -1,15 +1,12 @@
 #include "stream.h"
 
-#include <stdio.h>
-
 void stream_open(stream_t *self, const char *prefix, uint32_t number) {
     *self = (stream_t){.seed = number};
     for (const char *c = prefix; *c != '\0'; c++) {
         self->seed = self->seed * 31u + (uint8_t)*c;
     }
-    (void)snprintf(self->name, sizeof self->name, "streams/%s_%02u", prefix, (unsigned)number);
     quiesce_params_default(&self->params);
-    record_start(&self->record, self->name);
+    record_start(&self->record, "streams", prefix, number);
 }
 
 void stream_start(stream_t *self) {

@@ -17,7 +17,6 @@ typedef struct {
     vibration_t vibration;
     uint32_t seed;
     uint32_t tick; ///< of the stream; in.tick is what the controller is told
-    char name[32];
 } stream_t;
 
 /// Names the case PREFIX_NUMBER and seeds it; params: the defaults.

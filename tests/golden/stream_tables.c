@@ -1,5 +1,5 @@
 // What is not a stream: the parameter table, parameters that are refused, the rules on a grid.
-#include <stdio.h>
+#include <stddef.h>
 
 #include "quiesce_rules.h"
 #include "stream_cases.h"

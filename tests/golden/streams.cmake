@@ -1,5 +1,6 @@
 # cmake -DPROGRAM=.. -DRECORDED=.. -P streams.cmake: the program prints the recorded streams.
-execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE found COMMAND_ERROR_IS_FATAL ANY)
+# QEMU sends an image's text to its standard error.
+execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE found ERROR_VARIABLE found COMMAND_ERROR_IS_FATAL ANY)
 file(STRINGS ${RECORDED} recorded REGEX "^(columns|streams/|guards/)")
 string(REGEX REPLACE "\n$" "" found "${found}")
 string(REPLACE "\n" ";" found "${found}")

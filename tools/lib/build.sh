@@ -14,11 +14,21 @@ build_cache() {
     export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$ROOT}"
 }
 
+# The firmware on other processors under QEMU: core, C tests, golden traces (cmake/, CMakePresets.json).
+# shellcheck disable=SC2034 # for those who source this
+PORTS=(m3 m4f m7 m33 rv32 aarch64)
+# Compiled for its sizes: QEMU has no Cortex-M0+.
+# shellcheck disable=SC2034
+SIZED_PORTS=(m0plus)
+# What prints the golden traces.
+# shellcheck disable=SC2034
+GOLDEN_PROGRAMS=(golden_streams golden_fft golden_guards)
+
 # What a build folder was configured from; another value needs a fresh one.
 build_stamp() {
     printf '%s %s %s\n' "$ROOT" "$1" "${CMAKE_C_COMPILER_LAUNCHER:-}"
     grep -m 1 '^flags' /proc/cpuinfo | sha256sum || true # the damper models are for this processor
-    cat "$ROOT/CMakePresets.json" "$ROOT"/cmake/{arm-none-eabi,aarch64-linux-gnu}.cmake | sha256sum
+    cat "$ROOT/CMakePresets.json" "$ROOT"/cmake/{arm-none-eabi,aarch64-linux-gnu,riscv64-unknown-elf}.cmake | sha256sum
 }
 
 # build_progress PRESET: reads ninja's lines; a counter on a terminal, one line elsewhere.

@@ -55,6 +55,20 @@ section_m32() {
     wants ctest-m32 && build m32 && step ctest-m32 run_ctest m32
 }
 
+section_ports() {
+    local port
+    for port in "${PORTS[@]}"; do
+        if wants "ctest-$port" && "$ROOT/tools/setup" ports && build "$port"; then
+            step "ctest-$port" run_ctest "$port"
+        fi
+    done
+    for port in "${SIZED_PORTS[@]}"; do
+        if wants "sizes-$port" && build "$port"; then
+            step "sizes-$port" arm-none-eabi-size --totals "build/$port/firmware/libquiesce_core.a"
+        fi
+    done
+}
+
 section_sanitize() {
     ((WHOLE == 0)) || {
         wants ctest-sanitize && build sanitize && step ctest-sanitize run_ctest sanitize

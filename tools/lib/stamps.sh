@@ -13,7 +13,7 @@ inputs_of() {
         tests/build_images tests/unit tests/golden tests/system/vm/guest tools/benchmarks examples"
     local figures=":!tools/benchmarks/quiesce_benchmarks"
     case "$1" in
-    ctest-*) echo "$code $figures" ;;
+    ctest-* | sizes-*) echo "$code $figures" ;;
     cppcheck) echo "$code $figures tools/check" ;;
     tidy) echo "$code $figures tools/check .clang-tidy" ;;
     format) echo "$code examples tests tools/check .clang-format" ;;

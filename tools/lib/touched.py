@@ -33,7 +33,7 @@ AREAS = (
 )
 # Their sanitized builds are minutes of templates; `all` has them.
 HEAVY_AREAS = ("plant", "bench", "link")
-BOARD = ("hal/mps2/", "targets/mps2/", "tests/unit/mps2/")
+BOARD = ("hal/image/", "hal/mps2/", "targets/mps2/", "tests/unit/mps2/")
 # Python packages whose tests are not in the folder of their name.
 PYTHON_TESTS = {
     "base": ("gates/test_bad_input.py",),

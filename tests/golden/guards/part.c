@@ -1,14 +1,11 @@
 #include "part.h"
 
-#include <stdio.h>
-
 void part_open(part_t *self, const char *name, uint32_t number) {
     *self = (part_t){.seed = number};
     for (const char *c = name; *c != '\0'; c++) {
         self->seed = self->seed * 31u + (uint8_t)*c;
     }
-    (void)snprintf(self->name, sizeof self->name, "guards/%s_%02u", name, (unsigned)number);
-    record_start(&self->record, self->name);
+    record_start(&self->record, "guards", name, number);
 }
 
 void part_word(part_t *self, int64_t word) {

@@ -9,7 +9,6 @@
 typedef struct {
     record_t record;
     uint32_t seed;
-    char name[32];
 } part_t;
 
 /// Names the case guards/NAME_NUMBER and seeds it.

@@ -3,7 +3,7 @@
 static can_frame_t protect(uint32_t message, const uint8_t data[CAN_MAX_BYTES], uint8_t alive) {
     const e2e_layout_t *layout = &quiesce_can_messages[message].e2e;
     can_frame_t frame = {.id = layout->id, .length = layout->length};
-    for (uint32_t i = 0; i < frame.length; i++) {
+    for (uint32_t i = 0; i < frame.length && i < CAN_MAX_BYTES; i++) {
         frame.data[i] = data[i];
     }
     e2e_protect(layout, &alive, &frame);

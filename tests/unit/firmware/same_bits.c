@@ -8,13 +8,9 @@
 
 #include <stddef.h>
 
+#include "put.h"
 #include "test_signal.h"
 #include "word_crc.h"
-#ifdef QUIESCE_TARGET_MPS2
-#include "semihost.h"
-#else
-#include <stdio.h>
-#endif
 
 enum { CASES = 24, TICKS = 6000, SETTINGS = 6 };
 
@@ -31,20 +27,6 @@ typedef struct {
     int32_t offset;
     uint32_t dropouts; ///< in 1000 samples
 } stretch_t;
-
-static void put_char(char c) {
-#ifdef QUIESCE_TARGET_MPS2
-    semihost_put_char(c);
-#else
-    (void)putchar(c);
-#endif
-}
-
-static void put_hex(uint32_t value) {
-    for (uint32_t shift = 32; shift > 0; shift -= 4) {
-        put_char("0123456789ABCDEF"[(value >> (shift - 4u)) & 15u]);
-    }
-}
 
 static void append_telemetry(digest_t *self, const quiesce_telemetry_t *telemetry) {
     const uint32_t *words = (const uint32_t *)(const void *)telemetry;
@@ -143,7 +125,7 @@ static int run_cases(lockstep_t *server) {
     return 0;
 }
 
-#ifdef QUIESCE_TARGET_MPS2
+#ifdef QUIESCE_TARGET_IMAGE
 int main(void) {
     static lockstep_t server;
     return run_cases(&server);

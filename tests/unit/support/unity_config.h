@@ -1,4 +1,4 @@
-/// Unity's configuration for both builds: integers only; on the target, output by semihosting.
+/// Unity's configuration for all builds: integers only; an image's output goes by semihosting.
 #ifndef UNITY_CONFIG_H
 #define UNITY_CONFIG_H
 
@@ -6,7 +6,7 @@
 #define UNITY_EXCLUDE_DOUBLE
 #define UNITY_EXCLUDE_MATH_H
 
-#ifdef QUIESCE_TARGET_MPS2
+#ifdef QUIESCE_TARGET_IMAGE
 #include "semihost.h"
 #define UNITY_OUTPUT_CHAR(c) semihost_put_char((char)(c))
 #endif

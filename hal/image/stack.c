@@ -1,6 +1,6 @@
 #include "stack.h"
 
-extern uint32_t stack_limit[]; // lowest word; mps2.ld
+extern uint32_t stack_limit[]; // lowest word; image.ld
 extern uint32_t stack_top[];   // one past the highest
 
 uint32_t stack_high_water_bytes(void) {

@@ -6,18 +6,12 @@
 #define SYS_EXIT_EXTENDED 0x20u
 #define ADP_STOPPED_APPLICATION_EXIT 0x20026u
 
-static void call(uint32_t operation, const void *argument) {
-    register uint32_t r0 __asm__("r0") = operation;
-    register const void *r1 __asm__("r1") = argument;
-    __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
-}
-
 void semihost_put_char(char c) {
-    call(SYS_WRITEC, &c);
+    semihost_trap(SYS_WRITEC, &c);
 }
 
 void semihost_put_text(const char *text) {
-    call(SYS_WRITE0, text);
+    semihost_trap(SYS_WRITE0, text);
 }
 
 void semihost_put_hex(uint32_t value) {
@@ -29,6 +23,6 @@ void semihost_put_hex(uint32_t value) {
 _Noreturn void semihost_exit(int code) {
     const uint32_t block[2] = {ADP_STOPPED_APPLICATION_EXIT, (uint32_t)code};
     for (;;) {
-        call(SYS_EXIT_EXTENDED, block);
+        semihost_trap(SYS_EXIT_EXTENDED, block);
     }
 }

@@ -5,6 +5,10 @@
 
 #include <stdint.h>
 
+/// The processor's instruction for it: each start-up (hal/mps2, hal/riscv_virt) has its own.
+/// operation: a number of Arm's semihosting specification; argument: what that takes.
+void semihost_trap(uint32_t operation, const void *argument);
+
 void semihost_put_char(char c);
 void semihost_put_text(const char *text);
 
