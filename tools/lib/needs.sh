@@ -5,6 +5,7 @@
 #   plant    the library of quiesce.plant      linux    the Linux controller
 #   dampers  the module of quiesce.damper          trust    what its benchmark abuses and mutates
 #   tables   what its benchmark loads tables into
+#   ports    the golden traces for every processor    budget   the image that a board's budget is held by
 #   page     nothing compiled: what draws the page of `quiesce live`; node: what its benchmark shows
 
 # needs_of COMMAND [ACTION] ...: of `quiesce`; nothing where it starts without a build. A command
@@ -65,10 +66,23 @@ needs_of_benchmark() {
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
     live) echo bench node page ;;
+    board) echo bench ports budget ;;
     trust) echo bench images trust ;;
     tables) echo bench plant dampers images linux tables ;;
     *) echo bench plant dampers ;;
     esac
+}
+
+# needs_ports: what prints the golden traces, for this machine and the others; libraries for their sizes.
+needs_ports() {
+    local preset
+    "$ROOT/tools/setup" ports
+    for preset in host sanitize m32 "${PORTS[@]}"; do
+        build_preset "$preset" "${GOLDEN_PROGRAMS[@]}"
+    done
+    for preset in "${SIZED_PORTS[@]}"; do
+        build_preset "$preset" quiesce_core_1x1
+    done
 }
 
 # needs_build NEED...: builds that, and nothing else.
@@ -84,6 +98,8 @@ needs_build() {
         tables) host+=(table_node) mps2+=(quiesce_mps2_node) ;;
         trust) host+=(all trust_programs) mps2+=(all) ;;
         images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
+        ports) needs_ports ;;
+        budget) build_preset budget quiesce_mps2_node quiesce_mps2_shm node_cost ;;
         esac
     done
     ((${#host[@]} == 0)) || build_preset host "${host[@]}"

@@ -7,6 +7,7 @@
 #include "mailbox.h"
 #include "node.h"
 #include "print.h"
+#include "stack.h"
 
 #include <stddef.h>
 
@@ -19,6 +20,7 @@ enum { COUNT_CAN_TICK = 0, COUNT_RECEIVE = 1, COUNT_NODE_TICK = 2 };
 typedef struct {
     uint32_t what;
     uint32_t ticks;
+    uint32_t law; ///< its number and 1; 0: the default
 } order_t;
 
 typedef struct {
@@ -96,6 +98,7 @@ int main(void) {
     const order_t order = *(const volatile order_t *)MAILBOX_BASE;
     quiesce_params_t params;
     quiesce_params_default(&params);
+    params.law = order.law > 0u ? (int32_t)order.law - 1 : params.law;
     rig.board = (node_inputs_t){.enable = true, .ticks_elapsed = 1};
     if (!node_init(&rig.node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
         return 1;
@@ -104,5 +107,6 @@ int main(void) {
     run(&rig, &order);
     print("ram_bytes", sizeof rig.node.can);
     print("stack_bytes", counted_call_stack_bytes());
+    print("rest_stack_bytes", stack_high_water_bytes()); // of the start, and of what is received
     return 0;
 }

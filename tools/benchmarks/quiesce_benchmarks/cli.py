@@ -9,6 +9,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import Parser, exit_code_of
 from quiesce.base.paths import build_folder, shown
 
+from quiesce_benchmarks.board import benchmark as board_benchmark
 from quiesce_benchmarks.can import benchmark as can_benchmark
 from quiesce_benchmarks.control import benchmark as control_benchmark
 from quiesce_benchmarks.controller import benchmark as controller_benchmark
@@ -43,6 +44,7 @@ BENCHMARKS = (
     install_benchmark,
     lock_benchmark,
     live_benchmark,
+    board_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,

@@ -5,6 +5,7 @@ from typing import Any
 
 from quiesce.engine.laws import published_law
 
+from quiesce_benchmarks.board.page import board_table
 from quiesce_benchmarks.house.committed import Committed
 from quiesce_benchmarks.house.fuzzy_tables import engine_table, host_table, ratio_table
 from quiesce_benchmarks.house.markdown import count, markdown, number
@@ -144,6 +145,8 @@ TABLES: dict[str, Callable[[dict[str, Any]], str]] = {
 def table(name: str, committed: Committed) -> str:
     """Lines of a page, of a table's name and a file's; KeyError where there is no such table."""
     kind, _, file = name.partition(" ")
+    if kind == "board":
+        return board_table(file, committed)
     if kind == "install":
         return install_table(file, committed)
     if kind == "paper":

@@ -1,0 +1,1 @@
+"""What the firmware asks of a board, and whether it does the same on all of them."""
