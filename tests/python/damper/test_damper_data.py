@@ -349,11 +349,6 @@ def test_measured_velocity_is_used_only_when_asked(tmp_path: Path) -> None:
     assert plain.records[0].velocity_m_s.max() == pytest.approx(1e-3 * 5.0 * omega, rel=1e-2)
 
 
-def test_saturated_force_is_told(tmp_path: Path) -> None:
-    file = write(tmp_path, mapped(lambda n, row: (*row[:2], min(row[2], 250.0), row[3])))
-    assert said(read(file), "is its channel saturated?")
-
-
 # Parts
 
 

@@ -191,6 +191,8 @@ def run(args: argparse.Namespace) -> int:
     check_numbers(args)
     names, choice = names_of(args.model), choice_of(args)
     data = records_of(args)
+    for text in data.suspect:  # before minutes of fitting
+        print(f"quiesce: {text}", file=sys.stderr, flush=True)
     train, test = split_records(data.records, data.split)
     out = args.out or results_folder() / NAME / args.files[0].stem
     stamp = stamp_of(train, test, (choice, args.seed, args.effort, args.time_limit))

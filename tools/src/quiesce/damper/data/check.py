@@ -312,6 +312,10 @@ def check_energy(where: str, record: Record, flipped: bool) -> str | None:
     correlation = energy_J / size if size > 0.0 else 0.0
     if correlation < OPPOSITE:
         hint = "leave out --flip-force" if flipped else "--flip-force turns the force"
+        hint += (
+            ", or, where force and displacement are interchanged, --force and --displacement "
+            "name them"
+        )
         raise UsageError(
             f"{where}: the force gives {-energy_J:.3g} J to the motion over the test where a "
             f"damper absorbs energy (correlation with velocity {correlation:.2f}); it has the "
@@ -323,15 +327,3 @@ def check_energy(where: str, record: Record, flipped: bool) -> str | None:
             "without damping, or channels that are shifted in time"
         )
     return None
-
-
-def stuck_note(record: Record) -> str | None:
-    """A force that holds its largest or smallest value for many rows: a saturated channel."""
-    longest = 0
-    for edge in (record.force_N.max(), record.force_N.min()):
-        at_edge = np.concatenate([[0], (record.force_N == edge).astype(int), [0]])
-        turns = np.flatnonzero(np.diff(at_edge))
-        longest = max(longest, int((turns[1::2] - turns[::2]).max()))
-    if longest < max(10, 0.01 * len(record)):
-        return None
-    return f"the force stays at its extreme value for {longest} rows: is its channel saturated?"

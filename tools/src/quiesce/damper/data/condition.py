@@ -14,7 +14,6 @@ from quiesce.damper.data.check import (
     check_rate,
     check_velocity,
     motion_agreement,
-    stuck_note,
 )
 from quiesce.damper.data.motion import derivatives, integrated, low_passed
 from quiesce.damper.data.read import RawTest
@@ -84,8 +83,8 @@ def condition(raw: RawTest, settings: Settings, notes: list[str]) -> Record:
 def judge(where: str, record: Record, settings: Settings, notes: list[str]) -> None:
     if not settings.accept_values:
         check_ranges(where, record)
-    found = (check_energy(where, record, settings.flipped), stuck_note(record))
-    notes += [note for note in found if note]
+    note = check_energy(where, record, settings.flipped)
+    notes += [note] if note else []
 
 
 def command_of(raw: RawTest) -> tuple[np.ndarray, str]:

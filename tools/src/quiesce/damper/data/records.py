@@ -1,6 +1,6 @@
 """Records ready to fit, from files and a plan of how to read them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.damper.data.channels import falling_force, suspicions
 from quiesce.damper.data.condition import condition_all
 from quiesce.damper.data.mapping import Plan, plan_of_mapping, with_low_pass
 from quiesce.damper.data.read import RawTest, read_file
@@ -18,11 +19,13 @@ from quiesce.damper.data.split import Split
 
 @dataclass(frozen=True)
 class Conditioned:
-    """Records ready to fit; `notes` say in plain sentences what was found and done."""
+    """Records ready to fit; `notes` say in plain sentences what was found and done, first of all
+    the suspicions about channels, which `suspect` has alone."""
 
     records: list[Record]
     notes: list[str]
     split: Split | None = None
+    suspect: tuple[str, ...] = ()
 
 
 def records_of_set(table: Mapping[str, Any], folder: Path, low_pass_Hz: float) -> Conditioned:
@@ -55,7 +58,14 @@ def conditioned(files: list[Path], plan: Plan, currents_A: list[float] | None) -
         tests += raw.tests
         notes += [f"{shown(file)}: {note}" for note in raw.notes]
     records, done = condition_all(tests, plan.settings)
-    return Conditioned(records, notes + done, plan.split)
+    suspect = suspicions_of(tests, records)
+    return Conditioned(records, [*suspect, *notes, *done], plan.split, tuple(suspect))
+
+
+def suspicions_of(tests: Sequence[RawTest], records: Sequence[Record]) -> list[str]:
+    found = [f"suspect: {raw.where}: {text}" for raw in tests for text in suspicions(raw)]
+    between = falling_force(records)
+    return [*found, *([f"suspect: {between}"] if between else [])]
 
 
 def with_current(test: RawTest, current_A: float) -> RawTest:
