@@ -1,6 +1,7 @@
 """One model fitted: to every fold of the inner validation, then to the whole training part."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from time import monotonic
 
@@ -8,9 +9,19 @@ import numpy as np
 
 from quiesce.damper import library, passivity
 from quiesce.damper.candidates import GREY_BOX, NETWORK, Candidate, setting_of
-from quiesce.damper.fit.grown import grown_fit
+from quiesce.damper.data.split import Segment
+from quiesce.damper.fit.grown import grow, grown_fit
 from quiesce.damper.fit.problem import Problem, trimmed
-from quiesce.damper.fit.search import Effort, Fit, Progress
+from quiesce.damper.fit.rig_terms import (
+    Verdict,
+    doubtful_terms,
+    limits_for,
+    told_terms,
+    verdicts,
+    without,
+)
+from quiesce.damper.fit.search import Effort, Fit, Progress, polish
+from quiesce.damper.fit.setting import Setting
 from quiesce.damper.fit.small import fit_small
 from quiesce.damper.fitted import BLACK_BOX, Fitted
 from quiesce.damper.judge import currents_of, judged, valid_of, without_rest
@@ -21,6 +32,8 @@ from quiesce.damper.score import Simulate, score
 from quiesce.damper.task import Parts, Plan, Say, Told
 
 SAY_EVERY_s = 10.0
+# Least squares with which mass and skew are tried.
+_TRIED_EVALUATIONS = 20
 
 
 def fit_candidate(
@@ -36,28 +49,100 @@ def fit_candidate(
     progress = saying(candidate.name, say)
     errors, fits = [], []
     last: tuple[Problem, Fit] | None = None
+    notes: list[str] = []
     for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
-        setting = setting_of(candidate, parts.train, plan.choice)
-        problem = Problem(setting, rows, "test" if len(rows) > 1 else "sample")
         smaller = before[k] if before is not None else None
         # A fold must not start from one that has seen its validation rows.
         known = None if validation else last
         left_s = (plan.seconds - (monotonic() - start_s)) / (len(parts.folds) + 1 - k)
-        found = fit_problem(candidate, problem, plan, smaller, known, left_s, progress)
+        setting = setting_of(candidate, parts.train, plan.choice)
+        fit = RigFit(candidate, rows, plan, [smaller, known], left_s, progress)
+        problem, found, notes = fit.with_rig(setting)
         fits.append((problem, found))
         last = (problem, found)
         if validation:
             errors.append(score(simulate_values(problem, found.values), validation).mean_error)
     problem, found = fits[-1]
-    return judged(candidate, problem, found, errors, parts, plan, monotonic() - start_s), fits
+    seconds = monotonic() - start_s
+    return judged(candidate, problem, found, errors, parts, plan, seconds, notes), fits
+
+
+@dataclass
+class RigFit:
+    """One candidate against one set of rows, first without the terms of the rig that have to earn
+    their place. known: fits to start from, of the smaller model and of other rows."""
+
+    candidate: Candidate
+    rows: Sequence[Segment]
+    plan: Plan
+    known: Sequence[tuple[Problem, Fit] | None]
+    seconds: float
+    progress: Progress
+
+    def __post_init__(self) -> None:
+        self.start_s = monotonic()
+
+    def with_rig(self, setting: Setting) -> tuple[Problem, Fit, list[str]]:
+        """The fit, and notes on terms that the data ask for and that are left out."""
+        choice = self.plan.choice
+        if choice.rig is not None or choice.method != "default":
+            return *self.fitted(setting, self.known), []
+        doubtful = doubtful_terms(setting)
+        bare = self.fitted(without(setting, doubtful), self.known)
+        terms = told_terms(doubtful, self.rows)
+        if not terms or not bare[1].is_complete:
+            return *bare, []
+        tried = without(self.limited(setting, terms), [n for n in doubtful if n not in terms])
+        found = self.tried(tried, bare, terms)
+        notes = [one.note for one in found if one.note]
+        kept = [one.name for one in found if one.is_kept]
+        # One that is implausible shows that the model lacks something; the other would mimic it.
+        if notes or not kept:
+            return *bare, notes
+        dropped = [name for name in terms if name not in kept]
+        again = self.fitted(without(tried, dropped), [*self.known, bare])
+        still = verdicts(*self.values_of(again), kept)
+        if not all(one.is_kept for one in still) or again[1].error >= bare[1].error:
+            return *bare, notes + [one.note for one in still if one.note]
+        return *again, notes
+
+    def limited(self, setting: Setting, terms: Sequence[str]) -> Setting:
+        limits = limits_for(self.rows, self.plan.choice.bounds)
+        return replace(setting, bounds={**setting.bounds, **{name: limits[name] for name in terms}})
+
+    def tried(
+        self, setting: Setting, bare: tuple[Problem, Fit], terms: Sequence[str]
+    ) -> list[Verdict]:
+        """Verdicts from least squares that go on from the fit without the terms."""
+        problem = self.problem_of(setting)
+        start = grow(problem, np.zeros((1, len(problem.variables))), *bare)[0]
+        values, _ = polish(problem, start, _TRIED_EVALUATIONS, self.is_over)
+        return verdicts(problem, values, terms)
+
+    def fitted(
+        self, setting: Setting, known: Sequence[tuple[Problem, Fit] | None]
+    ) -> tuple[Problem, Fit]:
+        problem = self.problem_of(setting)
+        left_s = self.seconds - (monotonic() - self.start_s)
+        return problem, fit_problem(
+            self.candidate, problem, self.plan, known, left_s, self.progress
+        )
+
+    def problem_of(self, setting: Setting) -> Problem:
+        return Problem(setting, self.rows, "test" if len(self.rows) > 1 else "sample")
+
+    def values_of(self, fit: tuple[Problem, Fit]) -> tuple[Problem, np.ndarray]:
+        return fit[0], fit[1].values
+
+    def is_over(self) -> bool:
+        return self.plan.stop.is_set() or monotonic() - self.start_s > self.seconds
 
 
 def fit_problem(
     candidate: Candidate,
     problem: Problem,
     plan: Plan,
-    smaller: tuple[Problem, Fit] | None,
-    last: tuple[Problem, Fit] | None,
+    known: Sequence[tuple[Problem, Fit] | None],
     left_s: float,
     progress: Progress,
 ) -> Fit:
@@ -72,9 +157,11 @@ def fit_problem(
     if plan.choice.method != "default":
         return paper_method(plan.choice.method)(problem, plan.seed, effort, progress)
     if candidate.model.startswith(NETWORK):
-        return grown_fit(problem, plan.seed, [smaller, last], effort, progress)
-    known = None if last is None else last[1].values[None, :]
-    return fit_small(problem, plan.seed, effort, progress, known)
+        return grown_fit(problem, plan.seed, known, effort, progress)
+    start = np.zeros((1, len(problem.variables)))
+    starts = [grow(problem, start, *one) for one in known if one is not None]
+    values = np.concatenate(starts) if starts else None
+    return fit_small(problem, plan.seed, effort, progress, values)
 
 
 def saying(name: str, say: Say) -> Progress:

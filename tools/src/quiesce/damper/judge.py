@@ -33,6 +33,7 @@ def judged(
     parts: Parts,
     plan: Plan,
     seconds: float,
+    notes: Sequence[str] = (),
 ) -> Fitted:
     damper = damper_of(candidate, problem, found, parts, plan)
     damper = replace(damper, fit=fit_table(problem, found, errors))
@@ -50,6 +51,7 @@ def judged(
         found.is_complete,
         intervals(problem, found.values) if found.is_complete else [],
         score(simulate, parts.test) if parts.test else None,
+        list(dict.fromkeys(notes)),
     )
 
 

@@ -21,7 +21,7 @@ from quiesce.damper.simulate import simulator
 
 FOLDER = "models"
 STATE = "state.json"
-VERSION = 1
+VERSION = 2
 
 
 def stamp_of(train: Sequence[Segment], test: Sequence[Segment], options: Any) -> str:

@@ -91,6 +91,11 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         "inertia_kg, skew_s, offset_N, drift_N_s (chosen by the data)",
     )  # fmt: skip
     group.add_argument(
+        "--rig-mass-kg", metavar="LOW:HIGH",
+        help="mass that moves between damper and force sensor, as far as it is known (0 up to what "
+        "weighs a tenth of the largest force)",
+    )  # fmt: skip
+    group.add_argument(
         "--current-order", type=int, choices=(0, 1, 2), default=2,
         help="highest power of the current in a parameter (%(default)s)",
     )  # fmt: skip
@@ -140,6 +145,11 @@ def choice_of(args: argparse.Namespace) -> Any:
 
     fixed = numbers_of("--fix", args.fix, 1)
     bounds = numbers_of("--bound", args.bound, 2)
+    if args.rig_mass_kg is not None:
+        mass = mass_of(args.rig_mass_kg)
+        if "inertia_kg" in {**fixed, **bounds}:
+            raise UsageError("--rig-mass-kg and --fix or --bound inertia_kg say the same; keep one")
+        bounds["inertia_kg"] = mass
     known = {one.name for each in models().values() for one in each.parameters} | set(RIG)
     for option, names in (("--fix", fixed), ("--bound", bounds)):
         for name in names:
@@ -154,6 +164,20 @@ def choice_of(args: argparse.Namespace) -> Any:
             if name not in RIG[:-1]:  # the last, a reference, follows from the data
                 raise UsageError(f"--rig {name}: expected some of {', '.join(RIG[:-1])}, or none")
     return Choice(fixed, bounds, rig, args.current_order + 1, args.method)
+
+
+def mass_of(text: str) -> tuple[float, float]:
+    """Bounds of the rig's mass."""
+    low, _, high = text.partition(":")
+    try:
+        mass = (float(low), float(high))
+    except ValueError:
+        mass = (math.nan, math.nan)
+    if not 0.0 <= mass[0] < mass[1] < math.inf:
+        raise UsageError(
+            f"--rig-mass-kg {text}: write LOW:HIGH in kg, from 0 on, the first below the second"
+        )
+    return mass
 
 
 def print_models() -> None:
