@@ -86,6 +86,23 @@ def test_a_moment_of_another_current_is_no_level(example: Path, tmp_path: Path) 
     assert main([*command, "--out", str(tmp_path / "out")]) == 0
 
 
+def test_models_that_a_limit_cuts_short_are_marked_and_ranked(
+    example: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With hardly any time: both kinds of model are there, learned ones trained briefly."""
+    words = arguments(example, tmp_path, "--model", "anfis,viscoplastic_2", "--json")
+    words[words.index("--effort") + 1] = "full"
+    assert main([*words, "--time-limit", "0.05"]) == 0
+    out, err = capsys.readouterr()
+    models = {one["name"]: one for one in json.loads(out)["models"]}
+    assert set(models) == {"anfis", "viscoplastic_2"}
+    for one in models.values():
+        assert not one["is_complete"] and 0.0 < one["validation_error"] < 1.0
+    assert any("trained briefly" in note for note in models["anfis"]["notes"])
+    assert "anfis: validation" in err and "not to its end" in err
+    assert (tmp_path / "models/anfis.toml").is_file()
+
+
 def test_same_seed_same_model(example: Path, tmp_path: Path) -> None:
     texts = []
     for folder in ("a", "b"):

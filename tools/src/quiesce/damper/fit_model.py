@@ -32,6 +32,7 @@ from quiesce.damper.score import Simulate, score
 from quiesce.damper.task import Parts, Plan, Say, Told
 
 SAY_EVERY_s = 10.0
+CUT_SHORT = "trained briefly: the whole training did not end in time (--time-limit)"
 # Least squares with which mass and skew are tried.
 _TRIED_EVALUATIONS = 20
 
@@ -204,26 +205,45 @@ def keep_learned(
     keep: Told,
     say: Say,
 ) -> None:
-    """A learned model is worth nothing half trained: out of time, it is left out."""
+    """A learned model, half trained, is worth nothing; so one that is trained briefly comes first,
+    whatever the time, and stands where the whole training does not end in time."""
+    try:
+        brief = fit_learned(name, parts, plan, bases, is_brief=True)
+    except Stopped:
+        say(f"{name}: left out, stopped")
+        return
+    if plan.quick:
+        keep(brief)
+        return
+    say(f"{name}: trained briefly, validation {100.0 * brief.validation_error:.2f} %; goes on")
     try:
         keep(fit_learned(name, parts, plan, bases))
     except Stopped:
-        say(f"{name}: left out, its training did not end in time")
+        keep(replace(brief, is_complete=False, notes=[*brief.notes, CUT_SHORT]))
 
 
-def fit_learned(name: str, parts: Parts, plan: Plan, bases: Sequence[DamperModel] = ()) -> Fitted:
-    """bases: what a grey box stands on, fitted to each fold and to the whole training part."""
+def fit_learned(
+    name: str,
+    parts: Parts,
+    plan: Plan,
+    bases: Sequence[DamperModel] = (),
+    is_brief: bool = False,
+) -> Fitted:
+    """bases: what a grey box stands on, fitted to each fold and to the whole training part. Stopped
+    where time runs out; a brief training ends only with the plan."""
     module = learner("hysteresis_network" if name == GREY_BOX else name)
+    usual = module.BRIEF if is_brief else module.Settings()
     start_s = monotonic()
     errors = []
     trained = None
 
     def going_on(_text: str) -> None:
-        if plan.stop.is_set() or monotonic() - start_s > plan.seconds:
+        is_late = not is_brief and monotonic() - start_s > plan.seconds
+        if plan.stop.is_set() or is_late:
             raise Stopped
 
     for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
-        settings = module.Settings(base=bases[k]) if bases else module.Settings()
+        settings = replace(usual, base=bases[k]) if bases else usual
         # What follows the rows of a fold validates it: not even its size may be known.
         own = trimmed(rows)
         trained = module.train(own, Scales.of(own), plan.seed, settings, going_on)

@@ -112,9 +112,12 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         type=finite_number,
         default=300.0,
         metavar="s",
-        help="for each model (%(default)g)",
+        help="for each model; one that is cut short is ranked with its best so far (%(default)g)",
     )
-    group.add_argument("--effort", choices=("quick", "full"), default="full", help="(full)")
+    group.add_argument(
+        "--effort", choices=("quick", "full"), default="full",
+        help="quick: fewer starts, networks trained briefly; the same models (%(default)s)",
+    )  # fmt: skip
     group.add_argument("--seed", type=int, default=1, help="(%(default)s)")
     group.add_argument(
         "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="threads (%(default)s)"

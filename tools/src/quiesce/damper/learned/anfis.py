@@ -30,6 +30,10 @@ class Settings:
     first_step: float = 0.02  # of the premises, scaled
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings(epochs=20)
+
+
 @dataclass(frozen=True)
 class Premises:
     """centres and widths [inputs, memberships], scaled."""

@@ -23,6 +23,10 @@ class Settings:
     decay: float = 1e-2
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings(epochs=15)
+
+
 def train(
     segments: Sequence[Segment],
     scales: Scales,

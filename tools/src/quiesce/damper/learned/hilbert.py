@@ -41,6 +41,10 @@ class Settings:
     decay: float = 1e-3
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings(epochs=15)
+
+
 @dataclass(frozen=True)
 class Quadrature:
     window_s: float

@@ -51,6 +51,10 @@ class Settings:
     base: DamperModel | None = None  # the grey box's; its coil lag is taken over
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings(members=2, epochs=15, decays=(0.3,), folds=0)
+
+
 @dataclass(frozen=True)
 class Field:
     """g = s^q (1 + K) / (K + s^q) and its powers 0 .. order."""

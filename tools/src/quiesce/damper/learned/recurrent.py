@@ -34,6 +34,10 @@ class Settings:
     decay: float = 1e-3
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings(epochs=8, free_steps=100)
+
+
 def earlier(force: np.ndarray, feedback: Sequence[int]) -> np.ndarray:
     """Delayed forces [samples, feedback]; 0 before the first."""
     padded = np.concatenate([np.zeros(max(feedback)), force])

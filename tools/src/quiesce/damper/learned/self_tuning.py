@@ -67,6 +67,10 @@ class Settings:
     conjunction: str = "product"  # or "minimum"
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings(cycles=3)
+
+
 @dataclass
 class Triangles:
     """mu = max(0, 1 - 2 |value - centre| / base)."""

@@ -23,6 +23,10 @@ class Settings:
     search_rows: int = 1200
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings(rows=800, penalties=(100.0,), gammas=(1.0,), search_rows=400)
+
+
 def fitted(u: np.ndarray, force: np.ndarray, penalty: float, gamma: float, epsilon: float) -> Any:
     """scikit-learn's SVR. `force` of about unit size."""
     with extra("learned", "support-vector regression"):

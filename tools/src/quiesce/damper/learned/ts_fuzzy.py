@@ -22,6 +22,10 @@ class Settings:
     ridge: float = 1e-6
 
 
+# Of --effort quick, and what stands where time runs out.
+BRIEF = Settings()
+
+
 @dataclass(frozen=True)
 class Clusters:
     """centres and widths [rules, inputs], scaled."""
