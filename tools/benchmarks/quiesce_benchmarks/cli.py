@@ -25,6 +25,7 @@ from quiesce_benchmarks.signal import benchmark as signal_benchmark
 from quiesce_benchmarks.sweep import benchmark as sweep_benchmark
 from quiesce_benchmarks.tables import benchmark as tables_benchmark
 from quiesce_benchmarks.trust import benchmark as trust_benchmark
+from quiesce_benchmarks.unseen import benchmark as unseen_benchmark
 
 # Each has NAME, HELP, DESCRIPTION, add_options(parser) and measure(args, folder) -> Report, which
 # writes its plots into the folder. UsageError for bad input, before anything is measured.
@@ -45,6 +46,7 @@ BENCHMARKS = (
     lock_benchmark,
     live_benchmark,
     board_benchmark,
+    unseen_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,

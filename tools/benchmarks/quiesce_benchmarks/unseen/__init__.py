@@ -1,0 +1,1 @@
+"""Benchmark of identification on dampers and rigs that nothing was tuned on."""

@@ -1,0 +1,1 @@
+"""Parts of `./tools/benchmark unseen`: one module each, with FIGURES and measure(effort)."""
