@@ -89,6 +89,13 @@ class Preamble:
     def may_ask(self) -> bool:
         return bool(self.identification) and not self.misunderstood
 
+    def make_room(self, now_s: float) -> bool:
+        """Whether another request may be sent now; then no parameter is asked for meanwhile."""
+        if not self.may_ask or self._reader.is_waiting(now_s):
+            return False
+        self._reader.hold(now_s)
+        return True
+
     @property
     def frames(self) -> list[Any]:
         return [self.identity] * (self.identity is not None) + self._parameters
@@ -121,27 +128,38 @@ class Preamble:
         if identification is not None:
             self.identity, self.identification = frame, identification
             if self._reader.is_over and identification["param_hash"] != hash_of(self.values):
-                self.read_again(READ_AGAIN_S)
+                self._read_on()
 
-    def read_again(self, least_s: float = 0.0) -> None:
-        """The parameters may be others now."""
-        if time.monotonic() - self._started_s >= least_s:
-            self._reader = ReadAll(self._requests)
+    def _read_on(self) -> None:
+        """Where it was given up from there, else from the start; not without a pause."""
+        if time.monotonic() - self._started_s < READ_AGAIN_S:
+            return
+        if self._reader.is_complete:
+            self.read_again()
+        else:
+            self._reader.go_on()
             self._started_s = time.monotonic()
+
+    def read_again(self) -> None:
+        """The parameters may be others now."""
+        self._reader = ReadAll(self._requests)
+        self._started_s = time.monotonic()
 
 
 class RawStream:
     """Keeps the controller sending every sample."""
 
-    def __init__(self, link: Link, database: Database) -> None:
+    def __init__(self, link: Link, database: Database, preamble: Preamble) -> None:
         self._link = link
         self._requests = Requests(database)
+        self._preamble = preamble
         self._due_s = 0.0
 
     def poll(self) -> Any:
-        """Asks where it is time to; returns the frame."""
+        """Asks where it is time to, between two requests for parameters: reading all may take long
+        on a bus that loses frames. Returns the frame."""
         now_s = time.monotonic()
-        if now_s < self._due_s:
+        if now_s < self._due_s or not self._preamble.make_room(now_s):
             return None
         self._due_s = now_s + RAW_AGAIN_S
         return self._ask(RAW_S)
@@ -163,7 +181,7 @@ class Recorder:
         self.plan = plan
         self.traffic = Traffic(database)
         self.preamble = Preamble(link, database)
-        self.raw = RawStream(link, database) if plan.streams_raw else None
+        self.raw = RawStream(link, database, self.preamble) if plan.streams_raw else None
         self.files: list[LogFile] = []
         self._number = 0  # of the last file
         self._is_warned = False
@@ -223,10 +241,10 @@ class Recorder:
         self._rotate_if_due()
 
     def _ask(self) -> None:
-        """One request at a time: parameters first, then samples."""
-        sent = self.preamble.poll() if self.plan.asks else None
-        if self.raw is not None and self.preamble.is_over and self.preamble.may_ask:
-            sent = self.raw.poll()
+        """One request at a time."""
+        sent = self.raw.poll() if self.raw is not None else None
+        if sent is None and self.plan.asks:
+            sent = self.preamble.poll()
         if sent is not None:
             self.keep(sent)
 

@@ -55,15 +55,17 @@ class Requests:
         assert layout is not None
         return protect(layout, self._alive, data)
 
-    def reply_in(self, frame: Any) -> Reply | None:
-        """The reply to the last request; None where the frame is something else."""
+    def reply_in(self, frame: Any, tries: int = 1) -> Reply | None:
+        """The reply to the last request, or to one of the last `tries` that asked the same; None
+        where the frame is something else."""
         message = self.database.by_id[self.reply_id]
         data = bytes(frame.data)
         if frame.arbitration_id != self.reply_id or len(data) != message.length:
             return None
         layout = message.protection
         assert layout is not None
-        if data[-1] != frame_crc(self.reply_id, data) or alive_of(layout, data) != self._alive:
+        age = (self._alive - alive_of(layout, data)) % ALIVE_PERIOD
+        if data[-1] != frame_crc(self.reply_id, data) or age >= tries:
             return None
         raw = self.database.raw(self.reply_id, data)
         if raw["operation"] != self._operation:
@@ -81,7 +83,8 @@ class Requests:
 class ReadAll:
     """Reads every parameter, a step at a time: poll() says what to send, take() gets every frame.
 
-    Ends at the first index that the controller does not have, or when it answers no more.
+    Ends at the first index that the controller does not have, or when it answers no more: then
+    go_on() asks for what is missing. A late reply counts as well as one in time.
     """
 
     def __init__(self, requests: Requests) -> None:
@@ -94,11 +97,23 @@ class ReadAll:
         self.is_given_up = False
         self._due_s = 0.0
         self._tries = 0
-        self._is_waiting = False
 
     @property
     def is_over(self) -> bool:
         return self.is_complete or self.is_given_up
+
+    def go_on(self) -> None:
+        """Where it has given up."""
+        self.is_given_up = False
+        self._tries = 0
+
+    def is_waiting(self, now_s: float) -> bool:
+        """Whether a request is under way that may be answered yet."""
+        return not self.is_over and now_s < self._due_s
+
+    def hold(self, now_s: float) -> None:
+        """Somebody else asks something now."""
+        self._due_s = max(self._due_s, now_s + self._least_s)
 
     def poll(self, now_s: float) -> bytes | None:
         """A request that is due now. now_s: of a monotonic clock."""
@@ -108,17 +123,15 @@ class ReadAll:
             self.is_given_up = True
             return None
         self._tries += 1
-        self._is_waiting = True
         self._sent_s = now_s
         self._due_s = now_s + REPLY_S
         return self.requests.make("READ", len(self.values))
 
     def take(self, frame: Any) -> bool:
-        """Returns whether the frame is the awaited reply."""
-        reply = self.requests.reply_in(frame) if self._is_waiting else None
-        if reply is None or (reply.result == DONE and reply.param_index != len(self.values)):
+        """Returns whether the frame is an awaited reply."""
+        reply = self.requests.reply_in(frame, self._tries) if not self.is_complete else None
+        if reply is None or reply.param_index != len(self.values):
             return False
-        self._is_waiting = False
         self._due_s = self._sent_s + self._least_s
         if reply.result == DONE:
             self._tries = 0

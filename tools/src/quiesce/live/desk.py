@@ -41,7 +41,7 @@ class Desk:
         self.stored: list[int] = []  # parameters to revert to: of the start, or the last save
         self._rings = {one.frame_id: Ring(RING_SAMPLES) for one in self.series}
         self._link = link
-        self._raw = RawStream(link, database) if is_raw else None
+        self._raw = RawStream(link, database, self.preamble) if is_raw else None
         self._status: dict[str, Any] = {}
         self._status_s = math.nan
         self._faults: dict[str, int] = {}  # how often each was entered since the start
@@ -61,11 +61,14 @@ class Desk:
             self.take(event)
         self.stop.poll()
         if not self.jobs.tap.is_open:
-            self.preamble.poll()
-        if self._raw is not None and self.preamble.may_ask and self.preamble.is_over:
-            self._raw.poll()
+            self._ask()
         if len(self.stored) != len(self.preamble.values):  # of no controller yet, or another one
             self.stored = list(self.preamble.values)
+
+    def _ask(self) -> None:
+        """One request at a time."""
+        if self._raw is None or self._raw.poll() is None:
+            self.preamble.poll()
 
     def take(self, event: Any) -> None:
         """A frame, or the loss or return of the bus."""
