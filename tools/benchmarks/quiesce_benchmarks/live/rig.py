@@ -148,7 +148,8 @@ class Page:
             yield socket
 
     def socket(self, **options: Any) -> ClientConnection:
-        return connect(f"ws://127.0.0.1:{self.port}/socket", **options)
+        patient = {"open_timeout": PATIENCE_S, **options}
+        return connect(f"ws://127.0.0.1:{self.port}/socket", **patient)
 
     def post(self, path: str, body: bytes = b"", **headers: str) -> int:
         request = Request(f"http://127.0.0.1:{self.port}{path}", body, headers, method="POST")
