@@ -7,9 +7,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
+from quiesce import __version__
 from quiesce.base.errors import BenchFailure, UsageError
+from quiesce.can.configuration import Configuration
 from quiesce.can.database import Database
 from quiesce.can.link import Back, Link, Lost
 from quiesce.can.parameters import hash_of, name_of
@@ -24,6 +26,7 @@ READ_AGAIN_S = 5.0
 RAW_S = 10
 RAW_AGAIN_S = 4.0
 IDLE_S = 0.005
+COMMIT_S = 0.5  # what a crash may lose
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,29 @@ class Plan:
         series = re.compile(rf"{stem}_\d{{4,}}{suffix}({re.escape(PART_SUFFIX)})?")
         found = (one for one in self.out.parent.iterdir() if series.fullmatch(one.name))
         return min(found, default=None)
+
+
+@dataclass(frozen=True)
+class Marker:
+    """What somebody says of that time."""
+
+    time_s: float
+    text: str
+
+
+class Known(Protocol):
+    """What every file begins with, kept up to date by somebody."""
+
+    @property
+    def is_complete(self) -> bool: ...
+    @property
+    def frames(self) -> list[Any]: ...
+    @property
+    def values(self) -> list[int]: ...
+    @property
+    def identification(self) -> dict[str, int]: ...
+    def take(self, frame: Any) -> None: ...
+    def read_again(self) -> None: ...
 
 
 class Preamble:
@@ -173,14 +199,21 @@ class RawStream:
 
 
 class Recorder:
-    """Takes everything from the link until told to stop; run() is all there is to do."""
+    """Takes everything from the link until told to stop; run() is all there is to do. known: what
+    files begin with, where somebody else reads it; the plan does not ask then."""
 
     def __init__(
-        self, link: Link, database: Database, plan: Plan, say: Callable[[str], None]
+        self,
+        link: Any,
+        database: Database,
+        plan: Plan,
+        say: Callable[[str], None],
+        known: Known | None = None,
     ) -> None:
         self.plan = plan
         self.traffic = Traffic(database)
         self.preamble = Preamble(link, database)
+        self.known: Known = known or self.preamble
         self.raw = RawStream(link, database, self.preamble) if plan.streams_raw else None
         self.files: list[LogFile] = []
         self._number = 0  # of the last file
@@ -190,7 +223,8 @@ class Recorder:
         self._say = say
         self._held: list[Any] | None = []  # until the preamble is there; None: no more
         self._started_s = time.monotonic()
-        self._file_started_s = 0.0
+        self._file_started_s = self._committed_s = 0.0
+        self._configuration = Configuration(database)
 
     @property
     def file(self) -> LogFile:
@@ -231,8 +265,9 @@ class Recorder:
     def step(self) -> None:
         self._ask()
         event = self._link.receive(IDLE_S)
-        if event is None:
+        if event is None or time.monotonic() - self._committed_s >= COMMIT_S:
             self.file.commit()
+            self._committed_s = time.monotonic()
         while event is not None:
             self.take(event)
             event = self._link.receive_now()
@@ -261,25 +296,28 @@ class Recorder:
         elif isinstance(event, Back):
             self._note(f"bus back after {event.gap_s:.3f} s; frames are missing", event.time_s)
             self.traffic.forget()
-            self.preamble.read_again()
+            self.known.read_again()
+        elif isinstance(event, Marker):
+            self._note(event.text, event.time_s)
         else:
             self.traffic.take(event)
-            self.preamble.take(event)
+            self.known.take(event)
             self.keep(event)
 
     def keep(self, frame: Any) -> None:
+        self._configuration.take(frame)
         if self._held is None:
             self.file.write(frame)
             return
         self._held.append(frame)
         is_late = time.monotonic() - self._started_s > PREAMBLE_S
-        if self.preamble.is_complete or not self.plan.asks or is_late:
+        if self.known.is_complete or not self.plan.asks or is_late:
             self._begin()
 
     def _begin(self) -> None:
         """The first file gets its preamble, then what was held."""
         held, self._held = self._held or [], None
-        first = self.preamble.frames
+        first = self.known.frames
         known = {id(frame) for frame in first}
         self._write_preamble(held[0].timestamp if held else time.time())
         for frame in held:
@@ -289,7 +327,8 @@ class Recorder:
             self._say(self.preamble.text())
 
     def _write_preamble(self, time_s: float) -> None:
-        for frame in self.preamble.frames:
+        for frame in self.known.frames:
+            self._configuration.take(frame)
             stamped = copy.copy(frame)
             stamped.timestamp = time_s
             self.file.write(stamped)
@@ -339,11 +378,12 @@ class Recorder:
                 self._say(file.failure)
 
     def _attachments(self) -> list[tuple[str, bytes, str]]:
-        """The database and the parameters, for formats that take files."""
-        identification = self.preamble.identification
+        """The database and the configuration, for formats that take files."""
         dump = {
-            "identification": identification,
-            "parameters": {name_of(i): value for i, value in enumerate(self.preamble.values)},
+            "tools": __version__,
+            "identification": self.known.identification,
+            "parameters": {name_of(i): value for i, value in enumerate(self.known.values)},
+            "tables": {road: f"{crc:08X}" for road, crc in self._configuration.tables.items()},
         }
         return [
             (self._database.file.name, self._database.source.encode(), "application/octet-stream"),

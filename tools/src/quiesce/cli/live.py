@@ -60,6 +60,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--raw", action="store_true", help="every sample, too: asks for RawSample (+27 %% bus load)"
     )
+    parser.add_argument(
+        "--record-folder", type=Path, default=Path("recordings"), metavar="FOLDER",
+        help="where the page's recorder writes (%(default)s; made at the first recording)",
+    )  # fmt: skip
     add_bus_options(parser)
     add_rig_options(parser)
     parser.set_defaults(run=with_packages(run))
@@ -112,8 +116,8 @@ def run(args: argparse.Namespace) -> int:
         print(f"{address(args.host, at.getsockname()[1], token)}  (Ctrl-C ends it)", flush=True)
         if not is_local(args.host):
             print("quiesce: plain HTTP: who listens on the way learns the token", file=sys.stderr)
-        room = Room(Desk(link, load(), args.raw or rig is not None), rig)
-        asyncio.run(serve(room, Policy(args.host, token), plots, at, stop))
+        desk = Desk(link, load(), args.raw or rig is not None, args.record_folder)
+        asyncio.run(serve(Room(desk, rig), Policy(args.host, token), plots, at, stop))
     return 0
 
 

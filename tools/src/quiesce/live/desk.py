@@ -1,8 +1,10 @@
 """What a server knows of its bus. The link's thread reads; all here runs in the server's loop."""
 
 import math
+import threading
 import time
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from quiesce.can.database import Database
@@ -14,6 +16,7 @@ from quiesce.can.traffic import Traffic
 from quiesce.live.freeze import FirstFault
 from quiesce.live.jobs import Jobs
 from quiesce.live.protocol import Block
+from quiesce.live.recordings import Recordings
 from quiesce.live.rings import Ring
 from quiesce.live.series import catalogue, preferred
 from quiesce.live.stop import Stop
@@ -26,21 +29,54 @@ NONE = "NONE"
 FLAGS = ("is_enabled", "is_estop", "lock_is_on", "freq_is_valid", "raw_is_streaming", "fault_count")
 
 
+class Sent:
+    """A link that also keeps what was sent through it, for who records."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._frames: list[Any] = []
+        self._sending = threading.Lock()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._link, name)
+
+    def send(self, frame_id: int, data: bytes) -> Any:
+        """By any thread."""
+        with self._sending:
+            message = self._link.send(frame_id, data)
+            if message is not None:
+                self._frames.append(message)
+        return message
+
+    def taken(self) -> list[Any]:
+        """What was sent since. Taken before what has come: no answer is before its request."""
+        with self._sending:
+            frames, self._frames = self._frames, []
+        return frames
+
+
 class Desk:
     """drain() takes what has come; the rest answers what viewers ask."""
 
-    def __init__(self, link: Link, database: Database, is_raw: bool = False) -> None:
+    def __init__(
+        self,
+        link: Link,
+        database: Database,
+        is_raw: bool = False,
+        record_folder: Path = Path("recordings"),
+    ) -> None:
         self.database = database
         self.series = catalogue(database)
+        self._link = link = Sent(link)
         self.stop = Stop(link, database)
         self.preamble = Preamble(link, database)
         self.jobs = Jobs(link, database, self.preamble)
+        self.recordings = Recordings(record_folder, database, self.preamble)
         self.first_fault = FirstFault(database)
         self.traffic = Traffic(database)
         self.newest_s = math.nan  # arrival of the newest frame that can be trusted
         self.stored: list[int] = []  # parameters to revert to: of the start, or the last save
-        self._rings = {one.frame_id: Ring(RING_SAMPLES) for one in self.series}
-        self._link = link
+        self.rings = {one.frame_id: Ring(RING_SAMPLES) for one in self.series}
         self._raw = RawStream(link, database, self.preamble) if is_raw else None
         self._status: dict[str, Any] = {}
         self._status_s = math.nan
@@ -59,6 +95,8 @@ class Desk:
             if event is None:
                 break
             self.take(event)
+        self._take_sent()
+        self.recordings.look(self.rings, self.series)
         self.stop.poll()
         if not self.jobs.tap.is_open:
             self._ask()
@@ -70,8 +108,14 @@ class Desk:
         if self._raw is None or self._raw.poll() is None:
             self.preamble.poll()
 
+    def _take_sent(self) -> None:
+        for message in self._link.taken():
+            self.recordings.take(message)
+
     def take(self, event: Any) -> None:
         """A frame, or the loss or return of the bus."""
+        self._take_sent()
+        self.recordings.take(event)
         if isinstance(event, Lost):
             self._lost, self._losses = event.reason, self._losses + 1
             self.jobs.tap.feed(event)
@@ -86,8 +130,8 @@ class Desk:
     def _take_trusted(self, frame: Any) -> None:
         frame_id, data = frame.arbitration_id, bytes(frame.data)
         self.newest_s = frame.timestamp
-        if frame_id in self._rings:
-            self._rings[frame_id].add(frame.timestamp, data)
+        if frame_id in self.rings:
+            self.rings[frame_id].add(frame.timestamp, data)
         if frame_id == self._status_id:
             self._take_status(frame.timestamp, data)
         elif frame_id in self._asked_ids:
@@ -101,6 +145,7 @@ class Desk:
         self._status, self._status_s = self.database.decode(self._status_id, data), time_s
         fault = str(self._status["fault"])
         self.stop.reported(fault)
+        self.recordings.reported(str(self._status["state"]), fault)
         if fault == NONE:
             self.first_fault.healthy()
         elif fault != str(before):
@@ -111,7 +156,7 @@ class Desk:
     @property
     def heard(self) -> set[int]:
         """Ids of the messages that the bus carries and that can be drawn."""
-        return {frame_id for frame_id, ring in self._rings.items() if ring.count}
+        return {frame_id for frame_id, ring in self.rings.items() if ring.count}
 
     def fault_names(self) -> list[str]:
         """In the order of their numbers, without NONE."""
@@ -122,12 +167,12 @@ class Desk:
     def start_of_history(self) -> dict[int, int]:
         """Where a viewer that comes begins, a sample's number by id."""
         since_s = time.time() - HISTORY_S
-        return {frame_id: ring.first_kept(since_s) for frame_id, ring in self._rings.items()}
+        return {frame_id: ring.first_kept(since_s) for frame_id, ring in self.rings.items()}
 
     def blocks(self, shown: tuple[int, ...], cursors: dict[int, int]) -> Iterator[Block]:
         """What is new of the series since the cursors, which move on."""
         for frame_id in dict.fromkeys(self.series[number].frame_id for number in shown):
-            ring = self._rings[frame_id]
+            ring = self.rings[frame_id]
             first, times_s, words = ring.read(cursors[frame_id], MOST_SAMPLES)
             cursors[frame_id] = first + len(times_s)
             if len(times_s):
@@ -145,6 +190,7 @@ class Desk:
             "later_faults": self.first_fault.later,
             "stop": self.stop.told(),
             "job": self.jobs.name,
+            "recorder": self.recordings.told(),
             "heard": sorted(self.heard),
             "preferred": preferred(self.series, self.heard),
         }

@@ -11,11 +11,24 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.live.record_plan import KEYS, RecordPlan, marker_of, record_plan_of
+
 VERSION = 1
 SAMPLES = 1
 MOST_SERIES = 8
 MAX_MESSAGE_BYTES = 4096  # of what a viewer sends
 MOST_SETTINGS = 64
+# What a viewer may ask for, and what he says with it.
+KEYS_OF: dict[str, set[str]] = {
+    **dict.fromkeys(("stop", "take", "release"), set()),
+    "show": {"series"},
+    "set": {"settings"},
+    **dict.fromkeys(("save", "revert"), set()),
+    "rig": {"order"},
+    "record": KEYS,
+    "end_record": set(),
+    "mark": {"text"},
+}
 MOST_MALFORMED = 20  # then the viewer is sent away
 # Kind, version, blocks; number of the message; time of sending; arrival of the newest frame.
 HEAD = struct.Struct("<BBHIdd")
@@ -39,12 +52,15 @@ class Block:
 
 @dataclass(frozen=True)
 class Command:
-    """What a viewer asks for; `series` of show, `settings` of set, `order` of rig."""
+    """What a viewer asks for; `series` of show, `settings` of set, `order` of rig, `plan` of record,
+    `text` of mark."""
 
     do: str
     series: tuple[int, ...] = ()
     settings: tuple[str, ...] = ()  # NAME=VALUE
     order: dict[str, Any] = field(default_factory=dict)
+    plan: RecordPlan | None = None
+    text: str = ""
 
 
 def pack_samples(number: int, sent_s: float, newest_s: float, blocks: Sequence[Block]) -> bytes:
@@ -65,10 +81,9 @@ def command_of(text: str | None, series_count: int) -> Command:
     """Malformed where it is none. text: None where the message was binary."""
     said = object_of(text)
     do = said.get("do")
-    extra = {"show": {"series"}, "set": {"settings"}, "rig": {"order"}}
-    if do not in ("stop", "take", "release", "show", "set", "save", "revert", "rig"):
-        raise Malformed("'do' is none of stop, take, release, show, set, save, revert, rig")
-    if set(said) != {"do"} | extra.get(do, set()):
+    if not isinstance(do, str) or do not in KEYS_OF:
+        raise Malformed(f"'do' is none of {', '.join(KEYS_OF)}")
+    if set(said) != {"do"} | KEYS_OF[do]:
         raise Malformed(f"'{do}' has other keys than it may have")
     if do == "show":
         return Command(do, series=shown_of(said["series"], series_count))
@@ -76,6 +91,13 @@ def command_of(text: str | None, series_count: int) -> Command:
         return Command(do, settings=settings_of(said["settings"]))
     if do == "rig":
         return Command(do, order=order_of(said["order"]))
+    try:
+        if do == "record":
+            return Command(do, plan=record_plan_of(said, series_count))
+        if do == "mark":
+            return Command(do, text=marker_of(said["text"]))
+    except ValueError as error:
+        raise Malformed(str(error))
     return Command(do)
 
 

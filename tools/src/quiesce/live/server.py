@@ -49,6 +49,13 @@ def application(room: Room, policy: Policy, plots: Path) -> App:
         answer.set_cookie(COOKIE, policy.token, httponly=True, samesite="strict")
         return answer
 
+    @app.get("/recordings/{name}")
+    async def recording(name: str) -> Response:
+        file = room.desk.recordings.file(name)
+        if file is None or not file.is_file():
+            return Response("no such recording\n", 404)
+        return FileResponse(file, filename=name, media_type="application/octet-stream")
+
     @app.websocket("/socket")
     async def viewer(socket: WebSocket) -> None:
         number = room.come()
@@ -133,5 +140,6 @@ async def serve(
         server.should_exit = True
         await working[1]
         working[0].cancel()
+        await asyncio.to_thread(room.desk.recordings.close)
     if working[0].done() and not working[0].cancelled():
         working[0].result()  # what ended it

@@ -3,6 +3,7 @@
 import asyncio
 import json
 import time
+from collections.abc import Coroutine
 from typing import Any
 
 from fastapi import WebSocket, WebSocketDisconnect
@@ -10,6 +11,7 @@ from fastapi import WebSocket, WebSocketDisconnect
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.live.jobs import change, store, wanted
 from quiesce.live.protocol import MOST_MALFORMED, Command, Malformed, command_of, pack_samples
+from quiesce.live.recordings import ask_tables
 from quiesce.live.room import Room
 from quiesce.live.series import preferred
 
@@ -33,7 +35,7 @@ class Viewer:
         self._stored: list[int] | None = None
         self._packets = 0
         self._malformed = 0
-        self._works: set[asyncio.Task[None]] = set()
+        self._works: set[asyncio.Task[Any]] = set()
 
     async def serve(self) -> None:
         both = [asyncio.create_task(one) for one in (self._send_all(), self._receive_all())]
@@ -72,6 +74,8 @@ class Viewer:
         elif command.do == "take":
             if not room.control.take(self._number):
                 self._note(False, f"viewer {room.control.holder} holds control")
+        elif command.do == "mark":
+            self._start(command)
         elif room.control.holder != self._number:
             self._note(False, "take control first")
         else:
@@ -80,7 +84,10 @@ class Viewer:
 
     def _start(self, command: Command) -> None:
         """A change takes a while; meanwhile he may ask for other things, and stop."""
-        task = asyncio.create_task(self._work(command))
+        self._run(self._work(command))
+
+    def _run(self, work: Coroutine[Any, Any, Any]) -> None:
+        task = asyncio.create_task(work)
         self._works.add(task)
         task.add_done_callback(self._works.discard)
 
@@ -97,6 +104,8 @@ class Viewer:
         if command.do == "rig":
             return await self._order(command.order)
         desk, jobs = self._desk, self._desk.jobs
+        if command.do in ("record", "end_record", "mark"):
+            return True, self._record(command)
         values = desk.preamble.values
         if not values or not desk.preamble.may_ask:
             why = desk.preamble.misunderstood or "the controller's parameters are not read yet"
@@ -114,6 +123,18 @@ class Viewer:
         if self._room.rig is None:
             return False, "this is no rig in the computer: nothing here can be ordered"
         return True, await asyncio.to_thread(self._room.rig.obey, order)
+
+    def _record(self, command: Command) -> str:
+        """A line about it. UsageError where it cannot be."""
+        desk = self._desk
+        if command.do == "mark":
+            return desk.recordings.mark(command.text)
+        if command.plan is None:
+            return desk.recordings.end()
+        text = desk.recordings.begin(command.plan, desk.rings, desk.series)
+        if desk.preamble.may_ask:
+            self._run(desk.jobs.run("reading which tables are in use", ask_tables))
+        return text
 
     def _settings(self, command: Command, values: list[int]) -> dict[int, int]:
         if command.do == "set":

@@ -3,6 +3,7 @@ import { Charts } from "./charts.js";
 import { Link } from "./link.js";
 import { Parameters } from "./parameters.js";
 import { Rig } from "./rig.js";
+import { Recorder } from "./recorder.js";
 import { Samples, decode } from "./samples.js";
 import * as status from "./status.js";
 import { Stop } from "./stop.js";
@@ -25,6 +26,7 @@ const charts = new Charts($("charts"), samples);
 const stop = new Stop($("stop"), $("stop-said"), (object) => link.send(object));
 const parameters = new Parameters(send);
 const rig = new Rig(send);
+const recorder = new Recorder(send, factorOf);
 const link = new Link({ open: () => {}, close: lost, text: heardText, samples: heardSamples });
 
 function send(object) {
@@ -66,6 +68,7 @@ function showState(state) {
   const isMine = status.showControl(state, hello.viewer);
   parameters.enable(isMine && !state.job);
   rig.show(state, values, isMine);
+  recorder.show(state, isMine);
   if (state.job) say(true, `${state.job} is under way ...`);
   if (heard !== String(state.heard)) {
     heard = String(state.heard);
@@ -85,6 +88,7 @@ function offer(ids, preferred) {
     return label;
   });
   $("choose").replaceChildren(...boxes);
+  recorder.offer(hello.series.filter((one) => ids.includes(one.frame_id)));
   showCharts();
 }
 
@@ -130,6 +134,7 @@ function lost() {
   status.showBus(["NO CONNECTION to the server, trying again. What is shown is old.", true]);
   parameters.enable(false);
   rig.enable(false);
+  recorder.show(null, false);
   $("take").disabled = $("release").disabled = true;
 }
 
