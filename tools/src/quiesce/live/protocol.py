@@ -52,8 +52,8 @@ class Block:
 
 @dataclass(frozen=True)
 class Command:
-    """What a viewer asks for; `series` of show, `settings` of set, `order` of rig, `plan` of record,
-    `text` of mark."""
+    """What a viewer asks for; `series` of show, `settings` of set, `order` of rig, `plan` of
+    record, `text` of mark."""
 
     do: str
     series: tuple[int, ...] = ()
