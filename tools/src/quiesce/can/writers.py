@@ -5,13 +5,13 @@ comes: a candump log beside it takes the frames and is turned into the MDF4 file
 that fails, the candump log stays.
 """
 
-import contextlib
 import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import one_line
+from quiesce.can.mdf_maker import Order, make
 from quiesce.can.python_can import can
 from quiesce.can.whole_file import WholeFile
 
@@ -220,26 +220,9 @@ class MdfFile(LogFile):
             self._thread.join()
 
     def _convert(self, attachments: Sequence[Attachment]) -> None:
-        from quiesce.can.mdf import write_mdf
-        from quiesce.can.readers import read_log
-
-        part = self.target.with_name(self.target.name + ".part.mf4")
-        try:
-            frames = read_log(self.path) if self.frames else ()
-            left_out = write_mdf(part, frames, attachments, "\n".join(self._notes))
-            part.replace(self.target)
-            self._is_made = True
-            if left_out:
-                self._failure = (
-                    f"{self.target}: {left_out} remote or error frames are not in it; {self.path} "
-                    "has all frames"
-                )
-            else:
-                self.path.unlink()
-        except Exception as error:  # of asammdf, or the disk
-            with contextlib.suppress(OSError):
-                part.unlink()
-            self._failure = f"{self.target}: {one_line(error)[:200]}; the frames are in {self.path}"
+        comment = "\n".join(self._notes)
+        made = make(Order(self.path, self.target, self.frames > 0, attachments, comment))
+        self._is_made, self._failure = made.is_made, made.failure
 
 
 def with_channel(frame: Any, channel: Any) -> Any:
