@@ -131,6 +131,7 @@ def test_another_law_is_for_when_control_is_off(shared: Page) -> None:
         ({"excite": {"kind": "si\nne"}}, "kind: expected one of"),
         ({"excite": {"a b": 1}}, "no key of an order"),
         ({"fault": {"kind": "estop"}}, "duration_s"),
+        ({"drive_V": 10**400}, "too large a number"),
     ],
 )
 def test_orders_that_are_none_are_refused_in_one_line(shared: Page, what: dict, why: str) -> None:

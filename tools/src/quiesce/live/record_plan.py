@@ -1,6 +1,5 @@
 """What a viewer asks of the recorder: docs/reference/live-protocol.md."""
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,8 +61,7 @@ def trigger_of(said: Any, series_count: int) -> Trigger:
 
 def number_of(said: dict[str, Any], key: str, least: float, most: float) -> float:
     value = said[key]
-    is_number = type(value) in (int, float) and math.isfinite(value)
-    if not is_number or not least <= value <= most:
+    if type(value) not in (int, float) or not least <= value <= most:  # NaN is in no range
         raise ValueError(f"'{key}' is a number in {least:g} .. {most:g}")
     return float(value)
 

@@ -60,7 +60,7 @@ class Recording:
         self._feed = Feed(before)
         self._stop = threading.Event()
         self._most_s = most_s
-        self._started_s = time.monotonic() - (time.time() - before[0].timestamp if before else 0.0)
+        self._started_s = time.monotonic() - (time.time() - time_of(before[0]) if before else 0.0)
         self._ended_s: float | None = None
         plan = Plan(path, None, None, asks=False)
         self._recorder = Recorder(self._feed, database, plan, lambda _: None, known)
@@ -120,3 +120,8 @@ class Recording:
             self.failure = one_line(error)
         finally:
             self._ended_s = self._ended_s or time.monotonic()
+
+
+def time_of(event: Any) -> float:
+    """Of a frame, a loss or return of the bus, a marker."""
+    return event.timestamp if hasattr(event, "timestamp") else event.time_s

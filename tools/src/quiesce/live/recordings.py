@@ -15,7 +15,7 @@ from quiesce.can.roads import ROADS
 from quiesce.can.services import REPLY, REQUEST, Services
 from quiesce.can.tables import CRC
 from quiesce.live.record_plan import FAULT, LEVEL, MOST_BEFORE_S, MOST_S, NOW, STATE, RecordPlan
-from quiesce.live.recording import Recording
+from quiesce.live.recording import Recording, time_of
 from quiesce.live.rings import Ring
 from quiesce.live.series import Series
 
@@ -239,8 +239,14 @@ class Recordings:
             raise UsageError(
                 f"cannot make {self.folder}: {error.strerror}; start with another --record-folder"
             )
+        try:
+            path = next(one for one in names(self.folder, plan.format) if not one.exists())
+        except OSError as error:
+            raise UsageError(
+                f"cannot look into {self.folder}: {error.strerror}; start with another "
+                "--record-folder"
+            )
         most_s = plan.after_s or MOST_S
-        path = next(one for one in names(self.folder, plan.format) if not one.exists())
         return Recording(path, self._database, self._known, before, most_s)
 
     def _keep(self, path: Path, time_s: float, text: str) -> None:
@@ -270,10 +276,6 @@ class Recordings:
     def _tell(self, is_ok: bool, text: str) -> None:
         """All viewers."""
         self._said = {"is_ok": is_ok, "text": text}
-
-
-def time_of(event: Any) -> float:
-    return event.timestamp if hasattr(event, "timestamp") else event.time_s
 
 
 def names(folder: Path, suffix: str) -> Iterator[Path]:

@@ -48,7 +48,10 @@ class RigDesk:
         excite = order.get("excite")
         if isinstance(excite, dict) and excite.get("kind") == "record":
             order = {**order, "excite": self._record(excite)}
-        self._simulation.order(**order)
+        try:
+            self._simulation.order(**order)
+        except (RecursionError, OverflowError):
+            raise UsageError("an order to the rig nests too deep, or has too large a number")
         return ""
 
     def _record(self, excite: dict[str, Any]) -> dict[str, Any]:
