@@ -14,6 +14,7 @@ from pathlib import Path
 from quiesce.base.errors import one_line
 
 MOST_TEXT = 200  # letters of why it failed
+STDIN, STDOUT, STDERR = range(3)
 
 
 @dataclass(frozen=True)
@@ -84,13 +85,14 @@ def failed(order: Order, why: object) -> Made:
 
 
 def main() -> None:
-    """Of the other process: an order on stdin, what came of it on stdout."""
+    """Of the other process: an order on its standard input, what came of it on the output."""
     # By its name, not __main__'s: who reads the answer knows only that one.
     from quiesce.can import mdf_maker
 
-    answer = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # asammdf prints what it stumbles over
-    order: Order = pickle.load(sys.stdin.buffer)
+    answer = os.fdopen(os.dup(STDOUT), "wb")
+    os.dup2(STDERR, STDOUT)  # asammdf prints what it stumbles over
+    with os.fdopen(STDIN, "rb") as given:
+        order: Order = pickle.load(given)
     with suppress(BrokenPipeError), answer:
         pickle.dump(mdf_maker.convert(order), answer)
 
