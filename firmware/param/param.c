@@ -71,7 +71,7 @@ bool quiesce_param_get(const quiesce_params_t *params, uint32_t index, int32_t *
 
 static bool is_choice(uint32_t index, int32_t value) {
     bool is_free = true;
-    for (uint32_t i = 0; i < PARAM_CHOICES; i++) {
+    for (uint32_t i = 0; i < param_choice_count; i++) {
         if (param_choices[i].index == index) {
             if (param_choices[i].value == value) {
                 return true;
@@ -110,7 +110,7 @@ static bool check_each(const quiesce_params_t *params, quiesce_param_error_t *er
             return refuse(error, i, "out of range");
         }
     }
-    for (uint32_t i = 0; i < PARAM_CHOICES; i++) {
+    for (uint32_t i = 0; i < param_choice_count; i++) {
         const uint32_t index = param_choices[i].index;
         if (!is_choice(index, value_of(params, index))) {
             return refuse(error, index, "not one of the allowed values");

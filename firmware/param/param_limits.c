@@ -5,6 +5,7 @@
 const param_choice_t param_choices[] = {
     {500, 0}, {1000, 0}, {2000, 0}, {4000, 0}, {-1, 3}, {1, 3}, {-1, 18}, {1, 18}, {128, 32}, {256, 32}, {512, 32}, {1024, 32},
 };
+const uint32_t param_choice_count = 12;
 
 const uint32_t param_live[] = {0x023f0000, 0x0002e020};
 

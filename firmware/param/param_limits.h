@@ -16,10 +16,9 @@ typedef struct {
     uint8_t index; ///< of the parameter
 } param_choice_t;
 
-enum { PARAM_CHOICES = 12 };
-
 extern const param_limits_t param_limits[QUIESCE_PARAM_COUNT];
-extern const param_choice_t param_choices[PARAM_CHOICES];
+extern const param_choice_t param_choices[];
+extern const uint32_t param_choice_count;
 extern const uint32_t param_live[]; ///< bit index % 32 of word index / 32
 
 #endif

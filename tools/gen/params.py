@@ -155,6 +155,7 @@ def limits(params: list[dict], digest: str) -> str:
 const param_choice_t param_choices[] = {{
     {", ".join(f"{{{value}, {i}}}" for value, i in choices)},
 }};
+const uint32_t param_choice_count = {len(choices)};
 
 const uint32_t param_live[] = {{{", ".join(f"0x{word:08x}" for word in live)}}};
 
