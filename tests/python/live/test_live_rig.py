@@ -13,6 +13,9 @@ from conftest import ROOT
 from live_page import Page, Viewer
 from quiesce.can.database import load
 from quiesce.can.python_can import can
+from quiesce.rules.formats.files import read_rules
+from quiesce.rules.integers.controller import controller_file
+from quiesce.table.file import read_data
 from quiesce_benchmarks.live.rig import PATIENCE_S
 
 RIG = "quiesce_bench"
@@ -168,6 +171,28 @@ def test_other_programs_join_its_bus(shared: Page) -> None:
     assert status.frame_id in seen
 
 
+def tables_on(page: Page) -> str:
+    """What `quiesce can tables` says of the rig."""
+    with page.viewer() as viewer:
+        words = viewer.hello["rig"]["bus"].split()
+    done = subprocess.run(
+        [sys.executable, "-m", "quiesce", "can", "tables", *words],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_it_starts_with_rules_of_the_user(tmp_path: Path) -> None:
+    rules = ROOT / "sim_hil/data/rules/isolated_machine.fcl"
+    page = Page(tmp_path, "--sim", "--law", "fuzzy", "--rules", str(rules))
+    crc = read_data(controller_file(read_rules(rules))).words[1]
+    assert f"rules   {crc:08x}  file" in tables_on(page)
+    assert page.end() == 0
+
+
 @pytest.mark.slow
 def test_the_rig_does_not_outlive_a_page_that_is_killed(tmp_path: Path) -> None:
     page = Page(tmp_path, "--sim")
@@ -194,6 +219,10 @@ def test_a_rig_that_dies_ends_the_page_in_one_line(tmp_path: Path) -> None:
     [
         (("--sim", "none.toml"), "none.toml: there is no such file"),
         (("--sim", "--law", "waltz"), "--law waltz"),
+        (("--sim", "--rules", "none.fis"), "none.fis"),
+        (("--sim", "--pulses", "none.table"), "none.table: there is no such file"),
+        (("--sim", "--law", "fuzzy", "--rules", "bad.table"), "bad.table"),
+        (("--force-map", "x.table", "--bus", "virtual:x"), "--force-map is of the rig"),
         (("--sim", "--set", "law"), "law"),
         (("--sim", "--record", "none.csv"), "none.csv: cannot be read"),
         (("--sim", "--bus", "virtual:x"), "--sim makes a bus of its own"),
@@ -206,6 +235,7 @@ def test_bad_options_are_refused_in_one_line(
     tmp_path: Path, options: tuple[str, ...], why: str
 ) -> None:
     (tmp_path / "bad.toml").write_text("x = 1\n")
+    (tmp_path / "bad.table").write_bytes(b"no table")
     (tmp_path / "bad.csv").write_text("a,b\n1,2\n")
     done = subprocess.run(
         [sys.executable, "-m", "quiesce", "live", "--port", "0", *options],

@@ -1,5 +1,7 @@
 """quiesce.rig against the rig in the computer: variables, captures, stimuli, what is refused."""
 
+import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -11,6 +13,7 @@ import quiesce.rig
 from conftest import ROOT
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.rig import Rig, RigSetup, Trigger
+from quiesce.rig.simulation import Simulation, own_bus
 
 RESONANCE_Hz = 11.5
 
@@ -91,6 +94,20 @@ def test_a_capture_begins_before_its_trigger(rig: Rig) -> None:
 def test_what_is_not_allowed_is_told(rig: Rig, act, why: str) -> None:
     with pytest.raises(UsageError, match=why):
         act(rig)
+
+
+def test_an_answer_that_comes_late_is_not_the_next_order_s(monkeypatch) -> None:
+    with Simulation(RigSetup().words(), own_bus()) as simulation:
+        process = simulation._process
+        os.kill(process.pid, signal.SIGSTOP)
+        monkeypatch.setattr(quiesce.rig.simulation, "ANSWER_S", 0.1)
+        with pytest.raises(BenchFailure, match="does not answer"):
+            simulation.order(drive_V=-1)
+        monkeypatch.undo()
+        os.kill(process.pid, signal.SIGCONT)
+        simulation.order(drive_V=0.02)  # the first one is refused meanwhile
+        with pytest.raises(UsageError, match="drive_V"):
+            simulation.order(drive_V=-1)
 
 
 def test_what_does_not_come_about_is_a_failure(rig: Rig) -> None:

@@ -38,7 +38,8 @@ def make(order: Order) -> Made:
     """Waits for the other process. It goes on where this one is killed, and Ctrl-C is for this one:
     the file is completed."""
     given = pickle.dumps(order)
-    command = [sys.executable, "-m", "quiesce.can.mdf_maker"]
+    # -P: a module in the folder at hand, such as a user's queue.py, is not to be taken for ours.
+    command = [sys.executable, "-P", "-m", "quiesce.can.mdf_maker"]
     paths = os.pathsep.join(path for path in sys.path if path)
     try:
         done = subprocess.run(

@@ -4,6 +4,7 @@ import argparse
 import asyncio
 import os
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +15,7 @@ from quiesce.base.extras import extra
 from quiesce.base.paths import build_folder, is_installed
 from quiesce.cli.can.bus_options import VARIABLE, add_bus_options, bus_of
 from quiesce.cli.can.command import with_packages
+from quiesce.cli.hil_tables import OPTIONS, add_options, pulses_file, rules_file
 
 if TYPE_CHECKING:
     from quiesce.can.buses import Bus
@@ -78,6 +80,7 @@ def add_rig_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     rig.add_argument("--board", type=Path, metavar="FILE", help="what is wired to it, TOML")
     rig.add_argument("--law", metavar="NAME", help="of the firmware (phase)")
+    add_options(rig)
     rig.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter; repeatable"
     )
@@ -136,19 +139,40 @@ def watched(args: argparse.Namespace) -> "Iterator[tuple[Bus, RigDesk | None]]":
     from quiesce.rig.simulation import Simulation, bus_words, own_bus
 
     plant = Path(args.sim) if args.sim else None
-    setup = RigSetup(plant, args.board, args.law or LAW, tuple(args.set))
     found, bus = motions(args.record), own_bus()
     with extra("multicast", "quiesce live --sim"):
         import msgpack  # noqa: F401
-    with Simulation(setup.words(), bus) as simulation:
-        print(f"other commands join it with {bus_words(bus)}", file=sys.stderr)
-        yield bus, RigDesk(simulation, found)
+    with tempfile.TemporaryDirectory() as folder:
+        tables, settings = tables_of(args, Path(folder))
+        setup = RigSetup(plant, args.board, args.law or LAW, (*settings, *args.set), tables)
+        with Simulation(setup.words(), bus) as simulation:
+            print(f"other commands join it with {bus_words(bus)}", file=sys.stderr)
+            yield bus, RigDesk(simulation, found)
+
+
+def tables_of(args: argparse.Namespace, folder: Path) -> tuple[list[tuple[str, Path]], list[str]]:
+    """Options of the bench with their tables, sources compiled into the folder, and the parameters
+    that go with them."""
+    tables: list[tuple[str, Path]] = []
+    settings: list[str] = []
+    if args.rules:
+        tables.append(("rules", rules_file(args.rules, folder)))
+    if args.pulses:
+        pulses, settings = pulses_file(args.pulses, folder)
+        tables.append(("pulses", pulses))
+    if args.law_table:
+        tables.append(("law-table", args.law_table))
+    if args.force_map:
+        tables.append(("force-map", args.force_map))
+    return tables, settings
 
 
 def refuse_rig_options(args: argparse.Namespace) -> None:
-    for option in ("board", "law", "set", "record"):
+    for option in ("board", "law", *OPTIONS, "set", "record"):
         if getattr(args, option):
-            raise UsageError(f"--{option} is of the rig in the computer; give --sim, too")
+            raise UsageError(
+                f"--{option.replace('_', '-')} is of the rig in the computer; give --sim, too"
+            )
 
 
 def token_of(file: Path | None) -> str:

@@ -138,8 +138,9 @@ async def serve(
                 raise BenchFailure(f"the rig in the computer is gone: {room.rig.failure}")
     finally:
         server.should_exit = True
-        await working[1]
+        await asyncio.wait(working[1:])
         working[0].cancel()
         await asyncio.to_thread(room.desk.recordings.close)
-    if working[0].done() and not working[0].cancelled():
-        working[0].result()  # what ended it
+    for one in working:
+        if one.done() and not one.cancelled():
+            one.result()  # what ended it

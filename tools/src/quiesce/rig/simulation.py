@@ -51,6 +51,7 @@ class Simulation:
         self._options = list(options)
         self._answers: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
         self._asking = threading.Lock()
+        self._owed = 0  # answers; those of orders that were given up come late
         self._is_ready = threading.Event()
         self._has_state = threading.Condition()
         self._said: deque[str] = deque(maxlen=20)  # on stderr
@@ -62,7 +63,7 @@ class Simulation:
         pipes = {name: subprocess.PIPE for name in ("stdin", "stdout", "stderr")}
         # A session of its own: Ctrl-C is for who started it, and he ends it.
         self._process = subprocess.Popen(
-            command, text=True, bufsize=1, start_new_session=True, **pipes
+            command, encoding="utf-8", errors="replace", bufsize=1, start_new_session=True, **pipes
         )
         self._readers = [
             threading.Thread(target=one, daemon=True) for one in (self._hear, self._hear_errors)
@@ -83,6 +84,7 @@ class Simulation:
         process = self._process
         if process is None or process.poll() is None or self.summary:
             return ""
+        self._readers[-1].join(END_S)  # what it said last
         said = one_line(" ".join(self._said)).removeprefix(PREFIX)
         return said or f"the rig ended with {ending(process.returncode)}"
 
@@ -91,14 +93,25 @@ class Simulation:
         BenchFailure where the rig is gone."""
         with self._asking:
             self._write(line_of(what))
-            try:
-                answer = self._answers.get(timeout=ANSWER_S)
-            except queue.Empty:
-                answer = None
+            self._owed += 1
+            answer = self._last_answer()
         if answer is None:
             raise BenchFailure(self.failure or "the rig does not answer")
         if "refused" in answer:
             raise UsageError(answer["refused"])
+
+    def _last_answer(self) -> dict[str, Any] | None:
+        """To what was ordered last; None where it does not come."""
+        answer = None
+        while self._owed:
+            try:
+                answer = self._answers.get(timeout=ANSWER_S)
+            except queue.Empty:
+                return None
+            if answer is None:
+                return None
+            self._owed -= 1
+        return answer
 
     def next_state(self, timeout_s: float = ANSWER_S) -> dict[str, Any]:
         """One that comes from now on: what was ordered before is in it. BenchFailure where none
@@ -120,7 +133,11 @@ class Simulation:
     def _hear(self) -> None:
         assert self._process is not None and self._process.stdout is not None
         for line in self._process.stdout:
-            self._take(json.loads(line))
+            try:
+                self._take(json.loads(line))
+            except ValueError:
+                self._said.append(f"it says {line!r:.200}, which is no JSON")
+                self._process.kill()
         self._process.wait()
         self._is_ready.set()
         self._answers.put(None)
