@@ -102,7 +102,7 @@ class RigFit:
             return *bare, notes
         dropped = [name for name in terms if name not in kept]
         again = self.fitted(without(tried, dropped), [*self.known, bare])
-        still = verdicts(*self.values_of(again), kept)
+        still = verdicts(again[0], again[1].values, kept)
         if not all(one.is_kept for one in still) or again[1].error >= bare[1].error:
             return *bare, notes + [one.note for one in still if one.note]
         return *again, notes
@@ -131,9 +131,6 @@ class RigFit:
 
     def problem_of(self, setting: Setting) -> Problem:
         return Problem(setting, self.rows, "test" if len(self.rows) > 1 else "sample")
-
-    def values_of(self, fit: tuple[Problem, Fit]) -> tuple[Problem, np.ndarray]:
-        return fit[0], fit[1].values
 
     def is_over(self) -> bool:
         return self.plan.stop.is_set() or monotonic() - self.start_s > self.seconds

@@ -3,8 +3,8 @@ have them.
 
 Both mimic what a model lacks: a hysteresis that a static model has not looks like a late force, a
 stiffness like a mass. So a model is fitted without them first. They are then tried from there, and
-stay where their 95 % interval is narrower than the value on either side and the value is one that
-a rig may have.
+stay where their 95 % interval is at most half of the value on either side and the value is one
+that a rig may have.
 """
 
 from collections.abc import Mapping, Sequence
@@ -72,8 +72,13 @@ def doubtful_terms(setting: Setting) -> tuple[str, ...]:
     return tuple(
         name
         for name in DOUBTFUL
-        if name in setting.rig and not setting.bounds.get(name, (0.0, 0.0))[0] > 0.0
+        if name in setting.rig and _holds_zero(setting.bounds.get(name, (0.0, 0.0)))
     )
+
+
+def _holds_zero(bounds: tuple[float, float]) -> bool:
+    low, high = bounds
+    return low <= 0.0 <= high
 
 
 def told_terms(names: Sequence[str], segments: Sequence[Segment]) -> tuple[str, ...]:
