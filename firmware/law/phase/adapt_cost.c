@@ -5,9 +5,6 @@ enum { LIMIT_WEIGHT = 2 }; // more than any pulse gains reach by acceleration
 // change / from in Q20, limited to something between a quarter and a half, to 2^-9 of itself; one
 // 32-bit division.
 static int32_t relative_q20(uint32_t from, int64_t change) {
-    if (change == 0) { // as a rule: a goal limits acceleration or weighs it
-        return 0;
-    }
     const uint32_t up = (uint32_t)__builtin_clz(from | 1u);
     const int64_t limited_change = clamp_i64(change * (INT64_C(1) << up) >> 2, -(1 << 28), 1 << 28);
     return (int32_t)limited_change / (int32_t)(((from | 1u) << up) >> 22);
