@@ -41,6 +41,23 @@ void sweep_go_on(sweep_t *self, uint32_t part, const sweep_part_t *from) {
     rewind_to(self, 0);
 }
 
+bool sweep_go_on_all(sweep_t *self, const sweep_t *from, uint32_t own_part) {
+    for (uint32_t i = 0; i < SWEEP_PARTS; i++) {
+        const sweep_part_t *mine = &self->part[i];
+        const sweep_part_t *other = &from->part[i];
+        if (mine->count != other->count ||
+            (i != own_part && (mine->expected.sum != other->expected.sum ||
+                               mine->expected.sum_of_sums != other->expected.sum_of_sums))) {
+            return false;
+        }
+    }
+    self->part[own_part].expected = from->part[own_part].expected;
+    self->at_part = from->at_part;
+    self->at_word = from->at_word;
+    self->sums = from->sums;
+    return true;
+}
+
 bool sweep_step(sweep_t *self, const uint32_t *own) {
     // What has flipped in here itself must not lead out of the parts.
     const uint32_t at = self->at_part < SWEEP_PARTS ? self->at_part : 0u;

@@ -45,6 +45,11 @@ void sweep_watch(sweep_t *self, uint32_t part, const uint32_t *words, uint32_t c
 /// The same, of another sweep, as it was read there.
 void sweep_go_on(sweep_t *self, uint32_t part, const sweep_part_t *from);
 
+/// Goes on where another sweep stands that watches words with the same sums, wherever those are.
+/// own_part: the one of what steps are given, whose sums are taken over. Returns false, and changes
+/// nothing, iff they watch different words.
+bool sweep_go_on_all(sweep_t *self, const sweep_t *from, uint32_t own_part);
+
 /// A tick. Returns false iff a part was found changed, once.
 bool sweep_step(sweep_t *self, const uint32_t *own);
 

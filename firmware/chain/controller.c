@@ -152,6 +152,30 @@ bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board,
     return is_accepted;
 }
 
+// Everything but pointers is taken: law, tracker and tables have been chosen by the start, and are
+// the same ones. Words that are watched stay the caller's own.
+bool quiesce_go_on(quiesce_t *self, const quiesce_t *from) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    const controller_t *other = (const controller_t *)(const void *)from->opaque;
+    sweep_t sweep = c->sweep;
+    if (c->control.setup.params.law != other->control.setup.params.law ||
+        c->control.setup.params.tracker != other->control.setup.params.tracker ||
+        !sweep_go_on_all(&sweep, &other->sweep, SWEPT_PARAMS)) {
+        return false;
+    }
+    const control_t *own = &c->control;
+    const law_t *law = own->law;
+    const uint32_t *table = own->setup.table;
+    const forces_t forces = own->forces;
+    *c = *other;
+    c->control.law = law;
+    c->control.setup.table = table;
+    c->control.forces = forces;
+    c->view.tone.half = NULL; // of a tick that is over
+    c->sweep = sweep;
+    return true;
+}
+
 static quiesce_fault_t sensor_fault(const condition_out_t *sample) {
     static const uint8_t fault_of[] = {
         [CONDITION_GOOD] = QUIESCE_FAULT_NONE,

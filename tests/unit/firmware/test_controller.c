@@ -509,6 +509,48 @@ static void test_the_lead_of_a_sensors_corner_is_taken_back(void) {
     TEST_ASSERT_LESS_THAN_INT32(60, mean_difference_mA(punctual, led, 0));
 }
 
+static lockstep_t elsewhere;
+
+// Beside the other one, tick for tick the same.
+static void assert_both_go_on_alike(uint32_t ticks) {
+    for (uint32_t i = 0; i < ticks; i++, time_ticks++) {
+        const lockstep_stimulus_t in = {flags, {signal_sine(5195, 11000, time_ticks, 1000)}, {0}};
+        lockstep_reply_t other = reply;
+        lockstep_exchange(&server, &in, &reply);
+        lockstep_exchange(&elsewhere, &in, &other);
+        TEST_ASSERT_EQUAL_MEMORY(&reply, &other, sizeof reply);
+    }
+}
+
+static void test_another_controller_goes_on_where_one_stands(void) {
+    for (int32_t law = 0; law < QUIESCE_LAW_COUNT; law++) {
+        params.law = law;
+        if (!quiesce_params_check(&params, NULL)) {
+            continue; // of another build
+        }
+        start();
+        vibrate(10000, 1500);
+        params.constant_current_mA = 700; // live
+        TEST_ASSERT_TRUE(quiesce_params_use(&server.controller, &params));
+        vibrate(11000, 777);
+        params.constant_current_mA = 600;
+        TEST_ASSERT_TRUE(lockstep_start(&elsewhere, NULL, &params, NULL));
+        elsewhere.in = server.in;
+        TEST_ASSERT_TRUE(quiesce_go_on(&elsewhere.controller, &server.controller));
+        assert_both_go_on_alike(1500);
+    }
+}
+
+static void test_it_does_not_go_on_with_another_law(void) {
+    params.law = QUIESCE_LAW_FUZZY;
+    start();
+    params.law = QUIESCE_LAW_PHASE;
+    TEST_ASSERT_TRUE(lockstep_start(&elsewhere, NULL, &params, NULL));
+    const quiesce_t before = elsewhere.controller;
+    TEST_ASSERT_FALSE(quiesce_go_on(&elsewhere.controller, &server.controller));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &elsewhere.controller, sizeof before);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_chain_reaches_the_rule_bases_current);
@@ -535,5 +577,7 @@ int main(void) {
     RUN_TEST(test_all_parameters_at_their_ends_together_run);
     RUN_TEST(test_latencies_of_sensor_and_bus_are_made_up_for);
     RUN_TEST(test_the_lead_of_a_sensors_corner_is_taken_back);
+    RUN_TEST(test_another_controller_goes_on_where_one_stands);
+    RUN_TEST(test_it_does_not_go_on_with_another_law);
     return UNITY_END();
 }

@@ -104,6 +104,42 @@ static void test_sweep_with_its_own_place_flipped_says_so_or_goes_on(void) {
     }
 }
 
+static void test_sweep_goes_on_with_the_same_words_elsewhere(void) {
+    static uint32_t moved[TABLE];
+    memcpy(moved, table, sizeof moved);
+    sweep_t other;
+    sweep_init(&other, RATE_Hz);
+    sweep_watch(&other, 0, own, OWN, own);
+    sweep_watch(&other, SWEEP_PARTS - 1u, moved, TABLE, own);
+    for (uint32_t i = 0; i < 123; i++) {
+        TEST_ASSERT_TRUE(sweep_step(&sweep, own));
+    }
+    TEST_ASSERT_TRUE(sweep_go_on_all(&other, &sweep, 0));
+    TEST_ASSERT_EQUAL_UINT32(sweep.at_part, other.at_part);
+    TEST_ASSERT_EQUAL_UINT32(sweep.at_word, other.at_word);
+    TEST_ASSERT_EQUAL_PTR(moved, other.part[SWEEP_PARTS - 1u].words);
+    sweep = other;
+    TEST_ASSERT_EQUAL_UINT32(2 * RATE_Hz, ticks_until_seen());
+    moved[TABLE - 1u] ^= 1u;
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(RATE_Hz, ticks_until_seen());
+}
+
+static void test_sweep_does_not_go_on_with_other_words(void) {
+    sweep_t other;
+    sweep_init(&other, RATE_Hz);
+    sweep_watch(&other, 0, own, OWN, own);
+    const sweep_t before = other;
+    TEST_ASSERT_FALSE(sweep_go_on_all(&other, &sweep, 0)); // one has no table
+    sweep_watch(&other, SWEEP_PARTS - 1u, table + 1, TABLE - 1u, own);
+    TEST_ASSERT_FALSE(sweep_go_on_all(&other, &sweep, 0));
+    table[3] ^= 4u;
+    sweep_watch(&other, SWEEP_PARTS - 1u, table, TABLE, own);
+    const sweep_t watching = other;
+    TEST_ASSERT_FALSE(sweep_go_on_all(&other, &sweep, 0));
+    TEST_ASSERT_EQUAL_MEMORY(&watching, &other, sizeof other);
+    TEST_ASSERT_EQUAL_UINT32(before.pass_ticks, other.pass_ticks);
+}
+
 static void test_sweep_reads_few_words_a_tick(void) {
     TEST_ASSERT_EQUAL_UINT32((OWN + TABLE) / (RATE_Hz * 9u / 20u - SWEEP_PARTS) + 1u,
                              sweep.words_a_tick);
@@ -121,6 +157,8 @@ int main(void) {
     RUN_TEST(test_sweep_takes_a_new_part_for_an_old_one);
     RUN_TEST(test_sweep_of_a_copy_reads_the_copys_own_words);
     RUN_TEST(test_sweep_with_its_own_place_flipped_says_so_or_goes_on);
+    RUN_TEST(test_sweep_goes_on_with_the_same_words_elsewhere);
+    RUN_TEST(test_sweep_does_not_go_on_with_other_words);
     RUN_TEST(test_sweep_reads_few_words_a_tick);
     return UNITY_END();
 }
