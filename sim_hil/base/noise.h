@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "state_archive.h"
+
 namespace quiesce {
 
 /// Generator: xoshiro256++ (Blackman and Vigna), seeded through SplitMix64. Distribution:
@@ -18,6 +20,13 @@ class Noise {
 
     /// Next sample of mean 0 and variance 1.
     double gaussian();
+
+    /// What changes while it runs (state_archive.h).
+    void visit_state(StateArchive &archive) {
+        archive(state_);
+        archive(spare_);
+        archive(has_spare_);
+    }
 
   private:
     double uniform_signed();

@@ -137,13 +137,7 @@ RunSetup setup_for_live(const Arguments &arguments) {
     if (arguments.text("scenario")) {
         return run_setup(arguments);
     }
-    Scenario scenario{};
-    scenario.name = "live";
-    scenario.plant_file = arguments.required("plant");
-    scenario.duration_s = std::numeric_limits<float>::max();
-    scenario.seed = 1;
-    scenario.feed_current = true;
-    RunSetup setup = setup_of(arguments, scenario);
+    RunSetup setup = setup_of_plant(arguments, "live");
     setup.scenario.segments = {lasting_sine(setup.plant.shaker.ref_freq_Hz)};
     require_base(setup.scenario, setup.plant);
     return setup;

@@ -14,6 +14,16 @@ StartAnswer InProcessLink::start(const quiesce_board_t *board, const quiesce_par
     return {is_accepted, server_.refused};
 }
 
+void InProcessLink::visit_state(StateArchive &archive) {
+    quiesce_t controller = server_.controller;
+    archive(controller);
+    archive(server_.in);
+    archive(server_.out);
+    if (archive.is_loading() && !quiesce_go_on(&server_.controller, &controller)) {
+        throw InputError("a saved state of a controller with another law, tracker or table");
+    }
+}
+
 void InProcessLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {
     lockstep_exchange(&server_, &stimulus, &reply);
     if ((stimulus.flags & LOCKSTEP_PICTURE) == 0) {

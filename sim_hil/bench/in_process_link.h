@@ -4,6 +4,7 @@
 #define QUIESCE_IN_PROCESS_LINK_H
 
 #include "controller_link.h"
+#include "state_archive.h"
 
 namespace quiesce {
 
@@ -14,6 +15,15 @@ class InProcessLink final : public ControllerLink {
                       const Tables &tables) override;
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     std::optional<InstructionCounts> finish() override { return std::nullopt; }
+
+    /// Between two ticks, as quiesce_params_use.
+    bool use_params(const quiesce_params_t &params) {
+        return quiesce_params_use(&server_.controller, &params);
+    }
+
+    /// What changes while it runs (state_archive.h). It is loaded into one that has been started
+    /// likewise. Throws InputError where that has other tables.
+    void visit_state(StateArchive &archive);
 
   private:
     Tables tables_; ///< of the last start: they stay in use

@@ -1,6 +1,7 @@
 #include "run_options.h"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -146,6 +147,16 @@ RunSetup setup_of(const Arguments &arguments, Scenario scenario) {
     }
     apply_overrides(arguments, setup);
     return setup;
+}
+
+RunSetup setup_of_plant(const Arguments &arguments, const std::string &name) {
+    Scenario scenario{};
+    scenario.name = name;
+    scenario.plant_file = arguments.required("plant");
+    scenario.duration_s = std::numeric_limits<float>::max();
+    scenario.seed = 1;
+    scenario.feed_current = true;
+    return setup_of(arguments, std::move(scenario));
 }
 
 Tables tables_from(const Arguments &arguments, const quiesce_board_t *board,

@@ -29,6 +29,9 @@ RunSetup run_setup(const Arguments &arguments);
 /// The same of a scenario that is no file, or of one that has been loaded.
 RunSetup setup_of(const Arguments &arguments, Scenario scenario);
 
+/// Likewise of the plant of --plant by itself: what shakes it the caller appends.
+RunSetup setup_of_plant(const Arguments &arguments, const std::string &name);
+
 /// Defaults with --law and every --set applied and accepted. base: before those.
 quiesce_params_t params_from(const Arguments &arguments, quiesce_params_t base);
 

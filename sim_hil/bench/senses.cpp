@@ -97,6 +97,14 @@ bool BoardSensor::sample(const Plant &plant, std::int64_t tick, std::int32_t &co
     return true;
 }
 
+void BoardSensor::visit_state(StateArchive &archive) {
+    if (dynamics_) {
+        dynamics_->visit_state(archive);
+    }
+    archive(on_the_way_);
+    noise_.visit_state(archive);
+}
+
 Senses::Senses(const PlantModel &plant, const Rig *rig, std::int32_t tick_rate_Hz,
                std::uint64_t seed)
     : own_(plant.sensor, seed) {
@@ -144,6 +152,16 @@ std::vector<std::int32_t> Senses::full_scales() const {
         out.push_back(sensor.full_scale_counts());
     }
     return out;
+}
+
+void Senses::visit_state(StateArchive &archive) {
+    own_.visit_state(archive);
+    if (transducer_) {
+        transducer_->visit_state(archive);
+    }
+    for (BoardSensor &sensor : sensors_) {
+        sensor.visit_state(archive);
+    }
 }
 
 } // namespace quiesce

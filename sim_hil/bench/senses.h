@@ -26,6 +26,9 @@ class BoardSensor {
 
     std::int32_t full_scale_counts() const { return spec_.full_scale_counts; }
 
+    /// What changes while it runs (state_archive.h).
+    void visit_state(StateArchive &archive);
+
   private:
     double measure(const Plant &plant, std::size_t source) const;
     double shown(const Plant &plant);
@@ -51,6 +54,9 @@ class Senses {
 
     /// Of each sensor.
     std::vector<std::int32_t> full_scales() const;
+
+    /// What changes while it runs (state_archive.h).
+    void visit_state(StateArchive &archive);
 
   private:
     double own_accel_m_s2(const Plant &plant);

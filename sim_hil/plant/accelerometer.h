@@ -30,6 +30,9 @@ class Accelerometer {
     /// Acceleration of one count.
     double scale_m_s2() const { return scale_m_s2_; }
 
+    /// What changes while it runs (state_archive.h).
+    void visit_state(StateArchive &archive) { noise_.visit_state(archive); }
+
   private:
     double scale_m_s2_;
     double noise_counts_;

@@ -108,6 +108,21 @@ const std::vector<PlantTruth> &Plant::advance() {
     return substeps_;
 }
 
+void Plant::visit_state(StateArchive &archive) {
+    for (Actuator &actuator : actuators_) {
+        archive(actuator.driver_A);
+    }
+    archive(y_);
+    archive(coil_A_);
+    archive(effective_A_);
+    archive(step_count_);
+    archive(excitation_now_);
+    archive(segment_);
+    if (archive.is_loading()) {
+        observe(); // the rest follows
+    }
+}
+
 void Plant::check_motion() const {
     const double now_s = time_s(static_cast<double>(step_count_));
     if (!std::isfinite(truth_.accel_m_s2)) {

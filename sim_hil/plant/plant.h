@@ -21,6 +21,7 @@
 #include "plant_model.h"
 #include "remanence.h"
 #include "rk4.h"
+#include "state_archive.h"
 
 namespace quiesce {
 
@@ -72,6 +73,9 @@ class Plant {
     /// valid until the next call. Throws InputError when the motion leaves a damper's range or the
     /// integration diverges.
     const std::vector<PlantTruth> &advance();
+
+    /// What changes while it runs (state_archive.h).
+    void visit_state(StateArchive &archive);
 
   private:
     struct Drive {

@@ -43,6 +43,12 @@ class LowPass {
     LowPass(double corner_Hz, double tick_s);
     double step(double in);
 
+    /// What changes while it runs (state_archive.h).
+    void visit_state(StateArchive &archive) {
+        archive(in_);
+        archive(out_);
+    }
+
   private:
     double time_constant_s_;
     double tick_s_;
@@ -57,6 +63,14 @@ class SensorDynamics {
 
     /// One tick: what it shows of value where it also sees other and a coil's current.
     double step(double value, double other, double coil_A);
+
+    /// What changes while it runs (state_archive.h).
+    void visit_state(StateArchive &archive) {
+        band_.visit_state(archive);
+        corner_.visit_state(archive);
+        archive(drift_);
+        noise_.visit_state(archive);
+    }
 
   private:
     double drift();

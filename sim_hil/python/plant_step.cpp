@@ -1,46 +1,16 @@
 #include "plant_step.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 
 #include "input_error.h"
 #include "plant.h"
 #include "plant_handle.h"
+#include "pushed_segment.h"
 
 namespace quiesce {
 
 namespace {
-
-struct Push {
-    double force_N = 0.0;
-    double base_accel_m_s2 = 0.0;
-};
-
-/// What acts in the tick that is integrated next.
-struct Stretch {
-    double start_tick = 0.0;
-    Push from;
-    Push to;
-};
-
-class StretchSegment final : public Segment {
-  public:
-    StretchSegment(std::shared_ptr<const Stretch> now, int tick_rate_Hz)
-        : now_(std::move(now)), tick_rate_Hz_(tick_rate_Hz) {}
-
-    ExcitationSample sample(double time_s, double start_cycles) const override {
-        const double part = std::clamp(time_s * tick_rate_Hz_ - now_->start_tick, 0.0, 1.0);
-        const auto between = [part](double from, double to) { return from + part * (to - from); };
-        return {between(now_->from.force_N, now_->to.force_N), 0.0, start_cycles,
-                between(now_->from.base_accel_m_s2, now_->to.base_accel_m_s2)};
-    }
-
-  private:
-    std::shared_ptr<const Stretch> now_;
-    double tick_rate_Hz_;
-};
 
 /// With the sensor as a place, so that its velocity is there, too.
 PlantModel with_sensor_place(PlantModel model) {
@@ -53,9 +23,7 @@ Excitation excitation_of(const std::shared_ptr<const Stretch> &stretch, int tick
     if (tick_rate_Hz < 1 || tick_rate_Hz > 1000000) {
         throw InputError("a run: expected 1 to 1000000 ticks a second");
     }
-    Excitation excitation;
-    excitation.append(std::make_unique<StretchSegment>(stretch, tick_rate_Hz), 1.0);
-    return excitation;
+    return pushed_by(stretch, tick_rate_Hz);
 }
 
 } // namespace
