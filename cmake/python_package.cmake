@@ -3,10 +3,16 @@
 set(tree quiesce/tree)
 set(builds ${tree}/build/host)
 
+add_custom_target(python_parts DEPENDS quiesce_bench icount_plugin quiesce_plant quiesce_dampers)
 install(TARGETS quiesce_bench icount_plugin COMPONENT python
         RUNTIME DESTINATION ${builds}/sim_hil LIBRARY DESTINATION ${builds}/sim_hil)
 install(TARGETS quiesce_plant quiesce_dampers COMPONENT python
         LIBRARY DESTINATION ${builds}/sim_hil/python)
+# Where the headers of its standard are (tools/lib/fmi.sh).
+if(TARGET quiesce_fmu)
+  add_dependencies(python_parts quiesce_fmu)
+  install(TARGETS quiesce_fmu COMPONENT python LIBRARY DESTINATION ${builds}/targets/fmu)
+endif()
 install(DIRECTORY sim_hil/data COMPONENT python DESTINATION ${tree}/sim_hil)
 # C that `rules compile` and `identify export` hand out, and that rules are walked with.
 install(DIRECTORY firmware/base firmware/fuzzy COMPONENT python DESTINATION ${tree}/firmware

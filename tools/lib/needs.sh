@@ -4,6 +4,7 @@
 #   bench    quiesce_bench on this machine     images   what it drives in the emulator
 #   plant    the library of quiesce.plant      linux    the Linux controller
 #   dampers  the module of quiesce.damper          trust    what its benchmark abuses and mutates
+#   fmu      the library of `quiesce fmu`
 #   tables   what its benchmark loads tables into
 #   ports    the golden traces for every processor    budget   the image that a board's budget is held by
 #   page     nothing compiled: what draws the page of `quiesce live`; node: what its benchmark shows
@@ -27,6 +28,7 @@ needs_of() {
     "tune law") echo bench ;;
     "tune "*) echo bench plant dampers ;;
     "can "* | "report "*) ;;
+    "fmu "*) echo bench fmu ;;
     "live "*) needs_of_live "$@" ;;
     "completion "*) ;;
     esac
@@ -92,6 +94,7 @@ needs_build() {
         case "$need" in
         bench) host+=(quiesce_bench icount_plugin) ;;
         plant) host+=(quiesce_plant) ;;
+        fmu) host+=(quiesce_fmu) ;;
         dampers) host+=(quiesce_dampers) ;;
         linux) host+=(quiesced) ;;
         node) host+=(live_node) ;;
