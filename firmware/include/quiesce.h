@@ -174,11 +174,11 @@ void quiesce_picture(const quiesce_t *self, quiesce_picture_t *out);
 bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board, const quiesce_params_t *params);
 
 /// Goes on where another controller stands, in every bit: for a simulation that is put back to an
-/// earlier instant, or continued elsewhere. from: a copy of it, maybe its bytes from another process
-/// on such a machine. self: started by the same build with the same board, law, tracker and tables,
-/// which stay its own; parameters that were changed since are taken over. Returns false, and changes
-/// nothing, iff law, tracker, tables or watched words differ. What else is in the bytes is not
-/// looked at: they must be a controller's.
+/// earlier instant, or continued elsewhere. from: a copy of it, maybe its bytes from another
+/// process on such a machine. self: started by the same build with the same board, law, tracker and
+/// tables, which stay its own; parameters that were changed since are taken over. Returns false,
+/// and changes nothing, iff law, tracker, tables or watched words differ. What else is in the bytes
+/// is not looked at: they must be a controller's.
 bool quiesce_go_on(quiesce_t *self, const quiesce_t *from);
 
 /// Other parameters between two steps, also while it runs: those that are live
