@@ -43,7 +43,7 @@ hal_nvm_progress_t hal_nvm_memory_program(hal_nvm_memory_t *memory, uint32_t at,
         return HAL_NVM_FAILED;
     }
     for (uint32_t i = 0; i < count; i++) {
-        if (memory->words[at + i] != ERASED) {
+        if ((memory->words[at + i] & words[i]) != words[i]) {
             return HAL_NVM_FAILED;
         }
     }

@@ -3,14 +3,15 @@
 ///
 /// Writing is sliced: hal_nvm_begin, then hal_nvm_work once a tick or in idle time until it is done
 /// or has failed; until then a start finds the record before it. What a number means is the
-/// target's.
+/// target's: room is for parameters, a law's and a tracker's table, what was learnt, faults and
+/// calibration.
 #ifndef HAL_NVM_H
 #define HAL_NVM_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define HAL_NVM_RECORDS 4u
+#define HAL_NVM_RECORDS 6u
 #define HAL_NVM_MAX_WORDS 2048u ///< of a record
 /// Most that hal_nvm_work writes in a call.
 #define HAL_NVM_SLICE_WORDS 16u
@@ -20,8 +21,8 @@ typedef struct hal_nvm hal_nvm_t;
 typedef enum {
     HAL_NVM_NONE = 0,  ///< never written
     HAL_NVM_KEPT = 1,  ///< what was written last
-    HAL_NVM_OLDER = 2, ///< perhaps the one before: one of its two slots is damaged, or was cut off
-    HAL_NVM_LOST = 3,  ///< both are damaged, or another owner's
+    HAL_NVM_OLDER = 2, ///< perhaps the one before: a later one is damaged, or was cut off
+    HAL_NVM_LOST = 3,  ///< damaged, or another owner's
 } hal_nvm_found_t;
 
 typedef enum {
@@ -33,7 +34,7 @@ typedef enum {
 
 /// Reads a record, 0 .. HAL_NVM_RECORDS - 1, into words, of which there are HAL_NVM_MAX_WORDS; they
 /// may be overwritten whatever is found. *count: of words; 0 where there is none. Takes as long as
-/// the CRCs of both slots, so at the start; not while hal_nvm_work is busy.
+/// the record's CRC, so at the start; not while hal_nvm_work is busy.
 hal_nvm_found_t hal_nvm_read(hal_nvm_t *nvm, uint32_t record, uint32_t *words, uint32_t *count);
 
 /// Begins to replace a record; count 0: from then on it has no words. words: the caller's,
@@ -42,11 +43,14 @@ hal_nvm_found_t hal_nvm_read(hal_nvm_t *nvm, uint32_t record, uint32_t *words, u
 bool hal_nvm_begin(hal_nvm_t *nvm, uint32_t record, const uint32_t *words, uint32_t count);
 
 /// One slice. DONE and FAILED are told once. After FAILED the record is the one before, or the new
-/// one where the very last word is what failed.
+/// one where the very last word is what failed. Some writes erase first, which takes longer.
 hal_nvm_progress_t hal_nvm_work(hal_nvm_t *nvm);
 
-/// Times that a record was written: the memory's wear. Those that were cut off do not count. Only
-/// after hal_nvm_read of it.
+/// Times that a record was written; one that was cut off may count.
 uint32_t hal_nvm_writes(const hal_nvm_t *nvm, uint32_t record);
+
+/// The memory's wear: times that a half of it was erased, the two halves in turn. Those that were
+/// cut off do not count.
+uint32_t hal_nvm_erases(const hal_nvm_t *nvm);
 
 #endif

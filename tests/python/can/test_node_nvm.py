@@ -21,11 +21,12 @@ from test_node_image import DEADLINE_S, Rig, param_index, running
 
 # hal/mps2/nvm_mps2.h, hal/records/nvm_records.h
 MEMORY_BASE = 0x21000000
-AREA_BASE = 0x21FE0000
-SLOT_BYTES = 3 * 4096
-MAGIC = 0x304D5651
-HEAD_WORDS = 4
-MOST_WORDS = 2048
+HALF_WORDS = 0x4000
+HALVES = (0x21FE0000, 0x21FE0000 + 4 * HALF_WORDS)
+HALF, ENTRY, WHOLE_WORD = 0x484D5651, 0x454D5651, 0x57505651
+HEAD_WORDS, FIRST_AT, GAP_WORDS = 4, 8, 4
+RECORDS = 6
+ERASED = (0xFFFFFFFF,) * HEAD_WORDS
 NO_BOARD = 0  # the memory's owner
 
 PARAMS, LAW_TABLE, TRACKER_TABLE, LEARNT_RECORD = 0, 1, 2, 3  # records
@@ -38,13 +39,35 @@ CURRENT = "constant_current_mA"
 TRIM_WORD = 7  # of a record of what was learnt, after its own head and that of the law's words
 
 
-def slot_base(record: int, slot: int) -> int:
-    return AREA_BASE + (2 * record + slot) * SLOT_BYTES
+def crc_of(*words: int) -> int:
+    return zlib.crc32(struct.pack(f"<{len(words)}I", *words))
 
 
-def crc_of(head: Sequence[int], words: Sequence[int]) -> int:
-    covered = (NO_BOARD, *head, *words)
-    return zlib.crc32(struct.pack(f"<{len(covered)}I", *covered))
+def head_of(magic: int, count: int, number: int) -> tuple[int, ...]:
+    return (magic, count, number, crc_of(magic, count, number))
+
+
+def tail_in(count: int) -> int:
+    return HEAD_WORDS + -(-count // HEAD_WORDS) * HEAD_WORDS
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Of the log."""
+
+    address: int
+    record: int
+    writes: int
+    words: tuple[int, ...]
+    is_whole: bool
+
+    @property
+    def tail(self) -> int:
+        return self.address + 4 * tail_in(len(self.words))
+
+    @property
+    def end(self) -> int:
+        return self.tail + 4 * HEAD_WORDS
 
 
 def pulses(unlock_current_mA: int) -> tuple[int, ...]:
@@ -99,33 +122,65 @@ class Memory:
     def flip(self, address: int) -> None:
         self.write(address, [self.words(address, 1)[0] ^ 1])
 
-    def put(self, record: int, words: Sequence[int]) -> None:
-        """In place of what a start finds, or as the first write."""
-        sequence, _ = self.kept(record) or (1, ())
-        head = (sequence, len(words), MAGIC + (record << 24))
-        self.write(self.newest(record), (crc_of(head, words), *head, *words))
+    def half(self) -> int:
+        """Address of the one that counts; the first one is made where there is none."""
+        numbers = {}
+        for base in HALVES:
+            head = self.words(base, HEAD_WORDS)
+            if head == head_of(HALF, 0, head[2]):
+                numbers[head[2]] = base
+        if not numbers:
+            erased = (0xFFFFFFFF,) * (HALF_WORDS - FIRST_AT)
+            self.write(HALVES[0], (*head_of(HALF, 0, 1), *head_of(HALF, 0, 1), *erased))
+            return HALVES[0]
+        return numbers[max(numbers)]
 
-    def slot(self, record: int, slot: int) -> tuple[int, tuple[int, ...]] | None:
-        """Number of the write and the record's words; None where the slot is not whole."""
-        crc, sequence, count, magic = self.words(slot_base(record, slot), HEAD_WORDS)
-        if magic != MAGIC + (record << 24) or count > MOST_WORDS:
+    def entry(self, address: int) -> Entry | None:
+        """What begins there, whole or not."""
+        head = self.words(address, HEAD_WORDS)
+        magic, count, writes, _ = head
+        if head != head_of(magic, count, writes) or not 0 <= magic - ENTRY < RECORDS:
             return None
-        words = self.words(slot_base(record, slot) + 4 * HEAD_WORDS, count)
-        is_whole = crc == crc_of((sequence, count, magic), words)
-        return (sequence, words) if is_whole else None
+        words = self.words(address + 4 * HEAD_WORDS, count)
+        tail = self.words(address + 4 * tail_in(count), 2)
+        is_whole = tail == (crc_of(NO_BOARD, *head, *words), WHOLE_WORD)
+        return Entry(address, magic - ENTRY, writes, words, is_whole)
 
-    def kept(self, record: int) -> tuple[int, tuple[int, ...]] | None:
+    def log(self) -> tuple[list[Entry], int]:
+        """Its entries, and the address of its end."""
+        found = []
+        address = end = self.half() + 4 * FIRST_AT
+        while address < self.half() + 4 * HALF_WORDS:
+            entry = self.entry(address)
+            if entry:
+                found.append(entry)
+                end = max(end, entry.end)
+            elif address >= end and self.words(address, HEAD_WORDS) != ERASED:
+                end = address + 4 * HEAD_WORDS
+            address = entry.end if entry and entry.is_whole else address + 4 * HEAD_WORDS
+        return found, end
+
+    def newest(self, record: int) -> Entry:
         """What a start finds."""
-        return max((one for slot in (0, 1) if (one := self.slot(record, slot))), default=None)
+        return [one for one in self.log()[0] if one.record == record and one.is_whole][-1]
 
-    def newest(self, record: int) -> int:
-        """Where its slot begins; the first write goes to slot 1."""
-        kept = self.kept(record)
-        return slot_base(record, int(kept is None or self.slot(record, 1) == kept))
+    def put(self, record: int, words: Sequence[int]) -> None:
+        """At the end of the log, as the image writes it."""
+        entries, end = self.log()
+        before = [one.writes for one in entries if one.record == record]
+        self.put_at(end, record, max(before, default=0) + 1, words)
 
-    def spare(self, record: int) -> int:
-        """The other slot."""
-        return 2 * slot_base(record, 0) + SLOT_BYTES - self.newest(record)
+    def replace(self, record: int, words: Sequence[int]) -> None:
+        """In place of what a start finds, which is as long."""
+        newest = self.newest(record)
+        assert len(newest.words) == len(words)
+        self.put_at(newest.address, record, newest.writes, words)
+
+    def put_at(self, address: int, record: int, writes: int, words: Sequence[int]) -> None:
+        head = head_of(ENTRY + record, len(words), writes)
+        rest = [0xFFFFFFFF] * (tail_in(len(words)) - HEAD_WORDS - len(words))
+        tail = (crc_of(NO_BOARD, *head, *words), WHOLE_WORD)
+        self.write(address, (*head, *words, *rest, *tail))
 
 
 class Stub:
@@ -159,14 +214,13 @@ class Stub:
             text += byte
         return text[text.index(b"$") + 1 : -3].decode()
 
-    def until_written(self, address: int, times: int) -> None:
-        """The board runs until the word has just been written that often: it stops before a
-        write, which a step then does."""
-        for _ in range(times):
-            self.tell(f"Z2,{address:x},4", "OK")
-            self.tell("c", "T05")
-            self.tell(f"z2,{address:x},4", "OK")
-            self.tell("s", "T05")
+    def until_written(self, address: int) -> None:
+        """The board runs until the word has just been written: it stops before that, and a step
+        then does it."""
+        self.tell(f"Z2,{address:x},4", "OK")
+        self.tell("c", "T05")
+        self.tell(f"z2,{address:x},4", "OK")
+        self.tell("s", "T05")
 
 
 @pytest.fixture
@@ -201,9 +255,9 @@ def test_saved_parameters_are_used_after_a_power_up(image: Path, memory: Memory)
         save_with(rig, CURRENT, 1234)
     with running(image, memory.options()) as rig:
         assert current_of(rig) == 1234
-    # Both slots damaged: what ships is used, and others can be saved.
-    for slot in range(2):
-        memory.flip(slot_base(PARAMS, slot) + 40)
+    # All that there is of it damaged: what ships is used, and others can be saved.
+    for entry in memory.log()[0]:
+        memory.flip(entry.address + 40)
     with running(image, memory.options()) as rig:
         assert current_of(rig) == shipped
         save_with(rig, CURRENT, 555)
@@ -240,9 +294,10 @@ def test_older_record_is_told_until_it_is_stored_again(image: Path, memory: Memo
     memory.put(LAW_TABLE, pulses(700))
     with running(image, memory.options()) as rig:
         assert info(rig, LAW, INFO_RECORD) == WHOLE
-        memory.put(LAW_TABLE, pulses(701))  # behind its back: now the two slots differ
         assert rig.ask("TABLE_SAVE", LAW)["result"] == "DONE"
-    memory.flip(memory.newest(LAW_TABLE) + 80)
+    memory.put(LAW_TABLE, pulses(701))
+    memory.put(LAW_TABLE, pulses(702))
+    memory.flip(memory.newest(LAW_TABLE).address + 80)
     with running(image, memory.options()) as rig:
         assert info(rig, LAW, INFO_CRC) == pulses(701)[1]  # the one before
         assert info(rig, LAW, INFO_RECORD) == OLDER
@@ -292,22 +347,19 @@ def two_of(memory: Memory, subject: Subject) -> list[tuple[int, ...]]:
     """Two good contents of its record; what is there by now is of the subject's law."""
     at = subject.place
     if subject.record == PARAMS:
-        _, params = memory.kept(PARAMS)
+        params = memory.newest(PARAMS).words
         return [(*params[:at], 700 + i, *params[at + 1 :]) for i in range(2)]
     if subject.record == LEARNT_RECORD:
-        _, learnt = memory.kept(LEARNT_RECORD)
+        learnt = memory.newest(LEARNT_RECORD).words
         return [with_trim(learnt, 1 + i) for i in range(2)]
     if subject.record == TRACKER_TABLE:
         return [damper_map(400_000 + i) for i in range(2)]
     return [pulses(700 + i) for i in range(2)]
 
 
-# Word of the slot, and the write to it: the first one erases, the second one programs.
+# Words of the entry after which the power goes; the last two are its tail's.
 ANY = random.Random(20)
-MOMENTS = [
-    *[(word, 1) for word in (0, 3, ANY.randrange(4, 1024))],
-    *[(word, 2) for word in (4, ANY.randrange(5, 40), 0, 2, 3)],
-]
+MOMENTS = [0, 2, 3, 4, ANY.randrange(5, 40), -2, -1]
 
 
 def settled(rig: Rig, operation: str, index: int) -> int:
@@ -332,18 +384,21 @@ def test_power_cut_leaves_the_old_or_the_new(
     words = two_of(memory, subject)
     memory.put(subject.record, words[0])
     outcomes = set()
-    for word, times in MOMENTS:
+    for word in MOMENTS:
+        used = memory.newest(subject.record).words
+        # The first save after a start leaves a gap.
+        place = memory.log()[1] + 4 * GAP_WORDS
+        last = place + 4 * (tail_in(len(used)) + 2)
         with running(image, (*memory.options(), *stub.options())) as rig:
-            _, used = memory.kept(subject.record)
             assert settled(rig, *subject.question) == used[subject.place]
             # Behind its back the record becomes the other one, which it replaces.
-            memory.put(subject.record, words[1 - words.index(used)])
+            memory.replace(subject.record, words[1 - words.index(used)])
             with stub.attached():
                 operation, road = subject.save
                 rig.send("ServiceRequest", operation=operation, param_index=road)
-                stub.until_written(memory.spare(subject.record) + 4 * word, times)
+                stub.until_written((place if word >= 0 else last) + 4 * word)
                 rig.cut_power()
-        _, found = memory.kept(subject.record)
+        found = memory.newest(subject.record).words
         assert found in words
         outcomes.add(found == used)
     with running(image, memory.options()) as rig:

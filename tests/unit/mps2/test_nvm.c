@@ -26,8 +26,9 @@ static void erase(uint32_t at) {
     TEST_ASSERT_EQUAL_UINT32(NVM_MPS2_BLOCK_WORDS / NVM_MPS2_ERASE_WORDS, calls);
 }
 
-static void test_only_erased_words_are_programmed(void) {
+static void test_no_zero_is_programmed_to_a_one(void) {
     const uint32_t some[3] = {1, UINT32_MAX, 3};
+    const uint32_t two = 2;
     memory.words[1026] = 5; // what the machine left there
     TEST_ASSERT_EQUAL(HAL_NVM_FAILED, hal_nvm_memory_program(&memory, 1024, some, 3));
     TEST_ASSERT_EQUAL_HEX32(5, word_at(1026));
@@ -40,7 +41,10 @@ static void test_only_erased_words_are_programmed(void) {
     TEST_ASSERT_EQUAL_HEX32(7, word_at(2048));
     TEST_ASSERT_EQUAL(HAL_NVM_DONE, hal_nvm_memory_program(&memory, 1024, some, 3));
     TEST_ASSERT_EQUAL_HEX32(3, word_at(1026));
-    TEST_ASSERT_EQUAL(HAL_NVM_FAILED, hal_nvm_memory_program(&memory, 1026, some, 1));
+    TEST_ASSERT_EQUAL(HAL_NVM_DONE, hal_nvm_memory_program(&memory, 1026, some, 1)); // bit 1 goes
+    TEST_ASSERT_EQUAL_HEX32(1, word_at(1026));
+    TEST_ASSERT_EQUAL(HAL_NVM_FAILED, hal_nvm_memory_program(&memory, 1026, &two, 1));
+    TEST_ASSERT_EQUAL_HEX32(1, word_at(1026));
     TEST_ASSERT_EQUAL(HAL_NVM_DONE, hal_nvm_memory_program(&memory, 1025, some, 1)); // all ones
 }
 
@@ -78,7 +82,7 @@ static void test_records_fit_and_are_found_again(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(test_only_erased_words_are_programmed);
+    RUN_TEST(test_no_zero_is_programmed_to_a_one);
     RUN_TEST(test_what_is_outside_is_refused);
     RUN_TEST(test_records_fit_and_are_found_again);
     return UNITY_END();
