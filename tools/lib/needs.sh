@@ -6,7 +6,8 @@
 #   dampers  the module of quiesce.damper          trust    what its benchmark abuses and mutates
 #   fmu      the library of `quiesce fmu`
 #   tables   what its benchmark loads tables into
-#   ports    the golden traces for every processor    budget   the image that a board's budget is held by
+#   ports    the golden traces for every processor    budget   the images that a board's budget is held by
+#   coil     the current loop on its coils, and records through power cuts
 #   page     nothing compiled: what draws the page of `quiesce live`; node: what its benchmark shows
 
 # needs_of COMMAND [ACTION] ...: of `quiesce`; nothing where it starts without a build. A command
@@ -68,7 +69,7 @@ needs_of_benchmark() {
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
     live) echo bench node page ;;
-    board) echo bench ports budget ;;
+    board) echo bench ports budget coil ;;
     trust) echo bench images trust ;;
     tables) echo bench plant dampers images linux tables ;;
     *) echo bench plant dampers ;;
@@ -102,7 +103,8 @@ needs_build() {
         trust) host+=(all trust_programs) mps2+=(all) ;;
         images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
         ports) needs_ports ;;
-        budget) build_preset budget quiesce_mps2_node quiesce_mps2_shm node_cost ;;
+        budget) build_preset budget quiesce_mps2_node quiesce_mps2_shm node_cost current_cost ;;
+        coil) host+=(coil_steps test_nvm_cuts) ;;
         esac
     done
     ((${#host[@]} == 0)) || build_preset host "${host[@]}"

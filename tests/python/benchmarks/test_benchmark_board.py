@@ -5,8 +5,15 @@ from pathlib import Path
 
 import pytest
 from quiesce.base.errors import BenchFailure, UsageError
+from quiesce_benchmarks.board.cycles import (
+    INTERRUPT_CYCLES,
+    WAIT_STATES,
+    cycles_of,
+    read_instructions,
+)
 from quiesce_benchmarks.board.disassembly import read_graph
-from quiesce_benchmarks.board.parts import bits, resources
+from quiesce_benchmarks.board.parts import bits, coil, flash, resources
+from quiesce_benchmarks.board.parts.budget import share_pct
 from quiesce_benchmarks.board.parts.path import DIVISION, FORBIDDEN
 from quiesce_benchmarks.part import Effort
 
@@ -145,3 +152,84 @@ def test_growth_is_the_largest_cell() -> None:
     found = {"law off": {"m3": 1020, "rv32": 20}, "new": {"m3": 9}}
     assert resources.growth_pct(found, before) == pytest.approx(5.0)  # 10 bytes of 200
     assert resources.growth_pct(found, {}) is None
+
+
+CODE = """
+00000100 <step>:
+     100:\tpush\t{r4, r5, lr}
+     102:\tldr\tr3, [r0, #4]
+     104:\tsdiv\tr3, r3, r1
+     108:\tbne.n\t100 <step>
+     10a:\tadds\tr0, #1
+     10c:\tbic.w\tr0, r0, #1
+     110:\tldmia.w\tsp!, {r4-r6, pc}
+"""
+
+
+def test_classes_of_instructions_have_their_cycles() -> None:
+    found = read_instructions(CODE)
+    assert [one.cycles for one in found] == [4, 2, 12, 3, 1, 1, 7]
+    assert [one.is_branch for one in found] == [False, False, False, True, False, False, True]
+
+
+def test_a_block_counts_as_often_as_it_ran_with_its_wait_states() -> None:
+    found = read_instructions(CODE)
+    first, second = 21 + WAIT_STATES, 9 + WAIT_STATES
+    assert cycles_of(found, {0x100: 4, 0x10A: 3}) == first + second
+    assert cycles_of(found, {0x100: 8}) == 2 * first
+    with pytest.raises(KeyError, match="0x106"):
+        cycles_of(found, {0x106: 1})
+
+
+def test_share_is_of_ticks_and_interrupts() -> None:
+    assert share_pct(168e3 - INTERRUPT_CYCLES, -INTERRUPT_CYCLES) == pytest.approx(100.0)
+    assert share_pct(-INTERRUPT_CYCLES, 16.8e3 - INTERRUPT_CYCLES) == pytest.approx(100.0)
+
+
+def coil_step(is_possible: bool, step_ms: float, bound_ms: float) -> dict[str, float | bool]:
+    return {
+        "supply_V": 12.0,
+        "resistance_ohm": 5.0,
+        "inductance_mH": 20.0,
+        "is_possible": is_possible,
+        "step_ms": step_ms,
+        "bound_ms": bound_ms,
+        "overshoot_pct": step_ms / 10.0,
+        "steady_pct": 0.01,
+    }
+
+
+def test_coils_beyond_the_supply_are_counted_and_have_no_step() -> None:
+    found = [coil_step(True, 8.0, 5.0), coil_step(True, 12.0, 11.5), coil_step(False, 99.0, 0.0)]
+    values = coil.figures_of(found)
+    assert values["current_step_ms_worst"] == 12.0
+    assert values["current_step_bound_ms_worst"] == 11.5
+    assert values["current_step_beyond_bound_ms_worst"] == 3.0
+    assert values["current_overshoot_pct_worst"] == pytest.approx(1.2)
+    assert values["current_coils_beyond_supply"] == 1
+    assert coil.row_of(found[2])[3:5] == ["never", "never"]
+    with pytest.raises(BenchFailure, match="no coil"):
+        coil.figures_of(found[2:])
+
+
+def test_cuts_are_read_from_what_the_test_prints() -> None:
+    printed = "a:1:b:PASS\nflash_cuts 120\nflash_lost 3\n\nOK\n"
+    assert flash.figures_of(printed) == {"flash_cuts": 120, "flash_lost": 3}
+    with pytest.raises(BenchFailure, match="did not tell"):
+        flash.figures_of("a:1:b:FAIL\n")
+
+
+def test_lost_records_are_a_figure_but_another_failure_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    program = tmp_path / "host/tests/unit/hal/test_nvm_cuts"
+    program.parent.mkdir(parents=True)
+    monkeypatch.setattr(flash, "build_folder", lambda: tmp_path)
+    for lost in (2, 0):
+        program.write_text(f"#!/bin/sh\necho flash_cuts 9\necho flash_lost {lost}\nexit 1\n")
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        if lost:
+            assert flash.measure(QUICK).values["flash_lost"] == 2
+        else:
+            with pytest.raises(BenchFailure, match="test_nvm_cuts ended with"):
+                flash.measure(QUICK)
