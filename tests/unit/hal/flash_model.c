@@ -63,8 +63,9 @@ static void put(hal_nvm_memory_t *it, uint32_t at, uint32_t word, uint32_t weak)
 // Bits of the mask become those of to, or what the cut leaves of them.
 static void change(hal_nvm_memory_t *it, uint32_t at, uint32_t to, uint32_t mask, bool is_cut) {
     const flash_torn_t torn = is_cut ? it->torn : FLASH_ALL;
-    const uint32_t done_of[FLASH_TORN] = {0, ERASED, any(it), 0, any(it)};
-    const uint32_t weak_of[FLASH_TORN] = {0, 0, 0, ERASED, any(it)};
+    const uint32_t one = mask & (~mask + 1u); // of its bits
+    const uint32_t done_of[FLASH_TORN] = {0, ERASED, any(it), 0, any(it), 0, ~one};
+    const uint32_t weak_of[FLASH_TORN] = {0, 0, 0, ERASED, any(it), one, one};
     const uint32_t done = mask & done_of[torn];
     const uint32_t weak = mask & weak_of[torn] & ~done;
     put(it, at, (it->words[at] & ~done) | (to & done), (it->weak[at] & ~done) | weak);

@@ -19,6 +19,8 @@ typedef enum {
     FLASH_SOME,    ///< of the bits that change some have, the others have not
     FLASH_WEAK,    ///< all bits that change are weak
     FLASH_MIXED,   ///< each of them is as it was, as it was to be, or weak
+    FLASH_BEGUN,   ///< one bit is weak, the others have not changed
+    FLASH_NEARLY,  ///< one bit is weak, the others have changed
     FLASH_TORN,    ///< kinds of tearing
 } flash_torn_t;
 
