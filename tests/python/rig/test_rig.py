@@ -14,6 +14,7 @@ from conftest import ROOT
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.rig import Rig, RigSetup, Trigger
 from quiesce.rig.simulation import Simulation, own_bus
+from quiesce_benchmarks.live.rig import PATIENCE_S
 
 RESONANCE_Hz = 11.5
 
@@ -21,7 +22,7 @@ RESONANCE_Hz = 11.5
 @pytest.fixture(scope="module")
 def rig() -> Iterator[Rig]:
     with quiesce.rig.open("host") as one:
-        one.wait(Trigger("status/state", equal="RUN"), 60.0)
+        one.wait(Trigger("status/state", equal="RUN"), PATIENCE_S)
         yield one
 
 
@@ -37,13 +38,13 @@ def test_variables_have_paths_and_units(rig: Rig) -> None:
 @pytest.mark.slow
 def test_parameters_are_written_and_read(rig: Rig) -> None:
     rig.write("rig/control", False)
-    rig.wait(Trigger("status/is_enabled", equal=0))
+    rig.wait(Trigger("status/is_enabled", equal=0), PATIENCE_S)
     rig.write("parameters/law", "constant")
     assert rig.read("parameters/law") == "constant"
     rig.write("parameters/law", "phase")
     assert rig.read("parameters/law") == "phase"
     rig.write("rig/control", True)
-    rig.wait(Trigger("status/state", equal="RUN"))
+    rig.wait(Trigger("status/state", equal="RUN"), PATIENCE_S)
 
 
 def test_a_stimulus_is_in_what_is_read_after_it(rig: Rig) -> None:
@@ -53,18 +54,20 @@ def test_a_stimulus_is_in_what_is_read_after_it(rig: Rig) -> None:
     rig.wait(
         Trigger(
             "motion/freq_uHz", above=1e6 * (RESONANCE_Hz - 0.2), below=1e6 * (RESONANCE_Hz + 0.2)
-        )
+        ),
+        PATIENCE_S,
     )
 
 
 def test_a_capture_begins_before_its_trigger(rig: Rig) -> None:
     rig.write("rig/control", True)
-    rig.wait(Trigger("status/state", equal="RUN"))
+    rig.wait(Trigger("status/state", equal="RUN"), PATIENCE_S)
     rig.fault("disable", 3.0)
     got = rig.capture(
         ["current_demand/current_cmd_mA", "status/is_enabled"],
         length_s=0.4,
         trigger=Trigger("status/is_enabled", equal=1),
+        timeout_s=PATIENCE_S,
         pre_s=0.3,
     )
     demand, enabled = got["current_demand/current_cmd_mA"], got["status/is_enabled"]

@@ -15,7 +15,7 @@ from quiesce.can.parameters import settings_of, text_of
 from quiesce.can.services import DONE, Services, no_answer
 from quiesce.can.traffic import Traffic
 from quiesce.engine.params import parameters
-from quiesce.rig.capture import Recording, Series, Trigger, Value
+from quiesce.rig.capture import Capture, Series, Trigger, Value
 from quiesce.rig.simulation import Simulation
 from quiesce.rig.variables import Variable, catalogue, named
 
@@ -132,24 +132,24 @@ class Rig:
         self._require_signals([*paths, *([trigger.path] if trigger else [])])
         if not (0.0 < length_s <= MOST_S and 0.0 <= pre_s <= MOST_S):
             raise UsageError(f"a capture is of 0 .. {MOST_S:g} s, before the trigger and after it")
-        recording = Recording(paths, trigger)
+        capture = Capture(paths, trigger)
         if trigger is None:
-            recording.start_s = time.time()
+            capture.start_s = time.time()
         else:
-            self._listen_for_trigger(recording, pre_s, timeout_s)
-        assert recording.start_s is not None
-        end_s = recording.start_s + length_s
-        self._listen(recording.take, lambda: False, end_s - time.time())
-        return recording.series(pre_s, length_s)
+            self._listen_for_trigger(capture, pre_s, timeout_s)
+        assert capture.start_s is not None
+        end_s = capture.start_s + length_s
+        self._listen(capture.take, lambda: False, end_s - time.time())
+        return capture.series(pre_s, length_s)
 
-    def _listen_for_trigger(self, recording: Recording, pre_s: float, timeout_s: float) -> None:
+    def _listen_for_trigger(self, capture: Capture, pre_s: float, timeout_s: float) -> None:
         def is_over() -> bool:
-            recording.forget(time.time() - pre_s - READ_S)
-            return recording.start_s is not None
+            capture.forget(time.time() - pre_s - READ_S)
+            return capture.start_s is not None
 
-        self._listen(recording.take, is_over, timeout_s)
-        if recording.start_s is None:
-            raise BenchFailure(f"{recording.trigger} did not come about in {timeout_s:g} s")
+        self._listen(capture.take, is_over, timeout_s)
+        if capture.start_s is None:
+            raise BenchFailure(f"{capture.trigger} did not come about in {timeout_s:g} s")
 
     def _require_signals(self, paths: Sequence[str]) -> None:
         for path in paths:

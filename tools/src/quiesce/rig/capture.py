@@ -43,7 +43,7 @@ class Series:
 
 
 @dataclass
-class Recording:
+class Capture:
     """Samples under way: all of them come in the order of their times."""
 
     paths: Sequence[str]
