@@ -1,5 +1,7 @@
 """Makes an MDF4 file of a candump log in a process of its own: asammdf keeps Python's lock for half
-a second at a time, and whoever reads a bus or sends a STOP is not to wait for that.
+a second at a time, and whoever reads a bus or sends a STOP is not to wait for that. To start that
+process takes the lock, too: Python keeps it until the other program is loaded (vfork), some ms, and
+on a busy machine as long as that one waits for the processor.
 """
 
 import os
@@ -13,6 +15,7 @@ from pathlib import Path
 
 from quiesce.base.errors import one_line
 
+NICE = 5  # who reads the bus goes first
 MOST_TEXT = 200  # letters of why it failed
 STDIN, STDOUT, STDERR = range(3)
 
@@ -90,6 +93,7 @@ def main() -> None:
     # By its name, not __main__'s: who reads the answer knows only that one.
     from quiesce.can import mdf_maker
 
+    os.nice(NICE)
     answer = os.fdopen(os.dup(STDOUT), "wb")
     os.dup2(STDERR, STDOUT)  # asammdf prints what it stumbles over
     with os.fdopen(STDIN, "rb") as given:
