@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from live_page import Page
 from quiesce.live.access import Policy, is_local
+from quiesce.live.crowd import MOST_OF_ADDRESS
+from quiesce.live.server import CONNECTIONS
 from quiesce_benchmarks.live.rig import PATIENCE_S
 from websockets.exceptions import InvalidStatus
 
@@ -195,6 +197,47 @@ def test_what_is_no_request_does_not_end_the_server(page: Page, raw: bytes) -> N
                 pass
     with page.viewer() as viewer:
         assert viewer.watch(2)
+
+
+# Strangers who hold the line
+
+
+@contextlib.contextmanager
+def lines(page: Page, count: int) -> Iterator[list[socket.socket]]:
+    """Connections on which nothing is said."""
+    with contextlib.ExitStack() as stack:
+        at = ("127.0.0.1", page.port)
+        made = (socket.create_connection(at, PATIENCE_S) for _ in range(count))
+        yield [stack.enter_context(one) for one in made]
+
+
+def is_hung_up(line: socket.socket) -> bool:
+    try:
+        return line.recv(1) == b""
+    except ConnectionResetError:
+        return True
+
+
+def test_strangers_who_hold_the_line_lock_nobody_out(page: Page) -> None:
+    """They are more than all connections that the server has."""
+    with lines(page, CONNECTIONS + 10) as strangers, page.viewer() as viewer:
+        assert viewer.watch(2)
+        assert all(is_hung_up(one) for one in strangers[:-MOST_OF_ADDRESS])
+        assert answer(page, "GET", "/live.js", Authorization=BEARER)[0] == 200
+        body = b'{"token": "' + TOKEN.encode() + b'"}'
+        assert answer(page, "POST", "/login", body)[0] == 204
+
+
+def test_who_has_the_token_is_not_among_those_who_have_to_go(page: Page) -> None:
+    with page.viewer() as viewer, lines(page, 2 * MOST_OF_ADDRESS):
+        assert viewer.watch(2)
+
+
+def test_strangers_have_to_go_in_time(page: Page) -> None:
+    """Also who was refused and does not hang up, and who sends a request bit by bit."""
+    with lines(page, 2) as (silent, slow):
+        slow.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Part")
+        assert is_hung_up(silent) and is_hung_up(slow)
 
 
 # The command

@@ -117,14 +117,18 @@ def cookie_of(header: str) -> str:
 
 
 class Door:
-    """An ASGI application around another one: lets in whom the policy does."""
+    """An ASGI application around another one: lets in whom the policy does, and tells whom."""
 
-    def __init__(self, app: App, policy: Policy) -> None:
+    def __init__(self, app: App, policy: Policy, let_in: Callable[[Any], None]) -> None:
+        """let_in: is told his address and port."""
         self._app = app
         self._policy = policy
+        self._let_in = let_in
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         refusal = self._policy.refusal(scope) if scope["type"] in ("http", "websocket") else None
+        if refusal is None and scope.get("path") not in OPEN_PATHS:
+            self._let_in(scope.get("client"))
         if scope["type"] == "websocket" and refusal is not None:
             await receive()
             await send({"type": "websocket.close", "code": 1008, "reason": refusal.why})

@@ -14,8 +14,9 @@ from fastapi.responses import FileResponse, JSONResponse
 
 from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.live.access import COOKIE, App, Door, Policy
+from quiesce.live.crowd import MOST_STRANGERS, Crowd
 from quiesce.live.protocol import MAX_MESSAGE_BYTES
-from quiesce.live.room import Room
+from quiesce.live.room import MOST_VIEWERS, Room
 from quiesce.live.viewer import Viewer
 
 PAGE = Path(__file__).with_name("page")
@@ -23,10 +24,10 @@ TRY_AGAIN_LATER = 1013
 PING_S = 5.0  # a viewer who does not answer for as long is gone, and with him his control
 END_S = 2
 STOP_LOOK_S = 0.1
-CONNECTIONS = 64
+CONNECTIONS = MOST_STRANGERS + 8 * MOST_VIEWERS  # a browser has six, and the websocket
 
 
-def application(room: Room, policy: Policy, plots: Path) -> App:
+def application(room: Room, policy: Policy, plots: Path, crowd: Crowd) -> App:
     """plots: the folder with uPlot."""
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
     for file in sorted(PAGE.iterdir()):
@@ -68,7 +69,7 @@ def application(room: Room, policy: Policy, plots: Path) -> App:
         finally:
             room.go(number)
 
-    return Door(app, policy)
+    return Door(app, policy, crowd.leave)
 
 
 def add_file(app: FastAPI, path: str, file: Path) -> None:
@@ -113,10 +114,12 @@ async def serve(
     room: Room, policy: Policy, plots: Path, at: socket.socket, stop: threading.Event
 ) -> None:
     """Until `stop` is set. BenchFailure where the room's rig is gone before."""
+    crowd = Crowd()
     config = uvicorn.Config(
-        application(room, policy, plots),
+        application(room, policy, plots, crowd),
         loop="asyncio",
-        http="h11",
+        http=crowd.protocol,
+        proxy_headers=False,  # an address that a header names is none
         ws="websockets-sansio",
         ws_max_size=MAX_MESSAGE_BYTES,
         ws_ping_interval=PING_S,
