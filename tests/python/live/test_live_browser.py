@@ -48,6 +48,18 @@ def until(browser: Browser, accept: Callable[[dict[str, Any]], bool]) -> dict[st
     raise AssertionError(f"the page says {said}")
 
 
+def text(browser: Browser, selector: str, accept: Callable[[str], bool]) -> str:
+    """Of that part of the page, once it is accepted."""
+    end_s = time.monotonic() + PATIENCE_S
+    while time.monotonic() < end_s:
+        said = browser.do("text", selector)
+        assert not said["errors"]
+        if accept(said["text"]):
+            return said["text"]
+        time.sleep(0.05)
+    raise AssertionError(f"{selector} says {said['text']}")
+
+
 def test_every_sample_of_eight_signals_is_drawn(controller: Controller, tmp_path: Path) -> None:
     network = Network(controller.path)
     page = Page(tmp_path, *network.options, "--raw")
@@ -107,3 +119,61 @@ def test_nothing_serious_for_axe(page: Page, options: tuple[str, ...]) -> None:
         browser.do("click")
         until(browser, lambda said: "Stopped" in said["stop"])
         assert [one for one in browser.do("axe") if one[0] in SERIOUS] == []
+
+
+def test_a_recording_is_made_marked_and_fetched(page: Page) -> None:
+    with opened(page.address) as browser:
+        browser.do("press", "#take")
+        browser.do("choose", "#record-format", "csv")
+        browser.do("press", "#record")
+        text(browser, "#record-now", lambda said: said.startswith("Recording quiesce_"))
+        browser.do("fill", "#record-text", "the pump starts")
+        browser.do("press", "#record-mark")
+        text(browser, "#record-now", lambda said: said.endswith(", 1 marker"))
+        browser.do("press", "#record-end")
+        text(browser, "#record-files", lambda said: ".csv.markers.csv" in said)
+        markers, frames = (
+            browser.do("fetch", f"#record-files li:nth-child({number}) a") for number in (1, 2)
+        )
+        assert markers["status"] == frames["status"] == 200
+        assert frames["length"] > 10 * markers["length"] > 0
+
+
+def test_a_trigger_that_is_none_is_not_sent(page: Page) -> None:
+    with opened(page.address) as browser:
+        browser.do("press", "#take")
+        browser.do("fill", "#record-before", "31")  # beyond what is kept
+        browser.do("press", "#record")
+        browser.do("fill", "#record-before", "1")
+        browser.do("choose", "#record-on", "fault")
+        browser.do("press", "#record")
+        text(browser, "#record-now", lambda said: said == "Waiting for the trigger.")
+        browser.do("press", "#record-end")
+        text(browser, "#record-now", lambda said: said == "Nothing is recorded.")
+
+
+def test_revert_says_to_what(page: Page) -> None:
+    with opened(page.address) as browser:
+        text(browser, "#revert", lambda said: said == "Revert to the server's start")
+        browser.do("press", "#take")
+        browser.do("press", "#save")
+        text(browser, "#revert", lambda said: said == "Revert to the last save")
+
+
+def test_the_panel_moves_the_rig(tmp_path: Path) -> None:
+    rig = Page(tmp_path, "--sim")
+    with opened(rig.address) as browser:
+        browser.do("press", "#take")
+        text(browser, "#rig-control", lambda said: said == "Switch control off")
+        browser.do("press", "#rig-control")
+        text(browser, "#rig-control", lambda said: said == "Switch control on")
+        text(browser, "#facts dd", lambda said: said == "IDLE")
+        browser.do("choose", "#rig-law", "constant")
+        text(browser, "#said", lambda said: said == "1 changed and read back")
+        browser.do("fill", "#rig-freq_Hz+input", "12.5")
+        text(browser, "#rig-panel", lambda said: "at 12.50 Hz" in said)
+        browser.do("press", "#rig-panel button[data-kind=estop]")
+        text(browser, "#facts dd:nth-of-type(2)", lambda said: said == "ESTOP")
+        browser.do("press", "#rig-control")
+        text(browser, "#rig-control", lambda said: said == "Switch control off")
+    assert rig.end() == 0

@@ -2,6 +2,8 @@
 
 import json
 import math
+import time
+from collections import deque
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +11,7 @@ import pytest
 from live_page import packet_of
 from quiesce.base.errors import UsageError
 from quiesce.can.database import load
+from quiesce.can.e2e import protect
 from quiesce.can.link import Back, Lost
 from quiesce.can.parameters import parameters
 from quiesce.live.control import Control
@@ -199,19 +202,23 @@ def test_wanted_is_what_differs_or_is_not_there() -> None:
 
 
 class SilentLink:
-    """A bus on which nothing comes; what is sent is kept."""
+    """A bus on which nothing comes but what a test puts there; what is sent is kept."""
 
     def __init__(self) -> None:
         self.bus = SimpleNamespace(name="silent:0")
         self.is_up, self.malformed = True, 0
         self.sent: list[tuple[int, bytes]] = []
+        self.events: deque[object] = deque()
+
+    def mark(self, event: object) -> None:
+        self.events.append(event)
 
     def send(self, frame_id: int, data: bytes) -> object:
         self.sent.append((frame_id, data))
-        return object()
+        return SimpleNamespace(arbitration_id=frame_id, data=data, timestamp=time.time())
 
-    def receive_now(self) -> None:
-        return None
+    def receive_now(self) -> object:
+        return self.events.popleft() if self.events else None
 
 
 def test_desk_of_a_silent_bus_tells_that_nothing_came() -> None:
@@ -247,7 +254,8 @@ def test_stop_is_repeated_until_it_is_reported(monkeypatch: pytest.MonkeyPatch) 
     clock = SimpleNamespace(now_s=1000.0)
     monkeypatch.setattr("quiesce.live.stop.time", SimpleNamespace(monotonic=lambda: clock.now_s))
     link = SilentLink()
-    stop = Desk(link, DATABASE).stop
+    desk = Desk(link, DATABASE)
+    stop = desk.stop
     stop.poll()
     assert link.sent == [] and stop.state == "idle"
     stop.reported("ESTOP")  # by somebody else's button
@@ -269,7 +277,51 @@ def test_stop_is_repeated_until_it_is_reported(monkeypatch: pytest.MonkeyPatch) 
     stop.press()  # once more: it has still been in vain for a second
     assert len(link.sent) == 3
     assert stop.told() == {"state": "pressed", "is_sent": True, "waited_s": 1.0}
+    desk.drain()
     stop.reported("ESTOP")
     assert stop.told() == {"state": "confirmed", "is_sent": True, "waited_s": 0.0}
     stop.reported("NONE")
     assert stop.state == "idle"
+
+
+STATUS = DATABASE.by_name["Status"]
+
+
+def status(alive: int, fault: str) -> SimpleNamespace:
+    """A frame of the controller's."""
+    data = DATABASE.encode("Status", fault=DATABASE.number("Status", "fault", fault))
+    return SimpleNamespace(
+        arbitration_id=STATUS.frame_id,
+        data=protect(STATUS.protection, alive, data),
+        timestamp=1000.0 + alive * 0.01,
+        is_error_frame=False,
+        is_extended_id=False,
+        is_remote_frame=False,
+    )
+
+
+def test_only_a_report_that_follows_the_press_confirms_it() -> None:
+    """Others wait to be read when it is pressed: of a stop before, which was acknowledged."""
+    link = SilentLink()
+    desk = Desk(link, DATABASE)
+    for press in range(2):
+        link.events += [status(3 * press, "ESTOP"), status(3 * press + 1, "ESTOP")]
+        desk.stop.press()
+        desk.drain()
+        assert desk.told()["controller"]["fault"] == "ESTOP"
+        assert desk.stop.state == "pressed"
+        link.events.append(status(3 * press + 2, "ESTOP"))
+        desk.drain()
+        assert desk.stop.state == "confirmed"
+
+
+def test_a_stop_that_the_bus_does_not_take_is_confirmed_by_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    link = SilentLink()
+    desk = Desk(link, DATABASE)
+    monkeypatch.setattr(link, "send", lambda *_: None)
+    desk.stop.press()
+    link.events.append(status(0, "ESTOP"))
+    desk.drain()
+    assert desk.stop.told()["state"] == "pressed" and not desk.stop.told()["is_sent"]

@@ -159,7 +159,9 @@ def test_viewer_that_comes_gets_the_history(shared: Page) -> None:
 
 def test_parameters_are_changed_stored_and_reverted(page: Page) -> None:
     with page.viewer() as viewer:
-        before = ready(viewer)
+        told = viewer.until("parameters", lambda one: one["values"])
+        before = told["values"]
+        assert told["before"] == {"values": before, "is_saved": False}
         viewer.ask("take")
         viewer.until("state", lambda state: state["holder"] == viewer.hello["viewer"])
         viewer.ask("set", settings={"unlock_current_mA": "3000"})
@@ -172,8 +174,8 @@ def test_parameters_are_changed_stored_and_reverted(page: Page) -> None:
         viewer.ask("set", settings={"unlock_current_mA": "3100"})
         assert viewer.note()["is_ok"]
         viewer.ask("save")
-        stored = viewer.until("parameters", lambda one: one["stored"] != before)
-        assert value_of({"values": stored["stored"]}, "unlock_current_mA") == 3100
+        told = viewer.until("parameters", lambda one: one["before"]["is_saved"])
+        assert value_of(told["before"], "unlock_current_mA") == 3100
         assert viewer.note() == {"is_ok": True, "text": "stored for the next start"}
 
 

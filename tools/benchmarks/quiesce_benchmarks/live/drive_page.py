@@ -7,6 +7,11 @@ Opens the page, then does what lines on stdin say and answers each with a line o
     draw SECONDS     the eight signals at 1 kHz; what was drawn of them in that time
     click            clicks STOP; when, in ms since 1970 by the browser's clock
     key              the same by the Esc key
+    press SELECTOR   clicks that; once it can be
+    choose SELECTOR VALUE, fill SELECTOR TEXT    without a space in that selector
+    text SELECTOR    its text
+    fetch SELECTOR   what the link leads to: status and length
+    painted SELECTOR how many colours a canvas has
     said             what the page says of its bus and of STOP, and whether STOP can be clicked
     axe              what axe-core finds
     shot FILE        a picture
@@ -23,6 +28,7 @@ from typing import Any
 from playwright.sync_api import Page, sync_playwright
 
 SETTLE_ms = 3000
+PATIENCE_ms = 120_000  # on a machine with other work
 DRAW = """async ([seconds]) => {
   const { samples, show } = quiesceLive;
   const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -53,6 +59,14 @@ SAID = """() => ({
   stop: document.getElementById("stop-said").textContent,
   is_enabled: !document.getElementById("stop").disabled,
 })"""
+FETCH = """async (link) => {
+  const answer = await fetch(link.href);
+  return { status: answer.status, length: (await answer.arrayBuffer()).byteLength };
+}"""
+PAINTED = """(canvas) => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  return new Set(new Uint32Array(data.buffer)).size;
+}"""
 AXE = """async () => (await axe.run({ resultTypes: ["violations"] })).violations
   .map((one) => [one.impact, one.id, one.nodes.length, one.nodes[0].html.slice(0, 160)])"""
 
@@ -81,6 +95,28 @@ class Driver:
         self.page.evaluate(CLICKED)
         press()
         return {"pressed_ms": self.page.evaluate("() => globalThis.pressed_ms")}
+
+    def press(self, *selector: str) -> Any:
+        self.page.click(" ".join(selector))
+        return {}
+
+    def choose(self, selector: str, value: str) -> Any:
+        self.page.select_option(selector, value)
+        return {}
+
+    def fill(self, selector: str, *words: str) -> Any:
+        self.page.fill(selector, " ".join(words))
+        self.page.press(selector, "Tab")
+        return {}
+
+    def text(self, *selector: str) -> Any:
+        return {"text": self.page.text_content(" ".join(selector)), "errors": self.errors}
+
+    def fetch(self, *selector: str) -> Any:
+        return self.page.eval_on_selector(" ".join(selector), FETCH)
+
+    def painted(self, *selector: str) -> Any:
+        return self.page.eval_on_selector(" ".join(selector), PAINTED)
 
     def said(self) -> Any:
         return {**self.page.evaluate(SAID), "errors": self.errors}
@@ -115,6 +151,7 @@ def main() -> None:
         browser = playwright.chromium.launch(executable_path=args.chromium, args=["--no-sandbox"])
         scheme = "dark" if args.dark else "light"
         page = browser.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
+        page.set_default_timeout(PATIENCE_ms)
         driver = Driver(page, args.axe)
         page.goto(args.address)
         page.wait_for_function("() => quiesceLive.series().length > 0")

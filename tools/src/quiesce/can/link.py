@@ -89,6 +89,10 @@ class Link:
         except queue.Empty:
             return None
 
+    def mark(self, event: Any) -> None:
+        """Puts it behind what has come so far: what is received after it came later."""
+        self._events.put(event)
+
     def send(self, frame_id: int, data: bytes) -> Any:
         """Returns the message that was sent, None where the bus did not take it."""
         from quiesce.can.python_can import can

@@ -4,6 +4,7 @@ import math
 import threading
 import time
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from quiesce.live.protocol import Block
 from quiesce.live.recordings import Recordings
 from quiesce.live.rings import Ring
 from quiesce.live.series import catalogue, preferred
-from quiesce.live.stop import Stop
+from quiesce.live.stop import Pressed, Stop
 
 RING_SAMPLES = 32768  # half a minute at 1 kHz
 MOST_EVENTS = 2000  # a drain: a storm does not keep the loop from a STOP
@@ -55,6 +56,14 @@ class Sent:
         return frames
 
 
+@dataclass(frozen=True)
+class Before:
+    """Parameters to revert to: of the last save from here, else those that were found at first."""
+
+    values: list[int] = field(default_factory=list)
+    is_saved: bool = False
+
+
 class Desk:
     """drain() takes what has come; the rest answers what viewers ask."""
 
@@ -75,7 +84,7 @@ class Desk:
         self.first_fault = FirstFault(database)
         self.traffic = Traffic(database)
         self.newest_s = math.nan  # arrival of the newest frame that can be trusted
-        self.stored: list[int] = []  # parameters to revert to: of the start, or the last save
+        self.before = Before()
         self.rings = {one.frame_id: Ring(RING_SAMPLES) for one in self.series}
         self._raw = RawStream(link, database, self.preamble) if is_raw else None
         self._status: dict[str, Any] = {}
@@ -100,8 +109,9 @@ class Desk:
         self.stop.poll()
         if not self.jobs.tap.is_open:
             self._ask()
-        if len(self.stored) != len(self.preamble.values):  # of no controller yet, or another one
-            self.stored = list(self.preamble.values)
+        values = self.preamble.values
+        if len(self.before.values) != len(values):  # of no controller yet, or another one
+            self.before = Before(list(values))
 
     def _ask(self) -> None:
         """One request at a time."""
@@ -113,7 +123,10 @@ class Desk:
             self.recordings.take(message)
 
     def take(self, event: Any) -> None:
-        """A frame, or the loss or return of the bus."""
+        """A frame, the loss or return of the bus, or a mark of STOP."""
+        if isinstance(event, Pressed):
+            self.stop.passed(event)
+            return
         self._take_sent()
         self.recordings.take(event)
         if isinstance(event, Lost):

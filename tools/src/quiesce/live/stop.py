@@ -1,6 +1,7 @@
 """STOP: pressed once, repeated on the bus until the controller reports fault ESTOP."""
 
 import time
+from dataclasses import dataclass
 from typing import Any
 
 from quiesce.can.database import Database
@@ -12,8 +13,16 @@ ESTOP = "ESTOP"
 LEAST_S = 0.01  # from one frame to the next
 
 
+@dataclass(frozen=True)
+class Pressed:
+    """Among the events of a link: what follows came after that press was sent."""
+
+    number: int
+
+
 class Stop:
-    """Never given up: a bus that comes back gets it, too."""
+    """Never given up: a bus that comes back gets it, too. Reports that had come before it was
+    pressed confirm nothing, though they are read after it."""
 
     def __init__(self, link: Link, database: Database) -> None:
         self._link = link
@@ -21,6 +30,8 @@ class Stop:
         self._pressed_s = 0.0
         self._sent_s = 0.0
         self._is_sent = False  # since then
+        self._presses = 0
+        self._is_passed = False  # what is reported now came after the last press
         self.state = IDLE
 
     def press(self) -> None:
@@ -30,7 +41,8 @@ class Stop:
             return
         if self.state != PRESSED:  # pressed again it has waited since the first time
             self._pressed_s = now_s
-            self._is_sent = False
+            self._presses += 1
+            self._is_sent = self._is_passed = False
         self.state = PRESSED
         self._send(now_s)
 
@@ -40,9 +52,13 @@ class Stop:
         if self.state == PRESSED and now_s >= self._sent_s + self._frames.cycle_s:
             self._send(now_s)
 
+    def passed(self, mark: Pressed) -> None:
+        """Of each mark that the link gives back."""
+        self._is_passed = mark.number == self._presses
+
     def reported(self, fault: str) -> None:
         """Of each Status that can be trusted."""
-        if self.state == PRESSED and fault == ESTOP:
+        if self.state == PRESSED and self._is_passed and fault == ESTOP:
             self.state = CONFIRMED
         elif self.state == CONFIRMED and fault != ESTOP:
             self.state = IDLE
@@ -54,4 +70,6 @@ class Stop:
     def _send(self, now_s: float) -> None:
         self._sent_s = now_s
         message = self._link.send(self._frames.frame_id, self._frames.next())
-        self._is_sent = self._is_sent or message is not None
+        if message is not None and not self._is_sent:
+            self._is_sent = True
+            self._link.mark(Pressed(self._presses))

@@ -4,11 +4,13 @@ import asyncio
 import json
 import time
 from collections.abc import Coroutine
+from dataclasses import asdict
 from typing import Any
 
 from fastapi import WebSocket, WebSocketDisconnect
 
 from quiesce.base.errors import BenchFailure, UsageError
+from quiesce.live.desk import Before
 from quiesce.live.jobs import change, store, wanted
 from quiesce.live.protocol import MOST_MALFORMED, Command, Malformed, command_of, pack_samples
 from quiesce.live.recordings import ask_tables
@@ -32,7 +34,7 @@ class Viewer:
         self._cursors = room.desk.start_of_history()
         self._notes: list[dict[str, Any]] = []
         self._values: list[int] | None = None  # of the parameters, as he was told
-        self._stored: list[int] | None = None
+        self._before: Before | None = None
         self._packets = 0
         self._malformed = 0
         self._works: set[asyncio.Task[Any]] = set()
@@ -112,7 +114,8 @@ class Viewer:
             return False, why
         if command.do == "save":
             is_done, text = await jobs.run("storing", store)
-            desk.stored = list(values) if is_done else desk.stored
+            if is_done:
+                desk.before = Before(list(values), is_saved=True)
             return is_done, text
         settings = self._settings(command, values)
         if not settings:
@@ -139,8 +142,8 @@ class Viewer:
     def _settings(self, command: Command, values: list[int]) -> dict[int, int]:
         if command.do == "set":
             return wanted(command.settings, values)
-        stored = enumerate(zip(values, self._desk.stored, strict=True))
-        return {index: want for index, (value, want) in stored if value != want}
+        both = enumerate(zip(values, self._desk.before.values, strict=True))
+        return {index: want for index, (value, want) in both if value != want}
 
     def _note(self, is_ok: bool, text: str) -> None:
         if len(self._notes) < MOST_NOTES:
@@ -164,10 +167,10 @@ class Viewer:
             await self._socket.send_bytes(self._packet())
 
     async def _send_parameters(self) -> None:
-        values, stored = self._desk.preamble.values, self._desk.stored
-        if values is not self._values or stored is not self._stored:
-            self._values, self._stored = values, stored
-            await self._send_text({"parameters": {"values": values, "stored": stored}})
+        values, before = self._desk.preamble.values, self._desk.before
+        if values is not self._values or before is not self._before:
+            self._values, self._before = values, before
+            await self._send_text({"parameters": {"values": values, "before": asdict(before)}})
 
     def _packet(self) -> bytes:
         shown = self._shown

@@ -43,7 +43,7 @@ function heardText(message) {
   if (message.state) showState(message.state);
   if (message.parameters) {
     values = message.parameters.values;
-    parameters.set(values, message.parameters.stored);
+    parameters.set(values, message.parameters.before);
     if (shown.length) showCharts();
   }
   if (message.note) say(message.note.is_ok, message.note.text);

@@ -59,12 +59,14 @@ export class Parameters {
     return row;
   }
 
-  // values: in effect; stored: what 'revert' goes back to. Edits that are under way stay.
-  set(values, stored) {
+  // values: in effect; before: what 'revert' goes back to. Edits that are under way stay.
+  set(values, before) {
+    this.before = before.is_saved ? "last save" : "server's start";
+    $("revert").textContent = `Revert to the ${this.before}`;
     this.rows.forEach((row, i) => {
       const isEdited = this.isEdited(row);
       row.value = values[i] ?? null;
-      row.stored = stored[i] ?? null;
+      row.before = before.values[i] ?? null;
       if (row.value !== null && !isEdited) row.input.value = textOf(row.parameter, row.value);
       this.mark(row);
     });
@@ -86,7 +88,7 @@ export class Parameters {
     const words = [];
     if (this.isEdited(row)) words.push(row.input.checkValidity() ? `edited, in effect ${textOf(row.parameter, row.value)}` : "out of its range");
     if (row.value !== null && row.value !== row.parameter.default) words.push("differs from its default");
-    if (row.value !== row.stored) words.push(`saved ${textOf(row.parameter, row.stored)}`);
+    if (row.value !== row.before) words.push(`${textOf(row.parameter, row.before)} at the ${this.before}`);
     row.mark.textContent = words.join("; ");
     row.place.classList.toggle("edited", this.isEdited(row));
     this.enableButtons();
@@ -98,7 +100,7 @@ export class Parameters {
     $("apply").disabled = !this.canChange || !edited.length || !areValid;
     $("discard").disabled = !edited.length;
     $("save").disabled = !this.canChange;
-    $("revert").disabled = !this.canChange || this.rows.every((row) => row.value === row.stored);
+    $("revert").disabled = !this.canChange || this.rows.every((row) => row.value === row.before);
   }
 
   filter() {
