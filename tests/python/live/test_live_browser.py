@@ -152,6 +152,20 @@ def test_a_trigger_that_is_none_is_not_sent(page: Page) -> None:
         text(browser, "#record-now", lambda said: said == "Nothing is recorded.")
 
 
+@pytest.mark.parametrize("options", [(), ("--size", "390x844", "--dark")])
+def test_spectrum_and_waterfall_are_drawn(page: Page, options: tuple[str, ...]) -> None:
+    with opened(page.address, *options) as browser:
+        peak = text(browser, "#spectrum-peak", lambda said: "the controller reports" in said)
+        assert " m/s2 RMS" in peak
+        browser.do("choose", "#spectrum-length", "1")
+        browser.do("choose", "#spectrum-averages", "1")
+        text(browser, "#spectrum-said", lambda said: "one window of 1 s" in said)
+        end_s = time.monotonic() + PATIENCE_S
+        while browser.do("painted", "#spectrum-waterfall") < 20:
+            assert time.monotonic() < end_s
+            time.sleep(0.05)
+
+
 def test_revert_says_to_what(page: Page) -> None:
     with opened(page.address) as browser:
         text(browser, "#revert", lambda said: said == "Revert to the server's start")

@@ -19,7 +19,8 @@ from quiesce.live.jobs import Jobs
 from quiesce.live.protocol import Block
 from quiesce.live.recordings import Recordings
 from quiesce.live.rings import Ring
-from quiesce.live.series import catalogue, preferred
+from quiesce.live.series import FREQUENCY, catalogue, preferred
+from quiesce.live.spectrum import Spectra, SpectrumPlan
 from quiesce.live.stop import Pressed, Stop
 
 RING_SAMPLES = 32768  # half a minute at 1 kHz
@@ -86,6 +87,7 @@ class Desk:
         self.newest_s = math.nan  # arrival of the newest frame that can be trusted
         self.before = Before()
         self.rings = {one.frame_id: Ring(RING_SAMPLES) for one in self.series}
+        self.spectra = Spectra(self.series, self.rings)
         self._raw = RawStream(link, database, self.preamble) if is_raw else None
         self._status: dict[str, Any] = {}
         self._status_s = math.nan
@@ -192,6 +194,18 @@ class Desk:
                 mine = (one for one in shown if self.series[one].frame_id == frame_id)
                 columns = [(one, self.series[one].values(words)) for one in mine]
                 yield Block(frame_id, first, times_s, columns)
+
+    def spectrum_told(self, plan: SpectrumPlan) -> dict[str, Any]:
+        """With the frequency that the controller reports; None where it has none."""
+        return {**self.spectra.of(plan), "freq_Hz": self._freq_Hz()}
+
+    def _freq_Hz(self) -> float | None:
+        reported = next(one for one in self.series if (one.message, one.signal) == FREQUENCY)
+        ring = self.rings[reported.frame_id]
+        _, _, words = ring.read(ring.count - 1, 1)
+        if not len(words) or not self._status.get("freq_is_valid"):
+            return None
+        return round(float(reported.values(words)[0]) * reported.scale, 3)
 
     def told(self) -> dict[str, Any]:
         """All that is no sample, as values of JSON."""

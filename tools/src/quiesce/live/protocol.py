@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.live import spectrum
 from quiesce.live.record_plan import KEYS, RecordPlan, marker_of, record_plan_of
+from quiesce.live.spectrum import SpectrumPlan, spectrum_plan_of
 
 VERSION = 1
 SAMPLES = 1
@@ -22,6 +24,7 @@ MOST_SETTINGS = 64
 KEYS_OF: dict[str, set[str]] = {
     **dict.fromkeys(("stop", "take", "release"), set()),
     "show": {"series"},
+    "spectrum": spectrum.KEYS,
     "set": {"settings"},
     **dict.fromkeys(("save", "revert"), set()),
     "rig": {"order"},
@@ -52,8 +55,8 @@ class Block:
 
 @dataclass(frozen=True)
 class Command:
-    """What a viewer asks for; `series` of show, `settings` of set, `order` of rig, `plan` of
-    record, `text` of mark."""
+    """What a viewer asks for; `series` of show, `spectrum` of spectrum, `settings` of set, `order`
+    of rig, `plan` of record, `text` of mark."""
 
     do: str
     series: tuple[int, ...] = ()
@@ -61,6 +64,7 @@ class Command:
     order: dict[str, Any] = field(default_factory=dict)
     plan: RecordPlan | None = None
     text: str = ""
+    spectrum: SpectrumPlan | None = None
 
 
 def pack_samples(number: int, sent_s: float, newest_s: float, blocks: Sequence[Block]) -> bytes:
@@ -92,6 +96,8 @@ def command_of(text: str | None, series_count: int) -> Command:
     if do == "rig":
         return Command(do, order=order_of(said["order"]))
     try:
+        if do == "spectrum":
+            return Command(do, spectrum=spectrum_plan_of(said, series_count))
         if do == "record":
             return Command(do, plan=record_plan_of(said, series_count))
         if do == "mark":

@@ -28,11 +28,12 @@ TITLES = {
 }
 # Signals that another one of their message says are none.
 VALID_BY = {(RAW, "current_meas_mA"): "current_is_measured"}
+FREQUENCY = ("Motion", "freq_uHz")  # that the controller reports
 # Drawn where nobody has chosen, the first of each row that the bus carries.
 PREFERRED = (
     ((RAW, "accel_counts"), ("AccelSample", "accel_counts")),
     (("Status", "rms_um_s2"),),
-    (("Motion", "freq_uHz"),),
+    (FREQUENCY,),
     (("Motion", "displacement_amp_nm"),),
     (("CurrentDemand", "current_cmd_mA"),),
     ((RAW, "current_meas_mA"), ("CurrentMeasured", "current_meas_mA")),

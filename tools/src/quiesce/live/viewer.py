@@ -16,8 +16,10 @@ from quiesce.live.protocol import MOST_MALFORMED, Command, Malformed, command_of
 from quiesce.live.recordings import ask_tables
 from quiesce.live.room import Room
 from quiesce.live.series import preferred
+from quiesce.live.spectrum import SpectrumPlan
 
 MOST_NOTES = 100  # that wait for a viewer who does not read
+SPECTRUM_BEATS = 10
 TOLD_BEATS = 5  # all that is no sample: every so many beats
 TOO_MANY_MALFORMED = 1008
 
@@ -32,6 +34,7 @@ class Viewer:
         self._number = number
         self._shown: tuple[int, ...] | None = None  # None: nothing was chosen yet
         self._cursors = room.desk.start_of_history()
+        self._spectrum: SpectrumPlan | None = None  # None: he wants none
         self._notes: list[dict[str, Any]] = []
         self._values: list[int] | None = None  # of the parameters, as he was told
         self._before: Before | None = None
@@ -71,6 +74,8 @@ class Viewer:
             room.desk.stop.press()
         elif command.do == "show":
             self._shown = command.series
+        elif command.do == "spectrum":
+            self._spectrum = command.spectrum
         elif command.do == "release":
             room.control.release(self._number)
         elif command.do == "take":
@@ -164,6 +169,8 @@ class Viewer:
                 await self._send_parameters()
             for note in notes:  # after what they are about
                 await self._send_text(note)
+            if self._spectrum is not None and beat % SPECTRUM_BEATS == 0:
+                await self._send_text({"spectrum": self._desk.spectrum_told(self._spectrum)})
             await self._socket.send_bytes(self._packet())
 
     async def _send_parameters(self) -> None:

@@ -5,6 +5,7 @@ import { Parameters } from "./parameters.js";
 import { Rig } from "./rig.js";
 import { Recorder } from "./recorder.js";
 import { Samples, decode } from "./samples.js";
+import { Spectrum } from "./spectrum.js";
 import * as status from "./status.js";
 import { Stop } from "./stop.js";
 
@@ -27,6 +28,7 @@ const stop = new Stop($("stop"), $("stop-said"), (object) => link.send(object));
 const parameters = new Parameters(send);
 const rig = new Rig(send);
 const recorder = new Recorder(send, factorOf);
+const spectrum = new Spectrum(send, factorOf);
 const link = new Link({ open: () => {}, close: lost, text: heardText, samples: heardSamples });
 
 function send(object) {
@@ -46,6 +48,7 @@ function heardText(message) {
     parameters.set(values, message.parameters.before);
     if (shown.length) showCharts();
   }
+  if (message.spectrum) spectrum.show(message.spectrum);
   if (message.note) say(message.note.is_ok, message.note.text);
 }
 
@@ -79,7 +82,8 @@ function showState(state) {
 // The signals that the bus carries, to choose from.
 function offer(ids, preferred) {
   if (!isChosen) shown = preferred;
-  const boxes = hello.series.filter((one) => ids.includes(one.frame_id)).map((one) => {
+  const carried = hello.series.filter((one) => ids.includes(one.frame_id));
+  const boxes = carried.map((one) => {
     const label = document.createElement("label");
     const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: shown.includes(one.number) });
     box.addEventListener("change", () => choose(one.number, box));
@@ -88,7 +92,8 @@ function offer(ids, preferred) {
     return label;
   });
   $("choose").replaceChildren(...boxes);
-  recorder.offer(hello.series.filter((one) => ids.includes(one.frame_id)));
+  recorder.offer(carried);
+  spectrum.offer(carried);
   showCharts();
 }
 
