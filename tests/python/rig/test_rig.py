@@ -13,6 +13,7 @@ import quiesce.rig
 from conftest import ROOT
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.rig import Rig, RigSetup, Trigger
+from quiesce.rig.capture import Capture
 from quiesce.rig.simulation import Simulation, own_bus
 from quiesce_benchmarks.live.rig import PATIENCE_S
 
@@ -60,22 +61,35 @@ def test_a_stimulus_is_in_what_is_read_after_it(rig: Rig) -> None:
 
 
 def test_a_capture_begins_before_its_trigger(rig: Rig) -> None:
+    """Of pulses that come again and again: nothing has to happen in time."""
     rig.write("rig/control", True)
     rig.wait(Trigger("status/state", equal="RUN"), PATIENCE_S)
-    rig.fault("disable", 3.0)
+    rig.stimulus("sine", freq_Hz=RESONANCE_Hz, drive_V=0.05)
+    half_mA = int(rig.read("parameters/max_current_mA")) / 2
+    path = "current_demand/current_cmd_mA"
     got = rig.capture(
-        ["current_demand/current_cmd_mA", "status/is_enabled"],
+        [path, "status/is_enabled"],
         length_s=0.4,
-        trigger=Trigger("status/is_enabled", equal=1),
-        timeout_s=PATIENCE_S,
+        trigger=Trigger(path, above=half_mA),
         pre_s=0.3,
+        timeout_s=PATIENCE_S,
     )
-    demand, enabled = got["current_demand/current_cmd_mA"], got["status/is_enabled"]
+    demand, enabled = got[path], got["status/is_enabled"]
     assert demand.times_s[0] == pytest.approx(-0.3, abs=0.1)
     assert demand.times_s[-1] <= 0.4 and len(demand.times_s) > 100
     assert np.all(np.diff(demand.times_s) >= 0.0)
-    assert np.all(enabled.values[enabled.times_s < 0.0] == 0)
-    assert np.all(enabled.values[enabled.times_s >= 0.0] == 1)
+    first = int(np.searchsorted(demand.times_s, 0.0))
+    assert demand.values[first - 1] <= half_mA < demand.values[first]
+    assert len(enabled.values) and np.all(enabled.values == 1)
+
+
+def test_a_trigger_counts_once_there_is_what_was_before_it() -> None:
+    capture = Capture(["a"], Trigger("a", above=1.0), earliest_s=10.0)
+    for time_s, value in ((9.0, 0), (9.5, 2), (9.8, 0), (10.1, 2), (10.2, 0), (10.3, 2)):
+        capture.take("a", time_s, value)
+    assert capture.start_s == 10.1
+    before = capture.series(pre_s=0.5, length_s=0.15)["a"]
+    assert np.allclose(before.times_s, [-0.3, 0.0, 0.1]) and list(before.values) == [0, 2, 0]
 
 
 @pytest.mark.parametrize(

@@ -142,15 +142,20 @@ class ReadAll:
 
 
 class Services:
-    """Asks and waits. Everything else that arrives meanwhile goes to `on_event`.
+    """Asks and waits, so many times. Everything else that arrives meanwhile goes to `on_event`.
 
     ask() and read_all() say nothing before the controller has told that its messages are ours.
     """
 
     def __init__(
-        self, link: Link, database: Database, on_event: Callable[[Any], None] | None = None
+        self,
+        link: Link,
+        database: Database,
+        on_event: Callable[[Any], None] | None = None,
+        tries: int = TRIES,
     ) -> None:
         self.link = link
+        self._tries = tries
         self.requests = Requests(database)
         self.identification: dict[str, int] | None = None
         self._least_s = database.by_name[REQUEST].delay_ms / 1000.0
@@ -179,12 +184,12 @@ class Services:
         index: int = 0,
         value: int = 0,
         reply_s: float = REPLY_S,
-        tries: int = TRIES,
+        tries: int | None = None,
     ) -> Reply | None:
         """None where no reply comes. A busy controller is asked again."""
         if not self._is_understood:
             self.understand()
-        for _ in range(tries):
+        for _ in range(tries or self._tries):
             reply = self.ask_once(operation, index, value, reply_s)
             if reply is not None and reply.result != BUSY:
                 return reply

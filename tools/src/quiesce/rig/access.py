@@ -12,7 +12,7 @@ from quiesce.can.database import Database, load
 from quiesce.can.e2e import JUMPED, OK
 from quiesce.can.link import Link
 from quiesce.can.parameters import settings_of, text_of
-from quiesce.can.services import DONE, Services, no_answer
+from quiesce.can.services import DONE, TRIES, Services, no_answer
 from quiesce.can.traffic import Traffic
 from quiesce.engine.params import parameters
 from quiesce.rig.capture import Capture, Series, Trigger, Value
@@ -22,6 +22,7 @@ from quiesce.rig.variables import Variable, catalogue, named
 READ_S = 3.0  # the slowest message comes once a second
 LOOK_S = 0.02
 MOST_S = 3600.0
+SIMULATION_TRIES = 10 * TRIES  # a busy computer may leave its rig without time for seconds
 
 
 class Rig:
@@ -33,7 +34,8 @@ class Rig:
         self._simulation = simulation
         self._database: Database = load()
         self._traffic = Traffic(self._database)
-        self._services = Services(link, self._database, self._take)
+        tries = TRIES if simulation is None else SIMULATION_TRIES
+        self._services = Services(link, self._database, self._take, tries)
         self._known = catalogue(self._database, simulation is not None)
         self._by_frame: dict[int, list[Variable]] = {}
         for one in self._known.values():
@@ -128,11 +130,12 @@ class Rig:
         timeout_s: float = 10.0,
     ) -> dict[str, Series]:
         """Every sample of these signals, from pre_s before the trigger (without one: from now on)
-        until length_s after it. BenchFailure where the trigger does not come in time."""
+        until length_s after it; a trigger within pre_s from now is none. BenchFailure where none
+        comes in time."""
         self._require_signals([*paths, *([trigger.path] if trigger else [])])
         if not (0.0 < length_s <= MOST_S and 0.0 <= pre_s <= MOST_S):
             raise UsageError(f"a capture is of 0 .. {MOST_S:g} s, before the trigger and after it")
-        capture = Capture(paths, trigger)
+        capture = Capture(paths, trigger, time.time() + pre_s)
         if trigger is None:
             capture.start_s = time.time()
         else:

@@ -44,10 +44,12 @@ class Series:
 
 @dataclass
 class Capture:
-    """Samples under way: all of them come in the order of their times."""
+    """Samples under way: all of them come in the order of their times. earliest_s: of a trigger;
+    what was before it has to be there."""
 
     paths: Sequence[str]
     trigger: Trigger | None
+    earliest_s: float
     samples: dict[str, list[tuple[float, Value]]] = field(init=False)
     start_s: float | None = None  # of the trigger
     _was_met: bool | None = None
@@ -60,7 +62,7 @@ class Capture:
             self.samples[path].append((time_s, value))
         if self.trigger is not None and path == self.trigger.path and self.start_s is None:
             is_met = self.trigger.is_met(value)
-            if is_met and self._was_met is False:
+            if is_met and self._was_met is False and time_s >= self.earliest_s:
                 self.start_s = time_s
             self._was_met = is_met
 
