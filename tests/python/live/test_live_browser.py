@@ -159,7 +159,7 @@ def test_spectrum_and_waterfall_are_drawn(page: Page, options: tuple[str, ...]) 
         assert " m/s2 RMS" in peak
         browser.do("choose", "#spectrum-length", "1")
         browser.do("choose", "#spectrum-averages", "1")
-        text(browser, "#spectrum-said", lambda said: "one window of 1 s" in said)
+        text(browser, "#spectrum-said", lambda said: "one window of 1.0" in said)
         end_s = time.monotonic() + PATIENCE_S
         while browser.do("painted", "#spectrum-waterfall") < 20:
             assert time.monotonic() < end_s

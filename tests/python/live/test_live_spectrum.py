@@ -72,12 +72,12 @@ def ring_of(frequency_Hz: float, count: int) -> Ring:
 
 
 def test_spectra_are_computed_once_for_all_who_want_the_same() -> None:
-    ring = ring_of(20.0, 3500)
+    ring = ring_of(20.0 / 1.024, 3500)  # the line 20 of 1024 samples
     spectra = Spectra(SERIES, {RAW.frame_id: ring})
     plan = SpectrumPlan(RAW.number, 1.0, 4, 50.0)
     told = json.loads(json.dumps(spectra.of(plan), allow_nan=False))
     assert told["used"] == 4 and math.isclose(told["rate_Hz"], RATE_Hz, rel_tol=1e-4)
-    assert len(told["rms"]) == 51 and int(np.argmax(told["rms"])) == 20
+    assert len(told["rms"]) == 52 and int(np.argmax(told["rms"])) == 20
     assert math.isclose(told["rms"][20], 1000.0 / math.sqrt(2.0), rel_tol=1e-3)
     assert spectra.of(plan)["rms"] is spectra.of(plan)["rms"]
     ring.add(1.8e9 + 3.5, b"")

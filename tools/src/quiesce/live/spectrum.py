@@ -1,5 +1,6 @@
 """Spectra of what comes, by Welch's method: Hann windows that overlap by half, their mean power."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +20,8 @@ KEYS = {"series", "length_s", "averages", "most_Hz"}
 
 @dataclass(frozen=True)
 class SpectrumPlan:
-    """What a viewer wants: windows of length_s, the mean of so many, up to most_Hz."""
+    """What a viewer wants: windows of about length_s (the nearest power of two of samples: the
+    server's loop computes them), the mean of so many, up to most_Hz."""
 
     series: int
     length_s: float
@@ -81,11 +83,11 @@ class Spectra:
         if not steps_s.any():
             return NONE
         rate_Hz = 1.0 / float(steps_s.mean())
-        length = round(plan.length_s * rate_Hz)
+        length = 2 ** round(math.log2(max(plan.length_s * rate_Hz, 1.0)))
         wanted = length * (plan.averages + 1) // 2 + 1
         values = self._series[plan.series].values(words[-wanted:])
         power, used = mean_power(times_s[-wanted:], values.astype(float), length)
-        step_Hz = rate_Hz / max(length, 1)
+        step_Hz = rate_Hz / length
         rms = np.sqrt(power[: int(plan.most_Hz / step_Hz) + 1])
         return Spectrum(step_Hz, rate_Hz, used, [float(f"{one:.4g}") for one in rms])
 

@@ -87,12 +87,12 @@ export class Spectrum {
     this.tell(spectrum, values);
   }
 
-  tell({ step_Hz, rate_Hz, used, averages, length_s, freq_Hz }, values) {
+  tell({ step_Hz, rate_Hz, used, averages, freq_Hz }, values) {
     const peak = values.reduce((best, one, i) => (one > values[best] ? i : best), 0);
     const windows = used < averages ? `${used} of ${averages} windows` : averages === 1 ? "one window" : `mean power of ${averages} windows`;
     setText($("spectrum-peak"), `Strongest at ${(peak * step_Hz).toFixed(2)} Hz: ${values[peak].toPrecision(3)} ${this.unit} RMS; ` +
       `the controller reports ${freq_Hz === null ? "no frequency" : `${freq_Hz.toFixed(2)} Hz`}.`);
-    setText($("spectrum-said"), `Hann, ${windows} of ${length_s} s that overlap by half; a line every ${step_Hz.toPrecision(3)} Hz, ` +
+    setText($("spectrum-said"), `Hann, ${windows} of ${(1 / step_Hz).toPrecision(3)} s that overlap by half; a line every ${step_Hz.toPrecision(3)} Hz, ` +
       `of ${rate_Hz.toFixed(0)} samples a second. A sine stands as high as its RMS. Dashed: what the controller reports.`);
   }
 
