@@ -14,7 +14,7 @@ import pytest
 from conftest import run_quiesce
 from quiesce.can.buses import Bus
 from quiesce.can.database import load
-from quiesce.can.link import Back, Link, Lost
+from quiesce.can.link import Back, Link, Lost, Sent
 from quiesce.can.slcan import SlcanBus, frame_of
 from quiesce.can.traffic import Seen
 from quiesce.can.writers import open_log
@@ -160,6 +160,82 @@ def test_sending_on_a_lost_bus_says_so(server: Server) -> None:
         server.close()  # nobody to come back to
         assert isinstance(next_event(link), Lost)
         assert link.send(0x100, b"\1") is None
+
+
+def stamps_of(events: Sequence[object]) -> list[float]:
+    return [(one.message if isinstance(one, Sent) else one).timestamp for one in events]
+
+
+def drained(link: Link, count: int) -> list[object]:
+    """So many events, and what was sent after them."""
+    return [next_event(link) for _ in range(count)] + [Sent(one) for one in link.untold()]
+
+
+def test_what_is_sent_comes_between_what_came_before_and_after(line) -> None:
+    """Nobody takes events while frames come and a request goes out: it is behind what came before,
+    and before its answer."""
+    master, path = line
+    with Link(Bus("slcan", path, None, ()), echoes=True) as link:
+        os.write(master, b"t1000\rt1010\r")
+        first = [next_event(link) for _ in range(2)]
+        os.write(master, b"t1020\r")
+        time.sleep(0.05)  # read, and not taken yet
+        sent = link.send(0x400, b"\1")
+        os.write(master, b"t1030\r")
+        events = first + drained(link, 3)
+    ids = [getattr(one, "message", one).arbitration_id for one in events]
+    assert ids == [0x100, 0x101, 0x102, 0x400, 0x103]
+    assert events[3] == Sent(sent) and stamps_of(events) == sorted(stamps_of(events))
+
+
+def test_what_is_sent_on_a_silent_bus_is_told(line) -> None:
+    _, path = line
+    with Link(Bus("slcan", path, None, ()), echoes=True) as link:
+        sent = link.send(0x400, b"\1")
+        assert next_event(link) == Sent(sent) and link.untold() == []
+        last = link.send(0x401, b"")
+        assert [*link.untold(), *stamps_of(drained(link, 0))] == [last]
+
+
+def test_a_frame_that_was_not_sent_is_not_told(server: Server) -> None:
+    accepting = threading.Thread(target=lambda: server.accept().close())
+    accepting.start()
+    with Link(Bus("slcan", server.channel, None, ()), echoes=True) as link:
+        accepting.join()
+        server.close()
+        assert isinstance(next_event(link), Lost)
+        assert link.send(0x100, b"\1") is None and link.untold() == []
+
+
+def test_times_of_a_busy_multicast_bus_never_step_back() -> None:
+    """A sender as fast as it can, our requests between, and a consumer that is late."""
+    channel, frames, requests = "239.74.163.77", 2000, 40
+    with (
+        Link(Bus("udp_multicast", channel, None, (("port", 43177),)), echoes=True) as link,
+        can.Bus(interface="udp_multicast", channel=channel, port=43177) as other,
+    ):
+
+        def stream() -> None:
+            for number in range(frames):
+                other.send(can.Message(arbitration_id=0x100, data=number.to_bytes(2, "big")))
+                if number % 20 == 0:
+                    time.sleep(1e-3)
+
+        sender = threading.Thread(target=stream)
+        sender.start()
+        events: list[object] = []
+        for _ in range(requests):
+            assert link.send(0x400, b"\1") is not None
+            time.sleep(2e-3)
+            while (event := link.receive_now()) is not None:
+                events.append(event)
+        sender.join()
+        while (event := link.receive(0.5)) is not None:
+            events.append(event)
+    stamps_s = stamps_of(events)
+    assert stamps_s == sorted(stamps_s)
+    assert sum(isinstance(one, Sent) for one in events) == requests
+    assert len(events) > requests + frames // 2  # most came through
 
 
 @pytest.mark.parametrize(("start_s", "is_shifted"), [(12.5, True), (None, False)])

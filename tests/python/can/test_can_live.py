@@ -341,6 +341,20 @@ def test_record_of_every_sample(controller: Controller, tool, tmp_path: Path) ->
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("suffix", [".log", ".blf", ".asc"])
+def test_times_of_a_recording_never_step_back(
+    controller: Controller, tool, tmp_path: Path, suffix: str
+) -> None:
+    controller.start()
+    assert tool("record", "--out", f"run{suffix}", "--seconds", "4", "--raw").returncode == 0
+    frames = list(read_log(tmp_path / f"run{suffix}"))
+    request = DATABASE.by_name["ServiceRequest"].frame_id
+    stamps_s = [one.timestamp for one in frames]
+    assert stamps_s == sorted(stamps_s)
+    assert sum(one.arbitration_id == request for one in frames) > COUNT
+
+
+@pytest.mark.slow
 def test_record_without_a_controller(controller: Controller, tool, tmp_path: Path) -> None:
     controller.start("--silent")
     result = tool("record", "--out", "run.log", "--seconds", "4")

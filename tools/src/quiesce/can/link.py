@@ -6,6 +6,8 @@ A thread of its own reads, so that nobody's writing or drawing makes a driver's 
 import queue
 import threading
 import time
+from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,12 +38,25 @@ class Back:
     gap_s: float
 
 
+@dataclass(frozen=True)
+class Sent:
+    """A frame of our own, in its place among those that arrive."""
+
+    message: Any
+
+
 class Link:
     """Opened by entering it, UsageError where that fails; later losses are events and it opens
-    again by itself."""
+    again by itself.
 
-    def __init__(self, bus: Bus) -> None:
+    echoes: what one thread sends comes back as Sent. The thread that reads puts it where its time
+    belongs: frames that arrived before may wait, in the driver or here, to be read.
+    """
+
+    def __init__(self, bus: Bus, echoes: bool = False) -> None:
         self.bus = bus
+        self._echoes = echoes
+        self._sent: deque[Any] = deque()  # by time, not told yet
         self._driver: Any = None
         self._events: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._stop = threading.Event()
@@ -76,7 +91,7 @@ class Link:
         return self._malformed + getattr(self._driver, "malformed", 0)
 
     def receive(self, timeout_s: float) -> Any:
-        """The next can.Message, Lost or Back; None where nothing comes in time."""
+        """The next can.Message, Lost, Back or Sent; None where nothing comes in time."""
         try:
             return self._events.get(timeout=max(timeout_s, 0.0))
         except queue.Empty:
@@ -93,6 +108,13 @@ class Link:
         """Puts it behind what has come so far: what is received after it came later."""
         self._events.put(event)
 
+    def untold(self) -> list[Any]:
+        """What was sent last and is no event yet, as nothing arrived after it; it is none later."""
+        found = []
+        while self._sent:
+            found.append(self._sent.popleft())
+        return found
+
     def send(self, frame_id: int, data: bytes) -> Any:
         """Returns the message that was sent, None where the bus did not take it."""
         from quiesce.can.python_can import can
@@ -104,7 +126,13 @@ class Link:
             timestamp=time.time(),
             is_rx=False,
         )
-        return message if self.send_message(message) else None
+        if self._echoes:
+            self._sent.append(message)  # before an answer to it can be read
+        is_sent = self.send_message(message)
+        if self._echoes and not is_sent:
+            with suppress(ValueError):  # told already, as sent to a bus that broke under it
+                self._sent.remove(message)
+        return message if is_sent else None
 
     def send_message(self, message: Any) -> bool:
         with self._sending:
@@ -120,6 +148,7 @@ class Link:
     def _read(self) -> None:
         noise = 0
         while not self._stop.is_set():
+            began_s = time.time()
             try:
                 message = self._driver.recv(READ_S)
             except Exception as error:
@@ -130,10 +159,19 @@ class Link:
                     self._lose(error)
                     noise = 0
                 continue
-            if message is not None:
+            if message is None:
+                self._tell_sent(began_s)
+            else:
                 noise = 0
                 self._stamp(message)
+                self._tell_sent(message.timestamp)
                 self._events.put(message)
+
+    def _tell_sent(self, until_s: float) -> None:
+        """Nothing older is to be read any more."""
+        while self._sent and self._sent[0].timestamp <= until_s:
+            with suppress(IndexError):  # taken by untold()
+                self._events.put(Sent(self._sent.popleft()))
 
     def _stamp(self, message: Any) -> None:
         """Some adapters count from their own start: the first frame ties that to the clock."""
@@ -144,6 +182,7 @@ class Link:
 
     def _lose(self, error: Exception) -> None:
         lost_s = time.time()
+        self._tell_sent(lost_s)
         self._events.put(Lost(lost_s, reason_of(error)))
         self._close()
         while not self._stop.wait(REOPEN_S):

@@ -13,7 +13,7 @@ from quiesce import __version__
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.can.configuration import Configuration
 from quiesce.can.database import Database
-from quiesce.can.link import Back, Link, Lost
+from quiesce.can.link import Back, Link, Lost, Sent
 from quiesce.can.parameters import hash_of, name_of
 from quiesce.can.services import ReadAll, Requests, misunderstood
 from quiesce.can.traffic import Traffic
@@ -138,13 +138,12 @@ class Preamble:
             version = "version " + ".".join(str(self.identification[one]) for one in parts)
         return f"every file begins with the controller's {len(self.values)} parameters, {version}"
 
-    def poll(self) -> Any:
-        """Sends the next request where one is due; returns its frame. Nothing goes to a controller
-        that has not told yet that it understands."""
-        if not self.may_ask:
-            return None
-        data = self._reader.poll(time.monotonic())
-        return None if data is None else self._link.send(self._requests.request_id, data)
+    def poll(self) -> None:
+        """Sends the next request where one is due. Nothing goes to a controller that has not told
+        yet that it understands."""
+        data = self._reader.poll(time.monotonic()) if self.may_ask else None
+        if data is not None:
+            self._link.send(self._requests.request_id, data)
 
     def take(self, frame: Any) -> None:
         self._reader.take(frame)
@@ -199,8 +198,9 @@ class RawStream:
 
 
 class Recorder:
-    """Takes everything from the link until told to stop; run() is all there is to do. known: what
-    files begin with, where somebody else reads it; the plan does not ask then."""
+    """Takes everything from the link until told to stop; run() is all there is to do. A link that
+    the plan asks through echoes, so that requests are in their places. known: what files begin
+    with, where somebody else reads it; the plan does not ask then."""
 
     def __init__(
         self,
@@ -279,9 +279,7 @@ class Recorder:
         """One request at a time."""
         sent = self.raw.poll() if self.raw is not None else None
         if sent is None and self.plan.asks:
-            sent = self.preamble.poll()
-        if sent is not None:
-            self.keep(sent)
+            self.preamble.poll()
 
     def _drain(self) -> None:
         """What has arrived already."""
@@ -289,9 +287,14 @@ class Recorder:
             self.raw.end()
         while (event := self._link.receive_now()) is not None:
             self.take(event)
+        if self.plan.asks:
+            for message in self._link.untold():
+                self.keep(message)
 
     def take(self, event: Any) -> None:
-        if isinstance(event, Lost):
+        if isinstance(event, Sent):
+            self.keep(event.message)
+        elif isinstance(event, Lost):
             self._note(f"bus lost: {event.reason}", event.time_s)
         elif isinstance(event, Back):
             self._note(f"bus back after {event.gap_s:.3f} s; frames are missing", event.time_s)

@@ -91,7 +91,7 @@ def run(args: argparse.Namespace) -> int:
     size = None if args.rotate_mb is None else int(args.rotate_mb * 1e6)
     plan = Plan(args.out, size, args.rotate_s, not args.listen, args.raw)
     bus, database = bus_of(args), load()
-    with until_stopped() as stop, Link(bus) as link:
+    with until_stopped() as stop, Link(bus, echoes=True) as link:
         recorder = Recorder(link, database, plan, say)
         open_first(recorder)
         start_s = time.monotonic()
