@@ -280,12 +280,46 @@ def test_wrong_ending_is_refused(tmp_path: Path) -> None:
     assert ".mat" in refused(export, file, "--to", "mat", "--out", tmp_path / "x.c")
 
 
-def test_model_marked_unusable_is_refused(tmp_path: Path) -> None:
+def test_lookup_has_the_models_forces(tmp_path: Path) -> None:
+    """Bingham's are functions of velocity and current alone: the table is the equation."""
+    parameters = {"fc_N": [50.0, 400.0], "c_N_s_m": 800.0, "f0_N": 0.0, "eps_m_s": 0.005}
+    damper = DamperModel("b", "bingham", 0.05, 0.2, parameters)
+    file = write(tmp_path / "b.toml", damper)
+    options = ("--to", "lookup", "--out", tmp_path / "table.mat", "--max-current-A", 2)
+    assert act(export, file, *options) == 0
+    data = {key: np.squeeze(value) for key, value in loadmat(tmp_path / "table.mat").items()}
+    velocity, current = data["velocity_m_s"][:, None], data["current_A"][None, :]
+    assert velocity.min() == -0.2 and velocity.max() == 0.2 and current.max() == 2.0
+    assert (np.diff(data["velocity_m_s"]) > 0.0).all() and (np.diff(data["current_A"]) > 0.0).all()
+    wanted_N = (50.0 + 400.0 * current) * np.tanh(velocity / 0.005) + 800.0 * velocity
+    assert np.allclose(data["force_N"], wanted_N, rtol=1e-6, atol=1e-6 * np.abs(wanted_N).max())
+    assert "load('table.mat')" in (tmp_path / "table.m").read_text()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--to", "lookup", "--out", "t"), "--max-current-A A does"),
+        (("--to", "lookup", "--out", "2t.mat", "--max-current-A", 1), "name of a MATLAB script"),
+        (("--to", "lookup", "--out", "t.c", "--max-current-A", 1), ".mat or .m"),
+        (("--to", "mat", "--out", "t", "--max-current-A", 1), "--max-current-A is of --to lookup"),
+    ],
+)
+def test_lookup_that_cannot_be_made_is_refused(tmp_path: Path, options, words: str) -> None:
+    damper = DamperModel("m", kwok_rd1005().model, 0.02, 0.2, kwok_rd1005().parameters)
+    file = write(tmp_path / "damper.toml", damper)
+    assert words in refused(export, file, *options)
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize("form", sorted(export.ENDINGS))
+def test_model_marked_unusable_is_refused(tmp_path: Path, form: str) -> None:
     valid = {"usable": False, "reason": "peaks are 5 times those measured"}
     damper = kwok_rd1005()
     marked = DamperModel("m", damper.model, 0.02, 0.2, damper.parameters, valid=valid)
     file = write(tmp_path / "damper.toml", marked)
-    assert "5 times" in refused(export, file, "--to", "c", "--out", tmp_path / "x")
+    assert "5 times" in refused(export, file, "--to", form, "--out", tmp_path / "x")
+    assert list(tmp_path.iterdir()) == [file]
 
 
 def test_model_without_c_form_is_refused_with_a_way_out(tmp_path: Path) -> None:
