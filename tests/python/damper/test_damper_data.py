@@ -33,7 +33,7 @@ from quiesce.damper.data.split import (
     split_records,
     whole,
 )
-from quiesce.damper.data.units import ACCELERATION, FORCE, LENGTH, TIME, VELOCITY, split_name
+from quiesce.recording.units import ACCELERATION, FORCE, LENGTH, TIME, VELOCITY, split_name
 
 MEASURED = ROOT.parent / "shared/data"
 SCORING = tomllib.loads((ROOT / "tools/benchmarks/dampers/scoring.toml").read_text())

@@ -123,9 +123,9 @@ PLANTED_IN_PYTHON = [
     ("hil/runs.py", "def nobody_calls_it():\n    nobody_calls_it()", "nobody_calls_it is named"),
     ("hil/runs.py", "NOBODY_READS_IT = 1", "NOBODY_READS_IT is named nowhere"),
     (
-        "damper/data/units.py",
-        "def f():\n    from quiesce.damper.data.columns import ROLES\n    return ROLES, f",
-        "circle of imports: quiesce.damper.data.columns, quiesce.damper.data.units",
+        "recording/units.py",
+        "def f():\n    from quiesce.recording.columns import ROLES\n    return ROLES, f",
+        "circle of imports: quiesce.recording.columns, quiesce.recording.units",
     ),
 ]
 

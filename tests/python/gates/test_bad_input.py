@@ -36,15 +36,15 @@ def with_row(line: int, row: str) -> list[str]:
         (GOOD_ROWS[:3], ["2 rows", "at least 3"]),
         (["t_s,other", *GOOD_ROWS[1:]], ["'acc_g'", "there are: t_s, other"]),
         (["time,acc_g", *GOOD_ROWS[1:]], ["'t_s'", "there are: time, acc_g"]),
-        (["t_s,acc_g,acc_g", *GOOD_ROWS[1:]], ["more than one column 'acc_g'"]),
-        (with_row(7, "0.05,nan"), ["line 7", "acc_g", "nan", "not a finite number"]),
-        (with_row(7, "0.05,inf"), ["line 7", "not a finite number"]),
-        (with_row(7, "0.05,high"), ["line 7", "acc_g", "'high' is not a number"]),
-        (with_row(7, "0.05,"), ["line 7", "acc_g", "empty cell"]),
-        (with_row(7, "0.05"), ["line 7", "too few", "acc_g"]),
-        (with_row(7, "0.03,0.1"), ["line 7", "goes back in time", "sort"]),
-        (with_row(7, "0.04,0.1"), ["line 7", "repeats the time before"]),
-        (GOOD_ROWS[:100] + GOOD_ROWS[110:], ["line 101", "irregular"]),
+        (["t_s,acc_g,acc_g", *GOOD_ROWS[1:]], ["more than one column is named 'acc_g'"]),
+        (with_row(7, "0.05,nan"), [":7:", "acc_g", "'nan'; cut these rows"]),
+        (with_row(7, "0.05,inf"), [":7:", "cut these rows"]),
+        (with_row(7, "0.05,high"), [":7:", "acc_g", "'high' is not a number"]),
+        (with_row(7, "0.05,"), [":7:", "acc_g", "empty cell"]),
+        (with_row(7, "0.05"), [":7:", "1 cells where the header has 2 columns"]),
+        (with_row(7, "0.03,0.1"), [":7:", "goes back in time", "sort"]),
+        (with_row(7, "0.04,0.1"), [":7:", "repeats the time before"]),
+        (GOOD_ROWS[:100] + GOOD_ROWS[110:], [":101:", "irregular"]),
     ],
 )
 def test_recording_is_refused(refused, tmp_path: Path, rows, words) -> None:
@@ -61,7 +61,7 @@ def test_missing_recording_is_refused(refused) -> None:
 
 def test_binary_recording_is_refused(refused, tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_bytes(b"\xff\xfe\x00\x80" * 50)
-    assert "not a text file" in refused("replay", "a.csv", "--column", "a", "--unit", "g")
+    assert "text in UTF-16" in refused("replay", "a.csv", "--column", "a", "--unit", "g")
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from quiesce.plant_id.find import FoundPlant, find_plant
 from quiesce.plant_id.modes import instantaneous_freq_Hz
 from quiesce.plant_id.recording import fit_sine, read_sweep_recording
 from quiesce.plant_id.simulate import record
-from quiesce.plant_id.sweep import SweepPlan, timeline, write_csv
+from quiesce.plant_id.sweep import SweepPlan, timeline, write_line
 from quiesce_benchmarks.sweep.cases import (
     Case,
     by,
@@ -38,7 +38,7 @@ def quiet(_: str) -> None:
 
 def recorded(file: Path, plan: SweepPlan, plant: Path = NOMINAL, seed: int = 1) -> Path:
     line = timeline(plan)
-    write_csv(file, line, record(Plant(plant), line, seed))
+    write_line(file, line, record(Plant(plant), line, seed))
     return file
 
 

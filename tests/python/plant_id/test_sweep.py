@@ -157,12 +157,12 @@ def every_cell(column: int, text: str) -> list[str]:
     [
         ([], ["empty"]),
         ([GOOD[0].replace("accel_m_s2", "acc"), *GOOD[1:]], ["no column 'accel_m_s2'"]),
-        (changed_cell(50, 3, "nan"), ["line 50", "accel_m_s2", "not a finite number"]),
-        (changed_cell(50, 1, "high"), ["line 50", "drive_V", "not a number"]),
-        (changed_cell(50, 2, "-1"), ["line 50", "current_cmd_A", "expected 0 or more"]),
-        (changed_cell(700, 2, "1"), ["line 700", "0 A"]),
-        (GOOD[:300] + GOOD[340:], ["line 301", "irregular"]),
-        (changed_cell(60, 0, "0"), ["line 60", "goes back"]),
+        (changed_cell(50, 3, "nan"), [":50:", "accel_m_s2", "cut these rows"]),
+        (changed_cell(50, 1, "high"), [":50:", "drive_V", "not a number"]),
+        (changed_cell(50, 2, "-1"), [":50:", "current_cmd_A", "expected 0 or more"]),
+        (changed_cell(700, 2, "1"), [":700:", "0 A"]),
+        (GOOD[:300] + GOOD[340:], [":301:", "irregular"]),
+        (changed_cell(60, 0, "0"), [":60:", "goes back"]),
         (every_cell(1, "0"), ["drive_V", "0 throughout"]),
         (every_cell(3, "0.5"), ["accel_m_s2", "never changes"]),
         ([GOOD[0], *GOOD[245:2600]], ["no rest"]),
@@ -182,7 +182,7 @@ def test_command_refuses_a_recording_in_one_line(refused, tmp_path: Path) -> Non
     file = tmp_path / "recording.csv"
     file.write_text("\n".join(changed_cell(50, 3, "")) + "\n")
     message = refused("sweep", "--identify", file, "--out", "out")
-    assert "recording.csv line 50, column 'accel_m_s2': an empty cell" in message
+    assert "recording.csv:50: column 'accel_m_s2': an empty cell" in message
 
 
 def test_rate_that_is_no_whole_number_is_refused(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from quiesce.plant.variant import Variant, changed, read_plant_data
 from quiesce.plant_id.find import FoundPlant, find_plant
 from quiesce.plant_id.plant_file import modal_shapes
 from quiesce.plant_id.simulate import record
-from quiesce.plant_id.sweep import SweepPlan, timeline, write_csv
+from quiesce.plant_id.sweep import SweepPlan, timeline, write_line
 from quiesce.tune.pulse import Pulse, tracked
 
 PLANTS = "sim_hil/data/plants"
@@ -170,7 +170,7 @@ def compare(case: Case, folder: Path, seed: int) -> Compared:
     plan = replace(case.plan, max_current_A=true.max_current_A)
     line = timeline(plan)
     recording = folder / "recording.csv"
-    write_csv(recording, line, record(true, line, seed))
+    write_line(recording, line, record(true, line, seed))
     base = root() / PLANTS / f"{case.plant}.toml"
     found = find_plant(
         recording,

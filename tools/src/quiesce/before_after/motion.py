@@ -4,8 +4,8 @@ import re
 from dataclasses import dataclass
 
 from quiesce.base.errors import UsageError
-from quiesce.damper.data import units
-from quiesce.damper.data.units import Unit
+from quiesce.recording import units
+from quiesce.recording.units import Unit
 
 
 @dataclass(frozen=True)

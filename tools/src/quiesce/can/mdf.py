@@ -5,15 +5,10 @@ a temporary file until the end; we write a whole recording in one go. DBC and pa
 as attachments.
 """
 
-import contextlib
 import heapq
-import io
 import itertools
-import logging
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager
 from datetime import UTC, datetime
-from functools import cache
 from hashlib import md5
 from importlib.util import find_spec
 from pathlib import Path
@@ -21,10 +16,9 @@ from typing import Any
 
 from quiesce.base.extras import extra
 from quiesce.can.python_can import can
+from quiesce.recording.formats.mdf_channels import FILES, FRAME, open_mdf, quiet, silent
 
-FILES = ("mdf", "an MDF4 file")
 MAX_BYTES = 64  # of CAN FD, which readers expect
-FRAME = "CAN_DataFrame"
 CHUNK = 50_000  # frames at once: about 100 MB
 
 
@@ -143,21 +137,6 @@ def read_mdf(file: Path) -> Iterator[Any]:
         yield from heapq.merge(*groups, key=lambda one: one.timestamp)
 
 
-def open_mdf(file: Path) -> Any:
-    """An asammdf.MDF, to be closed. Exceptions as asammdf has them."""
-    with extra(*FILES):
-        from asammdf import MDF
-
-    quiet()
-    with silent():
-        return MDF(file)
-
-
-def silent() -> AbstractContextManager[Any]:
-    """asammdf prints traces of what it stumbles over and goes on."""
-    return contextlib.redirect_stdout(io.StringIO())
-
-
 def group_frames(mdf: Any, group: int, count: int) -> Iterator[Any]:
     start_s = mdf.header.start_time.timestamp()
     for offset in range(0, count, CHUNK):
@@ -200,20 +179,3 @@ def frames_of(signal: Any, start_s: float) -> list[Any]:
             )
         )
     ]
-
-
-@cache
-def quiet() -> None:
-    """asammdf logs what it stumbles over, and where its constructor fails its destructor prints a
-    stack trace; the one line that we print says it."""
-    with extra(*FILES):
-        from asammdf.blocks.mdf_v4 import MDF4
-
-    logging.getLogger("asammdf").setLevel(logging.CRITICAL + 1)
-    end = MDF4.__del__
-
-    def end_quietly(self: Any) -> None:
-        with contextlib.suppress(Exception):  # of whatever is half there
-            end(self)
-
-    MDF4.__del__ = end_quietly

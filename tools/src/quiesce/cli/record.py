@@ -13,13 +13,14 @@ from quiesce.base.paths import shown
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.trace import Trace, read_trace
+from quiesce.recording.write import writer_of
 from quiesce.signal.recording import COLUMN_UNITS, M_S2_PER_UNIT
 
 EPILOG = """examples:
   quiesce record step_10_20Hz --from-s 2 --to-s 8 --out step.csv
   quiesce record sine_5Hz --law fuzzy --out damped.csv
   quiesce replay step.csv --column accel_m_s2 --unit m_s2
-  quiesce record sim_hil/data/rigs/two_storeys.toml --out rig.csv
+  quiesce record sim_hil/data/rigs/two_storeys.toml --out rig.mat
 
 One row a control tick: t_s and accel_m_s2, with the noise and the resolution of the plant's
 sensor. Of a scenario with a board one column a sensor, its name and unit: roof_accel_m_s2,
@@ -51,7 +52,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--from-s", type=finite_number, default=0.0, metavar="T", help="(%(default)s)"
     )
     parser.add_argument("--to-s", type=finite_number, metavar="T", help="(the scenario's end)")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE.csv")
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="FILE",
+        help="CSV, or what its suffix asks for: .mat (MATLAB), .uff (universal file 58)",
+    )  # fmt: skip
     parser.set_defaults(run=run)
 
 
@@ -79,7 +83,11 @@ def measured(scenario: scenarios.Scenario, trace: Trace) -> dict[str, np.ndarray
     return columns
 
 
-def write_csv(file: Path, time_s: np.ndarray, columns: dict[str, np.ndarray]) -> None:
+def write(file: Path, time_s: np.ndarray, columns: dict[str, np.ndarray]) -> None:
+    """As the suffix asks for; text without one that is known."""
+    if (writer := writer_of(file)) is not None:
+        writer(file, {"t_s": time_s, **columns})
+        return
     with file.open("w") as stream:
         stream.write(",".join(["t_s", *columns]) + "\n")
         for t_s, *values in zip(time_s, *columns.values(), strict=True):
@@ -108,6 +116,6 @@ def run(args: argparse.Namespace) -> int:
         )
     with output_files(args.out.parent) as staging:
         kept = {name: values[chosen] for name, values in columns.items()}
-        write_csv(staging / args.out.name, time_s[chosen], kept)
+        write(staging / args.out.name, time_s[chosen], kept)
     print(f"{shown(args.out)}: {int(chosen.sum())} rows of {scenario.name}, law {law.name}")
     return 0

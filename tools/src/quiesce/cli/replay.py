@@ -1,4 +1,4 @@
-"""`quiesce replay FILE.csv`: recorded motion through the firmware's chain."""
+"""`quiesce replay FILE`: recorded motion through the firmware's chain."""
 
 import argparse
 import json
@@ -57,7 +57,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", metavar="FILE.csv", type=Path, help="recording")
+    parser.add_argument(
+        "file", metavar="FILE", type=Path, help="recording: CSV, MAT, UFF, MDF, LVM, HDF5, Parquet"
+    )
     parser.add_argument("--column", help="column of the acceleration")
     parser.add_argument("--unit", choices=list(M_S2_PER_UNIT), help="its unit")
     parser.add_argument("--time-column", default="t_s", help="column of time in s (%(default)s)")

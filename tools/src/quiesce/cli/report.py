@@ -31,9 +31,10 @@ EPILOG = """examples:
   quiesce report before.mf4 after.mf4 --channel AccelSample:0.0012*m/s2 --json
 
 Reads CSV (a header whose names end in units: acc_g, "roof (mm/s)"), MF4 and MDF of data loggers,
-logs of the controller's bus (quiesce can record --raw: .mf4 .log .asc .blf .csv .trc) and traces of
-the bench. Channels that both files have with a unit of acceleration, velocity or displacement are
-compared, in SI units; --channel chooses, and states a unit that a file does not have.
+MAT, UFF, LVM, HDF5, Parquet, logs of the controller's bus (quiesce can record --raw: .mf4 .log .asc
+.blf .csv .trc) and traces of the bench. Channels that both files have with a unit of acceleration,
+velocity or displacement are compared, in SI units; --channel chooses, and states a unit that a file
+does not have.
 
 Written: report.html and report.json in build/report/before_after, or --out. What is doubtful is
 told in the page and here: gaps, clipping, drift, records that are not stationary, another input.

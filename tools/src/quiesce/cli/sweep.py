@@ -11,7 +11,7 @@ from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.cli.terminal import show
-from quiesce.plant_id.sweep import SweepPlan, Timeline, dwell_s, timeline, write_csv
+from quiesce.plant_id.sweep import SweepPlan, Timeline, dwell_s, timeline, write_line
 
 EPILOG = """examples:
   quiesce sweep --out excitation.csv --band 3 60 --drive 0.1 --max-current 2
@@ -49,12 +49,13 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     work.add_argument(
         "--simulate", type=Path, metavar="PLANT.toml", help="record this simulated plant"
     )
-    work.add_argument("--identify", type=Path, metavar="FILE.csv", help="find the plant")
+    work.add_argument("--identify", type=Path, metavar="FILE", help="find the plant")
     parser.add_argument(
         "--out",
         type=Path,
         metavar="PATH",
-        help=f"CSV file to write; with --identify a folder ({results_text('sweep/...')})",
+        help="file to write: CSV, .mat or .uff; with --identify a folder "
+        f"({results_text('sweep/...')})",
     )
     add_plan_options(parser.add_argument_group("what to record"))
     add_find_options(parser.add_argument_group("with --identify"))
@@ -192,9 +193,9 @@ def write_plan(args: argparse.Namespace) -> int:
     name = "recording.csv" if args.simulate else "excitation.csv"
     out = args.out or results_folder() / "sweep" / name
     if out.is_dir():
-        raise UsageError(f"{shown(out)} is a folder; name a CSV file for --out")
+        raise UsageError(f"{shown(out)} is a folder; name a file for --out")
     with output_files(out.parent) as staging:
-        write_csv(staging / out.name, line, accel_m_s2)
+        write_line(staging / out.name, line, accel_m_s2)
         plot_plan(staging / f"{out.stem}.png", line, accel_m_s2)
     dwells = ", ".join(f"{freq_Hz:g}" for freq_Hz in plan.dwell_Hz)
     kind = "linear" if plan.is_linear else "logarithmic"

@@ -12,6 +12,7 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.plant_id.sweep import COLUMNS
+from quiesce.recording.table import at
 from quiesce.signal.recording import check_time, check_uniform, read_columns
 
 # Drive below this part of its largest value counts as none.
@@ -64,10 +65,9 @@ def read_sweep_recording(file: Path) -> SweepRecording:
     time_s, drive_V, current_A, accel_m_s2 = table.T
     rate_Hz = whole_rate(file, lines, time_s)
     if (current_A < 0.0).any():
-        at = int(np.argmax(current_A < 0.0))
-        raise UsageError(
-            f"{shown(file)} line {lines[at]}, column 'current_cmd_A': {current_A[at]:g} A; "
-            "expected 0 or more"
+        row = int(np.argmax(current_A < 0.0))
+        raise at(
+            file, lines[row], f"column 'current_cmd_A': {current_A[row]:g} A; expected 0 or more"
         )
     parts = find_parts(file, drive_V, rate_Hz)
     rest = rest_samples(file, parts, rate_Hz)
@@ -161,10 +161,11 @@ def sort_parts(recording: SweepRecording, parts: list[Part], lines: list[int]) -
 def require_no_current(recording: SweepRecording, part: Part, lines: list[int]) -> None:
     on = np.flatnonzero(recording.current_A[part.first : part.end] > 0.0)
     if on.size:
-        raise UsageError(
-            f"{shown(recording.file)} line {lines[part.first + int(on[0])]}: current in a drive "
-            "sweep; a sweep is recorded at 0 A, current steps at one drive frequency"
-        )
+        raise at(
+            recording.file, lines[part.first + int(on[0])],
+            "current in a drive sweep; a sweep is recorded at 0 A, current steps at one drive "
+            "frequency",
+        )  # fmt: skip
 
 
 def as_dwell(recording: SweepRecording, part: Part) -> Dwell | None:

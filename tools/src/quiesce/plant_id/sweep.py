@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.recording.write import writer_of
 
 # Part of a sweep over which the drive rises at its start and falls at its end.
 FADE_s = 0.5
@@ -149,10 +150,14 @@ def timeline(plan: SweepPlan) -> Timeline:
 COLUMNS = ("time_s", "drive_V", "current_cmd_A", "accel_m_s2")
 
 
-def write_csv(file: Path, line: Timeline, accel_m_s2: np.ndarray | None = None) -> None:
-    """One row a sample. With an acceleration it is a recording."""
+def write_line(file: Path, line: Timeline, accel_m_s2: np.ndarray | None = None) -> None:
+    """One row a sample, in the format that the suffix asks for, CSV without one that is known. With
+    an acceleration it is a recording."""
     columns = [line.time_s, line.drive_V, line.current_A]
     columns += [] if accel_m_s2 is None else [accel_m_s2]
+    if (writer := writer_of(file)) is not None:
+        writer(file, dict(zip(COLUMNS, columns, strict=False)))
+        return
     with file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(COLUMNS[: len(columns)])

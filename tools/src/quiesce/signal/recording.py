@@ -1,8 +1,6 @@
-"""Recorded columns from a CSV file: read, checked, against uniform time."""
+"""Recorded columns of a file: read, checked, against uniform time."""
 
-import csv
-import math
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +9,11 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.nearest import listed
 from quiesce.base.paths import shown
-from quiesce.base.progress import reading
+from quiesce.recording.beside import proposed, stated_beside
+from quiesce.recording.columns import ROLES, ColumnSpec, column_of
+from quiesce.recording.open import open_table
+from quiesce.recording.table import Table, at
+from quiesce.recording.units import Unit, split_name
 
 M_S2_PER_UNIT = {"g": 9.80665, "m_s2": 1.0, "mm_s2": 1e-3}
 # What a column may be in, by the unit of its sensor: how many of that unit it is.
@@ -65,77 +67,64 @@ def read_recording(file: Path, columns: list[str], time_column: str) -> Recordin
 
 
 def read_columns(file: Path, names: list[str]) -> tuple[list[int], np.ndarray]:
-    """Line numbers and values of the named columns."""
-    try:
-        with file.open(newline="", encoding="utf-8-sig") as stream:
-            lines = stream.readlines()
-        rows = csv.reader(reading(shown(file), lines, len(lines)))
-        indices = find_columns(file, next(rows, []), names)
-        numbered = list(parse_rows(file, rows, names, indices))
-    except UnicodeDecodeError:
-        raise UsageError(f"{shown(file)}: not a text file; a CSV in UTF-8 is expected")
-    except csv.Error as error:
-        raise UsageError(f"{shown(file)}: not a CSV file: {error}")
-    except OSError as error:
-        raise UsageError(f"{shown(file)}: {error.strerror}; name a CSV file")
-    if len(numbered) < MIN_ROWS:
+    """Lines (rows, of binary files) and values of the named columns.
+
+    A name that the file does not have, and that is a quantity with its unit, such as accel_m_s2, is
+    the column that the file beside it states for that quantity, or that can only be meant.
+    """
+    table = open_table(file)
+    stated = stated_beside(file)
+    sources = [_source(table, name, stated) for name in names]
+    lines, cells = table.numbers([source for source, _ in sources])
+    if len(lines) < MIN_ROWS:
         raise UsageError(
-            f"{shown(file)}: {len(numbered)} rows of data; at least {MIN_ROWS} are needed"
+            f"{shown(file)}: {len(lines)} rows of data; at least {MIN_ROWS} are needed"
         )
-    return [line for line, _ in numbered], np.array([values for _, values in numbered])
+    values = [scale(cells[:, i]) for i, (_, scale) in enumerate(sources)]
+    return lines.tolist(), np.stack(values, axis=1)
 
 
-def find_columns(file: Path, head: list[str], names: list[str]) -> list[int]:
-    head = [name.strip() for name in head]
-    if not any(head):
-        raise UsageError(f"{shown(file)}: the file is empty; expected a header line and rows")
-    for name in names:
-        if head.count(name) != 1:
-            problem = "no column" if name not in head else "more than one column"
-            raise UsageError(f"{shown(file)}: {problem} '{name}'; {listed(name, head)}")
-    return [head.index(name) for name in names]
-
-
-def parse_rows(
-    file: Path, rows: Iterator[list[str]], names: list[str], indices: list[int]
-) -> Iterator[tuple[int, list[float]]]:
-    for row in rows:
-        if not any(cell.strip() for cell in row):
-            continue
-        line = rows.line_num  # type: ignore[attr-defined]
-        if len(row) <= max(indices):
-            raise UsageError(
-                f"{shown(file)} line {line}: {len(row)} cells, too few for column "
-                f"'{names[indices.index(max(indices))]}'; every row needs one"
-            )
-        cells = zip(names, (row[i] for i in indices), strict=True)
-        yield line, [parse_number(file, line, name, text) for name, text in cells]
-
-
-def parse_number(file: Path, line: int, name: str, text: str) -> float:
+def _source(
+    table: Table, name: str, stated: dict[str, ColumnSpec | None]
+) -> tuple[str, Callable[[np.ndarray], np.ndarray]]:
+    """The column in the file, and what makes its cells what `name` says."""
+    if name in table.head:
+        table.index(name)  # once
+        return name, lambda cells: cells
+    meant = _quantity(name)
     try:
-        value = float(text)
-    except ValueError:
-        what = f"'{text.strip()}' is not a number" if text.strip() else "an empty cell"
-        raise UsageError(f"{shown(file)} line {line}, column '{name}': {what}")
-    if not math.isfinite(value):
-        raise UsageError(
-            f"{shown(file)} line {line}, column '{name}': {text.strip()} is not a finite number; "
-            "cut or repair the recording"
-        )
-    return value
+        column = column_of(table, meant[0], stated, needed=True) if meant else None
+    except UsageError as error:
+        if meant and meant[0] in stated:
+            raise error
+        column = None
+    if meant is None or column is None:
+        problem = UsageError(f"{shown(table.file)}: no column '{name}'; {listed(name, table.head)}")
+        raise proposed(table, problem, meant[0]) if meant else problem
+    unit = meant[1]
+    return column.name, lambda cells: (column.si(cells) - unit.offset) / unit.scale
+
+
+def _quantity(name: str) -> tuple[str, Unit] | None:
+    """Role and unit of a name such as accel_m_s2."""
+    for role, one in ROLES.items():
+        stem, unit = split_name(name, one.units)
+        if unit is not None and stem in one.stems:
+            return role, unit
+    return None
 
 
 def check_time(file: Path, name: str, lines: list[int], time_s: np.ndarray) -> None:
     bad = np.flatnonzero(np.diff(time_s) <= 0)
     if bad.size == 0:
         return
-    at = int(bad[0]) + 1
-    problem = "repeats the time before" if time_s[at] == time_s[at - 1] else "goes back in time"
-    raise UsageError(
-        f"{shown(file)} line {lines[at]}: '{name}' = {time_s[at]:g} s {problem} "
-        f"({time_s[at - 1]:g} s); sort the rows and drop duplicates"
-    )
+    row = int(bad[0]) + 1
+    problem = "repeats the time before" if time_s[row] == time_s[row - 1] else "goes back in time"
+    raise at(
+        file, lines[row],
+        f"'{name}' = {time_s[row]:g} s {problem} ({time_s[row - 1]:g} s); sort the rows and drop "
+        "duplicates",
+    )  # fmt: skip
 
 
 def check_uniform(
@@ -145,9 +134,9 @@ def check_uniform(
     off = np.abs((time_s - time_s[0]) / period_s - np.arange(len(time_s)))
     if off.max() <= MAX_JITTER:
         return float(off.max())
-    at = int(np.argmax(np.abs(np.diff(time_s) - period_s))) + 1
-    raise UsageError(
-        f"{shown(file)} line {lines[at]}: sampling is irregular, '{name}' advances by "
-        f"{time_s[at] - time_s[at - 1]:.6g} s where the mean is {period_s:.6g} s; "
-        "cut the recording at the gap or resample it evenly"
-    )
+    row = int(np.argmax(np.abs(np.diff(time_s) - period_s))) + 1
+    raise at(
+        file, lines[row],
+        f"sampling is irregular, '{name}' advances by {time_s[row] - time_s[row - 1]:.6g} s where "
+        f"the mean is {period_s:.6g} s; cut the recording at the gap or resample it evenly",
+    )  # fmt: skip

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.before_after.files.csv_file import CsvFile
 from quiesce.before_after.files.source import Source
+from quiesce.before_after.files.table_file import TableFile
 from quiesce.before_after.files.trace_file import TraceFile, is_trace
 
 MDF = (".mf4", ".mdf", ".dat")
@@ -42,7 +42,7 @@ def open_file(file: Path, how: How) -> Source:
         return CanLog(file)
     if is_trace(start):
         return TraceFile(file)
-    return CsvFile(file, how.time, how.rate_Hz, how.skip_lines)
+    return TableFile(file, how.time, how.rate_Hz, how.skip_lines)
 
 
 def _open_mdf(file: Path) -> Source:

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import Problems, UsageError
-from quiesce.damper.data.columns import NONE, ROLES, parse_spec
 from quiesce.damper.data.mapping import Plan, read_mapping
 from quiesce.damper.data.read import Columns, OutputAverage
 from quiesce.damper.data.records import Conditioned, conditioned
 from quiesce.damper.data.split import Split, part_from_text
+from quiesce.recording.columns import NONE, OF_DAMPERS, parse_spec
 
 _SETTING_FLAGS = ("keep_offset", "use_velocity", "accept_values")
 
@@ -42,7 +42,7 @@ def add_data_options(group: argparse._ArgumentGroup) -> None:
         "--columns", type=Path, metavar="FILE.toml",
         help="mapping file; what is given on the command line wins",
     )  # fmt: skip
-    for role in ROLES:
+    for role in OF_DAMPERS:
         group.add_argument(
             f"--{role}", dest=f"column_{role}", metavar="NAME[:UNIT]",
             help=f"column of {role} (found by its name), or 'none'",
@@ -108,7 +108,7 @@ def plan_of(args: argparse.Namespace, files: list[Path]) -> Plan:
 def columns_of(args: argparse.Namespace, from_file: Columns) -> Columns:
     given = dict(from_file.given)
     problems = Problems()
-    for role in ROLES:
+    for role in OF_DAMPERS:
         if text := getattr(args, f"column_{role}"):
             with problems.told():
                 given[role] = None if text == NONE else parse_spec(role, text)

@@ -7,7 +7,7 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
-from quiesce.damper.data.table import Table, at, clipped
+from quiesce.recording.table import Table, at, clipped
 from quiesce.signal.recording import MAX_JITTER
 
 MIN_ROWS = 50

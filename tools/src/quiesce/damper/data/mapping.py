@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from quiesce.base.errors import Problems, UsageError, one_line
+from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
-from quiesce.damper.data.columns import NONE, ROLES, ColumnSpec, parse_spec, stated_unit
 from quiesce.damper.data.condition import LOW_PASS_Hz, Settings
 from quiesce.damper.data.read import Columns, OutputAverage
-from quiesce.damper.data.split import Split, is_number, parse_part
-from quiesce.damper.data.table import clipped
+from quiesce.damper.data.split import Split, parse_part
+from quiesce.recording.beside import given_columns, is_number
+from quiesce.recording.table import clipped
 
 # Of a scoring file: what a mapping has no use for.
 _OF_SCORING = {"name", "file", "lagged_baseline"}
@@ -112,42 +112,6 @@ def checked_split(table: Mapping[str, Any], where: str) -> Split | None:
         raise UsageError(f"{where}: train and test go together")
     parts = [parse_part(f"{where}: {key}", table[key]) for key in ("train", "test")]
     return Split(*parts)
-
-
-def given_columns(table: Any, where: str) -> dict[str, ColumnSpec | None]:
-    """From { role = "NAME[:UNIT]" } or { role = { column, unit, scale } }; "none" for none."""
-    if not isinstance(table, Mapping):
-        raise UsageError(f"{where}: columns has to be a table, such as {{ force = 'f:N' }}")
-    given: dict[str, ColumnSpec | None] = {}
-    problems = Problems()
-    for role, value in table.items():
-        with problems.told():
-            if role not in ROLES:
-                raise UsageError(
-                    f"{where}: columns: no role '{clipped(role)}'; known are {', '.join(ROLES)}"
-                )
-            given[role] = column_spec(role, value, where)
-    problems.refuse()
-    return given
-
-
-def column_spec(role: str, value: Any, where: str) -> ColumnSpec | None:
-    if isinstance(value, str) and value:
-        return None if value == NONE else parse_spec(role, value)
-    is_table = isinstance(value, Mapping) and "column" in value
-    if not is_table or not set(value) <= {"column", "unit", "scale"}:
-        raise UsageError(
-            f"{where}: columns: {role} has to be 'NAME', 'NAME:UNIT' or "
-            "{ column = 'NAME', unit = 'UNIT', scale = 1.0 }"
-        )
-    spec = ColumnSpec(value["column"], value.get("unit"), value.get("scale", 1.0))
-    texts = (spec.name, spec.unit if spec.unit is not None else "")
-    if not all(isinstance(text, str) for text in texts) or not is_number(spec.factor):
-        raise UsageError(f"{where}: columns: {role}: names and units are texts, scale is a number")
-    if spec.factor == 0:
-        raise UsageError(f"{where}: columns: {role}: a scale of 0 leaves nothing")
-    stated_unit(role, spec)
-    return spec
 
 
 def read_mapping(file: Path, data: list[Path]) -> Plan:

@@ -9,9 +9,11 @@ import numpy as np
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.damper.data.check import MIN_ROWS, Piece, check_constant, check_rows, pieces_of
-from quiesce.damper.data.columns import Column, ColumnSpec, find_columns
-from quiesce.damper.data.table import Table, at, clipped, open_table
-from quiesce.damper.data.units import FREQUENCY, split_name
+from quiesce.recording.beside import proposed, stated_beside
+from quiesce.recording.columns import Column, ColumnSpec, find_columns
+from quiesce.recording.open import open_table
+from quiesce.recording.table import Table, at, clipped
+from quiesce.recording.units import FREQUENCY, split_name
 
 
 @dataclass(frozen=True)
@@ -90,9 +92,9 @@ def read_file(file: Path, how: Columns) -> RawFile:
 
 
 def table_columns(table: Table, how: Columns) -> dict[str, Column]:
-    given = dict(how.given)
+    given = {**stated_beside(table.file), **how.given}
     if how.rate_Hz is not None:
-        if given.get("time"):
+        if how.given.get("time"):
             raise UsageError(
                 "a time column and --rate-hz exclude each other; --work-rate-hz sets the rate "
                 "of the records"
@@ -101,14 +103,15 @@ def table_columns(table: Table, how: Columns) -> dict[str, Column]:
     elif "time" in given and given["time"] is None:
         raise UsageError("--time none needs --rate-hz, the sampling rate")
     if how.current_A is not None:
-        if given.get("current") or given.get("command"):
+        if how.given.get("current") or how.given.get("command"):
             raise UsageError("a column for the command and --current-a exclude each other")
         given |= {"current": None, "command": None}
     try:
         return find_columns(table, given)
     except UsageError as error:
         hint = "; without a time column, state the sampling rate with --rate-hz"
-        raise UsageError(f"{error}{hint}") if "the time;" in str(error) else error
+        told = UsageError(f"{error}{hint}") if "the time;" in str(error) else error
+        raise told if how.given else proposed(table, told)
 
 
 def file_notes(table: Table, found: dict[str, Column], how: Columns) -> list[str]:
@@ -124,10 +127,7 @@ def file_notes(table: Table, found: dict[str, Column], how: Columns) -> list[str
             "no column of current or voltage: the command is taken as 0 A throughout (--current, "
             "--command or --current-a state it)"
         )
-    if table.separator != ",":
-        kind = {"\t": "tabs", ";": "semicolons"}[table.separator]
-        notes.append(f"columns separated by {kind}")
-    return notes
+    return [*notes, *([table.note] if table.note else [])]
 
 
 def group_spans(

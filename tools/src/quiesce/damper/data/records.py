@@ -40,7 +40,7 @@ def records_of_set(table: Mapping[str, Any], folder: Path, low_pass_Hz: float) -
 def conditioned(files: list[Path], plan: Plan, currents_A: list[float] | None) -> Conditioned:
     """All files read in the same way and conditioned together."""
     if not files:
-        raise UsageError("no data: name at least one CSV file")
+        raise UsageError("no data: name at least one recording")
     if len({file.resolve() for file in files}) < len(files):
         raise UsageError("one file is named twice; its tests would count double")
     stated = stated_currents(files, plan, currents_A)

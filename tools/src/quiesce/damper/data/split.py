@@ -1,6 +1,5 @@
 """Which rows are fitted, which are held out, and how the fitted ones are divided for validation."""
 
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +8,7 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
+from quiesce.recording.beside import is_number
 
 FORMS = ("time_s", "part", "rows", "current_A")
 VALIDATION_PART = 0.25
@@ -92,12 +92,6 @@ def parse_part(where: str, table: Any) -> Part:
     if form == "part" and values[1] > 1.0:
         raise UsageError(f"{where}: part goes from 0 to 1")
     return Part(form, tuple(float(value) for value in values))
-
-
-def is_number(value: Any) -> bool:
-    """Finite as a float; an integer may have any length."""
-    is_real = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_real and abs(value) <= sys.float_info.max
 
 
 def part_from_text(option: str, text: str) -> Part:

@@ -11,13 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from quiesce.base.errors import UsageError, one_line
+from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.base.progress import reading
+from quiesce.recording.table import MAX_VALUE, Table, at, clipped
 
 MAX_BYTES = 400_000_000
-# Beyond any measured value, in any unit.
-MAX_VALUE = 1e18
 SEPARATORS = {"\t": "tabs", ";": "semicolons", ",": "commas"}
 _KINDS = {
     b"\x89PNG": "a PNG image",
@@ -37,19 +36,8 @@ _NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eEdD][+-]?\d+)?")
 _EXPORT = "export it as CSV: one header line with names and units, numbers below, UTF-8"
 
 
-def at(file: Path, line: int, text: str) -> UsageError:
-    """'FILE:LINE: text' on one line."""
-    return UsageError(f"{shown(file)}:{line}: {one_line(text)}")
-
-
-def clipped(text: str, most: int = 40) -> str:
-    """A cell as it can be shown: printable, not long."""
-    text = "".join(c if c.isprintable() else "?" for c in text.strip())
-    return text if len(text) <= most else text[: most - 3] + "..."
-
-
 @dataclass(frozen=True)
-class Table:
+class TextTable(Table):
     file: Path
     separator: str
     head: list[str]
@@ -57,18 +45,8 @@ class Table:
     body: list[str]  # the lines below the header
 
     @property
-    def headers(self) -> str:
-        return ", ".join(clipped(name) for name in self.head if name)
-
-    def index(self, name: str) -> int:
-        """UsageError where no or more than one column has this name."""
-        if self.head.count(name) == 1:
-            return self.head.index(name)
-        problem = "more than one column is" if name in self.head else "no column is"
-        raise at(
-            self.file, self.head_line,
-            f"{problem} named '{clipped(name)}'; there are: {self.headers}",
-        )  # fmt: skip
+    def note(self) -> str:
+        return "" if self.separator == "," else f"columns separated by {SEPARATORS[self.separator]}"
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
         """Line in the file and cells, blank lines left out."""
@@ -168,7 +146,7 @@ def plain_numbers(rows: list[list[str]], width: int) -> np.ndarray | None:
     return values if np.all(np.abs(values) <= MAX_VALUE) else None
 
 
-def open_table(file: Path, skip_lines: int = 0) -> Table:
+def open_text(file: Path, skip_lines: int = 0) -> TextTable:
     """Header and lines of a text file. UsageError for anything that is no table.
 
     `skip_lines` lines come before the header; blank ones and those that begin with # or % are
@@ -185,7 +163,7 @@ def open_table(file: Path, skip_lines: int = 0) -> Table:
         raise at(file, first + 1, f"this is JSON or markup, not CSV; {_EXPORT}")
     separator = max(SEPARATORS, key=head.count)
     names = header_names(file, first + 1, head, separator)
-    return Table(file, separator, names, first + 1, lines[first + 1 :])
+    return TextTable(file, separator, names, first + 1, lines[first + 1 :])
 
 
 def header_names(file: Path, line: int, head: str, separator: str) -> list[str]:

@@ -6,9 +6,9 @@ from types import MappingProxyType
 import numpy as np
 
 from quiesce.base.errors import Problems, UsageError
-from quiesce.damper.data import units
-from quiesce.damper.data.table import Table, at, clipped
-from quiesce.damper.data.units import Unit
+from quiesce.recording import units
+from quiesce.recording.table import Table, at, clipped
+from quiesce.recording.units import Unit
 
 
 @dataclass(frozen=True)
@@ -31,14 +31,17 @@ ROLES = MappingProxyType(
         "velocity": _role(units.VELOCITY, "v vel velocity speed xdot", "v:mm/s"),
         "acceleration": _role(units.ACCELERATION, "a acc accel acceleration xddot", "acc:m/s2"),
         "force": _role(units.FORCE, "f force load", "f:N"),
-        "current": _role(units.CURRENT, "i current coil_current coil curr", "i:A"),
+        "current": _role(units.CURRENT, "i current coil_current coil curr current_cmd", "i:A"),
         "command": _role(
             units.VOLTAGE, "coil coil_voltage voltage volt command u cmd", "coil_voltage:V"
         ),
         "temperature": _role(units.TEMPERATURE, "temp temperature", "temp:C"),
+        "drive": _role(units.VOLTAGE, "drive", "drive:V"),
     }
 )
 NONE = "none"
+# Of recordings of dampers; the others are of structures.
+OF_DAMPERS = tuple(role for role in ROLES if role != "drive")
 
 
 @dataclass(frozen=True)
@@ -160,7 +163,7 @@ def find_columns(table: Table, given: dict[str, ColumnSpec | None]) -> dict[str,
     """
     found: dict[str, Column] = {}
     problems = Problems()
-    for role in ROLES:
+    for role in OF_DAMPERS:
         with problems.told():
             if (column := column_of(table, role, given, role in ("time", "force"))) is not None:
                 found[role] = column

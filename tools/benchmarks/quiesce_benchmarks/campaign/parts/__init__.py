@@ -1,0 +1,1 @@
+"""Parts of it, each with its figure."""

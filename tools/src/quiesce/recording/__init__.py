@@ -1,0 +1,1 @@
+"""Recordings of whatever format, as columns with names and units."""

@@ -1,0 +1,1 @@
+"""Readers: one module a format, which recording/open.py lists."""

@@ -1,0 +1,70 @@
+"""Columns into files of other programs. A format is a function and a line in WRITERS."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from quiesce.base.extras import extra
+from quiesce.recording.columns import ROLES
+from quiesce.recording.units import normal
+
+Columns = Mapping[str, np.ndarray]
+TIME_HISTORY, TIME = 1, 17  # of a universal data set 58: function, abscissa
+NAME_LETTERS, LABEL_LETTERS = 80, 20
+
+
+def write_mat(file: Path, columns: Columns) -> None:
+    """Version 5, a variable a column under its name, as columns."""
+    from scipy.io import savemat
+
+    savemat(file, dict(columns), appendmat=False, oned_as="column", long_field_names=True)
+
+
+def write_uff(file: Path, columns: Columns) -> None:
+    """Data sets 58 as text, against the first column, the time in s at even steps; the unit that a
+    name ends in is the ordinate's. Times have six digits there."""
+    with extra("files", "a universal file"):
+        import pyuff
+
+    (_, time_s), *others = columns.items()
+    stream = pyuff.UFF(str(file))
+    for number, (name, values) in enumerate(others, 1):
+        stem, unit = name_and_unit(name)
+        one = pyuff.prepare_58(
+            binary=0, func_type=TIME_HISTORY, rsp_node=number, rsp_dir=1, ref_node=0, ref_dir=0,
+            data=np.asarray(values, float), x=np.asarray(time_s, float), id1=stem[:NAME_LETTERS],
+            abscissa_spacing=1, abscissa_spec_data_type=TIME, return_full_dict=True,
+        )  # fmt: skip
+        # It writes whole descriptions only.
+        one = {key: _blank(key) if value is None else value for key, value in one.items()}
+        one |= {"abscissa_axis_units_lab": "s", "ordinate_axis_units_lab": unit}
+        one |= {"abscissa_axis_lab": "Time", "ordinate_axis_lab": stem[:LABEL_LETTERS]}
+        stream.write_sets(one, "overwrite" if number == 1 else "add")
+
+
+def _blank(key: str) -> str | int:
+    """Of a field that says nothing: texts by the ends of their names, the others are numbers."""
+    return "NONE" if key.startswith("id") or key.endswith(("_lab", "_name")) else 0
+
+
+def name_and_unit(name: str) -> tuple[str, str]:
+    """'floor_accel_m_s2' is floor_accel in m/s2; the unit is empty where the name ends in none."""
+    ends = (name[i + 1 :] for i, letter in enumerate(name) if letter == "_" and i > 0)
+    for end in ends:
+        if any(normal(end) in role.units for role in ROLES.values()):
+            return name[: -len(end) - 1], end.replace("_", "/")
+    return name, ""
+
+
+# By the suffix of the name.
+WRITERS: dict[str, Callable[[Path, Columns], None]] = {
+    ".mat": write_mat,
+    ".uff": write_uff,
+    ".unv": write_uff,
+}
+
+
+def writer_of(file: Path) -> Callable[[Path, Columns], None] | None:
+    """None where the name asks for text."""
+    return WRITERS.get(file.suffix.lower())
