@@ -1,6 +1,7 @@
 #include "toml_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -376,11 +377,13 @@ std::string text_of(const std::string &file) {
     if (!in) {
         throw InputError(on_one_line(file + ": cannot be read; name a file that is there"));
     }
-    std::string text(kMostBytes + 1, '\0');
-    in.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMostBytes) {
-        throw InputError(on_one_line(file + ": is greater than any file of settings"));
+    std::string text;
+    for (std::array<char, 4096> block{}; in;) {
+        in.read(block.data(), block.size());
+        text.append(block.data(), static_cast<std::size_t>(in.gcount()));
+        if (text.size() > kMostBytes) {
+            throw InputError(on_one_line(file + ": is greater than any file of settings"));
+        }
     }
     return text;
 }
