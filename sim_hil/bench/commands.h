@@ -22,6 +22,7 @@ int cmd_plant_check(const std::vector<std::string> &words);
 int cmd_replay(const std::vector<std::string> &words);
 int cmd_run(const std::vector<std::string> &words);
 int cmd_scenario_check(const std::vector<std::string> &words);
+int cmd_serve(const std::vector<std::string> &words);
 int cmd_table_check(const std::vector<std::string> &words);
 int cmd_uart_rate(const std::vector<std::string> &words);
 

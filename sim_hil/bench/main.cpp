@@ -45,6 +45,8 @@ const Entry kCommands[] = {
      "[--columns NAME,NAME...] [--every N] [--repeat N]",
      quiesce::cmd_run},
     {"scenario-check", "FILE", quiesce::cmd_scenario_check},
+    {"serve", "(a line of input: options of run, tabs between; a line of output: its object)",
+     quiesce::cmd_serve},
     {"table-check", "--file FILE [--board FILE]", quiesce::cmd_table_check},
     {"uart-rate", "--image ELF --echo-image ELF [--exchanges N]", quiesce::cmd_uart_rate},
 };
