@@ -18,6 +18,7 @@ needs_of() {
     "board "* | "chain "* | "params "* | "plant "* | "record "*) echo bench ;;
     "rules lookup" | "rules optimize" | "rules show") echo bench ;;
     "rules "*) ;;
+    "campaign "*) echo bench ;;
     "compare "*) needs_of_compare "$@" ;;
     "law make" | "law rules" | "law fit") echo bench ;;
     "law "*) ;;

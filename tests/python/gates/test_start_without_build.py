@@ -98,6 +98,7 @@ def busy(clone: Clone) -> Iterator[Clone]:
         ("rules compile x.fcl", ""),
         ("rules convert x.fcl", ""),
         ("compare x", "bench"),
+        ("campaign x", "bench"),
         ("law list", ""),
         ("table show x.table", ""),
         ("table diff a.table b.table", ""),

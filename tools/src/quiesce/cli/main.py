@@ -20,6 +20,7 @@ GROUPS = {
         ("replay", "replay", "recorded motion through the firmware"),
         ("record", "record", "the simulated accelerometer's signal as a CSV file"),
         ("compare", "compare", "control laws side by side on recorded ground motions"),
+        ("campaign", "campaign", "thousands of cases: grids, samples, sensitivities; resumable"),
     ),
     "identify": (
         (
