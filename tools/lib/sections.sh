@@ -5,7 +5,8 @@
 WHOLE=1
 # The full one of identify takes hours, that of laws half an hour.
 BENCHMARKS=(house signal fuzzy controller control sweep "identify --quick" can trust papers "laws --quick" "tables --quick"
-    "install --quick" lock "live --quick" board "unseen --quick")
+    "install --quick" lock "live --quick" board "unseen --quick"
+    "campaign --quick")
 
 run_ctest() {
     ctest --preset "$1" --parallel "$(nproc)" --no-tests=error

@@ -10,6 +10,7 @@ from quiesce.base.command import Parser, exit_code_of
 from quiesce.base.paths import build_folder, shown
 
 from quiesce_benchmarks.board import benchmark as board_benchmark
+from quiesce_benchmarks.campaign import benchmark as campaign_benchmark
 from quiesce_benchmarks.can import benchmark as can_benchmark
 from quiesce_benchmarks.control import benchmark as control_benchmark
 from quiesce_benchmarks.controller import benchmark as controller_benchmark
@@ -47,6 +48,7 @@ BENCHMARKS = (
     live_benchmark,
     board_benchmark,
     unseen_benchmark,
+    campaign_benchmark,
 )
 
 EXIT_CODES = """--json prints one object {"bench", "figures", "context"}; a figure has name, value,

@@ -1,1 +1,1 @@
-"""Parts of it, each with its figure."""
+"""Parts of the benchmark of campaigns."""
