@@ -65,7 +65,8 @@ needs_of_compare() {
 # needs_of_benchmark NAME...: of `benchmark`. Images that only benchmarks run: their build_images.
 needs_of_benchmark() {
     case "${1:-}" in
-    campaign | can | fuzzy | house | signal) echo bench ;;
+    can | fuzzy | house | signal) echo bench ;;
+    campaign) echo bench fmu ;;
     controller) echo bench dampers images ;;
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;

@@ -6,13 +6,17 @@ from pathlib import Path
 
 import numpy as np
 from quiesce.base.errors import UsageError, one_line
+from quiesce.base.table import format_table
 from quiesce.recording.beside import proposed, stated_beside
 from quiesce.recording.columns import find_columns
 from quiesce.recording.open import open_table
 from quiesce.recording.units import LENGTH
 
-from quiesce_benchmarks.campaign.parts.written import WRITERS, recording
+from quiesce_benchmarks.campaign.written import WRITERS, recording
+from quiesce_benchmarks.part import Effort, Measured
 
+TITLE = "recordings of other programs"
+FIGURES = (("formats_ok", "1", float(len(WRITERS)), "higher"),)
 TOLERANCE = 1e-9  # of the largest value of a column
 
 
@@ -26,6 +30,13 @@ class Verdict:
     @property
     def is_ok(self) -> bool:
         return not self.trouble
+
+
+def measure(_: Effort) -> Measured:
+    count, verdicts = formats_ok()
+    rows = [[one.format, one.trouble or "read as it is"] for one in verdicts]
+    table = format_table(["format", "every column with its unit"], rows, left=(0, 1))
+    return Measured({"formats_ok": float(count)}, {"formats": len(verdicts)}, (table,))
 
 
 def formats_ok() -> tuple[int, list[Verdict]]:
