@@ -62,7 +62,7 @@ def _time_column(table: Table, time: str | None, stated: Mapping[str, ColumnSpec
     try:
         column = find_column(table, TIME, needed=True)
     except UsageError as error:
-        raise proposed(table, error)
+        raise proposed(table, error, TIME)
     assert column is not None
     return column
 
