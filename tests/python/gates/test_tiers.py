@@ -31,6 +31,31 @@ def test_closing_lines_of_the_runners_come_last(clone: Clone) -> None:
     assert result.stdout.splitlines()[-2:] == [ctest, pytest_line]
 
 
+LANES = """
+one() { step "$1" bash -c "echo '====== 1 passed in 0.$1s ======'; [ $1 != 3 ]"; }
+side_by_side 2 one 1 2 3 4 5 >told; report
+"""
+
+
+def test_steps_side_by_side_are_recorded_as_if_by_themselves(clone: Clone) -> None:
+    result = clone.function("common steps lanes", LANES)
+    assert result.returncode == 1
+    assert "failed: 3\n" in result.stdout
+    assert "steps: 4 passed, 1 failed\n" in result.stdout
+    closing = {f"====== 1 passed in 0.{number}s ======" for number in range(1, 6)}
+    assert set(result.stdout.splitlines()[-5:]) == closing
+    told = (clone.root / "told").read_text()
+    assert all(f"ok    {number} " in told for number in (1, 2, 4, 5)) and "FAIL  3 " in told
+
+
+def test_steps_side_by_side_run_at_once(clone: Clone) -> None:
+    """Each waits for the other."""
+    meet = "touch $1; until [ -e a ] && [ -e b ]; do [ $SECONDS -lt 20 ] || exit 1; done"
+    code = f"one() {{ step $1 bash -c '{meet}' - $1; }}; side_by_side 2 one a b; report"
+    result = clone.function("common steps lanes", code)
+    assert "steps: 2 passed, 0 failed" in result.stdout, result.stdout + result.stderr
+
+
 def repository(clone: Clone) -> Callable[..., str]:
     """The clone as a git tree with all of git, and a .venv that says it is complete."""
 
