@@ -1,6 +1,8 @@
 """The benchmark of campaigns: what its figures are made of."""
 
 import random
+import subprocess
+import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -23,6 +25,23 @@ def test_rows_are_counted_as_they_are_in_the_store(build: Path, tmp_path: Path) 
     with closing(open_store(campaign, tmp_path / NAME)) as store:
         store.put(run_chunk(campaign.recipe, [campaign.design.case(i) for i in (1, 3)])[0])
     assert kills.numbers_in(tmp_path / NAME) == [1, 3]
+
+
+def test_a_store_whose_writer_was_killed_in_the_middle_has_its_rows(tmp_path: Path) -> None:
+    file = tmp_path / NAME
+    writer = f"""
+import os, signal, sqlite3
+base = sqlite3.connect({str(file)!r})
+base.execute("CREATE TABLE cases (number INTEGER PRIMARY KEY, text)")
+base.executemany("INSERT INTO cases VALUES (?, ?)", [(i, "") for i in range(7)])
+base.commit()
+base.execute("PRAGMA cache_size = 1")  # rows reach the file before their commit
+base.executemany("INSERT INTO cases VALUES (?, ?)", [(i, "x" * 2000) for i in range(7, 900)])
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+    subprocess.run([sys.executable, "-c", writer], check=False)
+    assert file.with_name(f"{NAME}-journal").exists()
+    assert kills.numbers_in(file) == list(range(7))
 
 
 @pytest.mark.slow

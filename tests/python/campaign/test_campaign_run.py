@@ -94,7 +94,7 @@ def rows_in(file: Path) -> int:
     if not file.exists():
         return 0
     try:
-        with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as base:
+        with sqlite3.connect(f"file:{file}?mode=rw", uri=True) as base:
             return int(base.execute("SELECT count(*) FROM cases").fetchone()[0])
     except sqlite3.OperationalError:  # not made yet
         return 0

@@ -45,12 +45,17 @@ class Tally:
 
 
 def numbers_in(store: Path) -> list[int]:
-    """Of all rows; none where there is no store yet."""
-    try:
-        with closing(sqlite3.connect(f"file:{store}?mode=ro", uri=True, timeout=30.0)) as base:
-            return [number for (number,) in base.execute("SELECT number FROM cases")]
-    except sqlite3.OperationalError:
+    """Of all rows; none where there is no store yet. Opened for writing, as whoever is killed in
+    the middle of a chunk leaves a journal that only a writer can roll back."""
+    if not store.exists():
         return []
+    with closing(sqlite3.connect(f"file:{store}?mode=rw", uri=True, timeout=30.0)) as base:
+        try:
+            return [number for (number,) in base.execute("SELECT number FROM cases")]
+        except sqlite3.OperationalError as error:
+            if "no such table" in str(error):
+                return []
+            raise
 
 
 def descendants(pid: int) -> list[int]:
