@@ -25,6 +25,7 @@ NODE_TICKS = "20000"
 # Of a benchmark's context: what the pages' tables show.
 KEPT = {
     "board": ("seed", "quick", "reported"),
+    "campaign": ("seed", "quick", "reported"),
     "control": ("seed", "quick", "settings", "cost"),
     "controller": ("golden_words", "compared_words", "off_worst_instr"),
     "fuzzy": ("seed", "quick", "engines", "peers", "host_instr", "ratios"),
