@@ -1,7 +1,10 @@
 """./tools/test: its steps, what it does not run again, what it says."""
 
+import os
 import shutil
+import signal
 import subprocess
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -54,6 +57,36 @@ def test_steps_side_by_side_run_at_once(clone: Clone) -> None:
     code = f"one() {{ step $1 bash -c '{meet}' - $1; }}; side_by_side 2 one a b; report"
     result = clone.function("common steps lanes", code)
     assert "steps: 2 passed, 0 failed" in result.stdout, result.stdout + result.stderr
+
+
+def test_ctrl_c_ends_what_runs_side_by_side(clone: Clone) -> None:
+    forever = "echo >$1; exec 3<>pipe; read -r _ <&3"
+    steps = f"one() {{ step $1 bash -c '{forever}' - $1; }}; side_by_side 2 one a b c"
+    (clone.bin / "mkfifo").symlink_to(shutil.which("mkfifo"))
+    libraries = "; ".join(f"source tools/lib/{name}.sh" for name in ("common", "steps", "lanes"))
+    run = subprocess.Popen(
+        ["bash", "-c", f"PROGRAM=here; {libraries}; mkfifo pipe; {steps}"],
+        cwd=clone.root,
+        env={"PATH": str(clone.bin)},
+        stdin=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    give_up_s = time.monotonic() + 60.0
+    while not all((clone.root / name).exists() for name in "ab"):
+        assert time.monotonic() < give_up_s and run.poll() is None
+        time.sleep(0.05)
+    os.killpg(run.pid, signal.SIGINT)
+    assert run.wait(30) == 130
+    while of_session(run.pid):
+        assert time.monotonic() < give_up_s
+        time.sleep(0.05)
+    assert not (clone.root / "c").exists()
+
+
+def of_session(number: int) -> list[str]:
+    """Processes that are left of it."""
+    call = ["ps", "-o", "pid=", "-s", str(number)]
+    return subprocess.run(call, capture_output=True, text=True).stdout.split()
 
 
 def repository(clone: Clone) -> Callable[..., str]:
