@@ -114,6 +114,13 @@ class Bus:
         return data
 
 
+def request_of(preamble: Preamble, bus: Bus) -> bytes | None:
+    """What it asks now."""
+    before = len(bus.asked)
+    preamble.poll()
+    return bus.asked[before] if len(bus.asked) > before else None
+
+
 @pytest.fixture
 def bus(monkeypatch: pytest.MonkeyPatch) -> Bus:
     return Bus(monkeypatch)
@@ -131,7 +138,7 @@ def identification(values: list[int]) -> SimpleNamespace:
 def test_the_next_identification_makes_it_go_on(bus: Bus) -> None:
     preamble = Preamble(bus, DATABASE)
     preamble.take(identification(VALUES))
-    preamble.take(answer(preamble.poll()))
+    preamble.take(answer(request_of(preamble, bus)))
     while not preamble.is_over:
         bus.now_s += REPLY_S
         preamble.poll()
@@ -140,7 +147,7 @@ def test_the_next_identification_makes_it_go_on(bus: Bus) -> None:
     preamble.take(identification(VALUES))
     while not preamble.is_over:
         bus.now_s += REPLY_S
-        preamble.take(answer(preamble.poll()))
+        preamble.take(answer(request_of(preamble, bus)))
     assert [index_of(one) for one in bus.asked] == [1, 2, 3, 4]
     assert preamble.values == VALUES and preamble.is_complete
 
@@ -149,13 +156,13 @@ def test_parameters_that_changed_meanwhile_are_read_from_the_start(bus: Bus) -> 
     others = [1, *VALUES[1:]]
     preamble = Preamble(bus, DATABASE)
     preamble.take(identification(VALUES))
-    preamble.take(answer(preamble.poll()))
+    preamble.take(answer(request_of(preamble, bus)))
     for _ in range(2):  # the first time with one value of before
         bus.now_s += 10.0
         preamble.take(identification(others))
         while not preamble.is_over:
             bus.now_s += REPLY_S
-            preamble.take(answer(preamble.poll(), others))
+            preamble.take(answer(request_of(preamble, bus), others))
     assert preamble.values == others
 
 
@@ -168,6 +175,6 @@ def test_samples_are_asked_for_while_no_parameter_is_answered(bus: Bus) -> None:
     preamble.poll()
     assert raw.poll() is None  # one at a time
     bus.now_s += REPLY_S
-    assert operation_of(raw.poll()) == "RAW_STREAM" and preamble.poll() is None
+    assert operation_of(raw.poll()) == "RAW_STREAM" and request_of(preamble, bus) is None
     bus.now_s += 0.02
-    assert operation_of(preamble.poll()) == "READ" and raw.poll() is None
+    assert operation_of(request_of(preamble, bus)) == "READ" and raw.poll() is None

@@ -9,7 +9,7 @@ from quiesce.base.errors import UsageError
 from quiesce.damper.data.read import Columns, read_file
 from quiesce.recording.beside import file_beside, stated_beside
 from quiesce.signal.recording import read_columns
-from quiesce_benchmarks.campaign.parts import written
+from quiesce_benchmarks.campaign import written
 
 COLUMNS = written.recording()
 

@@ -11,7 +11,7 @@ from conftest import run_quiesce
 from quiesce.base.errors import UsageError
 from quiesce.recording.open import FORMATS, open_table
 from quiesce.recording.write import WRITERS, name_and_unit
-from quiesce_benchmarks.campaign.parts import written
+from quiesce_benchmarks.campaign import written
 from quiesce_benchmarks.campaign.parts.formats import formats_ok, trouble_with
 from scipy.io import savemat
 

@@ -27,12 +27,12 @@ MOST_BYTES = 2_000_000_000
 LONG_BYTES = 20_000_000  # reading more is told
 
 
-def open_table(file: Path, skip_lines: int = 0) -> Table:
+def open_table(file: Path, skip_lines: int = 0, least: int = 2) -> Table:
     """UsageError, in one line, for anything that has no columns. skip_lines: above the header of a
-    text."""
+    text. least: columns that a text must have."""
     read = FORMATS.get(file.suffix.lower())
     if read is None:
-        return open_text(file, skip_lines)
+        return open_text(file, skip_lines, least)
     _require_size(file)
     try:
         return read(file)

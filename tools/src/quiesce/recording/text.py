@@ -146,11 +146,11 @@ def plain_numbers(rows: list[list[str]], width: int) -> np.ndarray | None:
     return values if np.all(np.abs(values) <= MAX_VALUE) else None
 
 
-def open_text(file: Path, skip_lines: int = 0) -> TextTable:
+def open_text(file: Path, skip_lines: int = 0, least: int = 2) -> TextTable:
     """Header and lines of a text file. UsageError for anything that is no table.
 
     `skip_lines` lines come before the header; blank ones and those that begin with # or % are
-    passed over there.
+    passed over there. least: columns that it must have; with fewer the separator is another one.
     """
     lines = re.split(r"\r\n|\n|\r", read_text(file))
     first = skip_lines
@@ -162,18 +162,18 @@ def open_text(file: Path, skip_lines: int = 0) -> TextTable:
     if head.lstrip()[0] in "{[<":
         raise at(file, first + 1, f"this is JSON or markup, not CSV; {_EXPORT}")
     separator = max(SEPARATORS, key=head.count)
-    names = header_names(file, first + 1, head, separator)
+    names = header_names(file, first + 1, head, separator, least)
     return TextTable(file, separator, names, first + 1, lines[first + 1 :])
 
 
-def header_names(file: Path, line: int, head: str, separator: str) -> list[str]:
+def header_names(file: Path, line: int, head: str, separator: str, least: int) -> list[str]:
     try:
         names = [name.strip() for name in next(csv.reader([head], delimiter=separator))]
     except (csv.Error, StopIteration):
         raise at(file, line, f"not a header line; {_EXPORT}")
     while len(names) > 1 and not names[-1]:
         names.pop()
-    if len([name for name in names if name]) < 2:
+    if len([name for name in names if name]) < least:
         raise at(
             file, line,
             f"one column only, '{clipped(head)}'; expected a header line with at least two names "

@@ -72,7 +72,7 @@ def read_columns(file: Path, names: list[str]) -> tuple[list[int], np.ndarray]:
     A name that the file does not have, and that is a quantity with its unit, such as accel_m_s2, is
     the column that the file beside it states for that quantity, or that can only be meant.
     """
-    table = open_table(file)
+    table = open_table(file, least=min(len(set(names)), 2))
     stated = stated_beside(file)
     sources = [_source(table, name, stated) for name in names]
     lines, cells = table.numbers([source for source, _ in sources])
