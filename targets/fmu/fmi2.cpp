@@ -51,17 +51,11 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token,
                    format_of(message).c_str());
         }
     };
-    try {
-        if (type != fmi2CoSimulation || token == nullptr || resources == nullptr) {
-            throw quiesce::InputError("it is for co-simulation, with a GUID and its resources");
-        }
-        return new FmuInstance(token, resources, log);
-    } catch (const std::exception &error) {
-        log(error.what());
-    } catch (...) {
-        log("unknown failure");
+    if (type != fmi2CoSimulation) {
+        log("it is for co-simulation only");
+        return nullptr;
     }
-    return nullptr;
+    return FmuInstance::make(token, resources, log);
 }
 
 void fmi2FreeInstance(fmi2Component component) {
@@ -76,7 +70,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component /*component*/, fmi2Boolean /*on*/, 
 fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean /*has_tolerance*/,
                                fmi2Real /*tolerance*/, fmi2Real start_s, fmi2Boolean /*has_stop*/,
                                fmi2Real /*stop_s*/) {
-    of(component).set_start_s(start_s);
+    of(component).model().set_start_s(start_s);
     return fmi2OK;
 }
 
@@ -204,7 +198,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component component, fmi2StatusKind kind, fmi2R
     if (kind != fmi2LastSuccessfulTime) {
         return fmi2Discard;
     }
-    *value = of(component).reached_s();
+    *value = of(component).model().time_s();
     return fmi2OK;
 }
 

@@ -39,17 +39,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String /*name*/, fmi3String token,
             logger(environment, fmi3Error, "logStatusError", message.c_str());
         }
     };
-    try {
-        if (token == nullptr || resources == nullptr) {
-            throw quiesce::InputError("it needs its token and its resources");
-        }
-        return new FmuInstance(token, resources, log);
-    } catch (const std::exception &error) {
-        log(error.what());
-    } catch (...) {
-        log("unknown failure");
-    }
-    return nullptr;
+    return FmuInstance::make(token, resources, log);
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String /*name*/, fmi3String /*token*/,
@@ -80,7 +70,7 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance /*instance*/, fmi3Boolean /*on*/, si
 fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean /*has_tolerance*/,
                                        fmi3Float64 /*tolerance*/, fmi3Float64 start_s,
                                        fmi3Boolean /*has_stop*/, fmi3Float64 /*stop_s*/) {
-    of(instance).set_start_s(start_s);
+    of(instance).model().set_start_s(start_s);
     return fmi3OK;
 }
 
@@ -107,7 +97,7 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 from_s, fmi3Float64 len
     *event = fmi3False;
     *end = fmi3False;
     *early = fmi3False;
-    *reached_s = of(instance).reached_s();
+    *reached_s = of(instance).model().time_s();
     return status_of(is_ok);
 }
 

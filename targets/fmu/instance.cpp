@@ -17,9 +17,23 @@ FmuInstance::FmuInstance(const std::string &token, const std::string &resources,
     model_ = make_model(read);
 }
 
+FmuInstance *FmuInstance::make(const char *token, const char *resources, const Log &log) noexcept {
+    try {
+        if (token == nullptr || resources == nullptr) {
+            throw InputError("it needs its token and its resources");
+        }
+        return new FmuInstance(token, resources, log);
+    } catch (const std::exception &error) {
+        log(error.what());
+    } catch (...) {
+        log("unknown failure");
+    }
+    return nullptr;
+}
+
 void FmuInstance::begin_if_new() {
     if (!model_->is_running()) {
-        model_->begin(start_s_);
+        model_->begin();
     }
 }
 
@@ -29,7 +43,6 @@ bool FmuInstance::step(double from_s, double length_s) {
             throw InputError("a step goes from a time on for a length that is not below 0");
         }
         model_->run_until(from_s + length_s);
-        reached_s_ = from_s + length_s;
     });
 }
 

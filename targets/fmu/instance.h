@@ -22,12 +22,13 @@ class FmuInstance {
   public:
     using Log = std::function<void(const std::string &message)>;
 
+    /// nullptr, with the reason logged, where there can be none.
+    static FmuInstance *make(const char *token, const char *resources, const Log &log) noexcept;
+
     /// token: what the XML says. Throws InputError.
     FmuInstance(const std::string &token, const std::string &resources, Log log);
 
     FmuModel &model() { return *model_; }
-    double start_s() const { return start_s_; }
-    void set_start_s(double start_s) { start_s_ = start_s; }
 
     /// Leaves the initialisation, once; later calls change nothing.
     void begin_if_new();
@@ -67,9 +68,6 @@ class FmuInstance {
     /// Runs it from one communication point on.
     bool step(double from_s, double length_s);
 
-    /// Where the last step that succeeded ended.
-    double reached_s() const { return reached_s_; }
-
     /// Overwrites *state where it is not null; so does copy_in.
     bool save(SavedState **state);
     bool load(const SavedState *state);
@@ -93,8 +91,6 @@ class FmuInstance {
 
     Log log_;
     std::unique_ptr<FmuModel> model_;
-    double start_s_ = 0.0;
-    double reached_s_ = 0.0;
 };
 
 } // namespace quiesce

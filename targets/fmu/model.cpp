@@ -58,6 +58,9 @@ Variable &FmuModel::variable_of(std::size_t index, VariableType type) {
 }
 
 double FmuModel::get(std::size_t index, VariableType type) {
+    if (index == variables_.size() && type == VariableType::real) {
+        return time_s_;
+    }
     if (variable_of(index, type).causality == Causality::output && is_stale_) {
         if (is_running_) {
             evaluate();
@@ -97,8 +100,8 @@ void FmuModel::set(std::size_t index, VariableType type, double value) {
     }
 }
 
-void FmuModel::begin(double start_s) {
-    start_s_ = start_s;
+void FmuModel::begin() {
+    start_s_ = time_s_;
     next_tick_ = 0;
     start();
     is_running_ = true;
@@ -113,12 +116,14 @@ void FmuModel::run_until(double time_s) {
         tick();
         ++next_tick_;
     }
+    time_s_ = time_s;
     is_stale_ = true;
 }
 
 void FmuModel::reset() {
     is_running_ = false;
     is_stale_ = true;
+    time_s_ = 0.0;
     for (std::size_t i = 0; i < variables_.size(); ++i) {
         values_[i] = variables_[i].start;
     }
@@ -129,6 +134,7 @@ void FmuModel::visit_all(StateArchive &archive) {
     archive(is_running_);
     archive(is_stale_);
     archive(start_s_);
+    archive(time_s_);
     archive(next_tick_);
     if (is_running_) {
         const std::vector<double> values = values_;

@@ -38,6 +38,7 @@ class FmuModel {
     const std::vector<Variable> &variables() const { return variables_; }
     int tick_rate_Hz() const { return tick_rate_Hz_; }
 
+    /// The reference after the last variable is the time of FMI 3, a real that can be read only.
     /// Throws InputError where there is no such variable of that type.
     double get(std::size_t index, VariableType type);
 
@@ -45,9 +46,14 @@ class FmuModel {
     /// and where the value is outside of its limits.
     void set(std::size_t index, VariableType type, double value);
 
-    /// The values are those to start with, at this time. Throws InputError where they do not fit.
-    void begin(double start_s);
+    /// The values are those to start with, at time_s(). Throws InputError where they do not fit.
+    void begin();
     bool is_running() const { return is_running_; }
+
+    /// Where the last step that succeeded ended; before any, where it starts.
+    double time_s() const { return time_s_; }
+    /// The time to start at, of a model that does not run.
+    void set_start_s(double start_s) { time_s_ = start_s; }
 
     /// Runs the ticks that are due until then. Throws InputError where the simulation fails.
     void run_until(double time_s);
@@ -95,6 +101,7 @@ class FmuModel {
     bool is_running_ = false;
     bool is_stale_ = true; ///< outputs may be of other inputs or parameters
     double start_s_ = 0.0;
+    double time_s_ = 0.0;
     std::int64_t next_tick_ = 0;
 };
 

@@ -128,7 +128,6 @@ void PlantFmu::declare_place(const std::string &name, const std::string &what) {
 
 void PlantFmu::start() {
     setup_.seed = static_cast<std::uint64_t>(value(seed_));
-    *stretch_ = Stretch{};
     push();
     excitation_ = force_ ? pushed_by(stretch_, tick_rate_Hz())
                          : make_excitation(setup_.scenario, setup_.plant.shaker);
@@ -140,7 +139,7 @@ void PlantFmu::start() {
 
 void PlantFmu::push() {
     const Push now = {force_ ? value(*force_) : 0.0, base_accel_ ? value(*base_accel_) : 0.0};
-    *stretch_ = {plant_ ? static_cast<double>(plant_->tick()) : 0.0, now, now};
+    *stretch_ = {0.0, now, now}; // from and to are the same: since when is no matter
 }
 
 void PlantFmu::command() {
@@ -197,7 +196,6 @@ void PlantFmu::show() {
 }
 
 void PlantFmu::visit_state(StateArchive &archive) {
-    archive(*stretch_);
     plant_->visit_state(archive);
     senses_->visit_state(archive);
     archive(on_the_way_);
@@ -210,6 +208,10 @@ std::unique_ptr<FmuModel> make_plant_model(const std::vector<std::string> &words
     arguments.require_no_positional();
     RunSetup setup = arguments.text("scenario") ? run_setup(arguments)
                                                 : setup_of_plant(arguments, "co-simulation");
+    if (setup.seed > INT32_MAX) {
+        throw InputError("seed " + std::to_string(setup.seed) + ": an FMU takes 0 .. " +
+                         std::to_string(INT32_MAX));
+    }
     if (!setup.scenario.faults.empty()) {
         throw InputError("scenario " + setup.scenario.name +
                          ": it has faults, which the importer of a plant is to inject; name a "

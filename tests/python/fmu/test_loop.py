@@ -117,6 +117,18 @@ def test_state_comes_back_in_every_bit_here_and_elsewhere(fmu, kind, version):
             assert again.read() == end
 
 
+def test_time_of_an_fmu_can_be_read_and_comes_back_with_a_state(fmu):
+    with Slave(fmu("plant", "3"), {}, 1.0) as plant:
+        time_s = plant.reader(["time"])
+        assert time_s() == [0.0]
+        plant.step(0.0, 0.25)
+        saved = plant.save()
+        plant.step(0.25, 0.5)
+        assert time_s() == [0.75]
+        plant.load(saved)
+        assert time_s() == [0.25]
+
+
 def test_damaged_or_strange_state_is_refused_and_changes_nothing(fmu):
     with Slave(fmu("controller", "3"), {}, 1.0) as one, Slave(fmu("plant", "3"), {}, 1.0) as plant:
         driven = Driven(one)

@@ -33,18 +33,24 @@ class Slave:
         self.name = file.stem
         self._messages: list[str] = []
         self._folder = ""
-        with self._told(file):
-            self._folder = fmpy.extract(str(file))
-            self.description: Any = fmpy.read_model_description(self._folder)
-        self._variables = {one.name: one for one in self.description.modelVariables}
-        self.version = "3.0" if self.description.fmiVersion.startswith("3") else "2.0"
-        if self.description.coSimulation is None or self.description.fmiVersion.startswith("1"):
+        self._fmu: Any = None
+        try:
+            with self._told(shown(file)):
+                self._folder = fmpy.extract(str(file))
+                self.description: Any = fmpy.read_model_description(self._folder)
+            self._variables = {one.name: one for one in self.description.modelVariables}
+            version = self.description.fmiVersion
+            self.version = "3.0" if version.startswith("3") else "2.0"
+            if self.description.coSimulation is None or version.startswith("1"):
+                raise UsageError(
+                    f"{shown(file)}: expected an FMU for co-simulation of FMI 2.0 or 3.0"
+                )
+            with self._told(shown(file)):
+                self._fmu = self._instance()
+                self._start(start_values, stop_s)
+        except UsageError:
             self.close()
-            raise UsageError(f"{shown(file)}: expected an FMU for co-simulation of FMI 2.0 or 3.0")
-        with self._told(file):
-            self._fmu = self._instance()
-        with self._told(file):
-            self._start(start_values, stop_s)
+            raise
 
     def __enter__(self) -> "Slave":
         return self
@@ -53,24 +59,21 @@ class Slave:
         self.close()
 
     def close(self) -> None:
-        if getattr(self, "_fmu", None) is not None:
+        if self._fmu is not None:
             fmu, self._fmu = self._fmu, None
             fmu.freeInstance()
         shutil.rmtree(self._folder, ignore_errors=True)
 
     @contextmanager
-    def _told(self, file: Path | None = None) -> Iterator[None]:
+    def _told(self, who: str = "") -> Iterator[None]:
         """What fmpy or the FMU says as one line."""
-        who = shown(file) if file else self.name
         try:
             yield
         except UsageError:
             raise
         except Exception as error:  # fmpy raises whatever its parts raise
-            if file and not hasattr(self, "_fmu"):
-                self.close()
             told = self._messages[-1] if self._messages else str(error)
-            raise UsageError(f"{who}: {one_line(told)}") from None
+            raise UsageError(f"{who or self.name}: {one_line(told)}") from None
 
     def _instance(self) -> Any:
         from fmpy import fmi2, fmi3
