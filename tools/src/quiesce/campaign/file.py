@@ -11,7 +11,7 @@ from typing import Any
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.nearest import listed, meant
 from quiesce.base.paths import shown
-from quiesce.campaign.design import GRID, METHODS, MORRIS, POWER_OF_2, Design, has_ends
+from quiesce.campaign.design import GRID, METHODS, MORRIS, POWER_OF_2, SALTELLI, Design, has_ends
 from quiesce.campaign.documents import Documents, files_in
 from quiesce.campaign.factors import (
     PLUS,
@@ -329,7 +329,7 @@ def _require_size(factors: Sequence[Factor], method: str, count: int, place: str
             total *= len(one.levels)
         else:
             sampled += 1
-    if sampled and method in (MORRIS, "sobol_indices"):
+    if sampled and method in (MORRIS, SALTELLI):
         total *= sampled + (1 if method == MORRIS else 2)
     if total > MOST_CASES:
         raise UsageError(f"{place}: {total} cases; at most {MOST_CASES} can be asked for")

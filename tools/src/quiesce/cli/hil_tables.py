@@ -62,6 +62,18 @@ def pulses_file(file: Path, folder: Path) -> tuple[Path, list[str]]:
     return made, []
 
 
+def table_files(args: argparse.Namespace, folder: Path) -> tuple[dict[str, Path], list[str]]:
+    """Tables of one controller by the names of the bench's options, sources compiled into the
+    folder, and the parameters that go with them."""
+    files = {name: file for name in OPTIONS if (file := getattr(args, name)) is not None}
+    settings: list[str] = []
+    if "rules" in files:
+        files["rules"] = rules_file(files["rules"], folder)
+    if "pulses" in files:
+        files["pulses"], settings = pulses_file(files["pulses"], folder)
+    return {name.replace("_", "-"): file for name, file in files.items()}, settings
+
+
 @dataclass
 class Tables:
     """What the runs get."""

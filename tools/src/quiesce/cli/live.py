@@ -15,7 +15,7 @@ from quiesce.base.extras import extra
 from quiesce.base.paths import build_folder, is_installed
 from quiesce.cli.can.bus_options import VARIABLE, add_bus_options, bus_of
 from quiesce.cli.can.command import with_packages
-from quiesce.cli.hil_tables import OPTIONS, add_options, pulses_file, rules_file
+from quiesce.cli.hil_tables import OPTIONS, add_options, table_files
 
 if TYPE_CHECKING:
     from quiesce.can.buses import Bus
@@ -143,28 +143,13 @@ def watched(args: argparse.Namespace) -> "Iterator[tuple[Bus, RigDesk | None]]":
     with extra("multicast", "quiesce live --sim"):
         import msgpack  # noqa: F401
     with tempfile.TemporaryDirectory() as folder:
-        tables, settings = tables_of(args, Path(folder))
-        setup = RigSetup(plant, args.board, args.law or LAW, (*settings, *args.set), tables)
+        tables, settings = table_files(args, Path(folder))
+        setup = RigSetup(
+            plant, args.board, args.law or LAW, (*settings, *args.set), [*tables.items()]
+        )
         with Simulation(setup.words(), bus) as simulation:
             print(f"other commands join it with {bus_words(bus)}", file=sys.stderr)
             yield bus, RigDesk(simulation, found)
-
-
-def tables_of(args: argparse.Namespace, folder: Path) -> tuple[list[tuple[str, Path]], list[str]]:
-    """Options of the bench with their tables, sources compiled into the folder, and the parameters
-    that go with them."""
-    tables: list[tuple[str, Path]] = []
-    settings: list[str] = []
-    if args.rules:
-        tables.append(("rules", rules_file(args.rules, folder)))
-    if args.pulses:
-        pulses, settings = pulses_file(args.pulses, folder)
-        tables.append(("pulses", pulses))
-    if args.law_table:
-        tables.append(("law-table", args.law_table))
-    if args.force_map:
-        tables.append(("force-map", args.force_map))
-    return tables, settings
 
 
 def refuse_rig_options(args: argparse.Namespace) -> None:

@@ -15,7 +15,7 @@ def compared(run: Run, before: Run | None) -> tuple[list[str], list[list[str]]]:
     in the second half; with another run the ratio of RMS to that one's."""
     head = ["second half", "RMS", "peak"]
     if before is not None:
-        head += ["RMS, off", "ratio"]
+        head += ["RMS, alone", "ratio"]
     rows = []
     for name, values in run.columns.items():
         row = [name, *(f"{value:.4g}" for value in rms_and_peak(values))]
@@ -43,7 +43,9 @@ def plot(file: Path, run: Run, before: Run | None, title: str) -> None:
     )
     for axis, name in zip(axes[:, 0], names, strict=True):
         if before is not None:
-            axis.plot(before.time_s, before.columns[name], color="0.7", label="drivers off")
+            axis.plot(
+                before.time_s, before.columns[name], color="0.7", label="without the controller"
+            )
         axis.plot(run.time_s, run.columns[name], label="controlled")
         axis.set_ylabel(name.replace(" ", "\n", 1).replace(".", "\n"), rotation=0, ha="right")
     if before is not None:

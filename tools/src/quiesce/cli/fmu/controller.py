@@ -5,8 +5,9 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from quiesce.cli.fmu.packing import add_packing, add_settings, require_suffix, say_packed, settings
-from quiesce.cli.hil_tables import add_options, pulses_file, rules_file
+from quiesce.cli.fmu.packing import add_packing, add_settings, require_suffix, say_packed
+from quiesce.cli.hil_tables import add_options, table_files
+from quiesce.engine.bench import setting_options
 
 if TYPE_CHECKING:
     from quiesce.fmu.library import Description
@@ -59,26 +60,11 @@ def make(args: argparse.Namespace, fmi: str, out: Path) -> "Description":
     from quiesce.fmu.pack import pack
 
     with tempfile.TemporaryDirectory(prefix="quiesce-fmu-") as folder:
-        files, tuned = table_files(args, Path(folder))
+        tables, tuned = table_files(args, Path(folder))
+        files = {f"--{name}": file for name, file in tables.items()}
         for name in ("board", "plant"):
             if (file := getattr(args, name)) is not None:
                 files[f"--{name}"] = file
-        words = ["--law", args.law]
-        words += [word for setting in tuned for word in ("--set", setting)]
+        words = ["--law", args.law, *setting_options([*tuned, *args.set])]
         text = f"Controller of MR dampers, law {args.law}: the firmware itself."
-        return pack("controller", [*words, *settings(args)], files, fmi, text, out)
-
-
-def table_files(args: argparse.Namespace, folder: Path) -> tuple[dict[str, Path], list[str]]:
-    """Tables by their options, sources compiled into the folder; settings that go with them."""
-    files: dict[str, Path] = {}
-    tuned: list[str] = []
-    if args.rules is not None:
-        files["--rules"] = rules_file(args.rules, folder)
-    if args.pulses is not None:
-        files["--pulses"], tuned = pulses_file(args.pulses, folder)
-    if args.law_table is not None:
-        files["--law-table"] = args.law_table
-    if args.force_map is not None:
-        files["--force-map"] = args.force_map
-    return files, tuned
+        return pack("controller", words, files, fmi, text, out)

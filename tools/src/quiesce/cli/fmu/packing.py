@@ -28,10 +28,6 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def settings(args: argparse.Namespace) -> list[str]:
-    return [word for setting in args.set for word in ("--set", setting)]
-
-
 def require_suffix(out: Path) -> None:
     from quiesce.fmu.pack import SUFFIX
 

@@ -5,7 +5,8 @@ from pathlib import Path
 
 from quiesce.base.command import real_number, whole_number
 from quiesce.base.errors import UsageError
-from quiesce.cli.fmu.packing import add_packing, add_settings, packed, settings
+from quiesce.cli.fmu.packing import add_packing, add_settings, packed
+from quiesce.engine.bench import setting_options
 
 EPILOG = """examples:
   quiesce fmu plant my_plant.toml -o plant.fmu
@@ -49,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("name a plant, or --scenario, which has one")
     named = {"--plant": args.plant, "--scenario": args.scenario, "--board": args.board}
     files = {option: file for option, file in named.items() if file is not None}
-    words = ["--law", "off", *settings(args)]
+    words = ["--law", "off", *setting_options(args.set)]
     for name in ("seed", "noise_mg", "dt_us"):
         if (value := getattr(args, name)) is not None:
             words += [f"--{name.replace('_', '-')}", f"{value:g}" if name != "seed" else str(value)]

@@ -27,7 +27,10 @@ The plant is any FMU for co-simulation (2.0 or 3.0) for this machine. Inputs are
 of the same name; others by --wire INPUT=OUTPUT, with *FACTOR and +OFFSET where units differ.
 Inputs of the plant that nothing is joined to keep their start values. Both run in lock-step, a tick
 of the controller at a time; its currents act one tick after their sample, as in the bench.
---compare runs the plant once more with all drivers off, and says what the controller changed.
+--compare runs the plant once more by itself, nothing joined to its inputs, and says what the
+controller changed.
+
+An FMU is native code that runs with your rights: run those that you trust.
 Written: run.csv and run.png.
 """
 

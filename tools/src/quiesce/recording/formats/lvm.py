@@ -114,6 +114,7 @@ def _rows(
     text: _Text, line: int, head: dict[str, list[str]], names: list[str]
 ) -> tuple[list[list[float]], int]:
     rows: list[list[float]] = []
+    x_of_head: tuple[float, float] | None = None
     while line <= len(text.lines):
         cells = text.cells(line)
         if cells[0].startswith(("***", "Channels")) or not any(cells):
@@ -124,14 +125,18 @@ def _rows(
                 text.file, line,
                 f"{len(cells)} cells for time and {len(names)} channels; is the file cut short?",
             )  # fmt: skip
-        x_s = text.number(line, "X_Value", cells[0]) if cells[0] else _time_s(text, head, len(rows))
+        if cells[0]:
+            x_s = text.number(line, "X_Value", cells[0])
+        else:
+            x_of_head = x_of_head or _start_and_step_s(text, head)
+            x_s = x_of_head[0] + len(rows) * x_of_head[1]
         values = [text.number(line, n, c) for n, c in zip(names, cells[1:], strict=False)]
         rows.append([x_s, *values])
         line += 1
     return rows, line
 
 
-def _time_s(text: _Text, head: dict[str, list[str]], row: int) -> float:
+def _start_and_step_s(text: _Text, head: dict[str, list[str]]) -> tuple[float, float]:
     start, step = (next(iter(head.get(key, [])), "") for key in ("X0", "Delta_X"))
     line = next(i for i in range(1, len(text.lines) + 1) if text.cells(i)[0] == "Channels")
-    return text.number(line, "X0", start or "0") + row * text.number(line, "Delta_X", step)
+    return text.number(line, "X0", start or "0"), text.number(line, "Delta_X", step)
