@@ -4,21 +4,12 @@
 
 namespace quiesce {
 
-namespace {
-
-std::size_t bus_ticks(const RunSetup &setup) {
-    const double latency_us = setup.rig ? setup.rig->board().bus_latency_us : 0;
-    return static_cast<std::size_t>(std::llround(1e-6 * latency_us / setup.tick_s()));
-}
-
-} // namespace
-
 Loop::Loop(const RunSetup &setup, ControllerLink &link)
     : setup_(setup), link_(link), excitation_(make_excitation(setup.scenario, setup.plant.shaker)),
       plant_(setup.plant, excitation_, setup.params.tick_rate_Hz),
       senses_(setup.plant, setup.rig_or_null(), setup.params.tick_rate_Hz, setup.seed),
       injector_(place_faults(setup.scenario, setup.rig_or_null()), senses_.full_scales()),
-      bus_(bus_ticks(setup)) {
+      bus_(bus_ticks(setup.rig_or_null(), setup.params.tick_rate_Hz)) {
     for (std::size_t i = 0; i < setup.plant.dampers.size(); ++i) {
         damper_of_.push_back(setup.rig ? setup.rig->damper_of[i] : i);
     }

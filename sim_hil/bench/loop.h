@@ -3,32 +3,16 @@
 #ifndef QUIESCE_LOOP_H
 #define QUIESCE_LOOP_H
 
-#include <deque>
 #include <memory>
 #include <set>
 #include <vector>
 
+#include "delay_line.h"
 #include "fault_injector.h"
 #include "run.h"
 #include "senses.h"
 
 namespace quiesce {
-
-/// Commands on their way to the drivers: a board's bus may take ticks.
-class CommandBus {
-  public:
-    explicit CommandBus(std::size_t latency_ticks) : on_the_way_(latency_ticks) {}
-
-    lockstep_reply_t pass(const lockstep_reply_t &reply) {
-        on_the_way_.push_back(reply);
-        const lockstep_reply_t out = on_the_way_.front();
-        on_the_way_.pop_front();
-        return out;
-    }
-
-  private:
-    std::deque<lockstep_reply_t> on_the_way_;
-};
 
 /// A setup in motion, from rest. What is changed while it runs takes effect with the next tick, as
 /// if the scenario had said so from the beginning.
@@ -69,7 +53,7 @@ class Loop {
     Plant plant_;
     Senses senses_;
     FaultInjector injector_;
-    CommandBus bus_;
+    DelayLine<lockstep_reply_t> bus_;    ///< to the drivers: a board's may take ticks
     std::vector<std::size_t> damper_of_; ///< of the plant, for each of the controller's
     bool is_enabled_ = true;
     std::int64_t next_tick_ = 0;

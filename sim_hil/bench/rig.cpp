@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "board_keys.h"
+#include "delay_line.h"
 #include "input_error.h"
 
 namespace quiesce {
@@ -215,6 +216,10 @@ void require_signals(const BoardFile &file, const quiesce_params_t &params) {
         throw InputError("board " + file.name + ": the law needs " + told(file, missing) +
                          ", which no sensor of it provides");
     }
+}
+
+std::size_t bus_ticks(const Rig *rig, std::int64_t tick_rate_Hz) {
+    return rig == nullptr ? 0 : ticks_in(rig->board().bus_latency_us, tick_rate_Hz);
 }
 
 } // namespace quiesce

@@ -32,6 +32,9 @@ struct Rig {
 /// Throws InputError naming what the plant lacks, or what of it no simulation makes (voltages).
 Rig make_rig(BoardFile board, const PlantModel &plant);
 
+/// What a command takes to the drivers, in ticks; null: nothing.
+std::size_t bus_ticks(const Rig *rig, std::int64_t tick_rate_Hz);
+
 /// A fault with what it befalls.
 struct PlacedFault {
     InjectedFault fault;

@@ -9,19 +9,12 @@ namespace quiesce {
 
 namespace {
 
-constexpr double kUs = 1e6;
-
 /// Keeps the noise of one sensor from being another's in a run with the next seed.
 constexpr std::uint64_t kNextNoise = 0x9E3779B97F4A7C15u;
 
 /// One count in the unit of what is measured: the board has thousandths of it.
 double unit_per_count(const quiesce_board_sensor_t &spec) {
     return 1e-3 * spec.scale * spec.polarity;
-}
-
-std::size_t ticks_in(std::int32_t time_us, std::int64_t tick_rate_Hz) {
-    return static_cast<std::size_t>(
-        std::llround(time_us * static_cast<double>(tick_rate_Hz) / kUs));
 }
 
 } // namespace
@@ -34,7 +27,7 @@ BoardSensor::BoardSensor(const Rig &rig, std::size_t index, std::int32_t tick_ra
                    : rig.damper_of)[static_cast<std::size_t>(spec_.at)]),
       noise_counts_(rig.noise[index] / std::abs(unit_per_count(spec_))),
       tick_rate_Hz_(tick_rate_Hz), other_(rig.sensors[index].other),
-      on_the_way_(ticks_in(spec_.latency_us, tick_rate_Hz), 0.0), noise_(seed) {
+      latency_(ticks_in(spec_.latency_us, tick_rate_Hz)), noise_(seed) {
     if (rig.sensors[index].params) {
         dynamics_.emplace(*rig.sensors[index].params, tick_rate_Hz, seed);
     }
@@ -84,9 +77,7 @@ bool BoardSensor::is_due(std::int64_t tick) const {
 }
 
 bool BoardSensor::sample(const Plant &plant, std::int64_t tick, std::int32_t &counts) {
-    on_the_way_.push_back(shown(plant));
-    const double value = on_the_way_.front();
-    on_the_way_.pop_front();
+    const double value = latency_.pass(shown(plant));
     if (!is_due(tick)) {
         return false;
     }
@@ -101,7 +92,7 @@ void BoardSensor::visit_state(StateArchive &archive) {
     if (dynamics_) {
         dynamics_->visit_state(archive);
     }
-    archive(on_the_way_);
+    latency_.visit_state(archive);
     noise_.visit_state(archive);
 }
 

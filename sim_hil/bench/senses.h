@@ -3,11 +3,11 @@
 #define QUIESCE_SENSES_H
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
 #include "accelerometer.h"
+#include "delay_line.h"
 #include "firmware.h"
 #include "noise.h"
 #include "plant.h"
@@ -40,7 +40,7 @@ class BoardSensor {
     std::int64_t tick_rate_Hz_;
     std::optional<SensorDynamics> dynamics_; ///< none: it is ideal
     std::size_t other_;                      ///< place or damper that it sees, too
-    std::deque<double> on_the_way_; ///< as many values as its latency is ticks, the oldest first
+    DelayLine<double> latency_;
     Noise noise_;
 };
 

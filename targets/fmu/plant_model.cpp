@@ -1,8 +1,8 @@
 /// The plant as an FMU: currents and what shakes it go in; what its sensors deliver, and the truth,
 /// come out.
 #include <cmath>
-#include <deque>
 
+#include "delay_line.h"
 #include "pushed_segment.h"
 #include "resources.h"
 #include "run_options.h"
@@ -53,13 +53,12 @@ class PlantFmu final : public FmuModel {
     std::vector<PlacePort> places_; ///< of the plant; without any, where its sensor is
     std::optional<std::size_t> force_, base_accel_;
     std::size_t seed_ = 0;
-    std::size_t bus_ticks_ = 0; ///< of a board's bus
 
     std::shared_ptr<Stretch> stretch_ = std::make_shared<Stretch>();
     std::optional<Excitation> excitation_;
     std::optional<Plant> plant_;
     std::optional<Senses> senses_;
-    std::deque<DamperValues> on_the_way_;
+    DelayLine<DamperValues> bus_;
 };
 
 PlantFmu::PlantFmu(RunSetup setup)
@@ -81,10 +80,6 @@ PlantFmu::PlantFmu(RunSetup setup)
     }
     if (setup_.plant.places.empty()) {
         declare_place("structure", "the place of the sensor");
-    }
-    if (setup_.rig) {
-        bus_ticks_ = static_cast<std::size_t>(
-            std::llround(1e-6 * setup_.rig->board().bus_latency_us * tick_rate_Hz()));
     }
 }
 
@@ -133,7 +128,7 @@ void PlantFmu::start() {
                          : make_excitation(setup_.scenario, setup_.plant.shaker);
     plant_.emplace(setup_.plant, *excitation_, tick_rate_Hz());
     senses_.emplace(setup_.plant, setup_.rig_or_null(), tick_rate_Hz(), setup_.seed);
-    on_the_way_.assign(bus_ticks_, DamperValues{});
+    bus_ = DelayLine<DamperValues>(bus_ticks(setup_.rig_or_null(), tick_rate_Hz()));
     show();
 }
 
@@ -147,11 +142,10 @@ void PlantFmu::command() {
     for (std::size_t i = 0; i < dampers_.size(); ++i) {
         told[i] = is_set(dampers_[i].enable) ? value(dampers_[i].current_cmd) : 0.0;
     }
-    on_the_way_.push_back(told);
+    const DamperValues arrived = bus_.pass(told);
     for (std::size_t i = 0; i < dampers_.size(); ++i) {
-        plant_->command(dampers_[i].damper, on_the_way_.front()[i], ActuatorFault::none);
+        plant_->command(dampers_[i].damper, arrived[i], ActuatorFault::none);
     }
-    on_the_way_.pop_front();
 }
 
 void PlantFmu::tick() {
@@ -198,7 +192,7 @@ void PlantFmu::show() {
 void PlantFmu::visit_state(StateArchive &archive) {
     plant_->visit_state(archive);
     senses_->visit_state(archive);
-    archive(on_the_way_);
+    bus_.visit_state(archive);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 """`quiesce fmu`: what it packs is what the standard asks for, and bad input packs nothing."""
 
+import shutil
 import zipfile
-from pathlib import Path
 
 import fmpy
 import fmu_files
@@ -9,6 +9,7 @@ import pytest
 from conftest import ROOT, run_quiesce
 from fmpy.validation import validate_fmu
 from fmu_files import DAMPER, KINDS, PLANT
+from quiesce.fmu.slave import Slave
 
 fmu = fmu_files.fmu  # the fixture
 
@@ -32,18 +33,24 @@ def test_same_input_makes_the_same_file(fmu, tmp_path):
 
 
 def test_files_that_a_plant_names_are_inside(tmp_path):
-    """A learned damper in a file of its own, named from another folder."""
-    data = ROOT / "sim_hil/data"
-    result = run_quiesce(
-        tmp_path, "fmu", "plant", data / "plants/quarter_car.toml",
-        "--board", data / "boards/quarter_car.toml", "-o", "car.fmu",
-    )  # fmt: skip
+    """A damper in a file of its own, in another folder: found again where there is nothing else."""
+    data, mine = ROOT / "sim_hil/data", tmp_path / "mine"
+    for file in ("plants/suspended_mass.toml", "dampers/rd1005_kwok_tanh_smooth.toml"):
+        (mine / file).parent.mkdir(parents=True)
+        shutil.copyfile(data / file, mine / file)
+    plant = mine / "plants/suspended_mass.toml"
+    result = run_quiesce(tmp_path, "fmu", "plant", plant, "-o", "mass.fmu")
     assert result.returncode == 0, result.stderr
-    with zipfile.ZipFile(tmp_path / "car.fmu") as packed:
-        inside = {Path(name).name for name in packed.namelist()}
+    shutil.rmtree(mine)
+    with zipfile.ZipFile(tmp_path / "mass.fmu") as packed:
+        inside = packed.namelist()
         text = packed.read("resources/fmu.toml").decode()
-    assert {"quarter_car.toml", "fmu.toml"} <= inside
-    assert str(ROOT) not in text
+    for file in ("plants/suspended_mass.toml", "dampers/rd1005_kwok_tanh_smooth.toml"):
+        assert f"resources/files/{file}" in inside
+    assert str(tmp_path) not in text
+    with Slave(tmp_path / "mass.fmu", {"damper.current_cmd_A": 1.0}, 1.0) as slave:
+        slave.step(0.0, 0.5)
+        assert slave.reader(["damper.current_A"])()[0] > 0.5
 
 
 @pytest.mark.parametrize(
@@ -79,13 +86,27 @@ def test_bad_input_is_one_line_and_leaves_nothing(tmp_path, words, said):
         assert result.returncode == 0  # folders of an output are made
 
 
-def test_scenario_with_faults_is_refused(tmp_path):
-    scenario = tmp_path / "faulty.toml"
-    scenario.write_text(
-        f'schema = "quiesce-scenario"\nversion = 1\nname = "faulty"\nplant = "{PLANT}"\n'
-        'duration_s = 2.0\n[[segment]]\nkind = "sine"\nfreq_Hz = 10.0\n'
-        '[[fault]]\nkind = "dropout"\nt_s = 1.0\nduration_s = 0.1\n'
-    )
+SCENARIO = f'''schema = "quiesce-scenario"
+version = 1
+name = "mine"
+plant = "{PLANT}"
+duration_s = 2.0
+'''
+SINE = '[[segment]]\nkind = "sine"\nfreq_Hz = 10.0\n'
+DROPOUT = '[[fault]]\nkind = "dropout"\nt_s = 1.0\nduration_s = 0.1\n'
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (SINE + DROPOUT, "the importer of a plant is to inject"),
+        (f"seed = {2**31}\n" + SINE, "seed 2147483648: an FMU takes 0 .. 2147483647"),
+    ],
+)
+def test_scenario_that_no_fmu_can_have_is_refused(tmp_path, lines, said):
+    scenario = tmp_path / "mine.toml"
+    scenario.write_text(SCENARIO + lines)
     result = run_quiesce(tmp_path, "fmu", "plant", "--scenario", scenario, "-o", "x.fmu")
     assert result.returncode == 2
-    assert "the importer of a plant is to inject" in result.stderr
+    assert said in result.stderr
+    assert not (tmp_path / "x.fmu").exists()

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError, one_line
+from quiesce.base.named_files import files_in
 from quiesce.base.nearest import listed, meant
 from quiesce.base.paths import shown
 from quiesce.campaign.design import GRID, METHODS, MORRIS, POWER_OF_2, SALTELLI, Design, has_ends
-from quiesce.campaign.documents import Documents, files_in
+from quiesce.campaign.documents import Documents
 from quiesce.campaign.factors import (
     PLUS,
     SET,

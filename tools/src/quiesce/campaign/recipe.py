@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError
+from quiesce.base.named_files import whole
 from quiesce.base.nearest import listed
 from quiesce.campaign.design import Case
-from quiesce.campaign.documents import Documents, whole, with_change
+from quiesce.campaign.documents import Documents, with_change
 from quiesce.campaign.factors import SET, Assignment
 
 LAW, SEED = "law", "seed"

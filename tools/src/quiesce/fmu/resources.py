@@ -6,11 +6,11 @@ import shutil
 import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import tomli_w
 
 from quiesce.base.errors import UsageError
+from quiesce.base.named_files import files_in, whole
 from quiesce.base.paths import shown
 
 FILE = "fmu.toml"
@@ -53,8 +53,7 @@ def copied(files: Sequence[Path], folder: Path) -> dict[Path, str]:
 
 
 def reached(file: Path, known: dict[Path, None]) -> Iterator[Path]:
-    """A file, and what a TOML file names, and so on: every text in it that is a file's path from
-    its folder."""
+    """A file, and what a TOML file names, and so on."""
     if file in known:
         return
     try:
@@ -68,21 +67,8 @@ def reached(file: Path, known: dict[Path, None]) -> Iterator[Path]:
         data = tomllib.loads(raw.decode())
     except (tomllib.TOMLDecodeError, UnicodeDecodeError):
         return  # the library says what is wrong
-    for text in texts(data):
-        named = file.parent / text
-        if len(text) < os.pathconf("/", "PC_PATH_MAX") and "\0" not in text and named.is_file():
-            yield from reached(named.resolve(), {**known, file: None})
-
-
-def texts(value: Any) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, dict):
-        for one in value.values():
-            yield from texts(one)
-    elif isinstance(value, list):
-        for one in value:
-            yield from texts(one)
+    for named in files_in(whole(data, file.parent)):
+        yield from reached(named, {**known, file: None})
 
 
 def token_of(folder: Path, kind: str, arguments: Sequence[str]) -> str:
