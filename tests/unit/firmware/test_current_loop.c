@@ -187,6 +187,28 @@ static void test_current_loop_knows_open_and_short_coils(void) {
     TEST_ASSERT_EQUAL(CURRENT_LOOP_UNKNOWN, report.coil);
 }
 
+// A coil of 5 ohm and 60 mH at 24 V, whose sensor reads half: its current after these steps.
+static int32_t half_seen_mA(uint32_t steps) {
+    int32_t current_uA = 0;
+    for (uint32_t i = 0; i < steps; i++) {
+        const int32_t duty = current_loop_step(&loop, current_uA / 2000, 24000);
+        const int32_t coil_uV = duty * 375 / 512 * 1000 - 5 * current_uA;
+        current_uA += coil_uV / 600; // 0.1 ms over 60 mH
+    }
+    return current_uA / 1000;
+}
+
+// What docs/explanation/current-loop.md warns of.
+static void test_current_loop_believes_a_sensor_that_fails(void) {
+    current_loop_command(&loop, 1000);
+    TEST_ASSERT_EQUAL_INT32(CURRENT_LOOP_FULL, current_loop_step(&loop, 0, 12000));
+    const int32_t current_mA = half_seen_mA(10 * CURRENT_LOOP_WINDOW);
+    TEST_ASSERT_INT32_WITHIN(5, 2000, current_mA);
+    TEST_ASSERT_TRUE(current_loop_report(&loop, 24000, &report));
+    TEST_ASSERT_EQUAL(CURRENT_LOOP_FOLLOWS, report.coil);
+    TEST_ASSERT_INT32_WITHIN(50, 10000, report.resistance_mohm);
+}
+
 static void test_current_loop_rest_forgets(void) {
     current_loop_command(&loop, 1000);
     (void)watched(100, 900, 5000);
@@ -211,6 +233,7 @@ int main(void) {
     RUN_TEST(test_current_loop_tells_the_resistance_and_its_rise);
     RUN_TEST(test_current_loop_window_ends_at_the_current_that_it_began_with);
     RUN_TEST(test_current_loop_knows_open_and_short_coils);
+    RUN_TEST(test_current_loop_believes_a_sensor_that_fails);
     RUN_TEST(test_current_loop_rest_forgets);
     return UNITY_END();
 }
