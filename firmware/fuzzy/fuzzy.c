@@ -178,17 +178,22 @@ uint32_t fuzzy_evaluate(const fuzzy_table_t *table, const int32_t *input, int32_
         return fuzzy_partition_max(table, input, output);
     case FUZZY_PARTITION_CENTROID:
         return fuzzy_partition_centroid(table, input, output);
+    case FUZZY_SURFACE:
+        return fuzzy_surface(table, input, output);
     default:
         return evaluate_any(table, input, output);
     }
 }
 
 uint32_t fuzzy_fired(const fuzzy_table_t *table, const int32_t *input, uint64_t *fired) {
+    *fired = 0;
+    if (table->form == FUZZY_SURFACE) {
+        return 0;
+    }
     memberships_t memberships;
     find_memberships(table, input, &memberships);
     const fuzzy_rule_t *rule = rules_of(table);
     uint32_t count = 0;
-    *fired = 0;
     for (uint32_t i = 0; i < table->rules; i++) {
         if (strength_of(table, &rule[i], &memberships) != 0) {
             *fired |= i < 64u ? UINT64_C(1) << i : 0;

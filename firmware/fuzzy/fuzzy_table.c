@@ -14,11 +14,6 @@ typedef struct {
     uint32_t set[FUZZY_MAX_INPUTS];
 } largest_t;
 
-static bool is_inside(const fuzzy_table_t *table, uint32_t offset, uint32_t words) {
-    return offset >= FUZZY_HEADER_WORDS && offset <= table->size_words &&
-           words <= table->size_words - offset;
-}
-
 static bool is_partition(const fuzzy_table_t *table) {
     return table->form >= FUZZY_PARTITION_SUM;
 }
@@ -91,7 +86,7 @@ static bool is_axis_good(const fuzzy_table_t *table, uint32_t i, uint32_t *large
     const fuzzy_axis_t axis = table->axis[i];
     if (axis.cells == 0 || axis.stride < PAIR_CELL_WORDS || axis.stride % RAMP_WORDS != 0 ||
         (is_partition(table) && axis.stride != PAIR_CELL_WORDS) ||
-        !is_inside(table, axis.offset, (uint32_t)axis.cells * axis.stride)) {
+        !fuzzy_is_inside(table, axis.offset, (uint32_t)axis.cells * axis.stride)) {
         return false;
     }
     int64_t next = INT32_MIN;
@@ -122,7 +117,7 @@ static uint32_t grid_words(const largest_t *largest) {
 }
 
 static bool are_below(const fuzzy_table_t *table, uint32_t offset, uint32_t count, uint32_t limit) {
-    if (!is_inside(table, offset, count)) {
+    if (!fuzzy_is_inside(table, offset, count)) {
         return false;
     }
     const uint32_t *words = fuzzy_at(table, offset);
@@ -152,7 +147,7 @@ static bool is_centroid_good(const fuzzy_table_t *table, const fuzzy_output_t *o
     if (output->terms > FUZZY_MAX_SETS || output->span == 0 || output->span >= MAX_VALUE ||
         !fits_above(output->origin, output->span) || output->term_layers > output->layers ||
         !are_below(table, output->terms_offset, output->terms, table->one + 1u) ||
-        !is_inside(table, layers, output->layers * words)) {
+        !fuzzy_is_inside(table, layers, output->layers * words)) {
         return false;
     }
     const bool is_stacked = output->term_layers == 0;
@@ -166,7 +161,7 @@ static bool is_centroid_good(const fuzzy_table_t *table, const fuzzy_output_t *o
 }
 
 static bool is_output_good(const fuzzy_table_t *table, uint32_t offset) {
-    if (!is_inside(table, offset, (uint32_t)(sizeof(fuzzy_output_t) / sizeof(uint32_t)))) {
+    if (!fuzzy_is_inside(table, offset, (uint32_t)(sizeof(fuzzy_output_t) / sizeof(uint32_t)))) {
         return false;
     }
     const fuzzy_output_t *output = fuzzy_at(table, offset);
@@ -206,7 +201,7 @@ static bool is_partition_good(const fuzzy_table_t *table, const largest_t *large
     const uint32_t half = (1u << table->fraction) / 2u;
     const uint32_t limit = (uint32_t)((UINT64_C(1) << 42) / table->one) - half;
     return are_below(table, FUZZY_HEADER_WORDS, words, fuzzy_min(limit, MAX_VALUE)) &&
-           (output->method == FUZZY_SUM || is_inside(table, table->twins_offset, words));
+           (output->method == FUZZY_SUM || fuzzy_is_inside(table, table->twins_offset, words));
 }
 
 // ---- rules --------------------------------------------------------------------------------------
@@ -237,7 +232,7 @@ static bool are_conclusions_good(const fuzzy_table_t *table, const fuzzy_rule_t 
 
 static bool are_rules_good(const fuzzy_table_t *table) {
     const uint32_t words = (uint32_t)(sizeof(fuzzy_rule_t) / sizeof(uint32_t));
-    if (!is_inside(table, table->rules_offset, table->rules * words)) {
+    if (!fuzzy_is_inside(table, table->rules_offset, table->rules * words)) {
         return false;
     }
     const fuzzy_rule_t *rule = fuzzy_at(table, table->rules_offset);
@@ -251,6 +246,9 @@ static bool are_rules_good(const fuzzy_table_t *table) {
 }
 
 fuzzy_verdict_t fuzzy_table_check_summed(const fuzzy_table_t *table) {
+    if (table->form == FUZZY_SURFACE) {
+        return fuzzy_surface_check(table);
+    }
     largest_t largest = {{0}};
     if (!has_shape(table)) {
         return FUZZY_TABLE_SHAPE;

@@ -50,7 +50,22 @@ typedef enum {
     FUZZY_PARTITION_SUM,
     FUZZY_PARTITION_MAX,      ///< likewise; twins_offset is valid
     FUZZY_PARTITION_CENTROID, ///< likewise; terms follow the header; every set reaches 1
+    /// Two inputs, one output, no rules: the answers of any others at the nodes of a grid. An axis
+    /// has cells + 1 fuzzy_node_t, its stride is FUZZY_NODE_WORDS. At output_offset[0] a value
+    /// each, row by row of the first input, 16 bits, two in a word, the lower first. Between nodes
+    /// lines in both directions; output = origin + value 2^(30 - fraction), to nearest.
+    FUZZY_SURFACE,
 } fuzzy_form_t;
+
+/// A place on an axis of a surface. share of the way to the next, Q15 = ((input - at) << shift) *
+/// scale >> 47, floor; scale << shift times that way is 2^62 at most. Of the last one `at` counts.
+typedef struct {
+    int32_t at;
+    uint32_t shift;
+    uint32_t scale;
+} fuzzy_node_t;
+
+#define FUZZY_NODE_WORDS 3u
 
 /// Which of four neighbouring rules, a b in one row and c d in the next, share a term.
 typedef enum {
@@ -90,9 +105,9 @@ typedef struct {
     uint16_t rules;
     uint32_t output_offset[FUZZY_MAX_OUTPUTS];
     uint32_t one;          ///< 2^bits
-    int32_t origin;        ///< of a partition's output
+    int32_t origin;        ///< of a partition's output, or of a surface's
     uint16_t twins_offset; ///< of a PARTITION_MAX: fuzzy_twins_t, in the order of its values
-    uint8_t fraction;      ///< of a partition's output
+    uint8_t fraction;      ///< of a partition's output, or of a surface's
     uint8_t units;         ///< 1: uHz and um/s2 to mA; 0: any other
 } fuzzy_table_t;
 
@@ -161,9 +176,16 @@ _Static_assert(sizeof(fuzzy_rule_t) == 16, "4 words");
 _Static_assert(sizeof(fuzzy_output_t) == 32, "8 words");
 _Static_assert(sizeof(fuzzy_layer_t) == 32, "8 words");
 _Static_assert(sizeof(fuzzy_pair_cell_t) == 48, "12 words");
+_Static_assert(sizeof(fuzzy_node_t) == 4u * FUZZY_NODE_WORDS, "3 words");
 
 static inline const void *fuzzy_at(const fuzzy_table_t *table, uint32_t offset_words) {
     return (const uint32_t *)(const void *)table + offset_words;
+}
+
+/// Whether so many words of a table from an offset on lie behind its header and within it.
+static inline bool fuzzy_is_inside(const fuzzy_table_t *table, uint32_t offset, uint32_t words) {
+    return offset >= FUZZY_HEADER_WORDS && offset <= table->size_words &&
+           words <= table->size_words - offset;
 }
 
 /// Why a table is refused. Numbers are for logs and are never reused.
@@ -186,5 +208,8 @@ fuzzy_verdict_t fuzzy_table_check(const fuzzy_table_t *table, uint32_t words);
 /// The rest of it, of a table whose first FUZZY_HEADER_WORDS words are there at least and whose
 /// magic, size and CRC have been found right.
 fuzzy_verdict_t fuzzy_table_check_summed(const fuzzy_table_t *table);
+
+/// The same of a FUZZY_SURFACE.
+fuzzy_verdict_t fuzzy_surface_check(const fuzzy_table_t *table);
 
 #endif

@@ -153,7 +153,7 @@ RunSetup setup_of_plant(const Arguments &arguments, const std::string &name) {
     Scenario scenario{};
     scenario.name = name;
     scenario.plant_file = arguments.required("plant");
-    scenario.duration_s = std::numeric_limits<float>::max();
+    scenario.duration_s = static_cast<double>(std::numeric_limits<float>::max());
     scenario.seed = 1;
     scenario.feed_current = true;
     return setup_of(arguments, std::move(scenario));

@@ -2,17 +2,19 @@
 // again. A table that fuzzy_table_check() accepts is safe at any inputs: nothing is undefined (the
 // sanitizers watch), nothing is read beyond its words, every output is a default or in its range.
 //
-// The input: number of a good table, then changes of single words; or, with number 255, the words
-// themselves behind a good header.
+// The input: number of a good table, 254 a surface, then changes of single words; or, with number
+// 255, the words themselves behind a good header.
 #include "fuzzy.h"
 
 #include "crc32.h"
 #include "fuzz_words.h"
 #include "rule_cases.h"
+#include "surface_case.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum {
+    SURFACE = 254,
     RAW = 255,
     POINTS = 24, // inside the cells, beside their ends
 };
@@ -47,8 +49,18 @@ static uint32_t range_of(const fuzzy_table_t *table, const fuzzy_output_t *outpu
     return (most + (1u << output->fraction) / 2u) >> output->fraction;
 }
 
+static void check_value(const fuzzy_table_t *table, int32_t value) {
+    const uint64_t most = ((uint64_t)UINT16_MAX << 30) + (UINT64_C(1) << table->fraction) / 2u;
+    REQUIRE(value >= table->origin);
+    REQUIRE((int64_t)value <= table->origin + (int64_t)(most >> table->fraction));
+}
+
 static void check_outputs(const fuzzy_table_t *table, uint32_t is_default, const int32_t *value) {
     REQUIRE(is_default >> table->outputs == 0);
+    if (table->form == FUZZY_SURFACE) {
+        check_value(table, value[0]);
+        return;
+    }
     for (uint32_t i = 0; i < table->outputs; i++) {
         const fuzzy_output_t *output = fuzzy_at(table, table->output_offset[i]);
         if ((is_default >> i & 1u) != 0) {
@@ -73,8 +85,18 @@ static void evaluate(const fuzzy_table_t *table, const int32_t *point) {
     free(output);
 }
 
+// A node, or beside it.
+static int32_t place_of(const fuzzy_table_t *table, uint32_t i, uint32_t *state) {
+    const fuzzy_node_t *node = fuzzy_at(table, table->axis[i].offset);
+    const uint32_t k = random_u32(state) % (table->axis[i].cells + 1u);
+    return (int32_t)((uint32_t)node[k].at + random_u32(state) % 3u - 1u);
+}
+
 // An end of a cell, or near it.
 static int32_t edge_of(const fuzzy_table_t *table, uint32_t i, uint32_t *state) {
+    if (table->form == FUZZY_SURFACE) {
+        return place_of(table, i, state);
+    }
     const fuzzy_axis_t axis = table->axis[i];
     const uint32_t k = random_u32(state) % axis.cells;
     const fuzzy_cell_t *cell = fuzzy_at(table, axis.offset + k * axis.stride);
@@ -109,11 +131,21 @@ static void evaluate_everywhere(const fuzzy_table_t *table) {
     }
 }
 
+static copy_t damaged_case(bytes_t *input, const rule_case_t *one) {
+    return damaged_words(input, one->words, one->count);
+}
+
+static copy_t damaged_surface(bytes_t *input) {
+    load_surface();
+    return damaged_words(input, surface_words, SURFACE_WORDS);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count) {
     bytes_t input = {bytes, count};
     const uint32_t which = take(&input, 1);
-    const rule_case_t *one = &rule_cases[which % RULE_CASES];
-    copy_t copy = which == RAW ? raw_words(&input) : damaged_words(&input, one->words, one->count);
+    copy_t copy = which == RAW       ? raw_words(&input)
+                  : which == SURFACE ? damaged_surface(&input)
+                                     : damaged_case(&input, &rule_cases[which % RULE_CASES]);
     make_crc_right(copy, copy.count);
     const fuzzy_table_t *table = (const fuzzy_table_t *)(const void *)copy.words;
     if (fuzzy_table_check(table, copy.count) == FUZZY_TABLE_OK) {

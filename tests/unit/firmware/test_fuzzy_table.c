@@ -198,7 +198,7 @@ static void test_numbers_of_inputs_and_outputs(void) {
     CHANGED(CASE_GENERAL, FUZZY_TABLE_SHAPE, table()->form = FUZZY_PARTITION_MAX);
     CHANGED(CASE_GRID_Q15, FUZZY_TABLE_SHAPE, table()->form = FUZZY_PARTITION_SUM);
     CHANGED(CASE_MAX_Q15, FUZZY_TABLE_SHAPE, table()->outputs = 2);
-    CHANGED(CASE_MAX_Q15, FUZZY_TABLE_SHAPE, table()->form = FUZZY_PARTITION_CENTROID + 1);
+    CHANGED(CASE_MAX_Q15, FUZZY_TABLE_SHAPE, table()->form = FUZZY_SURFACE + 1);
 }
 
 static void test_bits_of_memberships(void) {

@@ -1,6 +1,7 @@
 """Tables of the user's for `quiesce hil`: sources compiled, and who of the run takes which."""
 
 import argparse
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,8 +12,8 @@ from quiesce.base.paths import shown
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.laws import LAWS, Law
 from quiesce.engine.params import effective_params
-from quiesce.rules.formats.files import FORMATS, read_rules
-from quiesce.rules.integers.controller import controller_file
+from quiesce.rules.controller import controller_table
+from quiesce.rules.formats.files import FORMATS
 from quiesce.table.file import SUFFIX, table_bytes
 
 OPTIONS = ("rules", "pulses", "law_table", "force_map")
@@ -40,7 +41,10 @@ def rules_file(file: Path, folder: Path) -> Path:
     if file.suffix.lower().removeprefix(".") not in FORMATS:
         return file
     made = folder / f"rules{SUFFIX}"
-    made.write_bytes(controller_file(read_rules(file)))
+    found = controller_table(file)
+    made.write_bytes(table_bytes(found.words))
+    for note in found.notes:
+        print(f"{shown(file)}: {note}", file=sys.stderr)
     return made
 
 

@@ -75,13 +75,10 @@ def file_in(folder: Path) -> Path:
 
 
 def from_rules(file: Path) -> Table:
-    from quiesce.rules.formats.files import read_rules
-    from quiesce.rules.integers.controller import compile_for_controller
-    from quiesce.rules.integers.table import table_words
+    from quiesce.rules.controller import controller_table
 
-    compiled = compile_for_controller(read_rules(file))
-    words = table_words(compiled)
-    return Table(RULES, words, table_bytes(words), compiled.notes)
+    made = controller_table(file)
+    return Table(RULES, made.words, table_bytes(made.words), made.notes)
 
 
 def from_pulses(file: Path) -> Table:

@@ -16,7 +16,8 @@ from quiesce.base.command import finite_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, root, shown
 from quiesce.cli.rules.formats import FORMATS_HELP, add_file_options, any_compiled_from
-from quiesce.rules.engine.engine import Engine
+from quiesce.rules.controller import require_near
+from quiesce.rules.engine.engine import Engine, TableEngine
 from quiesce.rules.engine.function_engine import FunctionEngine
 from quiesce.rules.engine.native_build import FIRMWARE_SOURCES, SYSTEM_SOURCES
 from quiesce.rules.engine.precise import POINTS, Precise
@@ -29,6 +30,9 @@ from quiesce.rules.integers.table import table_words
 from quiesce.rules.straight import c_files as straight_files
 from quiesce.rules.straight.compile import StraightSystem
 from quiesce.rules.straight.emit import Straight, straight_line
+from quiesce.rules.surface import c_files as surface_files
+from quiesce.rules.surface.compile import POINTS as SURFACE_POINTS
+from quiesce.rules.surface.compile import Surface
 from quiesce.rules.system import c_files as system_files
 from quiesce.rules.system.compile import CompiledSystem, ScaledSystem
 from quiesce.table.file import SUFFIX, table_bytes
@@ -40,13 +44,14 @@ Where sets are made of straight lines, AND is the product or the minimum, and an
 weighted average or sum of constants or straight lines over the inputs (Sugeno), it becomes
 straight-line C of polynomials. Anything else (other norms, smooth sets, hedges, more than four
 inputs, centroids of such rules, outputs that rules name) takes the engine for any system,
-fuzzy_system.c, which is slower.
+fuzzy_system.c, which is slower. With --controller it takes a third, which a running controller can
+load: the surface of its answers over both inputs, as values on a grid with straight lines between.
 
 written, into --out:
   NAME.h, NAME.c   the table NAME_table, and NAME(), straight-line C, where the base has that form;
                    polynomials have no table
   NAME.table       the table as a file: for `quiesce_bench run --rules` and for a controller, where
-                   it is a plain one and not too long
+                   it is a plain one or a surface, and not too long
   fuzzy*.[ch], fixq.*, crc32.[ch]   the engine that the table needs; NAME() needs only the headers
   demo/main.c      a program that evaluates it at points whose answers are known
   CMakeLists.txt, README.md
@@ -126,6 +131,9 @@ def run(args: argparse.Namespace) -> int:
     found, reason = any_compiled_from(args)
     if isinstance(found, CompiledBase):
         made = plain_made(found, name)
+    elif isinstance(found, Surface):
+        require_near(args.file, found, args.max_error)
+        made = surface_made(found, name)
     else:
         check_error(args.file, found, args.max_error)
         made = precise_made(found, name)
@@ -220,6 +228,29 @@ def system_made(precise: Precise, compiled: CompiledSystem, name: str) -> Made:
         error_line(precise),
     ]
     return Made(folder_files(name, own, SYSTEM_ENGINE, demo), notes, lines)
+
+
+def surface_made(surface: Surface, name: str) -> Made:
+    own = {
+        f"{name}.h": surface_files.header_c(surface, name, BANNER),
+        f"{name}.c": surface_files.source_c(surface, name, BANNER),
+    }
+    inputs = random_counts(surface.scaled, surface.scaled.system.inputs)
+    outputs, _ = TableEngine(surface.words).evaluate(inputs)
+    call, units = surface_files.call_text(name), system_files.units_text(surface.scaled)
+    demo = demo_files(name, call, units, inputs, outputs)
+    rows, columns = surface.nodes
+    size = f"{WORD_BYTES * len(surface.words)} bytes; {rows} x {columns} values"
+    lines = [
+        *units_lines(units),
+        f"table      {name}_table, {size}",
+        f"error      {100.0 * surface.error:.2g} % of the output's range at most, at "
+        f"{SURFACE_POINTS} random points where a rule fires by 0.1 % or more, or none does, "
+        "against float64",
+    ]
+    table = {f"{name}{SUFFIX}": table_bytes(list(surface.words))}
+    files = folder_files(name, own, PLAIN_ENGINE, demo)
+    return Made({**files, **table}, surface.scaled.notes, lines)
 
 
 def straight_made(precise: Precise, compiled: StraightSystem, name: str) -> Made:

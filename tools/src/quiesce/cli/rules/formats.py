@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from quiesce.base.errors import UsageError
+from quiesce.rules.controller import controller_form
 from quiesce.rules.engine.precise import GOOD, Precise, compile_precisely, judged
 from quiesce.rules.formats.build import NotPlain
 from quiesce.rules.formats.files import read_rules, read_system
@@ -13,6 +14,7 @@ from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.controller import compile_for_controller
 from quiesce.rules.model import RuleBase
 from quiesce.rules.straight.compile import NotStraight, compile_straight
+from quiesce.rules.surface.compile import Surface
 from quiesce.rules.system.model import System
 
 FORMATS_HELP = """integers:
@@ -49,8 +51,7 @@ def add_file_options(parser: argparse.ArgumentParser) -> None:
 def compiled_from(args: argparse.Namespace) -> CompiledBase:
     base = read_rules(args.file, args.approximate)
     if args.controller:
-        if args.lsb:
-            raise UsageError("--controller and --lsb exclude each other")
+        require_one_scale(args)
         return compile_for_controller(base, defaults(args, base))
     named = assignments("--lsb", args.lsb, base)
     inputs = [named.get(variable.name, Q15) for variable in base.inputs]
@@ -58,8 +59,17 @@ def compiled_from(args: argparse.Namespace) -> CompiledBase:
     return compile_base(base, inputs, outputs, defaults(args, base))
 
 
-def any_compiled_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise, str]:
+def require_one_scale(args: argparse.Namespace) -> None:
+    if args.lsb:
+        raise UsageError("--controller and --lsb exclude each other")
+
+
+def any_compiled_from(args: argparse.Namespace) -> tuple[CompiledBase | Precise | Surface, str]:
     """A plain base, or a system in the form that suits it, and why; empty for a plain base."""
+    if args.controller:
+        require_one_scale(args)
+        given = defaults(args, read_system(args.file)) if args.default else None
+        return controller_form(args.file, args.approximate, given)
     return _compiled_or(args, system_from)
 
 
@@ -74,8 +84,14 @@ def _compiled_or(
     try:
         return compiled_from(args), ""
     except NotPlain as reason:
-        if args.controller or args.approximate is not None:
+        if args.approximate is not None:
             raise
+        if args.controller:
+            raise UsageError(
+                f"{reason}; a controller takes the surface of its answers: 'quiesce rules compile "
+                "--controller' says how near that is, 'quiesce rules check' without --controller "
+                "checks the rules"
+            )
         found, taken = other(args)
         return found, "; ".join(filter(None, (str(reason), taken)))
 

@@ -18,8 +18,14 @@ Words = Sequence[int]
 def _rules(words: Words) -> str:
     from quiesce.rules.integers.rule_text import described
     from quiesce.rules.integers.rule_words import read_rules
+    from quiesce.rules.surface.text import described_surface
+    from quiesce.rules.surface.words import is_surface, read_surface
 
-    return described(read_rules(words))
+    return (
+        described_surface(read_surface(words))
+        if is_surface(words)
+        else described(read_rules(words))
+    )
 
 
 def _pulses(words: Words) -> str:

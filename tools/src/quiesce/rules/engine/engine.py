@@ -1,7 +1,7 @@
 """Both engines of the firmware over numpy arrays: its own C, built for this machine."""
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -19,16 +19,15 @@ STRAIGHT = "straight"
 FUNCTION = "quiesce_rules_straight"
 
 
-class Engine:
-    """kind: TABLE, or STRAIGHT where the base has a straight-line form (NotStraight else)."""
+class TableEngine:
+    """A table of rules or a surface: words as a controller gets them."""
 
-    def __init__(self, compiled: CompiledBase, kind: str = TABLE) -> None:
-        self._compiled = compiled
-        texts = {"straight.c": straight_source(compiled)} if kind == STRAIGHT else {}
-        library = build([*firmware_sources(), SOURCE], texts, ())
+    def __init__(self, words: Sequence[int], texts: Mapping[str, str] | None = None) -> None:
+        """texts: more sources, by their files' names. UsageError where the firmware refuses it."""
+        library = build([*firmware_sources(), SOURCE], texts or {}, ())
         self._library = ctypes.CDLL(str(library))
-        self._function = getattr(self._library, FUNCTION) if kind == STRAIGHT else None
-        self._table = np.array(table_words(compiled), dtype=np.uint32)
+        self._outputs = words[3] >> 8 & 0xFF
+        self._table = np.array(words, dtype=np.uint32)
         verdict = self._library.fuzzy_table_check(pointer(self._table), len(self._table))
         if verdict != 0:
             raise UsageError(f"the firmware refuses the table of this rule base, reason {verdict}")
@@ -36,15 +35,8 @@ class Engine:
     def evaluate(self, inputs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """inputs: int32 of one length n each. Returns int32 [outputs, n] and the uint32 mask [n]
         of outputs that have their default."""
-        outputs = len(self._compiled.outputs)
-        if self._function is None:
-            return at_points(
-                inputs, outputs, partial(self._library.many_table, pointer(self._table))
-            )
-        shape = (len(self._compiled.base.inputs), outputs)
-        return at_points(
-            inputs, outputs, partial(self._library.many_function, self._function, *shape)
-        )
+        call = partial(self._library.many_table, pointer(self._table))
+        return at_points(inputs, self._outputs, call)
 
     def fired(self, inputs: Sequence[np.ndarray]) -> np.ndarray:
         """uint64 [n]: bit i is rule i, for the first 64 rules."""
@@ -54,6 +46,22 @@ class Engine:
             pointer(self._table), points.shape[1], pointer(points), pointer(fired)
         )
         return fired
+
+
+class Engine(TableEngine):
+    """kind: TABLE, or STRAIGHT where the base has a straight-line form (NotStraight else)."""
+
+    def __init__(self, compiled: CompiledBase, kind: str = TABLE) -> None:
+        texts = {"straight.c": straight_source(compiled)} if kind == STRAIGHT else {}
+        super().__init__(table_words(compiled), texts)
+        self._inputs = len(compiled.axes)
+        self._function = getattr(self._library, FUNCTION) if kind == STRAIGHT else None
+
+    def evaluate(self, inputs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        if self._function is None:
+            return super().evaluate(inputs)
+        call = partial(self._library.many_function, self._function, self._inputs, self._outputs)
+        return at_points(inputs, self._outputs, call)
 
 
 def straight_source(compiled: CompiledBase) -> str:

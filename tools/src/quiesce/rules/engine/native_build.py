@@ -15,6 +15,7 @@ FIRMWARE_SOURCES = (
     "fuzzy/fuzzy.c",
     "fuzzy/fuzzy_centroid.c",
     "fuzzy/fuzzy_partition.c",
+    "fuzzy/fuzzy_surface.c",
     "fuzzy/fuzzy_table.c",
     "base/crc32.c",
 )
