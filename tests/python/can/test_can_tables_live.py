@@ -8,6 +8,7 @@ import pytest
 from can_bus import Controller, build_peer
 from conftest import ROOT, Result
 from quiesce.cli.main import main
+from quiesce.rules.surface.words import is_surface
 from quiesce.table import kinds
 from quiesce.table.file import read_file, table_bytes
 from quiesce.table.words import sealed
@@ -15,6 +16,7 @@ from quiesce.table.words import sealed
 SQUEEZE = ROOT / "firmware/plants/squeeze_2012"
 RULES = SQUEEZE / "rules.fcl"
 PULSES = SQUEEZE / "pulses.phase.toml"
+PRODUCTS = ROOT / "tools/benchmarks/rules/reference_product.fis"
 
 
 @pytest.fixture(scope="session")
@@ -86,6 +88,20 @@ def test_an_armed_controller_takes_rules_and_gives_them_back(
     assert tool("revert", "law").returncode == 0 and told(tool)["law"]["crc"] == shipped["crc"]
     refused(tool("revert", "law"), "there is no earlier table")
     assert loaded(tool("load", "law", fetched, "--json")) == crc
+
+
+def test_rules_without_a_plain_table_arrive_as_their_surface(
+    controller: Controller, tool, tmp_path: Path
+) -> None:
+    controller.start()
+    result = tool("load", "rules", PRODUCTS, "--json")
+    crc = loaded(result)
+    assert "taken: the surface of its answers" in result.stderr
+    now = told(tool)["law"]
+    assert (now["kind"], now["crc"], now["source"]) == ("rules", crc, "loaded")
+    fetched = tmp_path / "fetched.table"
+    assert tool("fetch", "law", "-o", fetched).returncode == 0
+    assert is_surface(read_file(fetched).words)
 
 
 @pytest.mark.slow
