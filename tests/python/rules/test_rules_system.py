@@ -334,7 +334,11 @@ def test_tsukamoto_of_one_input_is_a_function_of_it() -> None:
 
 def test_what_asks_for_a_plain_base_says_so(capsys) -> None:
     file = str(SYSTEMS[1])
-    for arguments in (["compile", file, "--controller"], ["diff", file, file]):
+    for arguments in (
+        ["compile", file, "--controller", "--approximate", "8"],
+        ["check", file, "--controller"],
+        ["diff", file, file],
+    ):
         assert main(["rules", *arguments]) == 2
         message = capsys.readouterr().err
         assert len(message.splitlines()) == 1 and "gaussians.fll:" in message
