@@ -32,7 +32,7 @@ uint32_t fuzzy_partition_sum(const fuzzy_table_t *table, const int32_t *input, i
 uint32_t fuzzy_partition_max(const fuzzy_table_t *table, const int32_t *input, int32_t *value);
 uint32_t fuzzy_partition_centroid(const fuzzy_table_t *table, const int32_t *input, int32_t *value);
 
-/// FUZZY_SURFACE, as fuzzy_evaluate(): some 100 instructions, whatever the rules were.
+/// FUZZY_SURFACE, as fuzzy_evaluate(): some 300 instructions, whatever the rules were.
 uint32_t fuzzy_surface(const fuzzy_table_t *table, const int32_t *input, int32_t *value);
 
 #endif

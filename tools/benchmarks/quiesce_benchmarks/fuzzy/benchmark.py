@@ -45,6 +45,7 @@ from quiesce_benchmarks.fuzzy.straight import (
     worst_of,
 )
 from quiesce_benchmarks.fuzzy.suite import Budget, RandomResult, measure_random
+from quiesce_benchmarks.fuzzy.surfaces import SurfaceCost, measure_surfaces, surface_table
 from quiesce_benchmarks.fuzzy.systems import (
     SystemCost,
     figure_names,
@@ -97,6 +98,7 @@ class Costs:
     fallbacks: dict[int, TableCost] | None = None
     straights: Sequence[StraightCost] = ()
     systems: Sequence[SystemCost] = ()
+    surfaces: Sequence[SurfaceCost] = ()
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -151,6 +153,13 @@ def cost_figures(costs: Costs) -> list[Figure]:
         *(
             Figure(figure, worst_of_system(costs.systems, name), "instr", None, "lower")
             for name, figure in figure_names().items()
+        ),
+        Figure(
+            "surface_instr",
+            max((one.worst_instr for one in costs.surfaces), default=None),
+            "instr",
+            None,
+            "lower",
         ),
         Figure("peer_fuzzylite_singleton_instr", means.get(0), "instr", None, "lower"),
         Figure("peer_fuzzylite_centroid_instr", means.get(100), "instr", None, "lower"),
@@ -221,13 +230,17 @@ def count_costs(
         "instructions of straight-line C of systems", lambda: measure_straights(bench, size.steps)
     )
     systems = attempt("instructions of the engine for any system", lambda: measure_systems(bench))
+    surfaces = attempt("instructions of surfaces", lambda: measure_surfaces(bench))
     fallbacks = attempt(
         "instructions of the table engine on random bases",
         lambda: count_fallbacks(bench, result, size.fallbacks),
     )
     peers = attempt("instructions of libfuzzylite", lambda: measure_peers(bench))
     host = attempt("instructions on the host", lambda: measure_host(RESOLUTIONS))
-    found = Costs(engines or (), peers or (), host or (), fallbacks, straights or (), systems or ())
+    found = Costs(
+        engines or (), peers or (), host or (), fallbacks, straights or (), systems or (),
+        surfaces or (),
+    )  # fmt: skip
     return found, absent
 
 
@@ -243,6 +256,7 @@ def context_of(
         "q15_end_to_end_error_A": grid.worst_A("end to end", SINGLETON_METHODS, form=Q15),
         "engines": [cost.row() for cost in costs.engines],
         "systems": [cost.row() for cost in costs.systems],
+        "surfaces": [cost.row() for cost in costs.surfaces],
         "straights": [cost.row() for cost in costs.straights],
         "peers": [asdict(cost) for cost in costs.peers],
         "host_instr": [asdict(cost) for cost in costs.host],
@@ -289,6 +303,8 @@ def tables(grid: GridResult, result: RandomResult | None, costs: Costs) -> list[
         found.append(straight_table(costs.straights))
     if costs.systems:
         found.append(system_table(costs.systems))
+    if costs.surfaces:
+        found.append(surface_table(costs.surfaces))
     if costs.peers:
         found.append(peer_table(costs.peers, costs.engines))
     if costs.host:

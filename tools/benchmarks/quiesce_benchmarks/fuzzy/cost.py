@@ -108,7 +108,13 @@ def code_bytes(image: Path, sources: Sequence[str] = ()) -> int:
 def measure_table(bench: Bench, image: Path, base: CompiledBase, evaluations: int) -> TableCost:
     """Any base whose inputs are q15."""
     universe = int(base.input_integer(0, base.base.inputs[0].maximum))
-    words = table_words(base)
+    return measure_words(bench, image, universe, table_words(base), evaluations)
+
+
+def measure_words(
+    bench: Bench, image: Path, universe: int, words: Sequence[int], evaluations: int
+) -> TableCost:
+    """universe: the last integer of each input."""
     order = (len(VARIANTS), 0, evaluations, universe, universe, len(words), *words)
     found = count(bench, image, *order)
     printed = found["printed"]
