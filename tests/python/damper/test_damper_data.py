@@ -21,13 +21,12 @@ from damper_files import (
 from quiesce.base.errors import UsageError
 from quiesce.cli.identify.data_options import add_data_options
 from quiesce.damper.data.condition import odd_samples
+from quiesce.damper.data.folds import CURRENT, QUARTERS, folds_of
 from quiesce.damper.data.motion import derivatives, free_end_filter, integrated, low_passed
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.records import Conditioned, records_of_set
 from quiesce.damper.data.split import (
-    Segment,
     Split,
-    inner_split,
     levels_of,
     parse_part,
     split_records,
@@ -401,25 +400,6 @@ def test_rows_of_a_thinned_record_are_those_of_the_file(tmp_path: Path) -> None:
     assert [(s.first, s.end) for s in (*fit, *held)] == [(0, 100), (100, 200)]
 
 
-def test_validation_takes_the_last_quarter_or_leaves_a_level_out() -> None:
-    one = [whole(plain_record(np.ones(400)))]
-    (fit, validation), = inner_split(one)  # fmt: skip
-    assert (fit[0].first, fit[0].end) == (0, 300)
-    assert (validation[0].first, validation[0].end) == (300, 400)
-    three = [whole(plain_record(np.full(100, level))) for level in (0.0, 0.5, 1.0, 0.5)]
-    assert levels_of(three) == [0.0, 0.5, 1.0]
-    (fit, validation), = inner_split(three)  # fmt: skip
-    assert [s.record.level for s in fit] == [0.0, 1.0, 0.5]
-    assert [s.record.level for s in validation] == [0.5]
-    four = [whole(plain_record(np.full(100, level))) for level in (0.0, 0.5, 1.0, 1.5)]
-    left_out = [[s.record.level for s in part] for _, part in inner_split(four)]
-    assert left_out == [[0.5], [1.0]]
-    assert len(inner_split(four, ends=True)) == 4
-    switched = [Segment(plain_record(np.arange(400) % 100 / 50.0), 100, 300)]
-    (fit, validation), = inner_split([*three, *switched])  # fmt: skip
-    assert (validation[-1].first, validation[-1].end) == (250, 300)
-
-
 def test_rows_of_a_record_are_a_record() -> None:
     record = plain_record(np.arange(100.0)).rows(10, 30)
     assert len(record) == 20 and record.command[0] == 10.0 and record.time_s[0] == 0.1
@@ -492,7 +472,7 @@ def test_measured_sines_get_the_moving_average_of_the_file() -> None:
 def test_measured_voltage_is_a_switched_command() -> None:
     record = scored("dyke_switched").records[0]
     assert record.command_unit == "V" and record.level is None
-    assert len(inner_split([whole(record)])) == 1
+    assert {one.kind for one in folds_of([whole(record)])} == {QUARTERS}
 
 
 def test_measured_opposite_force_is_refused_with_the_hint() -> None:
@@ -520,4 +500,5 @@ def test_measured_shaking_table_is_read_by_its_columns() -> None:
     assert len(records) == 16 and {len(record) for record in records} == {1501}
     levels = levels_of([whole(record) for record in records])
     assert levels == pytest.approx([0.0, 0.8712, 1.98, 3.212])
-    assert len(inner_split([whole(record) for record in records])) == 2
+    kinds = [one.kind for one in folds_of([whole(record) for record in records])]
+    assert kinds.count(CURRENT) == 2 and QUARTERS not in kinds

@@ -22,6 +22,8 @@ MOST_ELEMENTS = 4
 # Ginder's exponent of particles in a field below saturation: with few levels the data do not tell.
 FIELD_EXPONENT = 1.5
 LEVELS_FOR_EXPONENT = 5
+# Two constant levels tell nothing of what lies between them.
+LEVELS_FOR_SATURATION = 3
 
 
 @dataclass(frozen=True)
@@ -94,9 +96,11 @@ def rig_of(candidate: Candidate, segments: Sequence[Segment], choice: Choice) ->
     rig: tuple[str, ...] = ("inertia_kg", "skew_s", *lag) if choice.rig is None else choice.rig
     if not has_offset(candidate.model) and choice.rig is None:
         rig += ("offset_N",)
-    if candidate.model.startswith(NETWORK) and len(nodes_of(segments, 2)) > 1:
+    levels, switched = len(levels_of(segments)), is_switched(segments)
+    has_between = switched or levels >= LEVELS_FOR_SATURATION
+    if candidate.model.startswith(NETWORK) and len(nodes_of(segments, 2)) > 1 and has_between:
         rig += ("field_saturation",)
-        if is_switched(segments) or len(levels_of(segments)) >= LEVELS_FOR_EXPONENT:
+        if switched or levels >= LEVELS_FOR_EXPONENT:
             rig += ("field_exponent",)
     return tuple(name for name in rig if name not in choice.fixed)
 

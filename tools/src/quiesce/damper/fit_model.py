@@ -1,4 +1,5 @@
-"""One model fitted: to every fold of the inner validation, then to the whole training part."""
+"""One parametric model fitted: to the whole training part, then to what every fold of the
+validation leaves of it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -7,13 +8,14 @@ from time import monotonic
 
 import numpy as np
 
-from quiesce.damper import library, passivity
-from quiesce.damper.candidates import GREY_BOX, NETWORK, Candidate, setting_of
-from quiesce.damper.data.split import Segment
+from quiesce.damper import library
+from quiesce.damper.candidates import NETWORK, Candidate, setting_of
+from quiesce.damper.data.folds import Fold
+from quiesce.damper.data.split import Segment, records_in
 from quiesce.damper.fit.grown import grow, grown_fit
-from quiesce.damper.fit.problem import Problem, trimmed
+from quiesce.damper.fit.problem import Problem
 from quiesce.damper.fit.rig_terms import (
-    Verdict,
+    DOUBTFUL,
     doubtful_terms,
     limits_for,
     told_terms,
@@ -23,16 +25,19 @@ from quiesce.damper.fit.rig_terms import (
 from quiesce.damper.fit.search import Effort, Fit, Progress, polish
 from quiesce.damper.fit.setting import Setting
 from quiesce.damper.fit.small import fit_small
-from quiesce.damper.fitted import BLACK_BOX, Fitted
-from quiesce.damper.judge import currents_of, judged, valid_of, without_rest
-from quiesce.damper.learned import learner
-from quiesce.damper.library import Scales
+from quiesce.damper.fitted import Fitted
+from quiesce.damper.judge import damper_of, judged
 from quiesce.damper.model_file import DamperModel
-from quiesce.damper.score import Simulate, score
-from quiesce.damper.task import Parts, Plan, Say, Told
+from quiesce.damper.score import Simulate
+from quiesce.damper.task import Parts, Plan, Say
+from quiesce.damper.validated import validated
 
 SAY_EVERY_s = 10.0
-CUT_SHORT = "trained briefly: the whole training did not end in time (--time-limit)"
+# Of a model's time, what the fit to everything may take.
+_WHOLE_PART = 0.7
+# Least squares of a refit that leaves a fold out, from the fit to everything.
+_REFIT_EVALUATIONS, _REFIT_EVALUATIONS_QUICK = 15, 8
+_REFIT_TOLERANCE = 1e-6
 # Least squares with which mass and skew are tried.
 _TRIED_EVALUATIONS = 20
 
@@ -41,31 +46,82 @@ def fit_candidate(
     candidate: Candidate,
     parts: Parts,
     plan: Plan,
-    before: list[tuple[Problem, Fit]] | None,
+    smaller: tuple[Problem, Fit] | None,
     say: Say,
-) -> tuple[Fitted, list[tuple[Problem, Fit]]]:
-    """Fits every fold and the whole training part; `before`: the same of the candidate that this
-    one grows from."""
+) -> tuple[Fitted, tuple[Problem, Fit], list[DamperModel]]:
+    """The whole training part first, then refits that leave each fold out; `smaller`: the fit of
+    the candidate that this one grows from. Returned with the fit and the models of the folds."""
     start_s = monotonic()
     progress = saying(candidate.name, say)
-    errors, fits = [], []
-    last: tuple[Problem, Fit] | None = None
-    notes: list[str] = []
-    for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
-        smaller = before[k] if before is not None else None
-        # A fold must not start from one that has seen its validation rows.
-        known = None if validation else last
-        left_s = (plan.seconds - (monotonic() - start_s)) / (len(parts.folds) + 1 - k)
-        setting = setting_of(candidate, parts.train, plan.choice)
-        fit = RigFit(candidate, rows, plan, [smaller, known], left_s, progress)
-        problem, found, notes = fit.with_rig(setting)
-        fits.append((problem, found))
-        last = (problem, found)
-        if validation:
-            errors.append(score(simulate_values(problem, found.values), validation).mean_error)
-    problem, found = fits[-1]
+    setting = setting_of(candidate, parts.train, plan.choice)
+    fit = RigFit(candidate, parts.train, plan, [smaller], _WHOLE_PART * plan.seconds, progress)
+    problem, found, notes = fit.with_rig(setting)
+    refits = []
+    for k, fold in enumerate(parts.folds):
+        left_s = (plan.seconds - (monotonic() - start_s)) / (len(parts.folds) - k)
+        again = Refit(candidate, fold, plan, max(1.0, left_s), progress)
+        refits.append(again.of(problem, found))
+        progress(f"without {fold.left_out}, {k + 1} of {len(parts.folds)} to validate", found.error)
+    simulates = [simulate_values(own, one.values) for own, one in refits]
+    checked = validated(simulates, parts.folds)
+    is_complete = found.is_complete and all(one.is_complete for _, one in refits)
+    found = replace(found, is_complete=is_complete)
     seconds = monotonic() - start_s
-    return judged(candidate, problem, found, errors, parts, plan, seconds, notes), fits
+    fitted = judged(candidate, problem, found, checked, parts, plan, seconds, notes)
+    dampers = [damper_of(candidate, *one, parts, plan) for one in refits]
+    return fitted, (problem, found), dampers
+
+
+@dataclass
+class Refit:
+    """A candidate fitted again to what a fold leaves, from its fit to everything: a few steps of
+    least squares. Current laws are those that the fold's own rows can tell; which terms of the rig
+    are in was decided on all rows. What the fold's rows do not determine stays where it was, so
+    an error may be a little too good, never by the validation's own residual."""
+
+    candidate: Candidate
+    fold: Fold
+    plan: Plan
+    seconds: float
+    progress: Progress
+
+    def of(self, whole: Problem, found: Fit) -> tuple[Problem, Fit]:
+        problem = Problem(self.setting(whole.setting), self.fold.fit, weigh_of(self.fold.fit))
+        if self.plan.choice.method != "default":
+            method = paper_method(self.plan.choice.method)
+            effort = effort_of(self.plan, self.seconds)
+            return problem, method(problem, self.plan.seed, effort, self.progress)
+        return problem, self.polished(problem, whole, found)
+
+    def setting(self, whole: Setting) -> Setting:
+        own = setting_of(self.candidate, self.fold.fit, self.plan.choice)
+        if self.plan.choice.rig is not None:
+            return own
+        dropped = [name for name in doubtful_terms(own) if name not in whole.rig]
+        kept = {name: whole.bounds[name] for name in DOUBTFUL if name in whole.bounds}
+        own = without(own, dropped)
+        return replace(
+            own, bounds={**own.bounds, **{k: v for k, v in kept.items() if k in own.rig}}
+        )
+
+    def polished(self, problem: Problem, whole: Problem, found: Fit) -> Fit:
+        start_s = monotonic()
+
+        def is_over() -> bool:
+            return self.plan.stop.is_set() or monotonic() - start_s > self.seconds
+
+        middle = problem.values_from(np.full((1, len(problem.nonlinear)), 0.5))
+        start, errors = problem.project(grow(problem, middle, whole, found))
+        most = _REFIT_EVALUATIONS_QUICK if self.plan.quick else _REFIT_EVALUATIONS
+        values, error = polish(problem, start[0], most, is_over, _REFIT_TOLERANCE)
+        if not error < errors[0]:
+            values, error = start[0], float(errors[0])
+        seconds = monotonic() - start_s
+        return Fit(values, error, problem.evaluations, seconds, not is_over())
+
+
+def weigh_of(rows: Sequence[Segment]) -> str:
+    return "test" if len(records_in(rows)) > 1 else "sample"
 
 
 @dataclass
@@ -94,14 +150,16 @@ class RigFit:
         if not terms or not bare[1].is_complete:
             return *bare, []
         tried = without(self.limited(setting, terms), [n for n in doubtful if n not in terms])
-        found = self.tried(tried, bare, terms)
+        on_trial = self.gone_on(tried, bare, _TRIED_EVALUATIONS)
+        found = verdicts(on_trial[0], on_trial[1].values, terms)
         notes = [one.note for one in found if one.note]
         kept = [one.name for one in found if one.is_kept]
         # One that is implausible shows that the model lacks something; the other would mimic it.
         if notes or not kept:
             return *bare, notes
         dropped = [name for name in terms if name not in kept]
-        again = self.fitted(without(tried, dropped), [*self.known, bare])
+        most = effort_of(self.plan, self.seconds).polish_evaluations
+        again = self.gone_on(without(tried, dropped), on_trial, most)
         still = verdicts(again[0], again[1].values, kept)
         if not all(one.is_kept for one in still) or again[1].error >= bare[1].error:
             return *bare, notes + [one.note for one in still if one.note]
@@ -111,14 +169,15 @@ class RigFit:
         limits = limits_for(self.rows, self.plan.choice.bounds)
         return replace(setting, bounds={**setting.bounds, **{name: limits[name] for name in terms}})
 
-    def tried(
-        self, setting: Setting, bare: tuple[Problem, Fit], terms: Sequence[str]
-    ) -> list[Verdict]:
-        """Verdicts from least squares that go on from the fit without the terms."""
+    def gone_on(
+        self, setting: Setting, before: tuple[Problem, Fit], most: int
+    ) -> tuple[Problem, Fit]:
+        """Least squares that go on from a fit of other terms: at most `most` evaluations."""
         problem = self.problem_of(setting)
-        start = grow(problem, np.zeros((1, len(problem.variables))), *bare)[0]
-        values, _ = polish(problem, start, _TRIED_EVALUATIONS, self.is_over)
-        return verdicts(problem, values, terms)
+        start = grow(problem, np.zeros((1, len(problem.variables))), *before)[0]
+        values, error = polish(problem, start, most, self.is_over)
+        seconds = monotonic() - self.start_s
+        return problem, Fit(values, error, problem.evaluations, seconds, not self.is_over())
 
     def fitted(
         self, setting: Setting, known: Sequence[tuple[Problem, Fit] | None]
@@ -130,7 +189,7 @@ class RigFit:
         )
 
     def problem_of(self, setting: Setting) -> Problem:
-        return Problem(setting, self.rows, "test" if len(self.rows) > 1 else "sample")
+        return Problem(setting, self.rows, weigh_of(self.rows))
 
     def is_over(self) -> bool:
         return self.plan.stop.is_set() or monotonic() - self.start_s > self.seconds
@@ -144,14 +203,7 @@ def fit_problem(
     left_s: float,
     progress: Progress,
 ) -> Fit:
-    effort = Effort(
-        population=16 if plan.quick else 32,
-        generations=8 if plan.quick else 20,
-        polished=2 if plan.quick else 4,
-        polish_evaluations=20 if plan.quick else 50,
-        seconds=max(1.0, left_s),
-        stop=plan.stop,
-    )
+    effort = effort_of(plan, left_s)
     if plan.choice.method != "default":
         return paper_method(plan.choice.method)(problem, plan.seed, effort, progress)
     if candidate.model.startswith(NETWORK):
@@ -160,6 +212,17 @@ def fit_problem(
     starts = [grow(problem, start, *one) for one in known if one is not None]
     values = np.concatenate(starts) if starts else None
     return fit_small(problem, plan.seed, effort, progress, values)
+
+
+def effort_of(plan: Plan, left_s: float) -> Effort:
+    return Effort(
+        population=16 if plan.quick else 32,
+        generations=8 if plan.quick else 20,
+        polished=2 if plan.quick else 4,
+        polish_evaluations=20 if plan.quick else 50,
+        seconds=max(1.0, left_s),
+        stop=plan.stop,
+    )
 
 
 def saying(name: str, say: Say) -> Progress:
@@ -188,82 +251,3 @@ def paper_method(name: str) -> Callable[[Problem, int, Effort, Progress], Fit]:
 def simulate_values(problem: Problem, values: np.ndarray) -> Simulate:
     row = problem.rows(values)[0]
     return lambda record: library.simulate_row(problem.model, problem.orders, row, record)
-
-
-class Stopped(Exception):
-    pass
-
-
-def keep_learned(
-    name: str,
-    parts: Parts,
-    plan: Plan,
-    bases: Sequence[DamperModel],
-    keep: Told,
-    say: Say,
-) -> None:
-    """A learned model, half trained, is worth nothing; so one that is trained briefly comes first,
-    whatever the time, and stands where the whole training does not end in time."""
-    try:
-        brief = fit_learned(name, parts, plan, bases, is_brief=True)
-    except Stopped:
-        say(f"{name}: left out, stopped")
-        return
-    if plan.quick:
-        keep(brief)
-        return
-    say(f"{name}: trained briefly, validation {100.0 * brief.validation_error:.2f} %; goes on")
-    try:
-        keep(fit_learned(name, parts, plan, bases))
-    except Stopped:
-        keep(replace(brief, is_complete=False, notes=[*brief.notes, CUT_SHORT]))
-
-
-def fit_learned(
-    name: str,
-    parts: Parts,
-    plan: Plan,
-    bases: Sequence[DamperModel] = (),
-    is_brief: bool = False,
-) -> Fitted:
-    """bases: what a grey box stands on, fitted to each fold and to the whole training part. Stopped
-    where time runs out; a brief training ends only with the plan."""
-    module = learner("hysteresis_network" if name == GREY_BOX else name)
-    usual = module.BRIEF if is_brief else module.Settings()
-    start_s = monotonic()
-    errors = []
-    trained = None
-
-    def going_on(_text: str) -> None:
-        is_late = not is_brief and monotonic() - start_s > plan.seconds
-        if plan.stop.is_set() or is_late:
-            raise Stopped
-
-    for k, (rows, validation) in enumerate([*parts.folds, (parts.train, [])]):
-        settings = replace(usual, base=bases[k]) if bases else usual
-        # What follows the rows of a fold validates it: not even its size may be known.
-        own = trimmed(rows)
-        trained = module.train(own, Scales.of(own), plan.seed, settings, going_on)
-        if validation:
-            errors.append(score(trained.simulate, validation).mean_error)
-    damper = trained.as_model(name, source=plan.source, valid=valid_of(parts.train))
-    worst = passivity.trial(without_rest(trained.simulate), parts.scales, currents_of(parts.train))
-    return Fitted(
-        name,
-        title_learned(name),
-        BLACK_BOX,
-        damper,
-        trained.parameter_count,
-        score(trained.simulate, parts.train),
-        float(np.mean(errors)),
-        passivity.Passivity(False, worst),
-        monotonic() - start_s,
-        True,
-        [],
-        score(trained.simulate, parts.test) if parts.test else None,
-        list(trained.notes),
-    )
-
-
-def title_learned(name: str) -> str:
-    return name.replace("_", " ")

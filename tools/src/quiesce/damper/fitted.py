@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass, field
 
+from quiesce.damper.band import Band
 from quiesce.damper.fit.intervals import Interval
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.passivity import Passivity
 from quiesce.damper.score import Score
+from quiesce.damper.validation import FoldScore
 
 PARAMETRIC = "parametric"
 BLACK_BOX = "black box"
@@ -21,10 +23,13 @@ class Fitted:
     damper: DamperModel
     parameter_count: int  # numbers that were fitted
     train: Score
-    validation_error: float  # inside the training part, by a model that had not seen those rows
+    validation_error: float  # inside the training part, by models that had not seen those rows
     passivity: Passivity
     seconds: float
     is_complete: bool  # neither interrupted nor out of time
     intervals: list[Interval] = field(default_factory=list)  # parametric only
     test: Score | None = None
     notes: list[str] = field(default_factory=list)
+    folds: tuple[FoldScore, ...] = ()  # what the validation error is made of
+    band: Band | None = None  # about the force, for rows that were not seen
+    coverage: float | None = None  # part of the test rows inside it

@@ -5,19 +5,17 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 from quiesce.damper.candidates import GREY_BOX, NETWORK, Candidate, parametric_candidates
-from quiesce.damper.data.split import Segment, inner_split
+from quiesce.damper.data.folds import MOST, MOST_QUICK, folds_of
+from quiesce.damper.data.split import Segment
 from quiesce.damper.fit.problem import Problem, trimmed
 from quiesce.damper.fit.search import Fit
-from quiesce.damper.fit_model import fit_candidate, keep_learned
+from quiesce.damper.fit_learned import keep_learned
+from quiesce.damper.fit_model import fit_candidate
 from quiesce.damper.fitted import PARAMETRIC, Fitted
-from quiesce.damper.judge import damper_of
 from quiesce.damper.library import Scales
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.ranking import ranked
 from quiesce.damper.task import Parts, Plan, Say, Told
-
-# Folds of the inner validation at most.
-MOST_FOLDS = 2
 
 
 def identify(
@@ -32,13 +30,10 @@ def identify(
     When plan.stop is set, models under way end with their best so far, others are left out."""
     # Cut off what follows the training rows: nothing of it may reach a fit or a choice.
     own = trimmed(train)
-    folds = inner_split(own)
-    parts = Parts(
-        own,
-        list(test),
-        folds[:: max(1, len(folds) // MOST_FOLDS)][:MOST_FOLDS],
-        Scales.of(own),
-    )
+    # The papers' searches know no shorter way to a fold than all of it.
+    is_short = plan.quick or plan.choice.method != "default"
+    folds = folds_of(own, MOST_QUICK if is_short else MOST)
+    parts = Parts(own, list(test), folds, Scales.of(own))
     results = {one.name: one for one in done}
     by_fold: dict[str, list[DamperModel]] = {}
     lock = threading.Lock()
@@ -67,8 +62,9 @@ def identify(
 
 
 def chains_of(names: Sequence[str]) -> tuple[list[list[Candidate | str]], bool]:
-    """Lists to be done one after the other; and whether a grey box comes at the end. Long ones come
-    first, so that the short ones fill the gaps."""
+    """Lists to be done one after the other; and whether a grey box comes at the end. One short one
+    comes first, so that there is a model soon; then the long ones, so that the other short ones
+    fill the gaps."""
     known = parametric_candidates()
     networks: list[Candidate | str] = []
     single: list[list[Candidate | str]] = []
@@ -77,7 +73,9 @@ def chains_of(names: Sequence[str]) -> tuple[list[list[Candidate | str]], bool]:
             networks.append(known[name])
         elif name != GREY_BOX:
             single.append([known.get(name, name)])
-    return [networks, *single] if networks else single, GREY_BOX in names
+    single.sort(key=lambda chain: isinstance(chain[0], str))  # learned ones are not the soonest
+    chains = [*single[:1], networks, *single[1:]] if networks else single
+    return chains, GREY_BOX in names
 
 
 def run_chain(
@@ -88,15 +86,14 @@ def run_chain(
     keep: Told,
     say: Say,
 ) -> None:
-    before: list[tuple[Problem, Fit]] | None = None
+    smaller: tuple[Problem, Fit] | None = None
     for one in chain:
         if plan.stop.is_set():
             return
         if isinstance(one, str):
             keep_learned(one, parts, plan, (), keep, say)
         else:
-            fitted, before = fit_candidate(one, parts, plan, before, say)
-            by_fold[one.name] = [damper_of(one, *fit, parts, plan) for fit in before[:-1]]
+            fitted, smaller, by_fold[one.name] = fit_candidate(one, parts, plan, smaller, say)
             keep(fitted)
 
 
@@ -116,7 +113,6 @@ def run_grey_box(
     base = ranked(parametric)[0]
     if base.name not in by_fold:  # from an earlier run
         candidate = parametric_candidates()[base.name]
-        _, fits = fit_candidate(candidate, parts, plan, None, say)
-        by_fold[base.name] = [damper_of(candidate, *one, parts, plan) for one in fits[:-1]]
+        by_fold[base.name] = fit_candidate(candidate, parts, plan, None, say)[2]
     say(f"{GREY_BOX}: learning what {base.name} leaves")
     keep_learned(GREY_BOX, parts, plan, [*by_fold[base.name], base.damper], keep, say)

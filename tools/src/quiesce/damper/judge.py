@@ -20,6 +20,7 @@ from quiesce.damper.model_file import DamperModel, from_row
 from quiesce.damper.score import Simulate, score
 from quiesce.damper.simulate import simulator
 from quiesce.damper.task import Parts, Plan
+from quiesce.damper.validated import Validated
 
 # Stroke and speed that a model file allows, over those in the data.
 MARGIN = 1.25
@@ -29,14 +30,14 @@ def judged(
     candidate: Candidate,
     problem: Problem,
     found: Fit,
-    errors: Sequence[float],
+    checked: Validated,
     parts: Parts,
     plan: Plan,
     seconds: float,
     notes: Sequence[str] = (),
 ) -> Fitted:
     damper = damper_of(candidate, problem, found, parts, plan)
-    damper = replace(damper, fit=fit_table(problem, found, errors))
+    damper = replace(damper, fit=fit_table(problem, found, checked))
     simulate = simulator(damper)
     return Fitted(
         candidate.name,
@@ -45,13 +46,16 @@ def judged(
         damper,
         len(problem.variables),
         score(simulate, parts.train),
-        float(np.mean(errors)),
+        checked.error,
         kernel_passivity(damper, parts),
         seconds,
         found.is_complete,
         intervals(problem, found.values) if found.is_complete else [],
         score(simulate, parts.test) if parts.test else None,
         list(dict.fromkeys(notes)),
+        checked.folds,
+        checked.band,
+        checked.coverage(simulate, parts.test),
     )
 
 
@@ -75,10 +79,14 @@ def title_of(candidate: Candidate) -> str:
     return library.model(candidate.model).title + (", stiffness of either sign" if free else "")
 
 
-def fit_table(problem: Problem, found: Fit, errors: Sequence[float]) -> dict[str, Any]:
+def fit_table(problem: Problem, found: Fit, checked: Validated) -> dict[str, Any]:
+    band = checked.band
+    is_known = band is not None and np.isfinite(band.part)
     return {
         "train_error": found.error,
-        "validation_error": float(np.mean(errors)),
+        "validation_error": checked.error,
+        "validation": checked.by_kind,
+        **({"band_95": vars(band)} if is_known else {}),
         "evaluations": found.evaluations,
         "is_complete": found.is_complete,
         "data": [Path(segment.record.name).name for segment in problem.segments],

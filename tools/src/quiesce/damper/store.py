@@ -10,18 +10,22 @@ import numpy as np
 
 from quiesce.base.atomic import output_files
 from quiesce.base.errors import UsageError
+from quiesce.damper.band import Band
 from quiesce.damper.candidates import GREY_BOX, NETWORK
 from quiesce.damper.data.split import Segment
 from quiesce.damper.fit.intervals import Interval
 from quiesce.damper.fitted import Fitted
 from quiesce.damper.model_file import read_model, write_model
 from quiesce.damper.passivity import Passivity
+from quiesce.damper.ranking import best
 from quiesce.damper.score import score
 from quiesce.damper.simulate import simulator
+from quiesce.damper.validation import Blocks, FoldScore
 
 FOLDER = "models"
 STATE = "state.json"
-VERSION = 2
+BEST = "damper.toml"
+VERSION = 3
 
 
 def stamp_of(train: Sequence[Segment], test: Sequence[Segment], options: Any) -> str:
@@ -43,9 +47,11 @@ def stamp_of(train: Sequence[Segment], test: Sequence[Segment], options: Any) ->
 
 
 class Store:
-    """Model files in DIR/models and, beside them, what else belongs to a fit."""
+    """Model files in DIR/models and, beside them, what else belongs to a fit; DIR/damper.toml is
+    the best of them."""
 
     def __init__(self, folder: Path, stamp: str, names: Sequence[str]) -> None:
+        self.out = folder
         self.folder = folder / FOLDER
         self.stamp = stamp
         self.names = list(names)
@@ -71,10 +77,23 @@ class Store:
             "is_complete": one.is_complete,
             "notes": one.notes,
             "intervals": [list(vars(interval).values()) for interval in one.intervals],
+            "folds": [
+                [fold.kind, fold.left_out, [[test.error_N2, test.force_N2] for test in fold.tests]]
+                for fold in one.folds
+            ],
+            "band": list(vars(one.band).values()) if one.band else None,
+            "coverage": one.coverage,
         }
         with output_files(self.folder) as staging:
             text = json.dumps(state, indent=1)
             (staging / f"{one.name}.{STATE}").write_text(text + "\n", encoding="utf-8")
+
+    def keep_best(self, models: Sequence[Fitted]) -> bool:
+        """DIR/damper.toml becomes the best passive one of these, where there is any."""
+        passive = best(models).get("passive")
+        if passive is not None:
+            write_model(self.out / BEST, passive.damper)
+        return passive is not None
 
     def finished(
         self, names: Sequence[str], train: Sequence[Segment], test: Sequence[Segment]
@@ -115,4 +134,11 @@ class Store:
             [Interval(*values) for values in state["intervals"]],
             score(simulate, test) if test else None,
             state["notes"],
+            tuple(fold_from(*values) for values in state["folds"]),
+            Band(*state["band"]) if state["band"] else None,
+            state["coverage"],
         )
+
+
+def fold_from(kind: str, left_out: str, tests: list[list[list[float]]]) -> FoldScore:
+    return FoldScore(kind, left_out, tuple(Blocks(tuple(e), tuple(f)) for e, f in tests))

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from quiesce.damper.candidates import Choice
-from quiesce.damper.data.split import Fold, Segment
+from quiesce.damper.data.folds import Fold
+from quiesce.damper.data.split import Segment
 from quiesce.damper.fitted import Fitted
 from quiesce.damper.library import Scales
 

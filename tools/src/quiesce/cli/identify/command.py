@@ -37,8 +37,10 @@ examples:
 Writes report.html, report.json and models/NAME.toml for every model; plants read such a file
 ([damper] file = "..."), so do 'tune' and the actions above. damper.toml is the best passive one.
 --model takes names, 'quick' (static models and small networks), 'parametric', or 'all'.
+Models are printed and written as they come, damper.toml with each that is better.
 Errors are ||F - F_model|| / ||F|| with the model running free; the ranking goes by validation
-inside the training part. Ctrl-C keeps the models that are finished; --resume goes on from there.
+inside the training part: whole currents, motions and amplitudes are left out in turn. Ctrl-C keeps
+the models that are finished; --resume goes on from there.
 """
 
 
@@ -238,7 +240,7 @@ def run(args: argparse.Namespace) -> int:
         fitted = [by_least_squares(train, test, plan, store)]
     else:
         fitted = fit_all(train, test, plan, done, store)
-    return report(args, out, fitted, train, test, data.notes)
+    return report(args, store, fitted, train, test, data.notes)
 
 
 def by_least_squares(train: Any, test: Any, plan: Any, store: Any) -> Any:
@@ -255,18 +257,24 @@ def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> list[Any
 
     from quiesce.base.progress import Progress
     from quiesce.damper.identify import identify
+    from quiesce.damper.ranking import ranked
 
     progress = Progress(len(plan.names) - len(done))
     results: list[Any] = []
     failure: list[BaseException] = []
     kept = [one.name for one in done]
+    so_far = list(done)
     keeping = threading.Lock()
 
     def told(one: Any) -> None:
         with keeping:
             store.keep(one)
             kept.extend([one.name] if one.is_complete else [])
+            so_far.append(one)
+            store.keep_best(so_far)
+            is_first = ranked(so_far)[0] is one
         note = "" if one.is_complete else ", not to its end"
+        note += ", the best so far" if is_first else ""
         progress.done(f"{one.name}: validation {100 * one.validation_error:.2f} %{note}")
 
     def say(text: str) -> None:
@@ -304,30 +312,31 @@ def interrupted(kept: Sequence[str], asked: Sequence[str]) -> str:
 
 def report(
     args: argparse.Namespace,
-    out: Path,
+    store: Any,
     fitted: Sequence[Any],
     train: Any,
     test: Any,
     notes: Sequence[str],
 ) -> int:
-    from quiesce.damper.model_file import write_model
-    from quiesce.damper.ranking import best, ranked
+    from quiesce.damper.ranking import ranked
     from quiesce.damper.report.page import write_report
     from quiesce.damper.report.runs import runs_of, shown_part, whiteness_of
     from quiesce.damper.report.tables import json_report, text_report
+    from quiesce.damper.report.where import sentences
     from quiesce.damper.simulate import simulator
+    from quiesce.damper.store import BEST
 
-    white = whiteness_of(shown_part(runs_of(simulator(ranked(fitted)[0].damper), train, test)))
+    runs = shown_part(runs_of(simulator(ranked(fitted)[0].damper), train, test))
+    white = whiteness_of(runs)
+    where = sentences(runs) if all(run.is_finite for run in runs) else []
     context = {"title": args.files[0].stem, "command": "quiesce " + " ".join(sys.argv[1:])}
-    write_report(out, fitted, train, test, notes, context)
-    passive = best(fitted).get("passive")
-    if passive is not None:
-        write_model(out / "damper.toml", passive.damper)
+    write_report(store.out, fitted, train, test, notes, context)
+    has_passive = store.keep_best(fitted)
     if args.json:
-        print(json.dumps(json_report(fitted, train, test, notes, context, white)))
+        print(json.dumps(json_report(fitted, train, test, notes, context, white, where)))
     else:
-        show(text_report(fitted, train, test, notes, white))
+        show(text_report(fitted, train, test, notes, white, where))
         written = ["report.html", "report.json", "models/"]
-        written += ["damper.toml"] if passive is not None else []
-        print(f"\nwritten    {', '.join(shown(out / name) for name in written)}")
+        written += [BEST] if has_passive else []
+        print(f"\nwritten    {', '.join(shown(store.out / name) for name in written)}")
     return 0

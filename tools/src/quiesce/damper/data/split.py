@@ -1,4 +1,4 @@
-"""Which rows are fitted, which are held out, and how the fitted ones are divided for validation."""
+"""Which rows are fitted and which are held out."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +11,6 @@ from quiesce.damper.data.record import Record
 from quiesce.recording.beside import is_number
 
 FORMS = ("time_s", "part", "rows", "current_A")
-VALIDATION_PART = 0.25
 
 
 def same_within(level: float) -> float:
@@ -142,11 +141,6 @@ def extent(records: Sequence[Record]) -> str:
     return f"{first:g} .. {last:g} s, up to {rows} rows, command {commands}"
 
 
-# Validation inside the training part
-
-Fold = tuple[list[Segment], list[Segment]]
-
-
 def records_in(segments: Sequence[Segment]) -> list[Record]:
     """Their records, each once."""
     return list({id(segment.record): segment.record for segment in segments}.values())
@@ -165,43 +159,3 @@ def levels_of(segments: Sequence[Segment]) -> list[float]:
         for i, level in enumerate(found)
         if i == 0 or level - found[i - 1] > same_within(level)
     ]
-
-
-def inner_split(segments: Sequence[Segment], ends: bool = False) -> list[Fold]:
-    """(fit, validation) folds.
-
-    With four or more constant levels of the command, each level is left out once; the lowest and
-    the highest only with `ends`, since without them a model would have to extrapolate. With three
-    levels a model needs all of them to know how it follows the command: every other test of the
-    middle one is for validation, where that has several. Otherwise one fold: the last quarter of
-    every segment is for validation.
-    """
-    levels = levels_of(segments)
-    is_constant = all(segment.record.level is not None for segment in segments)
-    if is_constant and len(levels) >= 4:
-        left_out = levels if ends else levels[1:-1]
-        return [leave_out(segments, level) for level in left_out]
-    if is_constant and len(levels) == 3:
-        fit, middle = leave_out(segments, levels[1])
-        if len(middle) >= 2:
-            return [(fit + middle[::2], middle[1::2])]
-    return [last_quarter(segments)]
-
-
-def leave_out(segments: Sequence[Segment], level: float) -> Fold:
-    def is_left_out(segment: Segment) -> bool:
-        return Part("current_A", (level,)).has_level(segment.record)
-
-    return (
-        [segment for segment in segments if not is_left_out(segment)],
-        [segment for segment in segments if is_left_out(segment)],
-    )
-
-
-def last_quarter(segments: Sequence[Segment]) -> Fold:
-    fit, validation = [], []
-    for segment in segments:
-        cut = segment.end - max(1, round(VALIDATION_PART * len(segment)))
-        fit.append(Segment(segment.record, segment.first, cut))
-        validation.append(Segment(segment.record, cut, segment.end))
-    return fit, validation

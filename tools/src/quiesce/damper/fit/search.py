@@ -187,8 +187,10 @@ def polish(
     values: np.ndarray,
     most: int,
     is_over: Callable[[], bool] = lambda: False,
+    tolerance: float = 1e-10,
 ) -> tuple[np.ndarray, float]:
-    """Least squares over all variables from here: values and error."""
+    """Least squares over all variables from here: values and error. tolerance: relative decrease
+    or move with which it ends."""
     low, high = np.array([one.bounds for one in problem.variables]).T
     size = np.array(
         [
@@ -225,8 +227,8 @@ def polish(
             method="trf",
             x_scale="jac",
             max_nfev=most,
-            ftol=1e-10,
-            xtol=1e-10,
+            ftol=tolerance,
+            xtol=tolerance,
             gtol=1e-12,
         )
     except _TimeIsUp:

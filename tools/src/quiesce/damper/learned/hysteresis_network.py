@@ -51,6 +51,9 @@ class Settings:
     base: DamperModel | None = None  # the grey box's; its coil lag is taken over
 
 
+# Averaged members of a refit that only validates.
+_REFIT_MEMBERS = 2
+
 # Of --effort quick, and what stands where time runs out.
 BRIEF = Settings(members=2, epochs=15, decays=(0.3,), folds=0)
 
@@ -326,6 +329,10 @@ def train(
             f"{len(members)} networks over {prepared.examples.features.shape[1]} features, weight "
             f"decay {decay:g} by blocks left out",
         ),
+        settled={
+            "decays": (decay,),
+            "members": min(settings.members, _REFIT_MEMBERS),
+        },
     )
 
 

@@ -39,6 +39,8 @@ class LearnedDamper:
     parameters: Mapping[str, Any]
     parameter_count: int
     notes: Sequence[str] = field(default=())  # what was done, in plain sentences
+    # Settings that a refit to a part of the same rows may take over: what a search found.
+    settled: Mapping[str, Any] = field(default_factory=dict)
 
     def to_toml(self) -> dict[str, Any]:
         """What the [parameters] table holds."""

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.extras import extra
-from quiesce.damper.data.split import Segment, inner_split
+from quiesce.damper.data.folds import folds_of
+from quiesce.damper.data.split import Segment
 from quiesce.damper.learned.inputs import Box, input_keys, stacked
 from quiesce.damper.learned.model import LearnedDamper, Report, limits_of, silent
 from quiesce.damper.library import Scales
@@ -38,9 +39,11 @@ def chosen(
     segments: Sequence[Segment], box: Box, scales: Scales, settings: Settings, progress: Report
 ) -> tuple[float, float]:
     """Penalty and gamma with the least error on rows that were not fitted."""
-    fit, validation = inner_split(segments)[0]
-    u, force_N = stacked(fit, box, settings.search_rows)
-    u_new, force_new_N = stacked(validation, box, settings.search_rows)
+    if len(settings.penalties) == len(settings.gammas) == 1:
+        return settings.penalties[0], settings.gammas[0]
+    fold = folds_of(segments)[0]
+    u, force_N = stacked(fold.fit, box, settings.search_rows)
+    u_new, force_new_N = stacked(fold.validation, box, settings.search_rows)
     best = (np.inf, settings.penalties[0], settings.gammas[0])
     for penalty in settings.penalties:
         for gamma in settings.gammas:
@@ -81,4 +84,5 @@ def train(
             f"{machine.dual_coef_.size} support vectors of {len(u)} rows; penalty {penalty:g} and "
             f"gamma {gamma:g} by validation",
         ),
+        settled={"penalties": (penalty,), "gammas": (gamma,)},
     )

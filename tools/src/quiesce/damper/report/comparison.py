@@ -10,8 +10,8 @@ from quiesce.base.table import format_table
 from quiesce.damper.compare import Comparison
 from quiesce.damper.plain import plain
 from quiesce.damper.report.plots import plot_errors, plot_loops, plot_residual, plot_time
-from quiesce.damper.report.runs import whiteness_of
-from quiesce.damper.report.tables import Table, percent, shortened, whiteness_text
+from quiesce.damper.report.runs import shortened, whiteness_of
+from quiesce.damper.report.tables import Table, percent, whiteness_text
 from quiesce.report.page import render
 
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,20 +16,25 @@ from quiesce.damper.report.plots import (
     plot_ranking,
     plot_residual,
     plot_time,
+    plot_where,
 )
 from quiesce.damper.report.runs import Run, runs_of, shown_part, whiteness_of
 from quiesce.damper.report.tables import (
     Table,
+    band_lines,
     data_lines,
     json_report,
     parameter_table,
     percent,
     ranking_table,
     segment_table,
+    validation_lines,
+    validation_table,
     whiteness_text,
     winner_table,
     winners,
 )
+from quiesce.damper.report.where import sentences
 from quiesce.damper.simulate import simulator
 from quiesce.report.page import render
 
@@ -54,7 +60,8 @@ def write_report(
     shown = list({id(one): one for one in winners(fitted).values()}.values())
     runs = [runs_of(simulator(one.damper), train, test) for one in shown]
     white = whiteness_of(shown_part(runs[0]))  # the best comes first
-    numbers = json_report(fitted, train, test, notes, context, white)
+    where = sentences(shown_part(runs[0])) if is_finite(runs[0]) else []
+    numbers = json_report(fitted, train, test, notes, context, white, where)
     finite = [(one.name, r) for one, r in zip(shown, runs, strict=True) if is_finite(r)]
     page = render(
         "damper/report/page.html.j2",
@@ -64,6 +71,8 @@ def write_report(
         winners=winners(fitted),
         percent=percent,
         ranking=ranking_table(fitted),
+        validation=validation_table(fitted),
+        stands=[*validation_lines(fitted), *band_lines(fitted)],
         best=winner_table(fitted),
         sizes=plot_ranking(fitted),
         by_command=plot_errors(finite) if finite else "",
@@ -81,14 +90,16 @@ def is_finite(runs: Sequence[Run]) -> bool:
 
 def model_part(
     one: Fitted, runs: Sequence[Run]
-) -> tuple[Fitted, Table, Table, str, dict[str, str]]:
-    """One of the winners, its parameters, its tests, how white its residual is, its pictures by
-    name: none where it diverges."""
+) -> tuple[Fitted, Table, Table, str, list[str], dict[str, str]]:
+    """One of the winners, its parameters, its tests, how white its residual is, where its error is
+    made, its pictures by name: none where it diverges."""
     pictures = {
-        "force against time": plot_time,
+        "force against time": partial(plot_time, band=one.band),
         "force against displacement and velocity": plot_loops,
         "residual": plot_residual,
+        "where the error is made": plot_where,
     }
     drawn = {name: plot(runs) for name, plot in pictures.items() if is_finite(runs)}
     white = whiteness_text(whiteness_of(shown_part(runs))) if drawn else ""
-    return one, parameter_table(one), segment_table(one), white, drawn
+    where = sentences(shown_part(runs)) if drawn else []
+    return one, parameter_table(one), segment_table(one), white, where, drawn

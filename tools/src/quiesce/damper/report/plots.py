@@ -5,16 +5,21 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.damper.band import Band, levels_along
 from quiesce.damper.fit.intervals import autocorrelation
 from quiesce.damper.fitted import Fitted
 from quiesce.damper.ranking import ranked
 from quiesce.damper.report.runs import Run, command_parts, one_a_level, shown_part
+from quiesce.damper.report.where import course_of, places_of
 from quiesce.report.plot_style import COLORS, pyplot, svg_of
 
 # Rows that one curve shows: more hide each other and make files large.
 MOST_ROWS = 3000
 # Of the time plots: periods of the motion.
 PERIODS = 4.0
+# Tests whose error is shown along time, and their colours.
+_COURSES = 4
+_SHADES = ("main", "current", "constant_best", "fuzzy_selftune_printed")
 _MARKERS = {"parametric": "o", "black box": "s"}
 
 
@@ -43,21 +48,26 @@ def window(run: Run, periods: float = PERIODS) -> slice:
     return slice(first, first + length)
 
 
-def plot_time(runs: Sequence[Run]) -> str:
-    """A few periods of one test a command: force and residual."""
+def plot_time(runs: Sequence[Run], band: Band | None = None) -> str:
+    """A few periods of one test a command: force, residual, and the band for new rows."""
     plt = pyplot()
     found = one_a_level(shown_part(runs), most=4)
     figure, axes = plt.subplots(len(found), 1, figsize=(9.5, 2.2 * len(found)), squeeze=False)
     for axis, run in zip(axes[:, 0], found, strict=True):
         part = window(run)
         time_s = run.time_s[part]
+        if band is not None and np.isfinite(band.part):
+            half_N = band.half_width_N(levels_along(run.segment, run.model_N))[part]
+            model_N = run.model_N[part]
+            shade = {"color": COLORS["shade"], "lw": 0.0, "label": "95 % of new rows"}
+            axis.fill_between(time_s, model_N - half_N, model_N + half_N, **shade)
         axis.plot(time_s, run.measured_N[part], color=COLORS["muted"], lw=2.0, label="measured")
         axis.plot(time_s, run.model_N[part], color=COLORS["main"], lw=0.9, label="model")
         axis.plot(time_s, run.residual_N[part], color=COLORS["current"], lw=0.6, label="residual")
         axis.set_ylabel("force (N)")
         part_name = "held out" if run.is_test else "fitted"
         axis.set_title(f"{run.label}, {part_name}: error {100.0 * run.error:.2f} %")
-    axes[0, 0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
+    axes[0, 0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=4)
     axes[-1, 0].set_xlabel("time (s)")
     return svg_of(figure)
 
@@ -116,14 +126,41 @@ def plot_residual(runs: Sequence[Run]) -> str:
     axes[1].legend()
     lags = min(len(run.model_N) // 4, max(25, int(run.rate_Hz / usual_Hz(run))), 400)
     found = autocorrelation(run.residual_N, lags)
-    axes[2].axhspan(*band(len(run.model_N)), color=COLORS["shade"], label="white: 95 %")
+    axes[2].axhspan(*white_band(len(run.model_N)), color=COLORS["shade"], label="white: 95 %")
     axes[2].plot(np.arange(lags + 1) / run.rate_Hz, found, color=COLORS["main"], lw=0.9)
     axes[2].set(xlabel="lag (s)", ylabel="autocorrelation")
     axes[2].legend()
     return svg_of(figure)
 
 
-def band(count: int) -> tuple[float, float]:
+def plot_where(runs: Sequence[Run]) -> str:
+    """The error along each test, and parts of the squared error beside parts of the rows."""
+    plt = pyplot()
+    shown = shown_part(runs)
+    courses = [course_of(run) for run in sorted(shown, key=lambda one: -one.error)[:_COURSES]]
+    places = places_of(shown)
+    height = max(3.0, 0.32 * len(places))
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, height))
+    for course, shade in zip(courses, _SHADES, strict=False):
+        time_s = course.time_s - course.time_s[0]
+        axes[0].plot(time_s, 100.0 * course.error, color=COLORS[shade], lw=1.1, label=course.label)
+    axes[0].set(xlabel="time in the test (s)", ylabel="error (% of its force)", ylim=(0.0, None))
+    axes[0].set_title("tests with the largest errors" if len(shown) > _COURSES else "every test")
+    axes[0].legend()
+    at = np.arange(len(places))
+    for offset, values, shade, label in (
+        (-0.2, [one.rows for one in places], "muted", "of the rows"),
+        (0.2, [one.error for one in places], "current", "of the squared error"),
+    ):
+        axes[1].barh(at + offset, 100.0 * np.array(values), 0.4, color=COLORS[shade], label=label)
+    axes[1].set_yticks(at, [one.text for one in places])
+    axes[1].invert_yaxis()
+    axes[1].set_xlabel("part (%)")
+    axes[1].legend()
+    return svg_of(figure)
+
+
+def white_band(count: int) -> tuple[float, float]:
     half = 1.96 / np.sqrt(max(count, 1))
     return -half, half
 

@@ -69,6 +69,10 @@ def command_parts(run: Run, most: int = 8) -> list[tuple[str, np.ndarray]]:
     ]
 
 
+def shortened(name: str, most: int = 48) -> str:
+    return name if len(name) <= most else "..." + name[3 - most :]
+
+
 def level_label(segment: Segment) -> str:
     """The command of a test in words: "0.5 A", or "switched"."""
     level = segment.record.level

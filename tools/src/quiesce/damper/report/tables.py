@@ -5,18 +5,29 @@ import tomllib
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from quiesce.base.table import format_table
+from quiesce.damper.data.folds import AMPLITUDE, CURRENT, MOTION, QUARTERS, STANDS_FOR
 from quiesce.damper.data.split import Segment, levels_of
 from quiesce.damper.fit.intervals import Interval, Whiteness
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
 from quiesce.damper.plain import plain
-from quiesce.damper.ranking import best, ranked
+from quiesce.damper.ranking import best, ranked, sureness
+from quiesce.damper.report.runs import shortened
 from quiesce.damper.score import Score, SegmentScore
+from quiesce.damper.validation import DRAWS, errors_by_kind
 
 Table = tuple[list[str], list[list[str]]]
 
 # A parameter whose 95 % interval is wider than this part of it is hardly known.
 WEAK_PART = 0.5
+HEADS = {
+    CURRENT: "new current %",
+    MOTION: "new motion %",
+    AMPLITUDE: "new amplitude %",
+    QUARTERS: "new rows %",
+}
 
 
 def percent(value: float | None) -> str:
@@ -50,6 +61,68 @@ def ranking_table(fitted: Sequence[Fitted]) -> Table:
         for place, one in enumerate(ranked(fitted), start=1)
     ]
     return head, rows
+
+
+def validation_table(fitted: Sequence[Fitted]) -> Table:
+    """Errors by the kind of new data that they stand for, and in how many of the redrawn
+    validations the first model has the smaller error. Empty where nothing was left out."""
+    order = ranked(fitted)
+    by_kind = [errors_by_kind(one.folds) for one in order]
+    kinds = [kind for kind in STANDS_FOR if any(kind in errors for errors in by_kind)]
+    if not kinds:
+        return [], []
+    rows = [
+        [
+            one.name,
+            *(percent(errors.get(kind)) for kind in kinds),
+            percent(max((fold.error for fold in one.folds), default=None)),
+            percent(one.validation_error),
+            "" if sure is None else f"{100.0 * sure:.0f}",
+        ]
+        for one, errors, sure in zip(order, by_kind, sureness(order), strict=True)
+    ]
+    heads = [HEADS[kind] for kind in kinds]
+    return ["model", *heads, "worst fold %", "validation %", "first before it %"], rows
+
+
+def validation_lines(fitted: Sequence[Fitted]) -> list[str]:
+    """What was left out, for which new data each error stands, and how sure the first place is."""
+    first = ranked(fitted)[0]
+    left_out: dict[str, list[str]] = {}
+    for one in first.folds:
+        left_out.setdefault(one.kind, []).append(one.left_out)
+    lines = [
+        f"{HEADS[kind]}: stands for {STANDS_FOR[kind]}; left out in turn: {', '.join(names)}"
+        for kind, names in left_out.items()
+    ]
+    if set(left_out) == {QUARTERS}:
+        lines.append(
+            "nothing whole could be left out: for another current, motion or amplitude no error "
+            "here stands; record several (quiesce identify plan)"
+        )
+    sure = sureness(ranked(fitted))
+    if len(sure) > 1 and sure[1] is not None:
+        lines.append(
+            f"{first.name} comes before {ranked(fitted)[1].name} in {100.0 * sure[1]:.0f} % of "
+            f"{DRAWS} validations redrawn from the same rows"
+        )
+    return lines
+
+
+def band_lines(fitted: Sequence[Fitted]) -> list[str]:
+    """The first model's band in words."""
+    first = ranked(fitted)[0]
+    if first.band is None or not math.isfinite(first.band.part):
+        return []
+    high_N = first.band.scale_N
+    widths = first.band.half_width_N(np.array([0.1 * high_N, high_N]))
+    line = (
+        f"95 % of the rows that {first.name} had not seen lie within {widths[1]:.3g} N of it where "
+        f"the force reaches {high_N:.3g} N, within {widths[0]:.3g} N where it reaches "
+        f"{0.1 * high_N:.3g} N"
+    )
+    held = "" if first.coverage is None else f"; of the held-out rows {100 * first.coverage:.0f} %"
+    return [line + held]
 
 
 def winner_table(fitted: Sequence[Fitted]) -> Table:
@@ -107,10 +180,6 @@ def segment_table(fitted: Fitted) -> Table:
     return ["test", "part", "command", "rows", "error %", "largest error N"], rows
 
 
-def shortened(name: str, most: int = 48) -> str:
-    return name if len(name) <= most else "..." + name[3 - most :]
-
-
 def whiteness_text(found: Whiteness | None) -> str:
     if found is None:
         return "the model diverges: there is no residual to judge"
@@ -147,13 +216,19 @@ def text_report(
     test: Sequence[Segment],
     notes: Sequence[str],
     white: Whiteness | None = None,
+    where: Sequence[str] = (),
 ) -> str:
-    """For the terminal. white: of the first model's residual, where it is known."""
+    """For the terminal. white: of the first model's residual, where it is known; where: in words
+    where its error is made."""
     parts = [*(f"- {note}" for note in notes), *data_lines(train, test), ""]
     if not fitted:
         return "\n".join([*parts, "no model was fitted"])
     parts.append("errors are ||F - F_model|| / ||F||, the model running free")
     parts.append(format_table(*ranking_table(fitted), left=(1, 2, 7, 9)))
+    head, rows = validation_table(fitted)
+    if head:
+        parts += ["", format_table(head, rows, left=(0,))]
+        parts += [f"- {line}" for line in [*validation_lines(fitted), *band_lines(fitted)]]
     parts += ["", format_table(*winner_table(fitted), left=(0, 1))]
     first = ranked(fitted)[0]
     if first.intervals:
@@ -161,6 +236,7 @@ def text_report(
         parts.append(format_table(*parameter_table(first), left=(0, 3, 4)))
     if white is not None:
         parts += ["", whiteness_text(white)]
+    parts += [f"- {text}" for text in where]
     remarks = [f"- {one.name}: {note}" for one in ranked(fitted) for note in one.notes]
     return "\n".join([*parts, *(["", *remarks] if remarks else [])])
 
@@ -172,12 +248,18 @@ def json_report(
     notes: Sequence[str],
     context: dict[str, Any],
     white: Whiteness | None = None,
+    where: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Everything, in SI units; what is not finite is null."""
     report = {
         "data": {"notes": list(notes), "train": extents(train), "test": extents(test)},
         "winners": {what: one.name for what, one in winners(fitted).items()},
-        "models": [json_model(one) for one in ranked(fitted)],
+        "models": [
+            {**json_model(one), "share_first_before": sure}
+            for one, sure in zip(ranked(fitted), sureness(ranked(fitted)), strict=True)
+        ],
+        "validation": validation_lines(fitted) if fitted else [],
+        "where": list(where),
         "whiteness": whiteness_json(white),
         "context": context,
     }
@@ -208,6 +290,15 @@ def json_model(one: Fitted) -> dict[str, Any]:
         "title": one.title,
         "kind": one.kind,
         "validation_error": one.validation_error,
+        "validation": {
+            "by_kind": errors_by_kind(one.folds),
+            "folds": [
+                {"kind": fold.kind, "left_out": fold.left_out, "error": fold.error}
+                for fold in one.folds
+            ],
+        },
+        "band_95": vars(one.band) if one.band else None,
+        "coverage": one.coverage,
         "train": json_score(one.train),
         "test": json_score(one.test) if one.test else None,
         "parameter_count": one.parameter_count,
