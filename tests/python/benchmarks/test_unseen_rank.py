@@ -1,0 +1,94 @@
+"""Cases of `./tools/benchmark unseen --part rank`, its regret, and what it says without data."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quiesce.base.errors import BenchFailure
+from quiesce.damper.candidates import Choice
+from quiesce.damper.data.folds import CURRENT, MOTION, Fold
+from quiesce.damper.data.record import Record
+from quiesce.damper.identify import identify
+from quiesce.damper.task import Plan
+from quiesce_benchmarks.part import Effort
+from quiesce_benchmarks.unseen.cases import Case, cases_of
+from quiesce_benchmarks.unseen.parts import rank, speed
+
+
+def sine(current_A: float, freq_Hz: float, size_m: float) -> Record:
+    time_s = np.arange(400) / 100.0
+    omega = 2.0 * np.pi * freq_Hz
+    disp_m, velocity_m_s = size_m * np.sin(omega * time_s), size_m * omega * np.cos(omega * time_s)
+    command = np.full(400, current_A)
+    return Record(
+        "made",
+        100.0,
+        time_s,
+        disp_m,
+        velocity_m_s,
+        -(omega**2) * disp_m,
+        velocity_m_s,
+        command,
+        "A",
+    )
+
+
+MADE = [sine(level, *motion) for motion in ((1.0, 8e-3), (3.0, 2e-3)) for level in (0, 0.5, 1, 2)]
+
+
+def test_each_inner_current_and_each_motion_is_a_case() -> None:
+    found = list(cases_of("made", MADE))
+    assert [one.name for one in found] == [
+        f"made without {text}" for text in ("0.5 A", "1 A", "2 mm at 3 Hz", "8 mm at 1 Hz")
+    ]
+    assert len(list(cases_of("made", MADE, 1))) == 2
+    assert not list(cases_of("made", MADE[:1]))
+
+
+def test_a_case_is_fitted_without_its_held_out_test_and_judged_on_it(build) -> None:
+    """Two viscous models of a viscous damper: whichever is chosen, little is lost."""
+    case = next(iter(cases_of("made", MADE)))
+    plan = Plan(["bingham", "nonlinear_biviscous"], Choice(rig=()), quick=True, jobs=1)
+    fitted = identify(case.held.fit, case.held.validation, plan)
+    found = rank.judged(case, fitted)
+    assert {found.chosen, found.best} <= {"bingham", "nonlinear_biviscous"}
+    assert found.best_error <= found.chosen_error < 0.05 and found.regret_pct >= 0.0
+    assert 0.0 <= found.coverage <= 1.0
+
+
+def case_of(kind: str) -> Case:
+    return Case("made", Fold(kind, kind, [], []))
+
+
+def test_regret_is_over_the_best_on_the_held_out_test() -> None:
+    same = rank.Judged(case_of(CURRENT), "a", "a", 0.1, 0.1, 0.96)
+    far = replace(same, case=case_of(MOTION), best="b", best_error=0.08, coverage=1.0)
+    found = rank.measured([same, far])
+    assert found.values["rank_regret_mean_pct"] == pytest.approx(12.5)
+    assert found.values["rank_regret_worst_pct"] == pytest.approx(25.0)
+    assert found.values["interval_coverage_pct"] == pytest.approx(98.0)
+    assert found.values["interval_coverage_over_99_pct"] == 0.0
+    assert "made without motion" in found.tables[0]
+
+
+def test_bands_that_hold_everything_are_too_wide() -> None:
+    wide = rank.Judged(case_of(CURRENT), "a", "a", 0.1, 0.1, 1.0)
+    assert rank.measured([wide]).values["interval_coverage_over_99_pct"] == pytest.approx(1.0)
+    without = rank.measured([replace(wide, coverage=None)]).values
+    assert without["interval_coverage_pct"] is without["interval_coverage_over_99_pct"] is None
+
+
+def test_without_measurements_it_says_where_they_should_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rank, "data_folder", lambda: None)
+    with pytest.raises(BenchFailure, match="no measurements at"):
+        rank.measure(Effort(1, True, tmp_path))
+
+
+def test_command_that_fails_is_told_with_its_last_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(speed.sys, "path", sys.path)
+    with pytest.raises(BenchFailure, match="no model 'nothing'"):
+        speed.took(["identify", "none.csv", "--model", "nothing"])
