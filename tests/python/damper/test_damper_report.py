@@ -267,7 +267,7 @@ def test_half_a_second_that_makes_the_error_is_told() -> None:
     (text, *_) = sentences([replace(run, model_N=broken)])
     assert "half of the squared error of rig <0.5 A>.csv is made from 7." in text
     course = course_of(replace(run, model_N=broken))
-    assert course.error[-1] > 10.0 * course.error[0] and len(course.time_s) == 40
+    assert course.error[-1] > 10.0 * course.error[0] and 4 <= len(course.time_s) <= 40
 
 
 def test_parts_of_rows_and_error_are_told_by_speed_way_and_command() -> None:

@@ -9,9 +9,9 @@ from quiesce.damper import library
 from quiesce.damper.data.split import whole
 from quiesce.damper.fit.problem import Problem
 from quiesce.damper.fit.projected import Projected
-from quiesce.damper.fit.search import Effort
+from quiesce.damper.fit.search import Effort, agree
 from quiesce.damper.fit.setting import Setting
-from quiesce.damper.fit.small import agree, fit_small
+from quiesce.damper.fit.small import fit_small
 from quiesce_benchmarks.damper import bw7, speed
 from quiesce_benchmarks.damper.synthetic import force_of, record_of, row_of, with_force
 

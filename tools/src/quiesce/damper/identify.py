@@ -4,6 +4,8 @@ import threading
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
+from threadpoolctl import threadpool_limits
+
 from quiesce.damper.candidates import GREY_BOX, NETWORK, Candidate, parametric_candidates
 from quiesce.damper.data.folds import MOST, MOST_QUICK, folds_of
 from quiesce.damper.data.split import Segment
@@ -35,7 +37,6 @@ def identify(
     folds = folds_of(own, MOST_QUICK if is_short else MOST)
     parts = Parts(own, list(test), folds, Scales.of(own))
     results = {one.name: one for one in done}
-    by_fold: dict[str, list[DamperModel]] = {}
     lock = threading.Lock()
 
     def keep(one: Fitted) -> None:
@@ -44,6 +45,24 @@ def identify(
             told(one)
 
     chains, grey = chains_of([name for name in plan.names if name not in results])
+    # Chains fill the cores; linear algebra with threads of its own only waits for them, and its
+    # sums would depend on their number.
+    with threadpool_limits(1):
+        run_all(chains, grey, results, parts, plan, keep, say)
+    return [results[name] for name in [*plan.names] if name in results]
+
+
+def run_all(
+    chains: Sequence[Sequence[Candidate | str]],
+    grey: bool,
+    results: dict[str, Fitted],
+    parts: Parts,
+    plan: Plan,
+    keep: Told,
+    say: Say,
+) -> None:
+    """All chains, `plan.jobs` at a time, then the grey box where there is one."""
+    by_fold: dict[str, list[DamperModel]] = {}
     with ThreadPoolExecutor(plan.jobs) as pool:
         futures = [
             pool.submit(run_chain, chain, parts, plan, by_fold, keep, say) for chain in chains
@@ -58,7 +77,6 @@ def identify(
             raise
     if grey and not plan.stop.is_set():
         run_grey_box(list(results.values()), parts, plan, by_fold, keep, say)
-    return [results[name] for name in [*plan.names] if name in results]
 
 
 def chains_of(names: Sequence[str]) -> tuple[list[list[Candidate | str]], bool]:

@@ -22,7 +22,7 @@ EPILOG = """also:
   ('quiesce tune law --help' has its options)
 
 examples:
-  quiesce tune my_plant.toml --quick            a first look, under a minute
+  quiesce tune my_plant.toml --quick            a first look: 7 frequencies
   quiesce tune my_plant.toml --out my_law       all of it: minutes, can be interrupted
   quiesce tune --from-sweep recording.csv       identify the plant first, then tune for it
   quiesce tune my_plant.toml --weights balanced=1,2,0.1

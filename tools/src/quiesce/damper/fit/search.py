@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +10,9 @@ from scipy.optimize import differential_evolution, least_squares
 from scipy.stats import qmc
 
 from quiesce.damper.fit.problem import SEARCH_SUBSTEPS, Problem
+
+# Ends whose errors are this close agree.
+_AGREEMENT = 1.001
 
 Progress = Callable[[str, float], None]  # what is being done, error so far
 
@@ -104,7 +107,7 @@ def fit(
             candidates = clock.best[None, :] if clock.best is not None else np.empty((0, 0))
         else:
             candidates = search(problem, seed, effort, clock, starts)
-        errors = polish_all(problem, candidates, effort, clock)
+        errors = polish_all(problem, candidates, effort, clock, is_agreement_enough=True)
     except KeyboardInterrupt:
         clock.was_stopped = True
     return clock.result(errors)
@@ -166,16 +169,28 @@ def spread(parts: np.ndarray, count: int, apart: float = 0.05) -> np.ndarray:
 
 
 def polish_all(
-    problem: Problem, candidates: np.ndarray, effort: Effort, clock: Clock
+    problem: Problem,
+    candidates: np.ndarray,
+    effort: Effort,
+    clock: Clock,
+    is_agreement_enough: bool = False,
 ) -> list[float]:
-    errors = []
+    """Errors of the ends, rising. is_agreement_enough: end where the two best ends agree; what a
+    search came to by two ways needs no third."""
+    errors: list[float] = []
     for k, values in enumerate(candidates):
-        if clock.is_over():
+        if clock.is_over() or (is_agreement_enough and agree(errors)):
             break
         polished, error = polish(problem, values, effort.polish_evaluations, clock.is_over)
         errors.append(error)
         clock.offer(polished[None, :], np.array([error]), f"polishing {k + 1}/{len(candidates)}")
     return sorted(errors)
+
+
+def agree(ends: Sequence[float]) -> bool:
+    """Whether the two best ends have one error."""
+    best = sorted(ends)[:2]
+    return len(best) == 2 and best[1] <= _AGREEMENT * best[0]
 
 
 class _TimeIsUp(Exception):

@@ -12,13 +12,11 @@ import numpy as np
 from quiesce.damper.fit.intervals import whiteness
 from quiesce.damper.fit.problem import SEARCH_SUBSTEPS, Problem
 from quiesce.damper.fit.projected import Projected
-from quiesce.damper.fit.search import EFFORT, Clock, Effort, Fit, Progress, fit, sobol
+from quiesce.damper.fit.search import EFFORT, Clock, Effort, Fit, Progress, agree, fit, sobol
 
 STARTS = 8
 # Starts that least squares go on from, one after the other.
 TRIED = 3
-# Ends whose errors are this close agree.
-_AGREEMENT = 1.001
 # A residual this small is nothing but integration error.
 EXPLAINED = 5e-4
 _STEP = 1e-5  # of derivatives, in search coordinates
@@ -57,7 +55,7 @@ def fit_small(
                 return fit(problem, seed, effort, progress)
             ends.append(error)
             clock.offer(values[None, :], np.array([error]), f"start {len(ends)}")
-            if is_white or error <= EXPLAINED or (len(ends) > 1 and agree(ends)):
+            if is_white or error <= EXPLAINED or agree(ends):
                 return clock.result(sorted(ends))
         if not clock.is_over():
             found = fit(problem, seed, effort, progress, starts=np.array([clock.best]))
@@ -66,12 +64,6 @@ def fit_small(
     except KeyboardInterrupt:
         clock.was_stopped = True
     return clock.result(sorted(ends))
-
-
-def agree(ends: list[float]) -> bool:
-    """Whether the two best ends have one error."""
-    first, second = sorted(ends)[:2]
-    return second <= _AGREEMENT * first
 
 
 def descend(

@@ -139,14 +139,14 @@ def plot_where(runs: Sequence[Run]) -> str:
     shown = shown_part(runs)
     courses = [course_of(run) for run in sorted(shown, key=lambda one: -one.error)[:_COURSES]]
     places = places_of(shown)
-    height = max(3.0, 0.32 * len(places))
+    height = max(3.0 + 0.2 * len(courses), 0.32 * len(places))
     figure, axes = plt.subplots(1, 2, figsize=(9.5, height))
     for course, shade in zip(courses, _SHADES, strict=False):
-        time_s = course.time_s - course.time_s[0]
-        axes[0].plot(time_s, 100.0 * course.error, color=COLORS[shade], lw=1.1, label=course.label)
+        error_pct = 100.0 * course.error
+        axes[0].plot(course.time_s, error_pct, color=COLORS[shade], lw=1.1, label=course.label)
     axes[0].set(xlabel="time in the test (s)", ylabel="error (% of its force)", ylim=(0.0, None))
     axes[0].set_title("tests with the largest errors" if len(shown) > _COURSES else "every test")
-    axes[0].legend()
+    axes[0].legend(loc="upper left", bbox_to_anchor=(0.0, -0.18), borderaxespad=0.0)
     at = np.arange(len(places))
     for offset, values, shade, label in (
         (-0.2, [one.rows for one in places], "muted", "of the rows"),

@@ -8,8 +8,8 @@ import numpy as np
 from quiesce.damper.data.channels import cycles_of
 from quiesce.damper.report.runs import Run, command_parts, shortened
 
-# Windows that a test is looked at in.
-WINDOWS = 40
+# Windows that a test is looked at in: no shorter than a cycle, which errs in its own way.
+_WINDOWS = (4, 40)
 # Speeds, as parts of a test's largest.
 _SPEEDS = ((0.0, 0.1), (0.1, 0.3), (0.3, 0.6), (0.6, 1.01))
 # A stretch is told where it has half of the squared error in at most this part of the time.
@@ -31,23 +31,26 @@ class Place:
 
 @dataclass(frozen=True)
 class Course:
-    """One test: windows' middles in s, and each one's root mean square error as a part of the
-    test's root mean square force, [windows]."""
+    """One test: windows' middles in s from its start, and each one's root mean square error as a
+    part of the test's root mean square force, [windows]."""
 
     label: str
     time_s: np.ndarray
     error: np.ndarray
 
 
-def course_of(run: Run, windows: int = WINDOWS) -> Course:
-    count = max(1, min(windows, len(run.model_N) // 4))
+def course_of(run: Run) -> Course:
+    cycle = cycles_of(run.segment.record.disp_m[run.segment.rows])
+    cycles = _WINDOWS[1] if cycle is None else int(len(run.model_N) / float(np.median(cycle)))
+    count = max(1, min(int(np.clip(cycles, *_WINDOWS)), len(run.model_N) // 4))
     parts = np.array_split(np.arange(len(run.model_N)), count)
     size = float(np.sqrt(np.mean(run.measured_N**2)))
     errors = [float(np.sqrt(np.mean(run.residual_N[rows] ** 2))) for rows in parts]
-    middles = [float(np.mean(run.time_s[rows])) for rows in parts]
-    name = shortened(run.segment.record.name)
-    label = name if run.label in name else f"{name}, {run.label}"
-    return Course(label, np.array(middles), np.array(errors) / max(size, 1e-300))
+    middles = [float(np.mean(run.time_s[rows]) - run.time_s[0]) for rows in parts]
+    # The columns that tell tests of one file apart, where there are any.
+    file, _, own = run.segment.record.name.partition(" ")
+    label = own or f"{file.rsplit('/', 1)[-1]}, {run.label}"
+    return Course(shortened(label), np.array(middles), np.array(errors) / max(size, 1e-300))
 
 
 def places_of(runs: Sequence[Run]) -> list[Place]:
