@@ -6,6 +6,7 @@
 
 #include "accel_estimate.h"
 #include "elastomer.h"
+#include "input_error.h"
 #include "kernel_models.h"
 #include "learned_section.h"
 #include "squeeze_biviscosity.h"
@@ -233,6 +234,16 @@ void read_own(TomlTable &section, DamperChoice &choice) {
     }
 }
 
+/// What is wrong in a damper's file stands behind the section that names it: a plant has several.
+DamperChoice load_named(TomlTable &section) {
+    const std::string file = section.path("file");
+    try {
+        return load_damper(file);
+    } catch (const InputError &error) {
+        section.fail("file", error.what());
+    }
+}
+
 } // namespace
 
 std::shared_ptr<const Damper> read_damper_model(TomlTable &section) {
@@ -251,7 +262,7 @@ CoilParams read_coil(TomlTable section) {
 DamperChoice read_damper(TomlTable section) {
     DamperChoice choice;
     if (section.has("file")) {
-        choice = load_damper(section.path("file"));
+        choice = load_named(section);
         check_for_plant(section, choice);
     } else {
         read_own(section, choice);

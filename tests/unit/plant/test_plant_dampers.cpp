@@ -188,15 +188,16 @@ const Mistake kMistakes[] = {
 INSTANTIATE_TEST_SUITE_P(PlantFile, DamperMistakes, testing::ValuesIn(kMistakes),
                          [](const auto &test) { return std::string(test.param.name); });
 
-/// One line that begins with this file's name.
+/// One line: the plant's section, then this file's name and what is wrong in it.
 void expect_named(const std::string &plant, const std::string &file, const std::string &words) {
     try {
         loaded(plant);
         FAIL() << "accepted; expected a message with: " << words;
     } catch (const InputError &error) {
         const std::string message = error.what();
-        EXPECT_NE(message.find(std::filesystem::path(file).filename().string()), std::string::npos)
-            << message;
+        const std::size_t named = message.find(std::filesystem::path(file).filename().string());
+        EXPECT_NE(named, std::string::npos) << message;
+        EXPECT_LT(message.find("damper.file: "), named) << message;
         EXPECT_NE(message.find(words), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << "one line: " << message;
     }
