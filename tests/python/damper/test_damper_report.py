@@ -33,6 +33,7 @@ from quiesce.damper.report.runs import (
     whiteness_of,
 )
 from quiesce.damper.report.tables import (
+    band_lines,
     json_report,
     percent,
     ranking_table,
@@ -205,6 +206,12 @@ def test_report_says_for_which_new_data_errors_stand(validated_models, segments)
         MOTION: pytest.approx(0.2),
     }
     assert first["band_95"] == {"part": 0.1, "power": 1.0, "scale_N": 500.0}
+
+
+def test_flat_band_is_told_in_one_width(validated_models) -> None:
+    flat = replace(validated_models[1], band=Band(0.02, 0.0, 500.0), coverage=None)
+    assert band_lines([flat]) == ["95 % of the rows that better had not seen lie within 10 N of it"]
+    assert band_lines([replace(flat, band=None)]) == []
 
 
 def test_quarters_stand_for_no_new_current_and_the_report_says_so(segments) -> None:

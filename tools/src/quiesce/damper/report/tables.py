@@ -22,6 +22,8 @@ Table = tuple[list[str], list[list[str]]]
 
 # A parameter whose 95 % interval is wider than this part of it is hardly known.
 WEAK_PART = 0.5
+# A band that is this wide and wider at a tenth of the force, as a part, is the same everywhere.
+_FLAT_BAND = 0.95
 HEADS = {
     CURRENT: "new current %",
     MOTION: "new motion %",
@@ -116,11 +118,12 @@ def band_lines(fitted: Sequence[Fitted]) -> list[str]:
         return []
     high_N = first.band.scale_N
     widths = first.band.half_width_N(np.array([0.1 * high_N, high_N]))
-    line = (
-        f"95 % of the rows that {first.name} had not seen lie within {widths[1]:.3g} N of it where "
-        f"the force reaches {high_N:.3g} N, within {widths[0]:.3g} N where it reaches "
-        f"{0.1 * high_N:.3g} N"
-    )
+    line = f"95 % of the rows that {first.name} had not seen lie within {widths[1]:.3g} N of it"
+    if widths[0] < _FLAT_BAND * widths[1]:
+        line += (
+            f" where the force reaches {high_N:.3g} N, within {widths[0]:.3g} N where it reaches "
+            f"{0.1 * high_N:.3g} N"
+        )
     held = "" if first.coverage is None else f"; of the held-out rows {100 * first.coverage:.0f} %"
     return [line + held]
 
