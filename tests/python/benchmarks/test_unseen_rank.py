@@ -13,7 +13,8 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.identify import identify
 from quiesce.damper.task import Plan
 from quiesce_benchmarks.part import Effort
-from quiesce_benchmarks.unseen.cases import Case, cases_of
+from quiesce_benchmarks.unseen.cases import DAMPERS, QUICK, Case, cases_of
+from quiesce_benchmarks.unseen.measured import entries
 from quiesce_benchmarks.unseen.parts import rank, speed
 
 
@@ -60,6 +61,12 @@ def test_a_case_is_fitted_without_its_held_out_test_and_judged_on_it(build) -> N
 
 def case_of(kind: str) -> Case:
     return Case("made", Fold(kind, kind, [], []))
+
+
+def test_every_damper_of_the_cases_is_a_file_that_is_read() -> None:
+    names = {one["name"] for one in entries()}
+    assert set(QUICK) <= set(DAMPERS)
+    assert {name for files in DAMPERS.values() for name in files} <= names
 
 
 def test_regret_is_over_the_best_on_the_held_out_test() -> None:

@@ -15,8 +15,8 @@ and as whoever exported it may have filtered and thinned them: are they told, an
 files left alone? Masses and skews planted into the rig of dampers that are known: are they found,
 and is nothing found where nothing is? Whole currents, motions and amplitudes of measured dampers
 left out: how far is the chosen model from the best one there, and does the 95 % band hold? How long
-does a user wait? All models on all cases are hours; --quick takes the default models, one case of a
-kind of each damper."""
+does a user wait? All models on all cases are hours; --quick takes the default models, and one case
+of a kind of one damper."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

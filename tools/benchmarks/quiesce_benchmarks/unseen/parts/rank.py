@@ -23,11 +23,12 @@ from quiesce_benchmarks.unseen.cases import Case, all_cases
 TITLE = "ranking and bands on whole currents, motions and amplitudes left out"
 # Of bands both too narrow and too wide are misses.
 MOST_COVERED_pct = 99.0
+# Judged, and no check fails by them before all cases were run once with all models.
 FIGURES = (
-    ("rank_regret_mean_pct", "%", 10.0, "lower"),
-    ("rank_regret_worst_pct", "%", 30.0, "lower"),
-    ("interval_coverage_pct", "%", 90.0, "higher"),
-    ("interval_coverage_over_99_pct", "%", 0.0, "lower"),
+    ("rank_regret_mean_pct", "%", 10.0, "lower", False),
+    ("rank_regret_worst_pct", "%", 30.0, "lower", False),
+    ("interval_coverage_pct", "%", 90.0, "higher", False),
+    ("interval_coverage_over_99_pct", "%", 0.0, "lower", False),
 )
 # A model's time where nothing is to be cut short.
 _ENDLESS_s = 1e6
