@@ -38,6 +38,9 @@ _WHOLE_PART = 0.7
 # Least squares of a refit that leaves a fold out, from the fit to everything.
 _REFIT_EVALUATIONS, _REFIT_EVALUATIONS_QUICK = 15, 8
 _REFIT_TOLERANCE = 1e-6
+# By this part less error a fit to a part of the rows shows that the one to everything had not
+# ended.
+_BETTER = 1e-3
 # Least squares with which mass and skew are tried.
 _TRIED_EVALUATIONS = 20
 
@@ -65,7 +68,7 @@ def fit_candidate(
     simulates = [simulate_values(own, one.values) for own, one in refits]
     checked = validated(simulates, parts.folds)
     is_complete = found.is_complete and all(one.is_complete for _, one in refits)
-    found = replace(found, is_complete=is_complete)
+    found = replace(fit.gone_on_from(refits, (problem, found)), is_complete=is_complete)
     seconds = monotonic() - start_s
     fitted = judged(candidate, problem, found, checked, parts, plan, seconds, notes)
     dampers = [damper_of(candidate, *one, parts, plan) for one in refits]
@@ -178,6 +181,31 @@ class RigFit:
         values, error = polish(problem, start, most, self.is_over)
         seconds = monotonic() - self.start_s
         return problem, Fit(values, error, problem.evaluations, seconds, not self.is_over())
+
+    def gone_on_from(
+        self, refits: Sequence[tuple[Problem, Fit]], whole: tuple[Problem, Fit]
+    ) -> Fit:
+        """The fit to everything, or where one to a part of it has led to a better one, least
+        squares from there."""
+        problem, found = whole
+        if self.plan.choice.method != "default" or not refits:
+            return found
+        known = found.values[None, :]
+        starts = np.concatenate([grow(problem, known, *one) for one in refits])
+        errors = [problem.error(values) for values in starts]
+        best = int(np.argmin(errors))
+        if not errors[best] < (1.0 - _BETTER) * found.error:
+            return found
+
+        def is_over() -> bool:
+            is_late = monotonic() - self.start_s > self.plan.seconds
+            return self.plan.stop.is_set() or is_late
+
+        most = effort_of(self.plan, self.seconds).polish_evaluations
+        values, error = polish(problem, starts[best], most, is_over)
+        if not error < found.error:
+            return found
+        return replace(found, values=values, error=error)
 
     def fitted(
         self, setting: Setting, known: Sequence[tuple[Problem, Fit] | None]
