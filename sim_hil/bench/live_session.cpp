@@ -14,6 +14,7 @@ namespace quiesce {
 namespace {
 
 constexpr Range kDrive = {0.0, 1e6, "V"};
+constexpr Range kGravity = {-1.0, 1.0, "g"};
 
 Json rms_json(const std::optional<VibrationRms> &rms) {
     return rms ? Json({{"displacement_um", 1e6 * rms->displacement_m},
@@ -35,6 +36,7 @@ Scenario only(const Scenario &like, const SegmentSpec &segment) {
 struct LiveSession::Order {
     std::optional<bool> control;
     std::optional<double> drive_V;
+    std::optional<double> gravity_g;
     std::optional<SegmentSpec> excite;
     std::optional<PlacedFault> fault;
     bool clears_faults = false;
@@ -96,7 +98,7 @@ LiveSession::Order LiveSession::order_of(const std::string &line) {
     TomlTable everything = toml.root();
     TomlTable root = everything.table("order");
     everything.reject_unknown_keys();
-    for (const char *key : {"control", "drive_V", "excite", "fault", "clear_faults"}) {
+    for (const char *key : {"control", "drive_V", "gravity_g", "excite", "fault", "clear_faults"}) {
         root.accept(key);
     }
     root.reject_unknown_keys();
@@ -106,6 +108,9 @@ LiveSession::Order LiveSession::order_of(const std::string &line) {
     }
     if (root.has("drive_V")) {
         order.drive_V = root.number("drive_V", kDrive);
+    }
+    if (root.has("gravity_g")) {
+        order.gravity_g = root.number("gravity_g", kGravity);
     }
     if (std::optional<TomlTable> table = root.optional_table("excite")) {
         order.excite = read_segment(*table, true);
@@ -136,6 +141,9 @@ void LiveSession::obey(const std::string &line) {
     }
     if (order.drive_V) {
         setup_.plant.shaker.drive_V = *order.drive_V;
+    }
+    if (order.gravity_g) {
+        loop_->lie(kGravity_m_s2 * *order.gravity_g);
     }
     if (order.excite || order.drive_V) {
         play(order.excite ? *order.excite : setup_.scenario.segments.back());

@@ -37,6 +37,9 @@ class Loop {
     void enable(bool is_on) { is_enabled_ = is_on; }
     bool is_enabled() const { return is_enabled_; }
 
+    /// Gravity along the axes of the accelerometers, which somebody turns over.
+    void lie(double gravity_m_s2) { senses_.lie(gravity_m_s2); }
+
     FaultInjector &faults() { return injector_; }
 
   private:

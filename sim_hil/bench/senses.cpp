@@ -57,7 +57,7 @@ double BoardSensor::measure(const Plant &plant, std::size_t source) const {
 
 /// After what the sensor does to it.
 double BoardSensor::shown(const Plant &plant) {
-    const double value = measure(plant, source_);
+    const double value = measure(plant, source_) + gravity_;
     if (!dynamics_) {
         return value;
     }
@@ -88,6 +88,10 @@ bool BoardSensor::sample(const Plant &plant, std::int64_t tick, std::int32_t &co
     return true;
 }
 
+void BoardSensor::lie(double gravity_m_s2) {
+    gravity_ = spec_.sense == QUIESCE_SENSE_ACCEL ? 1e6 * gravity_m_s2 : 0.0;
+}
+
 void BoardSensor::visit_state(StateArchive &archive) {
     if (dynamics_) {
         dynamics_->visit_state(archive);
@@ -113,12 +117,19 @@ Senses::Senses(const PlantModel &plant, const Rig *rig, std::int32_t tick_rate_H
 }
 
 double Senses::own_accel_m_s2(const Plant &plant) {
-    const double accel_m_s2 = plant.truth().accel_m_s2;
+    const double accel_m_s2 = plant.truth().accel_m_s2 + gravity_m_s2_;
     if (!transducer_) {
         return accel_m_s2;
     }
     const double other_um_s2 = other_ ? 1e6 * plant.place(*other_).accel_m_s2 : 0.0;
     return 1e-6 * transducer_->step(1e6 * accel_m_s2, other_um_s2, plant.damper(0).coil_A);
+}
+
+void Senses::lie(double gravity_m_s2) {
+    gravity_m_s2_ = gravity_m_s2;
+    for (BoardSensor &sensor : sensors_) {
+        sensor.lie(gravity_m_s2);
+    }
 }
 
 void Senses::read(const Plant &plant, std::int64_t tick, lockstep_stimulus_t &out) {

@@ -26,6 +26,9 @@ class BoardSensor {
 
     std::int32_t full_scale_counts() const { return spec_.full_scale_counts; }
 
+    /// Gravity along its axis, where it is an accelerometer.
+    void lie(double gravity_m_s2);
+
     /// What changes while it runs (state_archive.h).
     void visit_state(StateArchive &archive);
 
@@ -38,6 +41,7 @@ class BoardSensor {
     std::size_t source_; ///< place or damper of the plant
     double noise_counts_;
     std::int64_t tick_rate_Hz_;
+    double gravity_ = 0.0;                   ///< in the unit of the board
     std::optional<SensorDynamics> dynamics_; ///< none: it is ideal
     std::size_t other_;                      ///< place or damper that it sees, too
     DelayLine<double> latency_;
@@ -52,6 +56,10 @@ class Senses {
     /// Writes counts and flags of fresh samples.
     void read(const Plant &plant, std::int64_t tick, lockstep_stimulus_t &out);
 
+    /// What every accelerometer reads of gravity along its axis from now on: at first 0, +-g where
+    /// somebody has turned it over.
+    void lie(double gravity_m_s2);
+
     /// Of each sensor.
     std::vector<std::int32_t> full_scales() const;
 
@@ -61,6 +69,7 @@ class Senses {
   private:
     double own_accel_m_s2(const Plant &plant);
 
+    double gravity_m_s2_ = 0.0;
     Accelerometer own_;
     std::optional<SensorDynamics> transducer_; ///< of the plant's own; none: it is ideal
     std::optional<std::size_t> other_;         ///< place that it sees, too

@@ -193,5 +193,38 @@ TEST(Live, vibration_is_compared_with_and_without_control_under_one_excitation) 
     EXPECT_EQ(rig.state("vibration").at("off").dump(), "null");
 }
 
+/// What the plant's own accelerometer reads at rest, in counts.
+std::int32_t counts_at_rest(double gravity_m_s2) {
+    RunSetup setup = setup_of_file(kSine10);
+    setup.plant.shaker.drive_V = 0.0;
+    setup.plant.sensor.noise_mg = 0.0;
+    setup.plant.sensor.offset_counts = 300;
+    const Excitation excitation = make_excitation(setup.scenario, setup.plant.shaker);
+    const Plant plant(setup.plant, excitation, setup.params.tick_rate_Hz);
+    Senses senses(setup.plant, nullptr, setup.params.tick_rate_Hz, setup.seed);
+    senses.lie(gravity_m_s2);
+    lockstep_stimulus_t stimulus{};
+    senses.read(plant, 0, stimulus);
+    return stimulus.counts[0];
+}
+
+TEST(Live, an_accelerometer_that_is_turned_over_reads_gravity) {
+    const RunSetup setup = setup_of_file(kSine10);
+    const double g_counts = (1 << (setup.plant.sensor.bits - 1)) / setup.plant.sensor.full_scale_g;
+    EXPECT_EQ(counts_at_rest(0.0), 300);
+    EXPECT_NEAR(counts_at_rest(kGravity_m_s2), 300 + g_counts, 1.0);
+    EXPECT_NEAR(counts_at_rest(-kGravity_m_s2), 300 - g_counts, 1.0);
+}
+
+TEST(Live, gravity_is_no_motion_of_the_rig) {
+    LiveRig rig;
+    rig.run(3000);
+    const double before_um = um(rig.state("vibration").at("now"));
+    rig.session.obey("gravity_g = -1");
+    rig.run(10);
+    EXPECT_NEAR(um(rig.state("vibration").at("now")), before_um, 0.01 * before_um);
+    EXPECT_THROW(rig.session.obey("gravity_g = 1.5"), InputError);
+}
+
 } // namespace
 } // namespace quiesce

@@ -13,6 +13,7 @@ from quiesce.can.e2e import JUMPED, OK
 from quiesce.can.link import Link
 from quiesce.can.parameters import settings_of, text_of
 from quiesce.can.services import DONE, TRIES, Services, no_answer
+from quiesce.can.tables import Tables
 from quiesce.can.traffic import Traffic
 from quiesce.engine.params import parameters
 from quiesce.rig.capture import Capture, Series, Trigger, Value
@@ -106,6 +107,27 @@ class Rig:
     def clear_faults(self) -> None:
         """Ends those that were injected; what the controller latched stays."""
         self._ordered(clear_faults=True)
+
+    def turn_over(self, gravity_g: float) -> None:
+        """Every accelerometer reads so much of gravity along its axis from now on, -1 .. 1; at
+        first 0."""
+        self._ordered(gravity_g=gravity_g)
+
+    def stream_raw(self, length_s: int) -> None:
+        """raw_sample/.. comes each tick for so long. BenchFailure where the controller does not do
+        it."""
+        reply = self._services.ask("RAW_STREAM", value=length_s)
+        if reply is None or reply.result != DONE:
+            why = no_answer(self._link) if reply is None else reply.result
+            raise BenchFailure(f"every sample: {why}")
+
+    def tables(self) -> Tables:
+        """Of the controller. What comes while they are asked is no variable's."""
+        return Tables(self._link, self._database)
+
+    def send(self, frame_id: int, data: bytes) -> bool:
+        """A frame of somebody else who is on this bus. Whether the bus took it."""
+        return self._link.send(frame_id, data) is not None
 
     def wait(self, trigger: Trigger, timeout_s: float = 10.0) -> None:
         """Until it is so, or is so already. BenchFailure where it is not in time."""
