@@ -2,16 +2,14 @@
 
 import argparse
 import json
-import time
 from pathlib import Path
 from typing import Any
 
-from quiesce.base.errors import BenchFailure
 from quiesce.base.paths import shown
 from quiesce.can.roads import LEARNT
 from quiesce.cli.can.bus_options import add_bus_options
 from quiesce.cli.can.table_options import add_json, opened, step
-from quiesce.cli.can.table_sources import WORDS, Table, table_of
+from quiesce.loading.sources import WORDS, Table, table_of
 
 EPILOG = """examples:
   quiesce can load rules mine.fis --bus socketcan:can0
@@ -49,64 +47,19 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from quiesce.loading.load import put, save
+
     table = table_of(args.kind, args.file)
     for note in table.notes:
         step(f"{shown(args.file)}: {note}")
     with opened(args) as tables:
-        took_s = put(tables, table, not args.dry_run)
+        took_s = put(tables, table, step, not args.dry_run)
         is_saved = args.save and not args.dry_run
         if is_saved:
             save(tables, table)
     report = report_of(args, table, took_s, is_saved)
     print(json.dumps(report, indent=1) if args.json else text(report))
     return 0
-
-
-def put(tables: Any, table: Table, is_to_be_used: bool = True) -> float:
-    """Sends it, has it checked and used. Returns the seconds that took. BenchFailure, with the
-    checker's reason, where it is refused."""
-    from quiesce.can.refusals import why_refused
-    from quiesce.can.tables import CRC, Refused
-
-    road = table.road
-    in_use = tables.info(road, CRC)  # answered by whoever takes tables
-    step(f"road {road} has {in_use:08x}; sending {table.kind.name} {table.crc:08x}")
-    start_s = time.monotonic()
-    try:
-        tables.send(table.data, table.crc)
-        step("checked: the controller takes it")
-        if is_to_be_used:
-            tables.commit(road, table.crc)
-            verify(tables, table)
-            step("in use")
-    except Refused as error:
-        why = why_refused(tables.services, error.verdict, table.kind)
-        raise BenchFailure(f"refused: {why}; nothing was changed")
-    return time.monotonic() - start_s
-
-
-def verify(tables: Any, table: Table) -> None:
-    """What was learnt changes as it learns on: there is nothing to compare."""
-    from quiesce.can.tables import CRC
-
-    if table.road == LEARNT:
-        return
-    crc = tables.info(table.road, CRC)
-    if crc != table.crc:
-        raise BenchFailure(f"the controller says that it uses {crc:08x}, not {table.crc:08x}")
-
-
-def save(tables: Any, table: Table) -> None:
-    from quiesce.can.tables import STORED
-
-    road = table.road
-    try:
-        tables.save(road)
-        stored = tables.info(road, STORED)
-    except BenchFailure as error:
-        raise BenchFailure(f"in use, but not stored for the next start: {error}")
-    if road != LEARNT and stored != table.crc:
-        raise BenchFailure(f"in use, but what is stored for the next start is {stored:08x}")
 
 
 def report_of(

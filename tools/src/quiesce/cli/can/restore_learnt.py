@@ -6,9 +6,8 @@ from pathlib import Path
 from quiesce.base.errors import BenchFailure
 from quiesce.can.roads import LEARNT
 from quiesce.cli.can.bus_options import add_bus_options
-from quiesce.cli.can.load import put
-from quiesce.cli.can.table_options import opened
-from quiesce.cli.can.table_sources import table_of
+from quiesce.cli.can.table_options import opened, step
+from quiesce.loading.sources import table_of
 
 EPILOG = """examples:
   quiesce can restore-learnt --bus socketcan:can0
@@ -35,11 +34,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> int:
     from quiesce.can.refusals import LEARNT_TEXT
     from quiesce.can.tables import Refused
+    from quiesce.loading.load import put
 
     table = table_of(LEARNT, args.file) if args.file else None
     with opened(args) as tables:
         if table:
-            put(tables, table)
+            put(tables, table, step)
         else:
             try:
                 tables.restore()

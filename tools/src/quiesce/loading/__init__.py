@@ -1,0 +1,1 @@
+"""From a table's file or its source to a controller at work."""
