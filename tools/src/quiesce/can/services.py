@@ -23,6 +23,8 @@ TRIES = 10
 MAX_PARAMETERS = 256  # the index has 8 bits
 # Identification comes once a second; two may be lost.
 IDENTIFIED_S = 3.5
+SILENT_S = 3.5  # a bus on which nothing at all comes for so long has nobody to answer
+MOST_LATE = 4096  # events that had come before the time was over
 VERSION_PARTS = ("major", "minor", "patch")
 
 
@@ -162,6 +164,7 @@ class Services:
         self.next_s = 0.0
         self.on_event = on_event or (lambda _: None)
         self._is_understood = False
+        self._heard = 0  # frames, since the last request
 
     def understand(self) -> None:
         """Waits until the controller identifies itself. UsageError where its messages are of
@@ -186,32 +189,49 @@ class Services:
         reply_s: float = REPLY_S,
         tries: int | None = None,
     ) -> Reply | None:
-        """None where no reply comes. A busy controller is asked again."""
+        """None where no reply comes. A busy controller is asked again; a late answer to an earlier
+        try is one. A try in which nothing came at all does not count while that is not long: then
+        this computer, or what the controller runs on, had no time."""
         if not self._is_understood:
             self.understand()
-        for _ in range(tries or self._tries):
-            reply = self.ask_once(operation, index, value, reply_s)
+        most, counted, asked, heard_s = tries or self._tries, 0, 0, time.monotonic()
+        while True:
+            asked, self._heard = asked + 1, 0
+            reply = self.ask_once(operation, index, value, reply_s, asked)
             if reply is not None and reply.result != BUSY:
                 return reply
-        return reply
+            if self._heard:
+                heard_s = time.monotonic()
+            counted += bool(self._heard)
+            if counted >= most or time.monotonic() - heard_s > SILENT_S:
+                return reply
 
     def ask_once(
-        self, operation: str, index: int = 0, value: int = 0, reply_s: float = REPLY_S
+        self,
+        operation: str,
+        index: int = 0,
+        value: int = 0,
+        reply_s: float = REPLY_S,
+        tries: int = 1,
     ) -> Reply | None:
+        """tries: that have asked just this, with this one; an answer to any of them will do. What
+        has come by the end of the time is looked at, however late that is."""
         self.wait(max(0.0, self.next_s - time.monotonic()))
         now_s = time.monotonic()
         self.next_s = now_s + self._least_s
         self.link.send(self.requests.request_id, self.requests.make(operation, index, value))
-        end_s = now_s + reply_s
-        while (left_s := end_s - time.monotonic()) > 0.0:
-            event = self.link.receive(left_s)
-            if event is None:
-                break
+        end_s, most_late = now_s + reply_s, MOST_LATE
+        while True:
+            left_s = end_s - time.monotonic()
+            event = self.link.receive(max(left_s, 0.0))
+            most_late -= left_s <= 0.0
+            if event is None or most_late < 0:
+                return None
             self.take(event)
-            reply = self.requests.reply_in(event) if hasattr(event, "arbitration_id") else None
-            if reply is not None:
-                return reply
-        return None
+            if hasattr(event, "arbitration_id"):
+                reply = self.requests.reply_in(event, min(tries, ALIVE_PERIOD - 1))
+                if reply is not None:
+                    return reply
 
     def read_all(self) -> list[int]:
         """Values in index order. BenchFailure where nobody answers."""
@@ -252,6 +272,7 @@ class Services:
 
     def take(self, event: Any) -> None:
         if hasattr(event, "arbitration_id"):
+            self._heard += 1
             self.identification = self.requests.identification_in(event) or self.identification
         self.on_event(event)
 
