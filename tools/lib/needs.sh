@@ -31,6 +31,7 @@ needs_of() {
     "tune "*) echo bench plant dampers ;;
     "can "* | "report "*) ;;
     "fmu "*) echo bench fmu ;;
+    "commission "*) echo bench plant dampers ;;
     "live "*) needs_of_live "$@" ;;
     "completion "*) ;;
     esac
@@ -70,7 +71,7 @@ needs_of_benchmark() {
     controller) echo bench dampers images ;;
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
-    live) echo bench node page ;;
+    live) echo bench plant dampers node page ;;
     board) echo bench ports budget coil ;;
     trust) echo bench images trust ;;
     tables) echo bench plant dampers images linux tables ;;

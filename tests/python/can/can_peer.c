@@ -3,12 +3,13 @@
 // slow it waits, so that a busy machine loses no frames; the ticks that it missed do not come.
 //
 // can_peer FD [--drop N] [--corrupt N] [--no-store] [--store FOLDER] [--silent] [--idle]
-//          [--interface N]
+//          [--operator] [--interface N]
 //   --drop N       the bus loses every Nth frame
 //   --corrupt N    every Nth frame has a bit flipped
 //   --store DIR    records are files in it, which the next start finds
 //   --silent       answers no requests
 //   --idle         the operator lets go
+//   --operator     the enable is that of OperatorCommand
 //   --interface N  says that its messages are of this version
 #include <errno.h>
 #include <math.h>
@@ -215,7 +216,10 @@ int main(int argc, char **argv) {
     slcan_decoder_init(&peer.decoder);
     quiesce_params_t params;
     quiesce_params_default(&params);
-    if (!node_init(&peer.node, NULL, &params, (node_sources_t){.enable = NODE_ENABLE_BOARD})) {
+    const node_sources_t sources = {
+        .enable = flag(argc, argv, "--operator") ? NODE_ENABLE_CAN : NODE_ENABLE_BOARD,
+    };
+    if (!node_init(&peer.node, NULL, &params, sources)) {
         return 1;
     }
     node_use_store(&peer.node, keep, &peer);

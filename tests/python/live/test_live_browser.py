@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from can_bus import Controller, build_peer
+from conftest import ROOT
 from live_page import Page, pull
 from quiesce_benchmarks.live.browser import Browser, opened
 from quiesce_benchmarks.live.rig import PATIENCE_S, Network
@@ -191,3 +192,24 @@ def test_the_panel_moves_the_rig(tmp_path: Path) -> None:
         browser.do("press", "#rig-control")
         text(browser, "#rig-control", lambda said: said == "Switch control off")
     assert rig.end() == 0
+
+
+RULES = ROOT / "sim_hil/data/rules/squeeze_2012_published.fcl"
+
+
+def test_a_table_is_loaded_from_the_page_and_one_that_is_none_is_refused(
+    page: Page, tmp_path: Path
+) -> None:
+    wrong = tmp_path / "wrong.fcl"
+    wrong.write_text("FUNCTION_BLOCK of nothing")
+    with opened(page.address) as browser, page.viewer() as viewer:
+        viewer.until("parameters", lambda one: one["values"])
+        browser.do("press", "#take")
+        browser.do("attach", "#table-file", wrong)
+        browser.do("press", "#table-load")
+        said = text(browser, "#table-said", lambda said: "wrong.fcl:" in said)
+        assert "\n" not in said and "quiesce-" not in said
+        browser.do("attach", "#table-file", RULES)
+        browser.do("press", "#table-load")
+        said = text(browser, "#table-said", lambda said: "is in use" in said)
+        assert said.startswith("squeeze_2012_published.fcl: rules ")

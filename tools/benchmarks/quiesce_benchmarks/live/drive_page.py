@@ -9,6 +9,7 @@ Opens the page, then does what lines on stdin say and answers each with a line o
     key              the same by the Esc key
     press SELECTOR   clicks that; once it can be
     choose SELECTOR VALUE, fill SELECTOR TEXT    without a space in that selector
+    attach SELECTOR FILE    chooses that file, as from a dialog
     text SELECTOR    its text
     fetch SELECTOR   what the link leads to: status and length
     painted SELECTOR how many colours a canvas has
@@ -107,6 +108,10 @@ class Driver:
     def fill(self, selector: str, *words: str) -> Any:
         self.page.fill(selector, " ".join(words))
         self.page.press(selector, "Tab")
+        return {}
+
+    def attach(self, selector: str, file: str) -> Any:
+        self.page.set_input_files(selector, file)
         return {}
 
     def text(self, *selector: str) -> Any:

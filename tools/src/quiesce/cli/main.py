@@ -46,6 +46,7 @@ GROUPS = {
         ("table", "table.command", "table files: show, check, diff, stamp"),
         ("can", "can.command", "CAN bus: monitor, record, decode, parameters, emergency stop"),
         ("fmu", "fmu.command", "plant, damper and controller for co-simulation (FMI 2 and 3)"),
+        ("commission", "commission", "from an unknown structure to a verified controller, guided"),
         ("live", "live", "a page on which a controller is seen, stopped and commanded"),
     ),
     "verify": (
@@ -73,6 +74,7 @@ EPILOG = """examples:
   quiesce tune my_plant.toml                    pulses of current for my own plant
   quiesce report before.mf4 after.mf4           what changed, as a page to hand over
   quiesce fmu controller --law phase -o controller.fmu   the firmware in somebody else's model
+  quiesce commission rig --sim PLANT.toml       from an unknown structure to a verified controller
   quiesce can monitor --bus socketcan:can0      state, fault and currents, live
 
 Progress and errors go to stderr, results to stdout. Exit codes: 0 ok, 1 a check failed,

@@ -14,6 +14,7 @@ from quiesce.can.link import Back, Link, Lost
 from quiesce.can.recorder import Preamble, RawStream
 from quiesce.can.services import IDENTIFICATION, REPLY, VERSION_PARTS
 from quiesce.can.traffic import Traffic
+from quiesce.can.transfer import BACK
 from quiesce.live.freeze import FirstFault
 from quiesce.live.jobs import Jobs
 from quiesce.live.protocol import Block
@@ -97,6 +98,7 @@ class Desk:
         ids = {name: database.by_name[name].frame_id for name in ("Status", REPLY, IDENTIFICATION)}
         self._status_id = ids.pop("Status")
         self._asked_ids = set(ids.values())
+        self._flow_id = database.by_name[BACK].frame_id
 
     # What comes
 
@@ -151,6 +153,8 @@ class Desk:
             self._take_status(frame.timestamp, data)
         elif frame_id in self._asked_ids:
             self.preamble.take(frame)
+            self.jobs.tap.feed(frame)
+        elif frame_id == self._flow_id:
             self.jobs.tap.feed(frame)
         else:
             self.first_fault.take(frame_id, data)

@@ -47,6 +47,12 @@ class Tap:
         except queue.Empty:
             return None
 
+    def receive_now(self) -> Any:
+        try:
+            return self._events.get_nowait()
+        except queue.Empty:
+            return None
+
     def feed(self, event: Any) -> None:
         if self.is_open:
             self._events.put(event)

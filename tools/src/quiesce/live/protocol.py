@@ -14,6 +14,8 @@ import numpy as np
 from quiesce.live import spectrum
 from quiesce.live.record_plan import KEYS, RecordPlan, marker_of, record_plan_of
 from quiesce.live.spectrum import SpectrumPlan, spectrum_plan_of
+from quiesce.live.tables import KEYS as TABLE_KEYS
+from quiesce.live.tables import TablePart, table_part_of
 
 VERSION = 1
 SAMPLES = 1
@@ -27,6 +29,7 @@ KEYS_OF: dict[str, set[str]] = {
     "spectrum": spectrum.KEYS,
     "set": {"settings"},
     **dict.fromkeys(("save", "revert"), set()),
+    "table": TABLE_KEYS,
     "rig": {"order"},
     "record": KEYS,
     "end_record": set(),
@@ -56,7 +59,7 @@ class Block:
 @dataclass(frozen=True)
 class Command:
     """What a viewer asks for; `series` of show, `spectrum` of spectrum, `settings` of set, `order`
-    of rig, `plan` of record, `text` of mark."""
+    of rig, `plan` of record, `text` of mark, `table` of table."""
 
     do: str
     series: tuple[int, ...] = ()
@@ -65,6 +68,7 @@ class Command:
     plan: RecordPlan | None = None
     text: str = ""
     spectrum: SpectrumPlan | None = None
+    table: TablePart | None = None
 
 
 def pack_samples(number: int, sent_s: float, newest_s: float, blocks: Sequence[Block]) -> bytes:
@@ -100,6 +104,8 @@ def command_of(text: str | None, series_count: int) -> Command:
             return Command(do, spectrum=spectrum_plan_of(said, series_count))
         if do == "record":
             return Command(do, plan=record_plan_of(said, series_count))
+        if do == "table":
+            return Command(do, table=table_part_of(said))
         if do == "mark":
             return Command(do, text=marker_of(said["text"]))
     except ValueError as error:

@@ -17,6 +17,7 @@ from quiesce.live.recordings import ask_tables
 from quiesce.live.room import Room
 from quiesce.live.series import preferred
 from quiesce.live.spectrum import SpectrumPlan
+from quiesce.live.tables import TablePart, Upload, use
 
 MOST_NOTES = 100  # that wait for a viewer who does not read
 SPECTRUM_BEATS = 10
@@ -38,6 +39,7 @@ class Viewer:
         self._notes: list[dict[str, Any]] = []
         self._values: list[int] | None = None  # of the parameters, as he was told
         self._before: Before | None = None
+        self._upload = Upload()
         self._packets = 0
         self._malformed = 0
         self._works: set[asyncio.Task[Any]] = set()
@@ -113,6 +115,8 @@ class Viewer:
         desk, jobs = self._desk, self._desk.jobs
         if command.do in ("record", "end_record", "mark"):
             return True, self._record(command)
+        if command.table is not None:
+            return await self._load(command.table)
         values = desk.preamble.values
         if not values or not desk.preamble.may_ask:
             why = desk.preamble.misunderstood or "the controller's parameters are not read yet"
@@ -131,6 +135,13 @@ class Viewer:
         if self._room.rig is None:
             return False, "this is no rig in the computer: nothing here can be ordered"
         return True, await asyncio.to_thread(self._room.rig.obey, order)
+
+    async def _load(self, part: TablePart) -> tuple[bool, str]:
+        """Nothing to say before the last part. UsageError where they do not follow each other."""
+        data = self._upload.take(part)
+        if data is None:
+            return True, ""
+        return await self._desk.jobs.run("loading a table", use(part.kind, part.name, data))
 
     def _record(self, command: Command) -> str:
         """A line about it. UsageError where it cannot be."""

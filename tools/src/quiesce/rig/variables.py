@@ -16,6 +16,7 @@ from quiesce.engine.params import parameters
 PARAMETERS = "parameters"
 RIG = "rig"
 SENDERS = ("Controller", "Driver", "Sensor")
+STREAMED = "RawSample"  # each tick, while Rig.stream_raw has asked for it
 PROTECTION = ("alive", "crc")
 # Of a state of the rig (docs/reference/rig-protocol.md): path, unit, whether it is an order, too.
 OF_RIG = (
@@ -58,7 +59,7 @@ def catalogue(database: Database, is_simulated: bool) -> dict[str, Variable]:
 
 
 def signals_of(database: Database) -> list[Variable]:
-    """Of messages that come by themselves."""
+    """Of messages that come by themselves, and of the stream of samples."""
     return [
         Variable(
             f"{snake(message.name)}/{signal.name}",
@@ -68,7 +69,9 @@ def signals_of(database: Database) -> list[Variable]:
             signal=signal.name,
         )
         for message in database.messages
-        if message.send_type == CYCLIC and message.sender in SENDERS and not message.is_lockstep
+        if (message.send_type == CYCLIC or message.name == STREAMED)
+        and message.sender in SENDERS
+        and not message.is_lockstep
         for signal in database.signals(message.frame_id)
         if signal.name not in PROTECTION
     ]

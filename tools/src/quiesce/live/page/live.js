@@ -8,6 +8,7 @@ import { Samples, decode } from "./samples.js";
 import { Spectrum } from "./spectrum.js";
 import * as status from "./status.js";
 import { Stop } from "./stop.js";
+import { Tables } from "./tables.js";
 
 const $ = (id) => document.getElementById(id);
 const SILENT_ms = 1000; // 25 packets are due in it
@@ -29,6 +30,7 @@ const parameters = new Parameters(send);
 const rig = new Rig(send);
 const recorder = new Recorder(send, factorOf);
 const spectrum = new Spectrum(send, factorOf);
+const tables = new Tables(send);
 const link = new Link({ open: () => {}, close: lost, text: heardText, samples: heardSamples });
 
 function send(object) {
@@ -49,7 +51,7 @@ function heardText(message) {
     if (shown.length) showCharts();
   }
   if (message.spectrum) spectrum.show(message.spectrum);
-  if (message.note) say(message.note.is_ok, message.note.text);
+  if (message.note && !tables.hear(message.note)) say(message.note.is_ok, message.note.text);
 }
 
 function greet(said) {
@@ -72,6 +74,7 @@ function showState(state) {
   parameters.enable(isMine && !state.job);
   rig.show(state, values, isMine);
   recorder.show(state, isMine);
+  tables.enable(isMine && !state.job);
   if (state.job) say(true, `${state.job} is under way ...`);
   if (heard !== String(state.heard)) {
     heard = String(state.heard);
@@ -139,6 +142,7 @@ function lost() {
   status.showBus(["NO CONNECTION to the server, trying again. What is shown is old.", true]);
   parameters.enable(false);
   rig.enable(false);
+  tables.enable(false);
   recorder.show(null, false);
   $("take").disabled = $("release").disabled = true;
 }

@@ -1,0 +1,122 @@
+"""Steps one after the other, from the first that is not done."""
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from quiesce.base.errors import UsageError
+from quiesce.base.paths import shown
+from quiesce.commission.by_hand import SiteByHand
+from quiesce.commission.folder import STATE, Folder
+from quiesce.commission.hand import Hand
+from quiesce.commission.simulated import TABLE, SimulatedSite
+from quiesce.commission.site import Site
+from quiesce.commission.steps import NAMES, STEPS
+from quiesce.commission.wants import Wants, same, wants_of
+from quiesce.commission.work import Work
+from quiesce.rig import Rig
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Order:
+    """begin: the step to go back to; end: the last one to do; None: all that are left."""
+
+    folder: Path
+    wants: Wants | None  # None: what the folder has
+    begin: str | None
+    end: str | None
+    is_fresh: bool
+
+
+def commission(
+    order: Order, hand: Hand, tell: Tell, open_bus: Callable[[], Rig], told: Tell
+) -> Folder:
+    """open_bus: the controller's, where it is not simulated. told: each result's line. UsageError
+    for what cannot be wanted, BenchFailure where a step fails, Left where he leaves: the steps
+    before it stay done."""
+    folder, wants = begun(order)
+    last = NAMES.index(order.end) if order.end else len(STEPS) - 1
+    for number, step in enumerate(STEPS[: last + 1], 1):
+        if step.NAME in folder.results:
+            told_of(step, folder)  # what later steps go by
+            continue
+        tell(f"{number}/{len(STEPS)} {step.TITLE}")
+        with ExitStack() as stack:  # a rig is there for a step that asks for it, and no longer
+
+            def opened(stack: ExitStack = stack) -> Site:
+                return stack.enter_context(site_of(wants, folder, hand, open_bus))
+
+            result = step.run(Work(wants, folder, tell, opened))
+        folder.done(step.NAME, result)
+        told(f"{step.NAME:10s} {step.line(result)}")
+    return folder
+
+
+def begun(order: Order) -> tuple[Folder, Wants]:
+    """UsageError where the folder was begun for something else, or for nothing yet: it stays as it
+    is then."""
+    if order.wants is not None:
+        require_limit(order.wants)
+    is_new = order.is_fresh or not Folder(order.folder).wants
+    if is_new and order.wants is None:
+        raise UsageError(
+            f"{shown(order.folder)}: nothing is begun there; name what to begin with: --sim "
+            "PLANT.toml, or --max-current A and --drive V of a rig on a bus"
+        )
+    first = NAMES.index(order.begin) if order.begin is not None else len(NAMES)
+    if is_new and order.begin is not None and first > 0:
+        raise UsageError(f"--from {order.begin}: {NAMES[0]} is not done yet")
+    if is_new:
+        for name in (STATE, TABLE):
+            (order.folder / name).unlink(missing_ok=True)
+    folder = Folder(order.folder)
+    wants = order.wants if is_new or order.wants is not None else wants_of(folder.wants)
+    assert wants is not None
+    if not is_new and order.begin is None:
+        same(wants_of(folder.wants), wants)
+    if order.begin is not None:
+        if missing := [one for one in NAMES[:first] if one not in folder.results]:
+            raise UsageError(f"--from {order.begin}: {missing[0]} is not done yet")
+        folder.forget(list(NAMES[first:]))
+    folder.wants = wants.data()
+    folder.save()
+    return folder, wants
+
+
+def require_limit(wants: Wants) -> None:
+    """Of what is real somebody has to say it."""
+    if wants.plant is None and wants.max_current_A is None:
+        raise UsageError("what may coil and driver carry? --max-current A")
+
+
+@contextmanager
+def site_of(
+    wants: Wants, folder: Folder, hand: Hand, open_bus: Callable[[], Rig]
+) -> Iterator[Site]:
+    if wants.plant is not None:
+        with SimulatedSite(wants, folder) as site:
+            yield site
+        return
+    assert wants.max_current_A is not None  # begun() has seen to that
+    with SiteByHand(open_bus(), hand, folder, round(1e3 * wants.max_current_A)) as by_hand:
+        yield by_hand
+
+
+def listed(folder: Folder) -> list[tuple[str, str]]:
+    """Every step, what came of it; empty: nothing yet. UsageError where that is not whole."""
+    return [(one.NAME, told_of(one, folder) if one.NAME in folder.results else "") for one in STEPS]
+
+
+def told_of(step: ModuleType, folder: Folder) -> str:
+    """What came of a step, in a line. UsageError where what its file says is not whole."""
+    try:
+        return str(step.line(folder.results[step.NAME]))
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError):
+        raise UsageError(
+            f"{shown(folder.file)}: what came of {step.NAME} is not whole; --from {step.NAME} does "
+            "it again"
+        )

@@ -1,0 +1,71 @@
+"""Every sample of the tracked accelerometer, in its place."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from quiesce.base.errors import BenchFailure
+from quiesce.commission.site import Site
+
+WRAP = 1 << 16  # of tick_low
+STREAM_S = 10
+MOST_S = 8.0
+LEAST_PART = 0.5  # of the samples
+TRIES = 4
+
+
+@dataclass(frozen=True)
+class Samples:
+    """ticks: of each, from 0 on; where one is lost there is a gap."""
+
+    rate_Hz: int
+    ticks: np.ndarray
+    counts: np.ndarray
+
+    @property
+    def mean(self) -> float:
+        return float(self.counts.mean())
+
+    @property
+    def noise(self) -> float:
+        """RMS, counts."""
+        return float(self.counts.std())
+
+    def power_at(self, freq_Hz: float) -> float:
+        """Part of the power that one sine of this frequency explains, 0 .. 1."""
+        phase = 2.0 * np.pi * freq_Hz * self.ticks / self.rate_Hz
+        terms = np.column_stack([np.cos(phase), np.sin(phase), np.ones_like(phase)])
+        fit, *_ = np.linalg.lstsq(terms, self.counts, rcond=None)
+        total = self.counts.var()
+        return 1.0 - float(np.var(self.counts - terms @ fit) / total) if total > 0.0 else 0.0
+
+    def write(self, file: Path, unit_m_s2: float, offset_counts: int) -> None:
+        """CSV, evenly sampled: what is lost is drawn between its neighbours."""
+        at = np.arange(self.ticks[-1] + 1)
+        values = np.interp(at, self.ticks, unit_m_s2 * (self.counts - offset_counts))
+        with file.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(["time_s", "accel_m_s2"])
+            for tick, value in zip(at, values, strict=True):
+                writer.writerow([f"{tick / self.rate_Hz:.6g}", f"{value:.9g}"])
+
+
+def take(site: Site, length_s: float) -> Samples:
+    """BenchFailure where the controller sends less than half of them."""
+    assert length_s <= MOST_S
+    rig, rate_Hz = site.rig, int(site.rig.read("parameters/tick_rate_Hz"))
+    wanted, listen_s, span = length_s * rate_Hz, length_s, 0
+    names = ("raw_sample/tick_low", "raw_sample/accel_counts")
+    for _ in range(TRIES):
+        rig.stream_raw(STREAM_S)
+        found = rig.capture(names, min(listen_s, MOST_S))
+        low, counts = (np.asarray(found[name].values, np.int64) for name in names)
+        if len(low) > 1:
+            ticks = np.concatenate([[0], np.cumsum(np.diff(low) % WRAP)])
+            span = int(ticks[-1])
+            if len(low) >= LEAST_PART * span and span >= LEAST_PART * wanted:
+                return Samples(rate_Hz, ticks, counts)
+        listen_s *= 1.5  # a rig in a busy computer is slow
+    raise BenchFailure(f"every sample: {len(low)} of {wanted:.0f} came in {listen_s:g} s")

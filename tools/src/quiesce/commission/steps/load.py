@@ -1,0 +1,48 @@
+"""Pulses and parameters into the controller, checked by it, kept where it has a memory."""
+
+import shutil
+from typing import Any
+
+from quiesce.base.errors import BenchFailure
+from quiesce.can.changes import save as save_parameters
+from quiesce.commission.simulated import TABLE
+from quiesce.commission.work import TUNED, Work
+from quiesce.loading.load import put, save
+from quiesce.loading.sources import table_of
+from quiesce.table.file import SUFFIX
+from quiesce.table.kinds import PULSES
+from quiesce.tune.law import OF_BOARD
+
+NAME = "load"
+TITLE = "load"
+
+
+def run(work: Work) -> dict[str, Any]:
+    folder = work.path / TUNED
+    table = table_of(PULSES.name, folder)
+    settings = limited(work.result("tune")["parameters"], work.site.limit_mA)
+    work.give(settings)
+    tables = work.site.rig.tables()
+    took_s = put(tables, table, work.tell)
+    is_saved = not work.site.is_simulated  # one in the computer keeps nothing
+    if is_saved:
+        save(tables, table)
+        save_parameters(tables.services)
+    made = sorted(folder.glob(f"*.phase{SUFFIX}"))
+    if len(made) != 1:
+        raise BenchFailure(f"{folder}: {len(made)} tables; expected the one that was loaded")
+    shutil.copyfile(made[0], work.path / TABLE)
+    return {"crc": f"{table.crc:08x}", "took_s": took_s, "is_saved": is_saved}
+
+
+def limited(parameters: dict[str, int | str], limit_mA: int) -> dict[str, int | str]:
+    """No current above the limit; the board says what is its own."""
+    out = {name: one for name, one in parameters.items() if name not in OF_BOARD}
+    for name in ("max_current_mA", "unlock_current_mA", "constant_current_mA"):
+        out[name] = min(int(out[name]), limit_mA)
+    return out
+
+
+def line(result: dict[str, Any]) -> str:
+    kept = "kept for the next start" if result["is_saved"] else "not kept: it has no memory"
+    return f"pulses {result['crc']} in use, checked by the controller; {kept}"
