@@ -9,7 +9,8 @@
 //   --store DIR    records are files in it, which the next start finds
 //   --silent       answers no requests
 //   --idle         the operator lets go
-//   --operator     the enable is that of OperatorCommand
+//   --operator     the enable is that of OperatorCommand, and so is the clock: between two of its
+//                  frames are the ticks of its cycle, however busy the machine
 //   --interface N  says that its messages are of this version
 #include <errno.h>
 #include <math.h>
@@ -28,6 +29,8 @@
 #define TICK_NS 1000000L
 #define NS_PER_S 1000000000L
 #define MAX_LATE_NS 100000000L
+#define OPERATOR_TICKS 100u // in a cycle of OperatorCommand
+#define LOOK_MS 20
 #define PI 3.14159265358979
 
 typedef struct {
@@ -39,6 +42,8 @@ typedef struct {
     const char *store; // folder, NULL: records are forgotten
     bool is_idle;      // the operator lets go
     bool is_silent;
+    bool has_operator;
+    unsigned operated; // ticks that its frames have brought
     unsigned sent;
     can_unsent_t unsent;
     slcan_decoder_t decoder;
@@ -94,6 +99,8 @@ static void receive(peer_t *peer) {
         can_frame_t frame;
         if (slcan_decode(&peer->decoder, bytes[i], &frame) && !peer->is_silent) {
             node_receive(&peer->node, &frame);
+            peer->operated +=
+                frame.id == QUIESCE_CAN_OPERATOR_COMMAND_FRAME_ID ? OPERATOR_TICKS : 0u;
         }
     }
 }
@@ -162,6 +169,17 @@ static bool is_long_past(const struct timespec *due) {
     return (now.tv_sec - due->tv_sec) * NS_PER_S + (now.tv_nsec - due->tv_nsec) > MAX_LATE_NS;
 }
 
+static void run_operated(peer_t *peer) {
+    for (unsigned number = 0; !stop;) {
+        struct pollfd input = {.fd = peer->fd, .events = POLLIN};
+        (void)poll(&input, 1, LOOK_MS);
+        receive(peer);
+        for (; number < peer->operated && !stop; number++) {
+            tick(peer, number);
+        }
+    }
+}
+
 static void run(peer_t *peer) {
     struct timespec due;
     (void)clock_gettime(CLOCK_MONOTONIC, &due);
@@ -216,8 +234,9 @@ int main(int argc, char **argv) {
     slcan_decoder_init(&peer.decoder);
     quiesce_params_t params;
     quiesce_params_default(&params);
+    peer.has_operator = flag(argc, argv, "--operator");
     const node_sources_t sources = {
-        .enable = flag(argc, argv, "--operator") ? NODE_ENABLE_CAN : NODE_ENABLE_BOARD,
+        .enable = peer.has_operator ? NODE_ENABLE_CAN : NODE_ENABLE_BOARD,
     };
     if (!node_init(&peer.node, NULL, &params, sources)) {
         return 1;
@@ -226,6 +245,6 @@ int main(int argc, char **argv) {
     find(&peer, KEEPER_LAW_TABLE);
     find(&peer, KEEPER_TRACKER_TABLE);
     find(&peer, KEEPER_LEARNT);
-    run(&peer);
+    (peer.has_operator ? run_operated : run)(&peer);
     return 0;
 }

@@ -202,8 +202,8 @@ def test_a_table_is_loaded_from_the_page_and_one_that_is_none_is_refused(
 ) -> None:
     wrong = tmp_path / "wrong.fcl"
     wrong.write_text("FUNCTION_BLOCK of nothing")
-    with opened(page.address) as browser, page.viewer() as viewer:
-        viewer.until("parameters", lambda one: one["values"])
+    with opened(page.address) as browser:
+        until(browser, lambda said: "newest sample" in said["bus"])
         browser.do("press", "#take")
         browser.do("attach", "#table-file", wrong)
         browser.do("press", "#table-load")

@@ -2,7 +2,6 @@
 
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -56,13 +55,12 @@ class Folder:
         }
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(
-                "w", encoding="utf-8", dir=self.path, prefix=f".{STATE}-", delete=False
-            ) as new:
-                new.write(json.dumps(said, indent=1) + "\n")
-                new.flush()
-                os.fsync(new.fileno())
-            os.replace(new.name, self.file)
+            new = self.path / f".{STATE}-{os.getpid()}"
+            with new.open("w", encoding="utf-8") as stream:
+                stream.write(json.dumps(said, indent=1) + "\n")
+                stream.flush()
+                os.fsync(stream.fileno())
+            os.replace(new, self.file)
         except OSError as error:
             raise UsageError(f"cannot write {shown(self.file)}: {error.strerror}")
 

@@ -61,7 +61,8 @@ def row_of(effort: Effort, number: int, folder: Path) -> dict[str, Any]:
         row |= judged(drawn, verified, effort.is_quick)
     except (BenchFailure, UsageError) as error:
         return {**row, "why": one_line(str(error))}
-    far = max(abs(one["verified_pct"] - one["predicted_pct"]) for one in row["points"])
+    # A pulse that was not predicted to come to rest has promised nothing.
+    far = max(abs(one["verified_pct"] - (one["predicted_pct"] or 0.0)) for one in row["points"])
     return {**row, "why": "" if far <= NEAR_PTS else f"{far:.1f} points from the prediction"}
 
 
@@ -107,7 +108,7 @@ def table_of(rows: list[dict[str, Any]]) -> str:
         for one in row["points"]:
             cells.append(
                 [
-                    *head, f"{one['freq_Hz']:.3g}", f"{one['predicted_pct']:.1f}",
+                    *head, f"{one['freq_Hz']:.3g}", f"{one['predicted_pct'] or 0.0:.1f}",
                     f"{one['verified_pct']:.1f}", f"{one['own_bound_pct']:.1f}", "",
                 ]
             )  # fmt: skip

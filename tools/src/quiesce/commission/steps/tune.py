@@ -3,6 +3,7 @@
 import os
 from typing import Any
 
+from quiesce.base.paths import shown
 from quiesce.commission.work import DESIGNED, TUNED, Work
 from quiesce.plant.library import Plant
 from quiesce.tune.law import Row
@@ -23,7 +24,7 @@ def run(work: Work) -> dict[str, Any]:
     order = Order(
         source=Source(plant, None, None, 1.0, True, None),
         out=work.path / TUNED,
-        asked=f"quiesce tune {plant}",
+        asked=f"quiesce tune {shown(plant)}",
         band=Band(),
         settings=chosen_settings([], []),
         robustness="none",
