@@ -12,8 +12,6 @@ HEAD = [
 
 
 def page(work: Work, has_pair: bool) -> str:
-    from quiesce.commission.steps import STEPS
-
     results = work.folder.results
     verified = results["verify"]
     return render(
@@ -21,9 +19,7 @@ def page(work: Work, has_pair: bool) -> str:
         title=work.path.resolve().name,
         cards=cards(verified),
         rows=(HEAD, [row_of(one) for one in verified["rows"]]),
-        steps=(["step", "what came of it"], [
-            [one.TITLE, one.line(results[one.NAME])] for one in STEPS if one.NAME in results
-        ]),
+        steps=(["step", "what came of it"], [list(one) for one in work.lines]),
         doubts=doubts(results),
         settings="\n".join(f"{name} = {one}" for name, one in work.folder.settings.items()),
         is_simulated=work.wants.plant is not None,

@@ -40,9 +40,10 @@ def commission(
     before it stay done."""
     folder, wants = begun(order)
     last = NAMES.index(order.end) if order.end else len(STEPS) - 1
+    lines: list[tuple[str, str]] = []
     for number, step in enumerate(STEPS[: last + 1], 1):
         if step.NAME in folder.results:
-            told_of(step, folder)  # what later steps go by
+            lines.append((step.TITLE, told_of(step, folder)))
             continue
         tell(f"{number}/{len(STEPS)} {step.TITLE}")
         with ExitStack() as stack:  # a rig is there for a step that asks for it, and no longer
@@ -50,9 +51,10 @@ def commission(
             def opened(stack: ExitStack = stack) -> Site:
                 return stack.enter_context(site_of(wants, folder, hand, open_bus))
 
-            result = step.run(Work(wants, folder, tell, opened))
+            result = step.run(Work(wants, folder, tell, opened, lines))
         folder.done(step.NAME, result)
-        told(f"{step.NAME:10s} {step.line(result)}")
+        lines.append((step.TITLE, step.line(result)))
+        told(f"{step.NAME:10s} {lines[-1][1]}")
     return folder
 
 

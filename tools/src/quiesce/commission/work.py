@@ -1,6 +1,6 @@
 """What a step is given."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,12 +20,14 @@ DESIGNED = "plant.toml"
 
 @dataclass(frozen=True)
 class Work:
-    """tell: a line of progress. A step that needs a rig has it in `site`."""
+    """tell: a line of progress. lines: of the steps before, what each is and what came of it. A
+    step that needs a rig has it in `site`."""
 
     wants: Wants
     folder: Folder
     tell: Callable[[str], None]
     opened: Callable[[], Site]
+    lines: Sequence[tuple[str, str]] = ()
 
     @cached_property
     def site(self) -> Site:
