@@ -14,7 +14,7 @@ WRAP = 1 << 16  # of tick_low
 STREAM_S = 10
 LEAST_S, MOST_S = 0.2, 8.0  # of one capture
 LEAST_PART = 0.5  # of the samples
-PATIENCE = 30.0  # times as long
+PATIENCE_S = 120.0  # of the clock on the wall
 LOW, COUNTS = "raw_sample/tick_low", "raw_sample/accel_counts"
 
 
@@ -59,11 +59,12 @@ def take(site: Site, length_s: float) -> Samples:
     BenchFailure where the controller sends less than half of them."""
     rig, rate_Hz = site.rig, int(site.rig.read("parameters/tick_rate_Hz"))
     low, counts = np.empty(0, np.int64), np.empty(0, np.int64)
-    ticks, left_s = low, length_s
-    end_s = time.monotonic() + PATIENCE * length_s
+    ticks, left_s, stretch = low, length_s, 1.0
+    end_s = time.monotonic() + PATIENCE_S
     while left_s > 0.0 and time.monotonic() < end_s:
         rig.stream_raw(STREAM_S)
-        found = rig.capture((LOW, COUNTS), min(max(left_s, LEAST_S), MOST_S))
+        found = rig.capture((LOW, COUNTS), min(max(left_s, LEAST_S) * stretch, MOST_S))
+        stretch *= 2.0
         low = np.concatenate([low, np.asarray(found[LOW].values, np.int64)])
         counts = np.concatenate([counts, np.asarray(found[COUNTS].values, np.int64)])
         if len(low) > 1:
