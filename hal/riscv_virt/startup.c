@@ -3,7 +3,7 @@
 #include "semihost.h"
 #include "start.h"
 
-/// Exit code of an image that a fault has ended: hal/mps2/fault.h has the same.
+/// Exit code of an image that a fault has ended: hal/cortex_m/fault.h has the same.
 #define FAULT_EXIT_CODE 99
 
 void Reset_Handler(void);

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT, require
+from node_rig import DEADLINE_S, Rig, param_index, running
 from quiesce.tune.phase_table import read_law
 from quiesce.tune.phase_words import law_words
-from test_node_image import DEADLINE_S, Rig, param_index, running
 
 # hal/mps2/nvm_mps2.h, hal/records/nvm_records.h
 MEMORY_BASE = 0x21000000

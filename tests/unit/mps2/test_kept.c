@@ -1,8 +1,10 @@
 // What the node image keeps: which records come back after a power-up, and what the node is
 // answered while one is being written.
 #include "kept.h"
+#include "nvm_mps2.h"
 #include "unity.h"
 
+static hal_nvm_memory_t memory;
 static kept_t kept;
 static quiesce_params_t shipped;
 static const quiesce_board_t *wired;
@@ -10,7 +12,8 @@ static const quiesce_board_t *wired;
 // A power-up: only the memory is left.
 static void start(void) {
     kept = (kept_t){0};
-    kept_open(&kept, wired, &shipped);
+    memory = (hal_nvm_memory_t){.words = (volatile uint32_t *)NVM_MPS2_BASE};
+    kept_open(&kept, &memory, wired, &shipped);
     for (uint32_t i = 0; i < KEEPER_RECORDS; i++) {
         (void)kept_read(&kept, (keeper_record_t)i);
     }

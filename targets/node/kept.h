@@ -4,12 +4,10 @@
 #define KEPT_H
 
 #include "keeper.h"
-#include "nvm_mps2.h"
 #include "nvm_records.h"
 #include "quiesce.h"
 
 typedef struct {
-    hal_nvm_memory_t memory;
     hal_nvm_t nvm;
     uint32_t shipped_hash; ///< of the parameters that ship, and of what they mean
     keeper_state_t state;  ///< of the record that was read last
@@ -17,9 +15,11 @@ typedef struct {
     uint32_t words[HAL_NVM_MAX_WORDS]; ///< what was read, or is being written
 } kept_t;
 
-/// board: NULL where parameters say what is wired; another one's records are not used. shipped: the
-/// parameters of a start that has none of its own.
-void kept_open(kept_t *kept, const quiesce_board_t *board, const quiesce_params_t *shipped);
+/// memory: the caller's, for as long as kept is used. board: NULL where parameters say what is
+/// wired; another one's records are not used. shipped: the parameters of a start that has none of
+/// its own.
+void kept_open(kept_t *kept, hal_nvm_memory_t *memory, const quiesce_board_t *board,
+               const quiesce_params_t *shipped);
 
 /// Reads a record, at the start: its words are then in kept->words. Returns their number, 0 where
 /// there is none.

@@ -6,11 +6,11 @@
 _Static_assert((uint32_t)KEEPER_RECORDS <= HAL_NVM_RECORDS, "a record for each of the node's");
 _Static_assert(QUIESCE_TABLE_WORDS <= HAL_NVM_MAX_WORDS, "the longest table fits");
 
-void kept_open(kept_t *kept, const quiesce_board_t *board, const quiesce_params_t *shipped) {
-    kept->memory = (hal_nvm_memory_t){.words = (volatile uint32_t *)NVM_MPS2_BASE};
+void kept_open(kept_t *kept, hal_nvm_memory_t *memory, const quiesce_board_t *board,
+               const quiesce_params_t *shipped) {
     kept->shipped_hash = can_node_param_hash(shipped) ^ QUIESCE_PARAM_LAYOUT;
     kept->is_writing = false;
-    (void)nvm_records_open(&kept->nvm, &kept->memory, table_file_board(board));
+    (void)nvm_records_open(&kept->nvm, memory, table_file_board(board));
 }
 
 static keeper_state_t state_of(hal_nvm_found_t found) {

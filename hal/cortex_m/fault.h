@@ -1,8 +1,8 @@
 /// What an image does about an exception that it did not expect (HardFault and its like): a record
 /// in memory that start-up leaves alone, then fault_react. Nothing of the program runs any more.
 ///
-/// In hal_mps2 fault_react prints the record and ends the emulator: for tests and for images that a
-/// bench drives. An image that runs free links fault_restart.c.
+/// fault_exit.c prints the record and ends the emulator: for tests and for images that a bench
+/// drives. An image that runs free links fault_restart.c.
 #ifndef FAULT_H
 #define FAULT_H
 
@@ -39,7 +39,15 @@ void fault_forget(void);
 /// Keeps what the core has stacked. stacked: r0 r1 r2 r3 r12 lr pc xpsr; NULL: not in memory.
 void fault_keep(const uint32_t *stacked);
 
+/// Every vector that is no interrupt of the image: keeps the record, then fault_react on a fresh
+/// stack. Naked: only for a table of vectors.
+void fault_handler(void);
+
 /// After fault_keep, on a fresh stack.
 _Noreturn void fault_react(void);
+
+/// Resets the core a bounded number of times, then stays silent: the end of fault_react where no
+/// debugger is.
+_Noreturn void fault_restart(void);
 
 #endif

@@ -1,0 +1,200 @@
+// The controller with its CAN interface on a board of its own, free-running: SLCAN frames on the
+// console, the tick from TIM5. What every such image does is in free_node.h, what the board is in
+// boards/.
+#include "board_stm32f4.h"
+#include "clocks.h"
+#include "fault.h"
+#include "free_node.h"
+#include "nvic.h"
+#include "nvm_stm32f4.h"
+#include "reset_cause.h"
+#include "safe.h"
+#include "slcan.h"
+#include "stack.h"
+#include "tick_stm32f4.h"
+#include "uart_stm32f4.h"
+#include "vectors.h"
+#include "watchdog.h"
+
+#include <stddef.h>
+
+#define CONSOLE_PRIORITY 0x40u
+/// Fifty lost ticks at 1 kHz; the oscillator may be half as fast again, or half as slow.
+#define WATCHDOG_MS 50u
+#define START_WATCHDOG_MS 2000u ///< records are read
+#define ERASE_WATCHDOG_MS 8000u ///< two sectors of 2 s each, on an oscillator that is fast
+#define US 1000000u
+
+typedef struct {
+    free_node_t common;
+    clocks_t clocks;
+    reset_cause_t cause;
+    hal_nvm_memory_t memory;
+    hal_tick_t tick;
+    slcan_decoder_t decoder;
+    bool acknowledge_was_up;
+    bool has_watchdog;
+} board_t;
+
+static hal_uart_t console;
+
+extern const uint32_t stack_limit[]; // image.ld
+
+void interrupt_console(void) {
+    uart_stm32f4_interrupt(&console);
+}
+
+void interrupt_current(void) {}
+
+void interrupt_break(void) {}
+
+static void open_console(const clocks_t *clocks) {
+    const stm32f4_board_t *const board = &stm32f4_board;
+    pin_function(board->console_tx.pin, board->console_tx.function, PIN_FLOATS);
+    pin_function(board->console_rx.pin, board->console_rx.function, PIN_UP);
+    uart_stm32f4_open(&console, board->console,
+                      board->console_is_apb2 ? clocks->apb2_Hz : clocks->apb1_Hz,
+                      board->console_baud);
+    nvic_enable(board->console_interrupt, CONSOLE_PRIORITY);
+}
+
+static void open_inputs(void) {
+    pin_input(stm32f4_board.estop, PIN_UP);
+    pin_input(stm32f4_board.enable, PIN_UP);
+    pin_input(stm32f4_board.acknowledge, PIN_UP);
+}
+
+static void send_waiting(board_t *board) {
+    uint8_t byte;
+    while (uart_stm32f4_is_free(&console) && frame_queue_take(&board->common.queue, &byte)) {
+        hal_uart_write(&console, byte);
+    }
+}
+
+// At most a line, so that a host that floods the line cannot hold up the tick.
+static void receive_waiting(board_t *board) {
+    can_frame_t frame;
+    uint8_t byte;
+    for (uint32_t i = 0; i < SLCAN_MAX_BYTES && hal_uart_read(&console, &byte); i++) {
+        if (slcan_decode(&board->decoder, byte, &frame)) {
+            node_receive(&board->common.node, &frame);
+        }
+    }
+}
+
+static uint32_t us_since(const board_t *board, uint32_t count) {
+    return (tick_stm32f4_count() - count) / (board->tick.clock_Hz / US);
+}
+
+static void use_rate(board_t *board) {
+    (void)hal_tick_start(&board->tick, (uint32_t)board->common.node.params.tick_rate_Hz);
+}
+
+// The button acknowledges where it is seen to go down: a line that is stuck does not.
+static bool is_acknowledged(board_t *board) {
+    const bool is_up = pin_read(stm32f4_board.acknowledge);
+    const bool goes_down = board->acknowledge_was_up && !is_up;
+    board->acknowledge_was_up = is_up;
+    return goes_down;
+}
+
+static void read_inputs(board_t *board) {
+    free_node_t *const common = &board->common;
+    common->estop_line = pin_read(stm32f4_board.estop);
+    common->inputs.enable = !pin_read(stm32f4_board.enable);
+    common->inputs.fault_reset = is_acknowledged(board);
+    common->inputs.rx_lost = console.overruns;
+}
+
+static bool is_driven(const board_t *board) {
+    return board->common.node.out.damper[0].driver_enable;
+}
+
+static void write_outputs(const board_t *board) {
+    const quiesce_state_t state = board->common.node.out.telemetry.state;
+    pin_write(stm32f4_board.drive_enable, is_driven(board));
+    pin_write(stm32f4_board.fault_lamp, state == QUIESCE_STATE_FAULT);
+}
+
+// What is told when the watchdog is fed: a tick has run, and the stack has not reached its end.
+static void supervise(void) {
+    if (*stack_limit == STACK_PAINT) {
+        watchdog_feed();
+    }
+}
+
+static void restart(board_t *board, const quiesce_params_t *params) {
+    pin_write(stm32f4_board.drive_enable, false);
+    node_restart(&board->common.node, params);
+    use_rate(board);
+}
+
+static void run_tick(board_t *board, uint32_t ticks) {
+    free_node_t *const common = &board->common;
+    can_frame_t frames[NODE_MAX_FRAMES];
+    const uint32_t begin = tick_stm32f4_count();
+    common->inputs.lateness_us = us_since(board, board->tick.last_count);
+    read_inputs(board);
+    free_node_begin(common, ticks);
+    node_step(&common->node, &common->inputs);
+    write_outputs(board);
+    const quiesce_params_t *const params = node_task(&common->node);
+    if (params != NULL) {
+        restart(board, params);
+    }
+    if (free_node_end(common, frames, node_frames(&common->node, frames))) {
+        fault_forget();
+    }
+    common->inputs.work_us = us_since(board, begin);
+    supervise();
+}
+
+// The processor stands still while flash is erased: only where nothing is driven, and the watchdog
+// is told before and after.
+static void store_waiting(board_t *board) {
+    hal_nvm_memory_t *const memory = &board->memory;
+    const bool erases = memory->phase != NVM_STM32F4_IDLE;
+    if (erases && !memory->may_erase && !is_driven(board)) {
+        memory->may_erase = watchdog_start(ERASE_WATCHDOG_MS) || !board->has_watchdog;
+    }
+    free_node_store(&board->common);
+    if (memory->may_erase && memory->phase == NVM_STM32F4_IDLE) {
+        memory->may_erase = false;
+        (void)watchdog_start(WATCHDOG_MS);
+    }
+}
+
+static void start(board_t *board) {
+    const free_node_start_t how = {
+        .wiring = NULL,
+        .sources = {.enable = stm32f4_board.enable == PIN_NONE ? NODE_ENABLE_CAN : NODE_ENABLE_BOTH,
+                    .sensors_on_bus = (1u << QUIESCE_SENSORS) - 1u},
+        .memory = &board->memory,
+        .is_after_fault = fault_is_recorded(),
+    };
+    clocks_start(&board->clocks, stm32f4_board.crystal_Hz, stm32f4_board.crystal_is_external);
+    board->has_watchdog = watchdog_start(START_WATCHDOG_MS);
+    board->cause = reset_cause_take();
+    board->tick.clock_Hz = board->clocks.apb1_timer_Hz;
+    open_inputs();
+    open_console(&board->clocks);
+    slcan_decoder_init(&board->decoder);
+    free_node_start(&board->common, &how);
+    use_rate(board);
+    (void)watchdog_start(WATCHDOG_MS);
+}
+
+int main(void) {
+    static board_t board;
+    safe_outputs();
+    start(&board);
+    for (;;) {
+        const uint32_t ticks = hal_tick_elapsed(&board.tick);
+        if (ticks > 0u) {
+            run_tick(&board, ticks);
+        }
+        receive_waiting(&board);
+        send_waiting(&board);
+        store_waiting(&board);
+    }
+}
