@@ -1,6 +1,7 @@
 // ADXL355 on spidev (Documentation/spi/spidev.rst). Untested on hardware.
 #include "accel_backends.h"
 #include "adxl355.h"
+#include "adxl355_error.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -8,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <time.h>
 #include <unistd.h>
 
 #define MAX_CLOCK_HZ 10000000u
@@ -29,6 +31,20 @@ static bool exchange(void *context, const uint8_t *out, uint8_t *in, size_t byte
         .bits_per_word = 8,
     };
     return ioctl(self->fd, SPI_IOC_MESSAGE(1), &transfer) == (int)bytes;
+}
+
+static void pause_ms(void *context, uint32_t ms) {
+    const struct timespec pause = {.tv_nsec = 1000000L * (long)ms};
+    (void)context;
+    (void)nanosleep(&pause, NULL); // a signal cuts it short: what follows is read back anyway
+}
+
+static bool start_chip(accel_adxl355_t *self, const accel_adxl355_options_t *options,
+                       linux_error_t *error) {
+    const part_bus_t bus = {.exchange = exchange, .pause_ms = pause_ms, .context = self};
+    part_problem_t problem = {0};
+    (void)adxl355_start(&self->chip, bus, options->range_g, options->rate_Hz, &problem);
+    return adxl355_explain(&problem, options->range_g, options->rate_Hz, error);
 }
 
 static bool read_accel(void *backend, hal_axis_t axis, int32_t *counts) {
@@ -65,9 +81,7 @@ accel_adxl355_t *accel_adxl355_open(const accel_adxl355_options_t *options, hal_
         return NULL;
     }
     self->clock_Hz = options->clock_Hz;
-    const adxl355_bus_t bus = {.exchange = exchange, .context = self};
-    if (!open_spi(self, options->device, error) ||
-        !adxl355_start(&self->chip, bus, options->range_g, options->rate_Hz, error)) {
+    if (!open_spi(self, options->device, error) || !start_chip(self, options, error)) {
         if (self->fd >= 0) {
             (void)close(self->fd);
         }

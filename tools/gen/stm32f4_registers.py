@@ -43,7 +43,7 @@ class Crate:
 
     def __init__(self, archive: Path, name: str, chip: str) -> None:
         head = f"{name}/src/{chip}/"
-        with tarfile.open(archive) as tar:
+        with tarfile.open(archive, "r:gz") as tar:
             self.text = {
                 one.name.removeprefix(head): tar.extractfile(one).read().decode()
                 for one in tar.getmembers()
@@ -271,7 +271,7 @@ def main() -> int:
         wanted = tomllib.loads((ROOT / WANTED).read_text())
         made = {TABLE: described(wanted, args.crate)} if args.crate else {}
         made |= outputs(wanted, tomllib.loads(made.get(TABLE) or (ROOT / TABLE).read_text()))
-    except (Refused, OSError, tarfile.TarError, KeyError) as error:
+    except (Refused, OSError, tarfile.TarError, KeyError, tomllib.TOMLDecodeError) as error:
         print(f"stm32f4_registers: {error}", file=sys.stderr)
         return 2
     stale = [

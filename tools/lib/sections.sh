@@ -86,16 +86,16 @@ section_sanitize() {
 section_lint() {
     local gate tidy=tidy tidy_command="$ROOT/tools/check/tidy"
     ((WHOLE == 1)) || tidy=tidy-changed tidy_command=run_tidy_changed
-    # clang-tidy reads the compile commands of both builds.
-    if wants "$tidy" && build host && build mps2; then step "$tidy" "$tidy_command"; fi
+    # clang-tidy reads the compile commands of all three builds.
+    if wants "$tidy" && build host && build mps2 && build stm32f4; then step "$tidy" "$tidy_command"; fi
     for gate in format cppcheck generated scripts ruff; do
         if wants "$gate"; then step "$gate" "$ROOT/tools/check/$gate"; fi
     done
 }
 
 section_python() {
-    wants pytest && build host && build mps2 && step pytest run_pytest "not slow"
-    ((WHOLE == 1)) && wants pytest-slow && build host && build mps2 && build m32 &&
+    wants pytest && build host && build mps2 && build stm32f4 && step pytest run_pytest "not slow"
+    ((WHOLE == 1)) && wants pytest-slow && build host && build mps2 && build stm32f4 && build m32 &&
         step bench-images "$ROOT/tools/benchmarks/build_images" &&
         step browser "$ROOT/tools/benchmarks/fetch_peers" browser && step pytest-slow run_pytest slow
 }
@@ -173,7 +173,7 @@ edit_steps() {
     if planned generated; then step generated "$ROOT/tools/check/generated"; fi
     if planned unit; then edit_units "${found[@]}"; fi
     if planned board && build mps2; then step ctest-mps2 run_ctest_of mps2/tests/unit/mps2 .; fi
-    if planned pytest && build host sim_hil/all && build mps2 targets/all; then
+    if planned pytest && build host sim_hil/all && build mps2 targets/all && build stm32f4; then
         step pytest run_pytest_edited "${found[@]}"
     fi
 }

@@ -22,6 +22,7 @@ AREAS = (
     ("firmware/", "firmware"),
     ("hal/linux/", "linux"),
     ("hal/records/", "hal"),
+    ("hal/stm32f4/", "stm32f4"),
     ("targets/linux/", "linux"),
     ("targets/lockstep/", "comm"),
     ("sim_hil/board/", "board"),
@@ -33,7 +34,14 @@ AREAS = (
 )
 # Their sanitized builds are minutes of templates; `all` has them.
 HEAVY_AREAS = ("plant", "bench", "link")
-BOARD = ("hal/image/", "hal/mps2/", "targets/mps2/", "tests/unit/mps2/")
+BOARD = (
+    "hal/image/",
+    "hal/cortex_m/",
+    "hal/mps2/",
+    "targets/mps2/",
+    "targets/node/",
+    "tests/unit/mps2/",
+)
 # Python packages whose tests are not in the folder of their name.
 PYTHON_TESTS = {
     "base": ("gates/test_bad_input.py",),

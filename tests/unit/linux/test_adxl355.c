@@ -2,6 +2,7 @@
 // own, the SPI bus and the part are not there. Untested on hardware.
 #include "accel_backends.h"
 #include "adxl355.h"
+#include "adxl355_error.h"
 #include "one_line.h"
 #include "unity.h"
 
@@ -14,6 +15,7 @@ static struct {
     uint32_t bad_resets; ///< that load other shadow registers
     uint32_t resets;
     uint32_t transfers;
+    uint32_t paused_ms;
 } part;
 
 static adxl355_t chip;
@@ -58,8 +60,17 @@ static bool exchange(void *context, const uint8_t *out, uint8_t *in, size_t byte
     return true;
 }
 
+static void pause_ms(void *context, uint32_t ms) {
+    TEST_ASSERT_EQUAL_PTR(&part, context);
+    part.paused_ms += ms;
+}
+
 static bool start(uint32_t range_g, uint32_t rate_Hz) {
-    return adxl355_start(&chip, (adxl355_bus_t){exchange, &part}, range_g, rate_Hz, &error);
+    part_problem_t problem = {0};
+    const bool is_well =
+        adxl355_start(&chip, (part_bus_t){exchange, pause_ms, &part}, range_g, rate_Hz, &problem);
+    TEST_ASSERT_EQUAL(is_well, adxl355_explain(&problem, range_g, rate_Hz, &error));
+    return is_well;
 }
 
 void setUp(void) {
@@ -89,6 +100,7 @@ static void test_part_is_reset_set_and_started(void) {
         part.registers[0x2B] = 0x02;
         TEST_ASSERT_TRUE_MESSAGE(start(cases[i].range_g, cases[i].rate_Hz), error.text);
         TEST_ASSERT_EQUAL_UINT32(i + 1u, part.resets);
+        TEST_ASSERT_EQUAL_UINT32(10u * part.resets, part.paused_ms);
         TEST_ASSERT_EQUAL_HEX8(0, part.registers[0x2B]);
         TEST_ASSERT_EQUAL_HEX8(cases[i].range, part.registers[0x2C]);
         TEST_ASSERT_EQUAL_HEX8(cases[i].filter, part.registers[0x28]);

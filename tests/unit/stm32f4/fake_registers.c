@@ -26,6 +26,7 @@ static uint32_t all_writes;
 static fake_hook_t *hook;
 static bool is_in_hook;
 static char mistake[128];
+uint32_t fake_flash[FAKE_FLASH_WORDS];
 
 static void note(const char *what, const char *name, uint32_t address, uint32_t value) {
     if (mistake[0] == '\0') {
@@ -111,9 +112,16 @@ static uint32_t write_only(const fake_register_t *row) {
     return takes(row) & ~row->readable;
 }
 
+static bool is_flash(uint32_t address) {
+    return address - FAKE_FLASH_BASE < sizeof fake_flash;
+}
+
 uint32_t reg_read(uint32_t address) {
     if (is_absent) {
         return 0;
+    }
+    if (is_flash(address)) {
+        return fake_flash[(address - FAKE_FLASH_BASE) / 4u];
     }
     call_hook(address, false, 0);
     const uint32_t at = find(address);
@@ -138,7 +146,7 @@ void reg_write(uint32_t address, uint32_t value) {
     if (is_absent) {
         return;
     }
-    const uint32_t at = find(address);
+    const uint32_t at = is_flash(address) ? MOST_REGISTERS : find(address);
     if (at < count) {
         take(at, value);
         writes[at]++;

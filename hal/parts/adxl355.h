@@ -1,24 +1,16 @@
-/// The ADXL355's registers over any transport: what accel_adxl355.c does on spidev. Source: Analog
-/// Devices' data sheet ADXL354/ADXL355, Rev. C (register map; SPI protocol).
+/// The ADXL355's registers over any SPI. Source: Analog Devices' data sheet ADXL354/ADXL355, Rev. C
+/// (register map; SPI protocol).
 #ifndef ADXL355_H
 #define ADXL355_H
 
 #include "hal/accel.h"
-#include "linux_error.h"
-
-#include <stddef.h>
+#include "part_bus.h"
 
 #define ADXL355_AXES 3
 #define ADXL355_MAX_TRANSFER 14u ///< bytes: a command and the registers from STATUS to ZDATA1
 
-/// One SPI transfer: sends and receives bytes at once, with chip select low throughout.
 typedef struct {
-    bool (*exchange)(void *context, const uint8_t *out, uint8_t *in, size_t bytes);
-    void *context;
-} adxl355_bus_t;
-
-typedef struct {
-    adxl355_bus_t bus;
+    part_bus_t bus;
     int32_t counts[ADXL355_AXES];
     bool is_fresh[ADXL355_AXES];
     uint32_t failures; ///< transfers, saturating
@@ -26,8 +18,8 @@ typedef struct {
 
 /// Checks the part, resets and configures it and starts measuring; every setting is read back.
 /// Takes some ms. range_g: 2, 4 or 8; rate_Hz: 4000, 2000, 1000 or 500.
-bool adxl355_start(adxl355_t *self, adxl355_bus_t bus, uint32_t range_g, uint32_t rate_Hz,
-                   linux_error_t *error);
+bool adxl355_start(adxl355_t *self, part_bus_t bus, uint32_t range_g, uint32_t rate_Hz,
+                   part_problem_t *problem);
 
 /// As hal_accel_read.
 bool adxl355_read(adxl355_t *self, hal_axis_t axis, int32_t *counts);

@@ -1,7 +1,6 @@
 #include "adxl355.h"
 
 #include <string.h>
-#include <time.h>
 
 // Register map.
 #define DEVID_AD 0x00u // 0xAD, then 0x1D (MEMS) and 0xED (ADXL355)
@@ -23,7 +22,7 @@
 #define SHADOWS 5u
 #define DATA_AT 4u // XDATA3 after STATUS
 #define RESETS_AT_MOST 3
-#define RESET_NS 10000000L
+#define RESET_MS 10u
 
 /// A command byte is the address and, in bit 0, whether it reads.
 static bool read_registers(const adxl355_t *self, uint8_t first, uint8_t *out, size_t count) {
@@ -43,61 +42,52 @@ static bool write_register(const adxl355_t *self, uint8_t address, uint8_t value
     return self->bus.exchange(self->bus.context, command, answer, sizeof command);
 }
 
-static bool fail_transfer(linux_error_t *error) {
-    return linux_fail(error, "ADXL355: the SPI transfer failed");
+static bool fail(part_problem_t *problem, part_verdict_t verdict) {
+    problem->verdict = verdict;
+    return false;
 }
 
-static bool check_part(const adxl355_t *self, linux_error_t *error) {
+static bool check_part(const adxl355_t *self, part_problem_t *problem) {
     static const uint8_t expected[IDS] = {0xAD, 0x1D, 0xED};
-    uint8_t ids[IDS];
-    if (!read_registers(self, DEVID_AD, ids, IDS)) {
-        return fail_transfer(error);
+    if (!read_registers(self, DEVID_AD, problem->bytes, IDS)) {
+        return fail(problem, PART_NO_TRANSFER);
     }
-    return memcmp(ids, expected, IDS) == 0 ||
-           linux_fail(error,
-                      "ADXL355: not there: its ids read %02x %02x %02x instead of ad 1d ed; check "
-                      "wiring, chip select and clock",
-                      ids[0], ids[1], ids[2]);
-}
-
-static void pause_for_reset(void) {
-    const struct timespec pause = {.tv_nsec = RESET_NS};
-    (void)nanosleep(&pause, NULL); // a signal cuts it short: what follows is read back anyway
+    return memcmp(problem->bytes, expected, IDS) == 0 || fail(problem, PART_NOT_THERE);
 }
 
 // A reset may load trimming values wrongly, says the data sheet: compare the shadow registers with
 // those before it, and reset again.
-static bool reset(const adxl355_t *self, linux_error_t *error) {
+static bool reset(const adxl355_t *self, part_problem_t *problem) {
     uint8_t before[SHADOWS];
     uint8_t after[SHADOWS];
     if (!read_registers(self, SHADOW, before, SHADOWS)) {
-        return fail_transfer(error);
+        return fail(problem, PART_NO_TRANSFER);
     }
     for (int i = 0; i < RESETS_AT_MOST; i++) {
         if (!write_register(self, RESET, RESET_CODE)) {
-            return fail_transfer(error);
+            return fail(problem, PART_NO_TRANSFER);
         }
-        pause_for_reset();
+        self->bus.pause_ms(self->bus.context, RESET_MS);
         if (!read_registers(self, SHADOW, after, SHADOWS)) {
-            return fail_transfer(error);
+            return fail(problem, PART_NO_TRANSFER);
         }
         if (memcmp(before, after, SHADOWS) == 0) {
             return true;
         }
     }
-    return linux_fail(error,
-                      "ADXL355: does not reset (shadow registers differ); power it off and on");
+    return fail(problem, PART_NO_RESET);
 }
 
 static bool set_register(const adxl355_t *self, uint8_t address, uint8_t value,
-                         linux_error_t *error) {
+                         part_problem_t *problem) {
     uint8_t stored;
     if (!write_register(self, address, value) || !read_registers(self, address, &stored, 1)) {
-        return fail_transfer(error);
+        return fail(problem, PART_NO_TRANSFER);
     }
-    return stored == value ||
-           linux_fail(error, "ADXL355: register 0x%02x reads 0x%02x after 0x%02x was written",
-                      address, stored, value);
+    problem->bytes[0] = address;
+    problem->bytes[1] = value;
+    problem->bytes[2] = stored;
+    return stored == value || fail(problem, PART_NOT_STORED);
 }
 
 /// FILTER: no high-pass, output data rate 4000 Hz / 2^code.
@@ -116,22 +106,23 @@ static bool range_code(uint32_t range_g, uint8_t *code) {
     return range_g == 2u || range_g == 4u || range_g == 8u;
 }
 
-bool adxl355_start(adxl355_t *self, adxl355_bus_t bus, uint32_t range_g, uint32_t rate_Hz,
-                   linux_error_t *error) {
+bool adxl355_start(adxl355_t *self, part_bus_t bus, uint32_t range_g, uint32_t rate_Hz,
+                   part_problem_t *problem) {
     uint8_t range = 0;
     uint8_t filter = 0;
     *self = (adxl355_t){.bus = bus};
+    problem->verdict = PART_WELL;
     if (!range_code(range_g, &range)) {
-        return linux_fail(error, "ADXL355: range %u g: one of 2, 4, 8", range_g);
+        return fail(problem, PART_NO_RANGE);
     }
     if (!filter_code(rate_Hz, &filter)) {
-        return linux_fail(error, "ADXL355: rate %u Hz: one of 4000, 2000, 1000, 500", rate_Hz);
+        return fail(problem, PART_NO_RATE);
     }
     const uint8_t range_register = (uint8_t)((RANGE_RESET & ~RANGE_MASK) | range);
-    return check_part(self, error) && reset(self, error) &&
-           set_register(self, RANGE, range_register, error) &&
-           set_register(self, FILTER, filter, error) &&
-           set_register(self, POWER_CTL, POWER_MEASURE, error);
+    return check_part(self, problem) && reset(self, problem) &&
+           set_register(self, RANGE, range_register, problem) &&
+           set_register(self, FILTER, filter, problem) &&
+           set_register(self, POWER_CTL, POWER_MEASURE, problem);
 }
 
 /// 20 bits, left-justified in three bytes, most significant first.
