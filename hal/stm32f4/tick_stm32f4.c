@@ -31,3 +31,11 @@ uint32_t hal_tick_elapsed(hal_tick_t *tick) {
     tick->last_count += ticks * tick->period_counts;
     return ticks;
 }
+
+uint32_t tick_stm32f4_left(const hal_tick_t *tick, uint32_t core_Hz) {
+    const uint32_t passed = tick_stm32f4_count() - tick->last_count;
+    if (passed >= tick->period_counts) {
+        return 0;
+    }
+    return (uint32_t)((uint64_t)(tick->period_counts - passed) * core_Hz / tick->clock_Hz);
+}

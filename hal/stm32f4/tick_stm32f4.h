@@ -15,4 +15,7 @@ struct hal_tick {
 /// The count, of clock_Hz, once the tick has been started.
 uint32_t tick_stm32f4_count(void);
 
+/// Cycles of a clock of core_Hz until the next tick is due; 0: it is.
+uint32_t tick_stm32f4_left(const hal_tick_t *tick, uint32_t core_Hz);
+
 #endif

@@ -53,8 +53,12 @@ void uart_stm32f4_interrupt(hal_uart_t *uart) {
     uart->put = uart->put + 1u;
 }
 
+bool uart_stm32f4_has_come(const hal_uart_t *uart) {
+    return uart->put != uart->taken;
+}
+
 bool hal_uart_read(hal_uart_t *uart, uint8_t *byte) {
-    if (uart->put == uart->taken) {
+    if (!uart_stm32f4_has_come(uart)) {
         return false;
     }
     *byte = uart->ring[uart->taken % UART_RING_BYTES];

@@ -23,6 +23,9 @@ void uart_stm32f4_open(hal_uart_t *uart, uint32_t base, uint32_t clock_Hz, uint3
 /// What the USART's vector calls.
 void uart_stm32f4_interrupt(hal_uart_t *uart);
 
+/// Whether hal_uart_read has a byte.
+bool uart_stm32f4_has_come(const hal_uart_t *uart);
+
 /// Whether hal_uart_write would not wait.
 bool uart_stm32f4_is_free(const hal_uart_t *uart);
 

@@ -91,6 +91,10 @@ bool free_node_end(free_node_t *self, const can_frame_t *frames, uint32_t count)
     return keep_fault(self);
 }
 
+bool free_node_is_idle(const free_node_t *self) {
+    return self->queue.count == 0u && !self->kept.is_writing;
+}
+
 void free_node_store(free_node_t *self) {
     const hal_nvm_progress_t progress = kept_work(&self->kept);
     if (progress == HAL_NVM_DONE || progress == HAL_NVM_FAILED) {

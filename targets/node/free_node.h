@@ -41,6 +41,9 @@ void free_node_begin(free_node_t *self, uint32_t ticks);
 /// the processor: its record is to be forgotten.
 bool free_node_end(free_node_t *self, const can_frame_t *frames, uint32_t count);
 
+/// Whether nothing waits to be sent or saved.
+bool free_node_is_idle(const free_node_t *self);
+
 /// A slice of what is being saved, in idle time.
 void free_node_store(free_node_t *self);
 

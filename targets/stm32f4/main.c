@@ -1,16 +1,19 @@
 // The controller with its CAN interface on a board of its own, free-running: SLCAN frames on the
 // console, the tick from TIM5. What every such image does is in free_node.h, what the board is in
 // boards/.
-#include "board_stm32f4.h"
+#include "board.h"
 #include "clocks.h"
 #include "fault.h"
 #include "free_node.h"
+#include "idle.h"
 #include "nvic.h"
 #include "nvm_stm32f4.h"
+#include "output.h"
 #include "reset_cause.h"
 #include "safe.h"
 #include "slcan.h"
 #include "stack.h"
+#include "stm32f4_spi.h"
 #include "tick_stm32f4.h"
 #include "uart_stm32f4.h"
 #include "vectors.h"
@@ -31,6 +34,7 @@ typedef struct {
     reset_cause_t cause;
     hal_nvm_memory_t memory;
     hal_tick_t tick;
+    hal_accel_t accel;
     slcan_decoder_t decoder;
     bool acknowledge_was_up;
     bool has_watchdog;
@@ -43,10 +47,6 @@ extern const uint32_t stack_limit[]; // image.ld
 void interrupt_console(void) {
     uart_stm32f4_interrupt(&console);
 }
-
-void interrupt_current(void) {}
-
-void interrupt_break(void) {}
 
 static void open_console(const clocks_t *clocks) {
     const stm32f4_board_t *const board = &stm32f4_board;
@@ -104,6 +104,9 @@ static void read_inputs(board_t *board) {
     common->inputs.enable = !pin_read(stm32f4_board.enable);
     common->inputs.fault_reset = is_acknowledged(board);
     common->inputs.rx_lost = console.overruns;
+    common->inputs.sensor[0].is_fresh =
+        hal_accel_read(&board->accel, HAL_AXIS_Z, &common->inputs.sensor[0].counts);
+    output_measure(&common->inputs.driver[0]);
 }
 
 static bool is_driven(const board_t *board) {
@@ -111,22 +114,23 @@ static bool is_driven(const board_t *board) {
 }
 
 static void write_outputs(const board_t *board) {
-    const quiesce_state_t state = board->common.node.out.telemetry.state;
-    pin_write(stm32f4_board.drive_enable, is_driven(board));
-    pin_write(stm32f4_board.fault_lamp, state == QUIESCE_STATE_FAULT);
+    const quiesce_out_t *const out = &board->common.node.out;
+    output_write(out->damper[0].current_cmd_mA, is_driven(board));
+    pin_write(stm32f4_board.fault_lamp, out->telemetry.state == QUIESCE_STATE_FAULT);
 }
 
-// What is told when the watchdog is fed: a tick has run, and the stack has not reached its end.
+// Feeds the watchdog: a tick has run, the current loop has, and the stack has not reached its end.
 static void supervise(void) {
-    if (*stack_limit == STACK_PAINT) {
+    if (output_is_alive() && *stack_limit == STACK_PAINT) {
         watchdog_feed();
     }
 }
 
 static void restart(board_t *board, const quiesce_params_t *params) {
-    pin_write(stm32f4_board.drive_enable, false);
+    output_write(0, false);
     node_restart(&board->common.node, params);
     use_rate(board);
+    write_outputs(board);
 }
 
 static void run_tick(board_t *board, uint32_t ticks) {
@@ -164,14 +168,34 @@ static void store_waiting(board_t *board) {
     }
 }
 
-static void start(board_t *board) {
+// In an emulator, which has neither, samples and currents are the bus's.
+static bool open_sensor(board_t *board) {
+    const accel_wiring_t *const wiring = &stm32f4_board.accel;
+    const clocks_t *const clocks = &board->clocks;
+    quiesce_params_t shipped;
+    quiesce_params_default(&shipped);
+    if (clocks->source == CLOCK_ABSENT || wiring->part == ACCEL_NONE) {
+        return false;
+    }
+    (void)accel_stm32f4_open(&board->accel, wiring,
+                             wiring->spi == SPI1_BASE ? clocks->apb2_Hz : clocks->apb1_Hz,
+                             clocks->core_Hz, (uint32_t)shipped.tick_rate_Hz);
+    return true; // one that does not start gives no sample, and the controller says so
+}
+
+static void start_common(board_t *board) {
+    const uint32_t every_sensor = (1u << QUIESCE_SENSORS) - 1u;
     const free_node_start_t how = {
         .wiring = NULL,
         .sources = {.enable = stm32f4_board.enable == PIN_NONE ? NODE_ENABLE_CAN : NODE_ENABLE_BOTH,
-                    .sensors_on_bus = (1u << QUIESCE_SENSORS) - 1u},
+                    .sensors_on_bus = open_sensor(board) ? 0u : every_sensor},
         .memory = &board->memory,
         .is_after_fault = fault_is_recorded(),
     };
+    free_node_start(&board->common, &how);
+}
+
+static void start(board_t *board) {
     clocks_start(&board->clocks, stm32f4_board.crystal_Hz, stm32f4_board.crystal_is_external);
     board->has_watchdog = watchdog_start(START_WATCHDOG_MS);
     board->cause = reset_cause_take();
@@ -179,9 +203,19 @@ static void start(board_t *board) {
     open_inputs();
     open_console(&board->clocks);
     slcan_decoder_init(&board->decoder);
-    free_node_start(&board->common, &how);
+    start_common(board);
+    output_open(&board->clocks);
     use_rate(board);
     (void)watchdog_start(WATCHDOG_MS);
+}
+
+// Sleeps where nothing waits: until the next tick, a byte or a step of the current loop.
+static void rest(const board_t *board) {
+    nvic_hold();
+    if (free_node_is_idle(&board->common) && !uart_stm32f4_has_come(&console)) {
+        idle_cycles(tick_stm32f4_left(&board->tick, board->clocks.core_Hz));
+    }
+    nvic_release();
 }
 
 int main(void) {
@@ -196,5 +230,6 @@ int main(void) {
         receive_waiting(&board);
         send_waiting(&board);
         store_waiting(&board);
+        rest(&board);
     }
 }

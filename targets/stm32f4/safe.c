@@ -1,10 +1,11 @@
 #include "safe.h"
 
-#include "board_stm32f4.h"
+#include "board.h"
 #include "fault.h"
+#include "output.h"
 
 void safe_outputs(void) {
-    pin_output(stm32f4_board.drive_enable, false);
+    output_cut();
     pin_output(stm32f4_board.fault_lamp, true);
 }
 

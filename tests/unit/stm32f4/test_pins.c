@@ -102,6 +102,18 @@ static void test_ticks_are_whole_periods_also_over_the_counts_wrap(void) {
     TEST_ASSERT_BITS_HIGH(TIM5_CR1_CEN, fake_get(TIM5_BASE + TIM5_CR1));
 }
 
+static void test_what_is_left_of_a_tick_is_told_in_cycles_of_the_core(void) {
+    hal_tick_t tick = {.clock_Hz = 84000000u};
+    TEST_ASSERT_TRUE(hal_tick_start(&tick, 1000));
+    TEST_ASSERT_EQUAL_UINT32(168000, tick_stm32f4_left(&tick, 168000000u));
+    fake_set(TIM5_BASE + TIM5_CNT, 83999u);
+    TEST_ASSERT_EQUAL_UINT32(2, tick_stm32f4_left(&tick, 168000000u));
+    fake_set(TIM5_BASE + TIM5_CNT, 84000u);
+    TEST_ASSERT_EQUAL_UINT32(0, tick_stm32f4_left(&tick, 168000000u));
+    fake_set(TIM5_BASE + TIM5_CNT, 90000u);
+    TEST_ASSERT_EQUAL_UINT32(0, tick_stm32f4_left(&tick, 168000000u));
+}
+
 static void test_rates_that_cannot_be_made_are_refused(void) {
     hal_tick_t tick = {.clock_Hz = 84000000u};
     TEST_ASSERT_FALSE(hal_tick_start(&tick, 0));
@@ -191,6 +203,7 @@ int main(void) {
     RUN_TEST(test_a_function_leaves_the_other_pins_alone);
     RUN_TEST(test_inputs_are_read_and_one_that_is_not_wired_is_low);
     RUN_TEST(test_ticks_are_whole_periods_also_over_the_counts_wrap);
+    RUN_TEST(test_what_is_left_of_a_tick_is_told_in_cycles_of_the_core);
     RUN_TEST(test_rates_that_cannot_be_made_are_refused);
     RUN_TEST(test_the_divider_is_rounded_to_a_sixteenth);
     RUN_TEST(test_bytes_go_through_the_ring_in_their_order);

@@ -1,9 +1,18 @@
 /// What a board is: its crystal, its console, its pins. One file a board in
 /// targets/stm32f4/boards/, which defines stm32f4_board.
-#ifndef BOARD_STM32F4_H
-#define BOARD_STM32F4_H
+#ifndef BOARD_H
+#define BOARD_H
 
+#include "bridge.h"
+#include "current_loop.h"
 #include "pins.h"
+#include "spi_stm32f4.h"
+
+typedef enum {
+    OUTPUT_NONE = 0, ///< the demand goes out on the bus alone
+    OUTPUT_BRIDGE,   ///< PWM and the current loop
+    OUTPUT_DAC,      ///< a voltage for an external driver
+} board_output_t;
 
 typedef struct {
     uint8_t pin;
@@ -25,6 +34,11 @@ typedef struct {
     uint8_t acknowledge;  ///< a button to ground: low acknowledges a latched fault
     uint8_t fault_lamp;   ///< high: a fault, or not started yet
     uint8_t drive_enable; ///< high: the driver may drive; a pull-down holds it where nothing runs
+    accel_wiring_t accel; ///< ACCEL_NONE: samples come from the bus
+    board_output_t output;
+    bridge_wiring_t bridge;
+    current_loop_cfg_t loop;   ///< of the bridge
+    int32_t dac_full_scale_mA; ///< at the DAC's full scale
 } stm32f4_board_t;
 
 extern const stm32f4_board_t stm32f4_board;

@@ -1,0 +1,102 @@
+#include "output.h"
+
+#include "board.h"
+#include "dac.h"
+#include "nvic.h"
+#include "stm32f4_interrupts.h"
+#include "vectors.h"
+
+#define CUT_OFF_PRIORITY 0x00u
+#define CURRENT_PRIORITY 0x10u
+
+static struct {
+    board_output_t kind;
+    bridge_t bridge;
+    current_loop_t loop;
+    volatile uint32_t steps; ///< of the current loop
+    uint32_t steps_seen;
+    volatile bool is_cut; ///< by the break input
+    volatile bridge_measured_t measured;
+} output;
+
+void interrupt_current(void) {
+    const bridge_measured_t measured = bridge_take(&output.bridge);
+    output.measured.current_mA = measured.current_mA;
+    output.measured.supply_mV = measured.supply_mV;
+    output.steps = output.steps + 1u;
+    if (bridge_is_on()) {
+        bridge_duty(&output.bridge,
+                    current_loop_step(&output.loop, measured.current_mA, measured.supply_mV));
+    } else {
+        current_loop_rest(&output.loop);
+    }
+}
+
+void interrupt_break(void) {
+    bridge_enable(&output.bridge, false);
+    bridge_forget_break();
+    output.is_cut = true;
+}
+
+void output_open(const clocks_t *clocks) {
+    output.kind = clocks->source == CLOCK_ABSENT ? OUTPUT_NONE : stm32f4_board.output;
+    if (output.kind == OUTPUT_DAC) {
+        dac_open();
+    }
+    if (output.kind == OUTPUT_BRIDGE && current_loop_init(&output.loop, &stm32f4_board.loop)) {
+        bridge_open(&output.bridge, &stm32f4_board.bridge, clocks->apb2_timer_Hz);
+        nvic_enable(TIM1_BRK_TIM9_INTERRUPT, CUT_OFF_PRIORITY);
+        nvic_enable(ADC_INTERRUPT, CURRENT_PRIORITY);
+    }
+}
+
+void output_measure(quiesce_driver_t *driver) {
+    if (output.kind != OUTPUT_BRIDGE) {
+        return;
+    }
+    driver->is_measured = output.steps != output.steps_seen;
+    driver->has_failed = !driver->is_measured || output.is_cut;
+    driver->current_mA = output.measured.current_mA;
+}
+
+static void write_bridge(int32_t current_mA, bool is_enabled) {
+    nvic_hold();
+    current_loop_command(&output.loop, is_enabled ? current_mA : 0);
+    if (!is_enabled) {
+        output.is_cut = false;
+    }
+    bridge_enable(&output.bridge, is_enabled && !output.is_cut);
+    nvic_release();
+}
+
+static void write_dac(int32_t current_mA, bool is_enabled) {
+    const int32_t most_mA = stm32f4_board.dac_full_scale_mA;
+    const int32_t limited_mA = current_mA < most_mA ? current_mA : most_mA;
+    dac_write(is_enabled && limited_mA > 0 ? (uint32_t)limited_mA * DAC_FULL / (uint32_t)most_mA
+                                           : 0u);
+}
+
+void output_write(int32_t current_mA, bool is_enabled) {
+    pin_write(stm32f4_board.drive_enable, is_enabled);
+    if (output.kind == OUTPUT_BRIDGE) {
+        write_bridge(current_mA, is_enabled);
+    } else if (output.kind == OUTPUT_DAC) {
+        write_dac(current_mA, is_enabled);
+    }
+}
+
+void output_cut(void) {
+    pin_output(stm32f4_board.drive_enable, false);
+    if (stm32f4_board.output == OUTPUT_BRIDGE) {
+        bridge_cut();
+    }
+    if (stm32f4_board.output == OUTPUT_DAC) {
+        dac_write(0);
+    }
+}
+
+bool output_is_alive(void) {
+    const uint32_t steps = output.steps - output.steps_seen;
+    output.steps_seen = output.steps;
+    return output.kind != OUTPUT_BRIDGE || steps > 0u;
+}
