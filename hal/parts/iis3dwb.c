@@ -81,9 +81,9 @@ static bool set_register(const iis3dwb_t *self, uint8_t address, uint8_t value,
 // In the order of FS_XL's codes.
 static bool range_code(uint32_t range_g, uint8_t *code) {
     static const uint8_t ranges_g[] = {2, 16, 4, 8};
-    for (uint8_t i = 0; i < sizeof ranges_g; i++) {
+    for (size_t i = 0; i < sizeof ranges_g; i++) {
         if (ranges_g[i] == range_g) {
-            *code = i;
+            *code = (uint8_t)i;
             return true;
         }
     }

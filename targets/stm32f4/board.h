@@ -4,6 +4,7 @@
 #define BOARD_H
 
 #include "bridge.h"
+#include "can_stm32f4.h"
 #include "current_loop.h"
 #include "pins.h"
 #include "spi_stm32f4.h"
@@ -34,6 +35,7 @@ typedef struct {
     uint8_t acknowledge;  ///< a button to ground: low acknowledges a latched fault
     uint8_t fault_lamp;   ///< high: a fault, or not started yet
     uint8_t drive_enable; ///< high: the driver may drive; a pull-down holds it where nothing runs
+    can_wiring_t can;     ///< beside the console; bit rate 0: none
     accel_wiring_t accel; ///< ACCEL_NONE: samples come from the bus
     board_output_t output;
     bridge_wiring_t bridge;

@@ -2,6 +2,7 @@
 // console, the tick from TIM5. What every such image does is in free_node.h, what the board is in
 // boards/.
 #include "board.h"
+#include "bus.h"
 #include "clocks.h"
 #include "fault.h"
 #include "free_node.h"
@@ -35,6 +36,7 @@ typedef struct {
     hal_nvm_memory_t memory;
     hal_tick_t tick;
     hal_accel_t accel;
+    bus_t bus;
     slcan_decoder_t decoder;
     bool acknowledge_was_up;
     bool has_watchdog;
@@ -103,7 +105,8 @@ static void read_inputs(board_t *board) {
     common->estop_line = pin_read(stm32f4_board.estop);
     common->inputs.enable = !pin_read(stm32f4_board.enable);
     common->inputs.fault_reset = is_acknowledged(board);
-    common->inputs.rx_lost = console.overruns;
+    common->inputs.rx_lost = console.overruns + board->bus.can.rx_lost;
+    common->inputs.bus_off_count = board->bus.can.bus_off_count;
     common->inputs.sensor[0].is_fresh =
         hal_accel_read(&board->accel, HAL_AXIS_Z, &common->inputs.sensor[0].counts);
     output_measure(&common->inputs.driver[0]);
@@ -146,7 +149,9 @@ static void run_tick(board_t *board, uint32_t ticks) {
     if (params != NULL) {
         restart(board, params);
     }
-    if (free_node_end(common, frames, node_frames(&common->node, frames))) {
+    const uint32_t count = node_frames(&common->node, frames);
+    bus_put(&board->bus, frames, count, &common->queue.unsent);
+    if (free_node_end(common, frames, count)) {
         fault_forget();
     }
     common->inputs.work_us = us_since(board, begin);
@@ -203,16 +208,19 @@ static void start(board_t *board) {
     open_inputs();
     open_console(&board->clocks);
     slcan_decoder_init(&board->decoder);
+    bus_open(&board->bus, &board->clocks);
     start_common(board);
     output_open(&board->clocks);
     use_rate(board);
     (void)watchdog_start(WATCHDOG_MS);
 }
 
-// Sleeps where nothing waits: until the next tick, a byte or a step of the current loop.
+// Sleeps where nothing waits: until the next tick, a byte or a step of the current loop. A bus that
+// is not the console has three frames of room, and is asked all the time.
 static void rest(const board_t *board) {
     nvic_hold();
-    if (free_node_is_idle(&board->common) && !uart_stm32f4_has_come(&console)) {
+    if (!board->bus.can.is_open && free_node_is_idle(&board->common) &&
+        !uart_stm32f4_has_come(&console)) {
         idle_cycles(tick_stm32f4_left(&board->tick, board->clocks.core_Hz));
     }
     nvic_release();
@@ -229,6 +237,7 @@ int main(void) {
         }
         receive_waiting(&board);
         send_waiting(&board);
+        bus_work(&board.bus, &board.common.node);
         store_waiting(&board);
         rest(&board);
     }

@@ -19,6 +19,7 @@ const stm32f4_board_t stm32f4_board = {
     .acknowledge = PIN_C(13),  // B1, the blue button
     .fault_lamp = PIN_B(5),    // CN10-29, D4
     .drive_enable = PIN_B(10), // CN10-25, D6
+    .can = {.rx = PIN_B(8), .tx = PIN_B(9), .bit_rate_Hz = 500000u},
     .accel =
         {
             .part = ACCEL_ADXL355,

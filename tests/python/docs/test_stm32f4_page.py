@@ -39,7 +39,7 @@ def test_no_pin_of_a_board_is_used_twice(board: str) -> None:
 def test_the_figure_has_the_pins_of_the_board() -> None:
     figure = (ROOT / "docs/howto/figures/stm32f4-nucleo.svg").read_text()
     shown = {pin for pin, _ in FIGURE_PIN.findall(figure)}
-    beside = {"PA2", "PA3", "PC13"}  # the console and the button are on the board itself
+    beside = {"PA2", "PA3", "PC13", "PB8", "PB9"}  # console, button, CAN
     assert shown == set(pins_of("nucleo_f446re").values()) - beside
 
 
