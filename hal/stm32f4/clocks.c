@@ -32,15 +32,15 @@
 #define BY_4 5u // of the APB1's
 
 // 168 MHz: VCO input of 2 MHz, or 1 MHz where the crystal has no whole number of 2 MHz; VCO 336
-// MHz, over 2; 48 MHz of it for what needs that.
+// MHz, over 2 (PLLP 0); 48 MHz of it for what needs that.
 static bool pll_word(uint32_t in_Hz, bool is_crystal, uint32_t *word) {
     const uint32_t step_MHz = in_Hz % (2u * MHz) == 0u ? 2u : 1u;
     if (in_Hz < 4u * MHz || in_Hz > 26u * MHz || in_Hz % MHz != 0u) {
         return false;
     }
     *word = (in_Hz / (step_MHz * MHz)) << RCC_PLLCFGR_PLLM_AT |
-            (336u / step_MHz) << RCC_PLLCFGR_PLLN_AT | 0u << RCC_PLLCFGR_PLLP_AT |
-            7u << RCC_PLLCFGR_PLLQ_AT | (is_crystal ? RCC_PLLCFGR_PLLSRC : 0u);
+            (336u / step_MHz) << RCC_PLLCFGR_PLLN_AT | 7u << RCC_PLLCFGR_PLLQ_AT |
+            (is_crystal ? RCC_PLLCFGR_PLLSRC : 0u);
     return true;
 }
 

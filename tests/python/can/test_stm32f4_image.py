@@ -83,7 +83,7 @@ def test_image_survives_resets_in_a_row(tmp_path: Path, resets: int) -> None:
 def test_what_cannot_be_saved_is_refused_and_nothing_hangs() -> None:
     with running(image_of("olimex_h405"), MACHINE) as rig:
         rig.until("a status", lambda name: name == "Status")
-        assert rig.ask("SAVE")["result"] == "FAILED"  # flash is read-only there
+        assert rig.ask("SAVE")["result"] == "STORE_FAILED"  # flash is read-only there
         rig.until("a demand", lambda name: name == "CurrentDemand")
 
 
