@@ -178,20 +178,14 @@ def close(bus: can.BusABC) -> None:
         bus.serialPortOrig.close()
 
 
-# An instruction takes 2 ns of the board's time, which then is slow: a machine under load loses no
-# tick, and its samples come within the 4 ms that a sensor may be off.
-BUSY = ("-icount", "shift=1,sleep=off")
-
-
 @contextmanager
-def running(
-    image: Path, options: tuple[str, ...] = ("-M", "mps2-an386"), pace: tuple[str, ...] = BUSY
-) -> Iterator[Rig]:
-    """The image in the emulator, and a bus to it. options: QEMU's, the machine's among them. pace:
-    of the board's time; an image that sleeps where it waits needs none."""
+def running(image: Path, options: tuple[str, ...] = ("-M", "mps2-an386")) -> Iterator[Rig]:
+    """The image in the emulator, and a bus to it. options: QEMU's, the machine's among them."""
+    # An instruction takes 2 ns of the board's time, which then is slow: a machine under load loses
+    # no tick, and its samples come within the 4 ms that a sensor may be off.
     qemu = subprocess.Popen(
-        ["qemu-system-arm", *options, "-display", "none", "-monitor", "none", *pace]
-        + ["-serial", "pty", "-kernel", str(image)],
+        ["qemu-system-arm", *options, "-display", "none", "-monitor", "none"]
+        + ["-icount", "shift=1,sleep=off", "-serial", "pty", "-kernel", str(image)],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
