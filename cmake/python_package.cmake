@@ -17,8 +17,8 @@ install(DIRECTORY sim_hil/data COMPONENT python DESTINATION ${tree}/sim_hil)
 # C that `rules compile` and `identify export` hand out, and that rules are walked with.
 install(DIRECTORY firmware/base firmware/fuzzy COMPONENT python DESTINATION ${tree}/firmware
         FILES_MATCHING PATTERN *.c PATTERN *.h)
-install(DIRECTORY sim_hil/damper sim_hil/base COMPONENT python DESTINATION ${tree}/sim_hil
-        FILES_MATCHING PATTERN *.h)
+install(DIRECTORY sim_hil/damper/learned/cores COMPONENT python
+        DESTINATION ${tree}/sim_hil/damper/learned)
 install(DIRECTORY firmware/plants COMPONENT python DESTINATION ${tree}/firmware)
 install(FILES firmware/param/parameters.toml COMPONENT python DESTINATION ${tree}/firmware/param)
 install(FILES firmware/comm/quiesce.dbc COMPONENT python DESTINATION ${tree}/firmware/comm)

@@ -41,13 +41,12 @@ T bouc_wen_rate(const BoucWenShape<T> &p, const T &v, const T &z) {
 }
 
 /// Largest |d z' / d z| for |z| <= z_max.
-inline double bouc_wen_fastest_1_s(const BoucWenShape<double> &p, double speed_m_s) {
-    const double sum = p.beta + p.gamma;
-    if (!(p.a > 0.0 && sum > 0.0)) {
-        return 0.0;
-    }
-    return p.n * std::max(sum, std::abs(p.gamma - p.beta)) *
-           std::pow(p.a / sum, (p.n - 1.0) / p.n) * speed_m_s;
+template <class T>
+T bouc_wen_fastest_1_s(const BoucWenShape<T> &p, const T &speed_m_s) {
+    const T sum = p.beta + p.gamma;
+    const T rate = p.n * larger(sum, absolute(p.gamma - p.beta)) *
+                   power(p.a / larger(sum, T(1e-300)), (p.n - T(1.0)) / p.n) * speed_m_s;
+    return select(smaller(p.a, sum) > T(0.0), rate, T(0.0));
 }
 
 /// Largest dz/dx for |z| <= z_max.

@@ -11,11 +11,10 @@
 #ifndef QUIESCE_ELASTOMER_H
 #define QUIESCE_ELASTOMER_H
 
-#include <algorithm>
 #include <array>
-#include <limits>
 
-#include "damper.h"
+#include "elementary.h"
+#include "motion_of.h"
 
 namespace quiesce {
 
@@ -28,37 +27,49 @@ struct ElastomerParams {
     double stroke_m;                   ///< the model ends at -stroke_m, > 0
 };
 
+template <class T>
+struct ElastomerLaw {
+    T area_m2;
+    T thickness_m;
+    std::array<T, 3> storage_MPa;
+    T loss_factor;
+    T loss_freq_Hz;
+
+    T force_N(const Motion<T> &m) const { return stiffness_N_m(m.i) * (m.x + loss_s() * m.v); }
+    T stiffness_N_m(const T &current_A) const {
+        const std::array<T, 3> &E = storage_MPa;
+        // Where the modulus falls at last, no further than to its highest.
+        const T falling = smaller(E[2], T(-1e-300));
+        const T highest_A = T(-0.5) * E[1] / falling;
+        const T I = select(E[2] < T(0.0), smaller(current_A, highest_A), current_A);
+        return T(1e6) * (E[0] + I * (E[1] + I * E[2])) * area_m2 / thickness_m;
+    }
+    /// loss_factor / w
+    T loss_s() const { return loss_factor / (T(6.28318530717958647692) * loss_freq_Hz); }
+};
+
 class Elastomer final : public Damper {
   public:
     explicit Elastomer(const ElastomerParams &params)
-        : params_(params), highest_A_(params.storage_MPa[2] < 0.0
-                                          ? -0.5 * params.storage_MPa[1] / params.storage_MPa[2]
-                                          : std::numeric_limits<double>::infinity()) {}
+        : law_{params.area_m2, params.thickness_m, params.storage_MPa, params.loss_factor,
+               params.loss_freq_Hz},
+          stroke_m_(params.stroke_m) {}
 
     double force_N(const DamperInput &input, const double * /*state*/,
                    double * /*rates*/) const override {
-        return stiffest_N_m(input.current_A) * (input.position_m + loss_s() * input.velocity_m_s);
+        return law_.force_N(motion_of(input));
     }
     double stiffest_N_s_m(double current_A) const override {
-        return stiffest_N_m(current_A) * loss_s();
+        return law_.stiffness_N_m(current_A) * law_.loss_s();
     }
     double stiffest_N_m(double current_A) const override {
-        constexpr double kPaPerMPa = 1e6;
-        const double I = std::min(current_A, highest_A_);
-        const auto &E = params_.storage_MPa;
-        return kPaPerMPa * (E[0] + I * (E[1] + I * E[2])) * params_.area_m2 / params_.thickness_m;
+        return law_.stiffness_N_m(current_A);
     }
-    double lowest_position_m() const override { return -params_.stroke_m; }
+    double lowest_position_m() const override { return -stroke_m_; }
 
   private:
-    /// loss_factor / w
-    double loss_s() const {
-        constexpr double kTwoPi = 6.28318530717958647692;
-        return params_.loss_factor / (kTwoPi * params_.loss_freq_Hz);
-    }
-
-    ElastomerParams params_;
-    double highest_A_; ///< current of the highest modulus
+    ElastomerLaw<double> law_;
+    double stroke_m_;
 };
 
 } // namespace quiesce

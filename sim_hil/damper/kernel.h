@@ -1,12 +1,13 @@
-/// What a kernel is: the equations of one damper model, written once for a double and for sixteen
-/// candidates at once. A kernel is a struct with
+/// What a kernel is: the equations of one damper model, written once for a double, for sixteen
+/// candidates at once, and for what is written in other languages from them
+/// (python/equations/traced.h). A kernel is a struct with
 ///
 ///   static constexpr const char *kName, *kTitle, *kSource;
 ///   static constexpr std::array<ParameterInfo, N> kParameters;
 ///   static constexpr int kStates;           // 0: the force is a function of the motion
 ///   static constexpr bool kUsesAccel;       // looks at the acceleration (its sign)
 ///   template <class T> static T force_N(const T *p, const Motion<T> &m, const T *z, T *rates);
-///   static double fastest_rate_1_s(const double *p, double speed_m_s);
+///   template <class T> static T fastest_rate_1_s(const T *p, const T &speed_m_s);
 ///   static double stiffest_N_s_m(const double *p);
 ///   static double stiffest_N_m(const double *p);
 ///   static bool is_passive(const double *p);

@@ -11,6 +11,7 @@
 #include "field_law.h"
 #include "fluid_law.h"
 #include "kernel.h"
+#include "motion_of.h"
 
 namespace quiesce {
 
@@ -33,9 +34,7 @@ class KernelDamper final : public Damper {
 
     double force_N(const DamperInput &input, const double *state, double *rates) const override {
         const Parameters p = parameters(input.current_A, input.temperature_C);
-        const Motion<double> motion{input.position_m, input.velocity_m_s, input.accel_m_s2,
-                                    input.current_A};
-        return Kernel::force_N(p.data(), motion, state, rates);
+        return Kernel::force_N(p.data(), motion_of(input), state, rates);
     }
     double stiffest_N_s_m(double current_A) const override {
         return Kernel::stiffest_N_s_m(coldest(current_A).data());

@@ -3,7 +3,7 @@
 #ifndef QUIESCE_VISCOUS_H
 #define QUIESCE_VISCOUS_H
 
-#include "damper.h"
+#include "motion_of.h"
 
 namespace quiesce {
 
@@ -13,21 +13,32 @@ struct ViscousParams {
     double stroke_m;    ///< the model ends at -stroke_m, > 0
 };
 
+template <class T>
+struct ViscousLaw {
+    T base_N_s_m;
+    T per_A_N_s_m;
+
+    T damping_N_s_m(const T &current_A) const { return base_N_s_m + per_A_N_s_m * current_A; }
+    T force_N(const Motion<T> &m) const { return damping_N_s_m(m.i) * m.v; }
+};
+
 class Viscous final : public Damper {
   public:
-    explicit Viscous(const ViscousParams &params) : params_(params) {}
+    explicit Viscous(const ViscousParams &params)
+        : law_{params.base_N_s_m, params.per_A_N_s_m}, stroke_m_(params.stroke_m) {}
 
     double force_N(const DamperInput &input, const double * /*state*/,
                    double * /*rates*/) const override {
-        return stiffest_N_s_m(input.current_A) * input.velocity_m_s;
+        return law_.force_N(motion_of(input));
     }
     double stiffest_N_s_m(double current_A) const override {
-        return params_.base_N_s_m + params_.per_A_N_s_m * current_A;
+        return law_.damping_N_s_m(current_A);
     }
-    double lowest_position_m() const override { return -params_.stroke_m; }
+    double lowest_position_m() const override { return -stroke_m_; }
 
   private:
-    ViscousParams params_;
+    ViscousLaw<double> law_;
+    double stroke_m_;
 };
 
 } // namespace quiesce

@@ -13,7 +13,9 @@
 
 #include "damper_over_motion.h"
 #include "damper_section.h"
+#include "equations.h"
 #include "evaluator.h"
+#include "field_law.h"
 #include "input_error.h"
 #include "kernel_models.h"
 
@@ -199,6 +201,80 @@ const KernelModel &model_with(const std::string &name, const Row &p) {
     return model;
 }
 
+/// A graph of traced numbers as a list, each after those that it is made of.
+class TraceList {
+  public:
+    int add(const TraceRef &node) {
+        const auto known = places_.find(node.get());
+        if (known != places_.end()) {
+            return known->second;
+        }
+        nb::list from;
+        for (const TraceRef &one : node->from) {
+            from.append(add(one));
+        }
+        const auto place = static_cast<int>(nodes_.size());
+        nodes_.append(nb::make_tuple(node->what, from, value_of(*node)));
+        places_[node.get()] = place;
+        return place;
+    }
+    const nb::list &nodes() const { return nodes_; }
+
+  private:
+    static nb::object value_of(const TraceNode &node) {
+        if (node.what == "number") {
+            return nb::cast(node.number);
+        }
+        return node.what == "name" ? nb::cast(node.name) : nb::cast(node.integer);
+    }
+
+    nb::list nodes_;
+    std::map<const TraceNode *, int> places_;
+};
+
+nb::dict described(const ModelEquations &model) {
+    TraceList list;
+    nb::list rates;
+    for (const Traced &rate : model.rates) {
+        rates.append(list.add(rate.node));
+    }
+    nb::dict out;
+    out["force_N"] = list.add(model.force_N.node);
+    out["rates"] = rates;
+    out["fastest_rate_1_s"] = list.add(model.fastest_rate_1_s.node);
+    out["nodes"] = list.nodes();
+    return out;
+}
+
+nb::dict described(const TracedFunction &function) {
+    TraceList list;
+    nb::dict out;
+    out["name"] = function.name;
+    out["arguments"] = nb::cast(function.arguments);
+    out["result"] = list.add(function.result.node);
+    out["nodes"] = list.nodes();
+    return out;
+}
+
+nb::dict describe_equations() {
+    nb::dict out;
+    for (const auto &models : {kernel_equations(), plain_equations()}) {
+        for (const ModelEquations &model : models) {
+            out[model.name.c_str()] = described(model);
+        }
+    }
+    return out;
+}
+
+nb::list describe_functions() {
+    nb::list out;
+    for (const TracedFunction &function : elementary_equations()) {
+        out.append(described(function));
+    }
+    out.append(described(field_law_equations()));
+    return out;
+}
+
 /// A damper file, of any model.
 class DamperFile {
   public:
@@ -226,9 +302,15 @@ NB_MODULE(quiesce_dampers, module) {
     using namespace quiesce;
     nb::set_leak_warnings(false);
     module.def("models", describe_models);
+    module.def("equations", describe_equations);
+    module.def("functions", describe_functions);
     module.def("instruction_sets", instruction_sets);
     module.def("fastest_rate_1_s", [](const std::string &model, const Row &p, double speed_m_s) {
         return model_with(model, p).fastest_rate_1_s(p.data(), speed_m_s);
+    });
+    module.def("effective_A", [](double current_A, double exponent, double saturation,
+                                 double reference_A) {
+        return FieldLaw<double>{exponent, saturation, reference_A}.effective(current_A);
     });
     module.def("is_passive", [](const std::string &model, const Row &p) {
         return model_with(model, p).is_passive(p.data());

@@ -36,7 +36,10 @@ struct Bingham {
         return p[kFc] * hyperbolic_tangent(m.v / p[kEps]) + p[kC] * m.v + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     static double stiffest_N_s_m(const double *p) { return std::abs(p[kC]) + p[kFc] / p[kEps]; }
     static double stiffest_N_m(const double * /*p*/) { return 0.0; }
     static bool is_passive(const double *p) { return p[kC] >= 0.0 && p[kFc] >= 0.0; }

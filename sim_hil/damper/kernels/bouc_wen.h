@@ -65,7 +65,8 @@ struct BoucWen {
         return p[kC] * m.v + p[kK] * m.x + p[kAlpha] * z[0] + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double *p, double speed_m_s) {
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T &speed_m_s) {
         return bouc_wen_fastest_1_s(shape(p), speed_m_s);
     }
     static double stiffest_N_s_m(const double *p) { return std::abs(p[kC]); }

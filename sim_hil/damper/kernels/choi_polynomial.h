@@ -43,7 +43,10 @@ struct ChoiPolynomial {
         return Polynomial::force_N(p, m);
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     static double stiffest_N_s_m(const double *p) { return Polynomial::stiffest_N_s_m(p); }
     static double stiffest_N_m(const double * /*p*/) { return 0.0; }
     static bool is_passive(const double *p) { return Polynomial::is_passive(p); }

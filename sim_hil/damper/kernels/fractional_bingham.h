@@ -79,8 +79,9 @@ struct FractionalBingham {
         return scale * (sum + fast * v);
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) {
-        return kFastest_rad_s;
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(kFastest_rad_s);
     }
     /// The derivative's answer to a jump of the speed, which is that of the fastest lags.
     static double stiffest_N_s_m(const double *p) {

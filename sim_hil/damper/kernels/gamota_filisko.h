@@ -50,8 +50,9 @@ struct GamotaFilisko {
         return p[kK2] * e + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double *p, double /*speed_m_s*/) {
-        return 1.0 / p[kT0] + (1.0 + p[kR]) / p[kT1];
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T & /*speed_m_s*/) {
+        return T(1.0) / p[kT0] + (T(1.0) + p[kR]) / p[kT1];
     }
     static double stiffest_N_s_m(const double * /*p*/) { return 0.0; }
     static double stiffest_N_m(const double *p) { return p[kK2]; }

@@ -58,7 +58,10 @@ struct HystereticBiviscous {
         return T(0.5) * ((rising + falling) + side * (rising - falling));
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     static double stiffest_N_s_m(const double *p) {
         return std::max({std::abs(p[kC1]), std::abs(p[kC3]), steepest(p, p[kVRise], p[kHRise]),
                          steepest(p, p[kVFall], p[kHFall])});

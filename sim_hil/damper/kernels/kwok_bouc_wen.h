@@ -51,7 +51,8 @@ struct KwokBoucWen {
         return p[kC] * (m.v - p[kMu] * sign(z[0])) + p[kK] * m.x + p[kAlpha] * z[0] + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double *p, double speed_m_s) {
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T &speed_m_s) {
         return bouc_wen_fastest_1_s(shape(p), speed_m_s);
     }
     static double stiffest_N_s_m(const double *p) { return std::abs(p[kC]); }

@@ -46,7 +46,10 @@ struct KwokTanh {
                p[kAlpha] * hyperbolic_tangent(p[kBeta] * m.v + p[kDelta] * side) + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     static double stiffest_N_s_m(const double *p) {
         return std::abs(p[kC]) + std::abs(p[kAlpha] * p[kBeta]);
     }

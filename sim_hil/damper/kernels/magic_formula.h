@@ -52,7 +52,10 @@ struct MagicFormula {
         return (p[kFy] + p[kC] * absolute(shifted)) * sine(p[kShape] * arctangent(bent));
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     /// At rest.
     static double stiffest_N_s_m(const double *p) {
         return std::abs(p[kC]) + std::abs(p[kFy]) * p[kShape] * p[kB];

@@ -65,11 +65,13 @@ struct ModifiedBoucWen {
 
     /// Bound of the eigenvalues of d rates / d states. The spring k0 holds at most what the series
     /// dashpot and the hysteresis put into it, so that |r| is at most twice what they cause alone.
-    static double fastest_rate_1_s(const double *p, double speed_m_s) {
-        const double damping_N_s_m = p[kC0] + p[kC1];
-        const double slip_m_s = 2.0 * (p[kC1] * speed_m_s + p[kKw]) / damping_N_s_m;
-        return (p[kK0] + p[kRho] * p[kKw] * std::max(1.0, 2.0 * p[kSigma])) / damping_N_s_m +
-               p[kRho] * p[kN] * slip_m_s * std::max(1.0, std::abs(2.0 * p[kSigma] - 1.0));
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T &speed_m_s) {
+        const T twice = T(2.0) * p[kSigma];
+        const T damping_N_s_m = p[kC0] + p[kC1];
+        const T slip_m_s = T(2.0) * (p[kC1] * speed_m_s + p[kKw]) / damping_N_s_m;
+        return (p[kK0] + p[kRho] * p[kKw] * larger(T(1.0), twice)) / damping_N_s_m +
+               p[kRho] * p[kN] * slip_m_s * larger(T(1.0), absolute(twice - T(1.0)));
     }
     static double stiffest_N_s_m(const double *p) { return p[kC0] * p[kC1] / (p[kC0] + p[kC1]); }
     static double stiffest_N_m(const double *p) {

@@ -41,7 +41,8 @@ struct ModifiedDahl {
         return p[kK] * m.x + p[kC0] * m.v + p[kFd] * z[0] + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double *p, double speed_m_s) {
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T &speed_m_s) {
         return p[kSigma] * speed_m_s;
     }
     static double stiffest_N_s_m(const double *p) { return std::abs(p[kC0]); }

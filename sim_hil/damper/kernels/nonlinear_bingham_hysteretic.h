@@ -52,8 +52,9 @@ struct NonlinearBinghamHysteretic {
                (p[kC1] + speed * (p[kC2] + speed * p[kC3])) * m.v + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double *p, double speed_m_s) {
-        return p[kRho] * speed_m_s * 2.0 / kKnee;
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T &speed_m_s) {
+        return p[kRho] * speed_m_s * T(2.0) / T(kKnee);
     }
     /// At rest.
     static double stiffest_N_s_m(const double *p) { return std::abs(p[kC1]); }

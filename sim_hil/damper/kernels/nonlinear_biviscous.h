@@ -35,7 +35,10 @@ struct NonlinearBiviscous {
         return p[kC] * m.v + p[kFy] * clipped(m.v / p[kVy], T(-1.0), T(1.0));
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     static double stiffest_N_s_m(const double *p) { return std::abs(p[kC]) + p[kFy] / p[kVy]; }
     static double stiffest_N_m(const double * /*p*/) { return 0.0; }
     static bool is_passive(const double *p) { return p[kC] >= 0.0 && p[kFy] >= 0.0; }

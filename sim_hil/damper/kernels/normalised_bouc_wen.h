@@ -49,8 +49,9 @@ struct NormalisedBoucWen {
         return p[kC] * m.v + p[kK] * m.x + p[kKw] * w + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double *p, double speed_m_s) {
-        return p[kRho] * p[kN] * speed_m_s * std::max(1.0, 2.0 * p[kSigma] - 1.0);
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T &speed_m_s) {
+        return p[kRho] * p[kN] * speed_m_s * larger(T(1.0), T(2.0) * p[kSigma] - T(1.0));
     }
     static double stiffest_N_s_m(const double *p) { return std::abs(p[kC]); }
     static double stiffest_N_m(const double *p) {

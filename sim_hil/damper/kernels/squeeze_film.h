@@ -59,7 +59,10 @@ struct SqueezeFilm {
         return select(yield_Pa < T(kFilmNoYield_Pa), law.newtonian_N(m.v, gap_m), yielded_N);
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     /// Of the unyielded film at rest.
     static double stiffest_N_s_m(const double *p) {
         return film(p).newtonian_N(1.0, p[kGap]) / p[kGamma];

@@ -118,11 +118,12 @@ struct ViscoplasticNetwork {
         return force;
     }
 
-    static double fastest_rate_1_s(const double *p, double /*speed_m_s*/) {
-        double fastest = 0.0;
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T & /*speed_m_s*/) {
+        T fastest = T(0.0);
         for (std::size_t e = 0; e < Elements; ++e) {
-            const double *own = element(p, e);
-            fastest = std::max(fastest, 1.0 / own[kCreep] + 1.0 / own[kSlip]);
+            const T *own = p + kNetworkShared + e * kNetworkPerElement;
+            fastest = larger(fastest, T(1.0) / own[kCreep] + T(1.0) / own[kSlip]);
         }
         return fastest;
     }

@@ -45,7 +45,8 @@ struct ViscousDahl {
         return p[kKv] * (m.v + p[kEv] * speed) + p[kKw] * (w + p[kEw] * absolute(w));
     }
 
-    static double fastest_rate_1_s(const double *p, double speed_m_s) {
+    template <class T>
+    static T fastest_rate_1_s(const T *p, const T &speed_m_s) {
         return p[kRho] * speed_m_s;
     }
     static double stiffest_N_s_m(const double *p) { return p[kKv] * (1.0 + std::abs(p[kEv])); }

@@ -33,7 +33,10 @@ struct ZhangTanh {
         return Shape::force_N(p, m) + p[kF0];
     }
 
-    static double fastest_rate_1_s(const double * /*p*/, double /*speed_m_s*/) { return 0.0; }
+    template <class T>
+    static T fastest_rate_1_s(const T * /*p*/, const T & /*speed_m_s*/) {
+        return T(0.0);
+    }
     static double stiffest_N_s_m(const double *p) { return Shape::stiffest_N_s_m(p); }
     static double stiffest_N_m(const double *p) { return Shape::stiffest_N_m(p); }
     static bool is_passive(const double *p) { return Shape::is_passive(p); }

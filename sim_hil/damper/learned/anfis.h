@@ -23,13 +23,15 @@ struct GaussianSet {
 class Anfis final : public StaticDamper {
   public:
     /// sets: one for each input of the box, in SI units; consequents_N: one a rule.
-    Anfis(InputBox box, double stroke_m, std::vector<GaussianSet> sets,
+    Anfis(InputBox box, double stroke_m, const std::vector<GaussianSet> &sets,
           std::vector<double> consequents_N);
 
     double force_N(const DamperInput &input, const double *state, double *rates) const override;
 
   private:
-    std::vector<GaussianSet> sets_;
+    std::vector<int> counts_;
+    std::vector<double> centres_;
+    std::vector<double> widths_;
     std::vector<double> consequents_N_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace quiesce {
 
@@ -21,9 +20,41 @@ std::size_t feature_count(const HysteresisNetworkParams &p) {
 HysteresisNetwork::HysteresisNetwork(HysteresisNetworkParams params, std::vector<Network> members)
     : params_(std::move(params)), members_(std::move(members)) {}
 
+quiesce_hysteresis HysteresisNetwork::core() const {
+    const HysteresisNetworkParams &p = params_;
+    const auto size = [](const std::vector<double> &values) {
+        return static_cast<int>(values.size());
+    };
+    return {p.force_scale_N,
+            p.current_scale_A,
+            p.field_exponent,
+            p.saturation,
+            p.clip,
+            p.uses_accel ? 1 : 0,
+            p.base ? 1 : 0,
+            size(p.coil_times_s),
+            p.coil_times_s.data(),
+            p.coil_fall_times_s.data(),
+            size(p.elastic_times_s),
+            p.elastic_times_s.data(),
+            size(p.chain_times_s),
+            p.chain_times_s.data(),
+            size(p.stop_reaches_m),
+            p.stop_reaches_m.data(),
+            p.means.data(),
+            p.scales.data(),
+            p.skip.data(),
+            size(p.means),
+            static_cast<int>(members_.front().output_count()),
+            nullptr,
+            nullptr,
+            static_cast<int>(members_.size()),
+            kMostUnits};
+}
+
 std::size_t HysteresisNetwork::own_states() const {
-    return params_.coil_times_s.size() + params_.elastic_times_s.size() +
-           params_.chain_times_s.size() + params_.stop_reaches_m.size();
+    const quiesce_hysteresis m = core();
+    return static_cast<std::size_t>(quiesce_hysteresis_states(&m));
 }
 
 std::size_t HysteresisNetwork::state_count() const {
@@ -34,74 +65,25 @@ bool HysteresisNetwork::uses_accel() const {
     return params_.uses_accel || (params_.base && params_.base->uses_accel());
 }
 
-void HysteresisNetwork::write_rates(const DamperInput &input, const double *state,
-                                    double *rates) const {
-    const double v = input.velocity_m_s;
-    for (std::size_t j = 0; j < params_.coil_times_s.size(); ++j) {
-        const double rise_A = input.current_A - *state++;
-        const std::vector<double> &times =
-            rise_A > 0.0 ? params_.coil_times_s : params_.coil_fall_times_s;
-        *rates++ = rise_A / times[j];
-    }
-    for (const double time_s : params_.elastic_times_s) {
-        *rates++ = v - *state++ / time_s;
-    }
-    double from = v;
-    for (const double time_s : params_.chain_times_s) {
-        *rates++ = (from - *state) / time_s;
-        from = *state++;
-    }
-    for (const double reach_m : params_.stop_reaches_m) {
-        *rates++ = (v - std::abs(v) * *state++) / reach_m;
-    }
-}
-
-/// state: this model's own elements.
-std::vector<double> HysteresisNetwork::features(const DamperInput &input, const double *state,
-                                                double base_N) const {
-    std::vector<double> out{input.position_m, input.velocity_m_s};
-    if (params_.uses_accel) {
-        out.push_back(input.accel_m_s2);
-    }
-    out.insert(out.end(), state, state + own_states());
-    if (params_.base) {
-        out.push_back(base_N);
-    }
-    for (std::size_t k = 0; k < out.size(); ++k) {
-        out[k] = std::clamp((out[k] - params_.means[k]) / params_.scales[k], -params_.clip,
-                            params_.clip);
-    }
-    return out;
-}
-
-/// Of full current, 0 .. 1.
-double HysteresisNetwork::field(double current_A) const {
-    const double part = std::max(0.0, current_A / params_.current_scale_A);
-    const double toe = std::pow(part, params_.field_exponent);
-    return toe * (1.0 + params_.saturation) / (params_.saturation + toe);
-}
-
-/// What the networks add to the base.
-double HysteresisNetwork::correction_N(const std::vector<double> &features,
-                                       double current_A) const {
-    std::vector<double> heads(members_.front().output_count(), 0.0);
-    std::vector<double> one(heads.size());
+/// What the networks add to the base. state: this model's own elements.
+double HysteresisNetwork::added_N(const DamperInput &input, double current_A, double base_N,
+                                  const double *state) const {
+    std::vector<std::vector<quiesce_layer>> networks;
+    std::vector<const quiesce_layer *> members;
+    std::vector<int> layer_counts;
     for (const Network &member : members_) {
-        member.run(features.data(), one.data());
-        for (std::size_t k = 0; k < heads.size(); ++k) {
-            heads[k] += one[k] / static_cast<double>(members_.size());
-        }
+        networks.push_back(member.core());
+        members.push_back(networks.back().data());
+        layer_counts.push_back(static_cast<int>(networks.back().size()));
     }
-    const double g = field(current_A);
-    const double *skip = params_.skip.data();
-    double power = 1.0;
-    double sum = 0.0;
-    for (const double head : heads) {
-        sum += power * std::inner_product(features.begin(), features.end(), skip, head);
-        skip += features.size();
-        power *= g;
-    }
-    return params_.force_scale_N * sum;
+    quiesce_hysteresis m = core();
+    m.members = members.data();
+    m.layer_counts = layer_counts.data();
+    std::vector<double> features(params_.means.size());
+    quiesce_hysteresis_features(&m, input.position_m, input.velocity_m_s, input.accel_m_s2, base_N,
+                                state, features.data());
+    std::vector<double> room(2 * members_.front().output_count() + 2 * kMostUnits);
+    return quiesce_hysteresis_added_N(&m, features.data(), current_A, room.data());
 }
 
 /// 0 without a base. state and rates: those of all elements.
@@ -121,10 +103,11 @@ double HysteresisNetwork::force_N(const DamperInput &input, const double *state,
     // A base with states writes its rates in any case.
     std::vector<double> unused(rates == nullptr ? state_count() : 0);
     double *out = rates == nullptr ? unused.data() : rates;
-    write_rates(input, state, out);
-    const double current_A = params_.coil_times_s.empty() ? input.current_A : state[0];
+    const quiesce_hysteresis m = core();
+    quiesce_hysteresis_rates(&m, input.velocity_m_s, input.current_A, state, out);
+    const double current_A = quiesce_hysteresis_current_A(&m, input.current_A, state);
     const double from_base_N = base_N(input, current_A, state, out);
-    return from_base_N + correction_N(features(input, state, from_base_N), current_A);
+    return from_base_N + added_N(input, current_A, from_base_N, state);
 }
 
 /// The elements after a quick move from rest; those of a base stay at rest.

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "damper.h"
+#include "hysteresis_network_core.h"
 #include "network.h"
 
 namespace quiesce {
@@ -60,11 +61,10 @@ class HysteresisNetwork final : public Damper {
 
   private:
     std::size_t own_states() const;
-    void write_rates(const DamperInput &input, const double *state, double *rates) const;
-    std::vector<double> features(const DamperInput &input, const double *state,
-                                 double base_N) const;
-    double field(double current_A) const;
-    double correction_N(const std::vector<double> &features, double current_A) const;
+    /// Without its members.
+    quiesce_hysteresis core() const;
+    double added_N(const DamperInput &input, double current_A, double base_N,
+                   const double *state) const;
     double base_N(const DamperInput &input, double current_A, const double *state,
                   double *rates) const;
     std::vector<double> quick_state(double moved_m, double current_A) const;

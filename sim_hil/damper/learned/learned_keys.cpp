@@ -49,9 +49,8 @@ std::vector<double> optional_positive_numbers(TomlTable &keys, const std::string
     return keys.has(key) ? positive_numbers(keys, key, 0) : std::vector<double>{};
 }
 
-std::vector<std::size_t> rising_integers(TomlTable &keys, const std::string &key, int least,
-                                         int most) {
-    std::vector<std::size_t> out;
+std::vector<int> rising_integers(TomlTable &keys, const std::string &key, int least, int most) {
+    std::vector<int> out;
     double before = least - 1.0;
     for (const double value : keys.numbers(key, 0)) {
         if (value <= before || value > most || value != std::floor(value)) {
@@ -59,7 +58,7 @@ std::vector<std::size_t> rising_integers(TomlTable &keys, const std::string &key
                                std::to_string(most));
         }
         before = value;
-        out.push_back(static_cast<std::size_t>(value));
+        out.push_back(static_cast<int>(value));
     }
     return out;
 }

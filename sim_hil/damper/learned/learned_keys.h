@@ -23,8 +23,7 @@ std::vector<double> positive_numbers(TomlTable &keys, const std::string &key, st
 /// The same, empty where the key is missing.
 std::vector<double> optional_positive_numbers(TomlTable &keys, const std::string &key);
 /// Integers that rise from `least` or more, at most `most`.
-std::vector<std::size_t> rising_integers(TomlTable &keys, const std::string &key, int least,
-                                         int most);
+std::vector<int> rising_integers(TomlTable &keys, const std::string &key, int least, int most);
 
 /// The tables current_A, displacement_m, velocity_m_s and temperature_C, those that there are, with
 /// range = [min, max] in each; `more` reads what else an input's table holds. At least one of

@@ -24,37 +24,32 @@ GaussianSet read_gaussians(TomlTable &input) {
     return set;
 }
 
-TriangleSet read_triangles(TomlTable keys) {
-    TriangleSet set{};
-    const std::vector<double> centres = keys.numbers("centres", kStfLabels);
-    const std::vector<double> bases = positive_numbers(keys, "bases", kStfLabels);
-    if (!std::is_sorted(centres.begin(), centres.end())) {
+void read_five(TomlTable &keys, const char *key, double *out) {
+    const std::vector<double> values = keys.numbers(key, quiesce_stf_labels);
+    std::copy(values.begin(), values.end(), out);
+}
+
+quiesce_triangles read_triangles(TomlTable keys) {
+    quiesce_triangles set{};
+    read_five(keys, "centres", set.centres);
+    const std::vector<double> bases = positive_numbers(keys, "bases", quiesce_stf_labels);
+    if (!std::is_sorted(set.centres, set.centres + quiesce_stf_labels)) {
         keys.fail("centres", "expected numbers that rise");
     }
     keys.reject_unknown_keys();
-    std::copy(centres.begin(), centres.end(), set.centres.begin());
-    std::copy(bases.begin(), bases.end(), set.bases.begin());
+    std::copy(bases.begin(), bases.end(), set.bases);
     return set;
 }
 
-std::array<std::size_t, kStfRules> read_labels(TomlTable &keys) {
-    std::array<std::size_t, kStfRules> out{};
-    const std::vector<double> labels = keys.numbers("rules", kStfRules);
-    for (std::size_t r = 0; r < kStfRules; ++r) {
-        if (!(labels[r] >= 0.0 && labels[r] < static_cast<double>(kStfLabels) &&
+void read_labels(TomlTable &keys, int *out) {
+    const std::vector<double> labels = keys.numbers("rules", quiesce_stf_rules);
+    for (std::size_t r = 0; r < labels.size(); ++r) {
+        if (!(labels[r] >= 0.0 && labels[r] < quiesce_stf_labels &&
               labels[r] == static_cast<double>(static_cast<int>(labels[r])))) {
             keys.fail("rules", "expected 25 integers in 0 .. 4, the output's label of each rule");
         }
-        out[r] = static_cast<std::size_t>(labels[r]);
+        out[r] = static_cast<int>(labels[r]);
     }
-    return out;
-}
-
-std::array<double, kStfLabels> read_five(TomlTable &keys, const char *key) {
-    std::array<double, kStfLabels> out{};
-    const std::vector<double> values = keys.numbers(key, kStfLabels);
-    std::copy(values.begin(), values.end(), out.begin());
-    return out;
 }
 
 FuzzyCluster read_cluster(TomlTable &table, std::size_t inputs) {
@@ -103,7 +98,8 @@ std::shared_ptr<const Damper> read_sampled(TomlTable &keys, const LearnedContext
         params.feedback = rising_integers(keys, "feedback", 1, kMostLag);
     }
     InputBox box = read_inputs(keys);
-    const std::size_t width = box.count() + (params.quadrature ? kQuadratureFeatures : 0);
+    const std::size_t width =
+        box.count() + (params.quadrature ? quiesce_quadrature_features : 0);
     const std::size_t inputs = params.lags.size() * width + params.feedback.size();
     Network network = read_network(keys, inputs, 1);
     return std::make_shared<SampledNetwork>(std::move(box), std::move(params), std::move(network));
@@ -121,7 +117,7 @@ std::shared_ptr<const Damper> read_anfis(TomlTable &keys, const LearnedContext &
         }
     }
     std::vector<double> consequents_N = keys.numbers("consequents_N", rules);
-    return std::make_shared<Anfis>(std::move(box), context.limits.stroke_m, std::move(sets),
+    return std::make_shared<Anfis>(std::move(box), context.limits.stroke_m, sets,
                                    std::move(consequents_N));
 }
 
@@ -135,24 +131,23 @@ std::shared_ptr<const Damper> read_ts_fuzzy(TomlTable &keys, const LearnedContex
         keys.fail("rule", "missing; expected tables [[...rule]] with centre, width, gain_N and "
                           "offset_N");
     }
-    return std::make_shared<TsFuzzy>(std::move(box), context.limits.stroke_m, std::move(clusters));
+    return std::make_shared<TsFuzzy>(std::move(box), context.limits.stroke_m, clusters);
 }
 
 std::shared_ptr<const Damper> read_neuro_fuzzy_stf(TomlTable &keys, const LearnedContext &context) {
     StfParams params{};
     params.force_scale_N = read_force_scale_N(keys);
-    params.stroke_m = context.limits.stroke_m;
     params.disp_scale_m = keys.number("disp_scale_m", {1e-9, 100.0, "m"});
     params.velocity_scale_m_s = keys.number("velocity_scale_m_s", {1e-9, 1000.0, "m/s"});
     params.current_scale_A = keys.number("current_scale_A", {1e-9, 1000.0, "A"});
-    params.uses_minimum = keys.choice("conjunction", {"product", "minimum"}) == "minimum";
+    params.uses_minimum = keys.choice("conjunction", {"product", "minimum"}) == "minimum" ? 1 : 0;
     params.disp = read_triangles(keys.table("displacement"));
     params.velocity = read_triangles(keys.table("velocity"));
     params.current = read_triangles(keys.table("current"));
-    params.outputs = read_five(keys, "outputs");
-    params.gains = read_five(keys, "gains");
-    params.labels = read_labels(keys);
-    return std::make_shared<NeuroFuzzyStf>(params);
+    read_five(keys, "outputs", params.outputs);
+    read_five(keys, "gains", params.gains);
+    read_labels(keys, params.labels);
+    return std::make_shared<NeuroFuzzyStf>(params, context.limits.stroke_m);
 }
 
 std::shared_ptr<const Damper> read_feed_forward_network(TomlTable &keys,

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "network_core.h"
+
 namespace quiesce {
 
 /// Widest layer.
@@ -27,6 +29,9 @@ class Network {
 
     /// in: input_count() values; out: output_count().
     void run(const double *in, double *out) const;
+
+    /// As cores/ want them; they point into this network, which must outlive them.
+    std::vector<quiesce_layer> core() const;
 
   private:
     std::vector<NetworkLayer> layers_;

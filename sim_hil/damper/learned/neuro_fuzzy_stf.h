@@ -9,40 +9,18 @@
 #ifndef QUIESCE_NEURO_FUZZY_STF_H
 #define QUIESCE_NEURO_FUZZY_STF_H
 
-#include <array>
-#include <cstddef>
-
 #include "input_box.h"
+#include "neuro_fuzzy_stf_core.h"
 
 namespace quiesce {
 
-constexpr std::size_t kStfLabels = 5;
-constexpr std::size_t kStfRules = kStfLabels * kStfLabels;
-
-struct TriangleSet {
-    std::array<double, kStfLabels> centres; ///< rising
-    std::array<double, kStfLabels> bases;   ///< > 0
-};
-
-struct StfParams {
-    double force_scale_N;      ///< > 0
-    double stroke_m;           ///< > 0
-    double disp_scale_m;       ///< > 0; the displacement counts as a part of it, cut off at +-1
-    double velocity_scale_m_s; ///< likewise
-    double current_scale_A;    ///< likewise, cut off at 0 and 1
-    bool uses_minimum;         ///< of the memberships, else their product
-    TriangleSet disp;
-    TriangleSet velocity;
-    TriangleSet current;
-    std::array<double, kStfLabels> outputs; ///< w, of NB, NS, ZE, PS, PB
-    std::array<double, kStfLabels> gains;   ///< of the current's labels
-    /// Label of each rule's output; rows displacement, columns velocity, NB to PB.
-    std::array<std::size_t, kStfRules> labels;
-};
+/// force_scale_N and the scales > 0; bases > 0; centres rising.
+using StfParams = quiesce_stf;
 
 class NeuroFuzzyStf final : public StaticDamper {
   public:
-    explicit NeuroFuzzyStf(const StfParams &params);
+    /// stroke_m > 0.
+    NeuroFuzzyStf(const StfParams &params, double stroke_m);
 
     double force_N(const DamperInput &input, const double *state, double *rates) const override;
 

@@ -12,22 +12,17 @@
 #define QUIESCE_QUADRATURE_H
 
 #include <array>
-#include <cstddef>
+
+#include "sampled_network_core.h"
 
 namespace quiesce {
 
 /// d, w (both scaled from -1 at the least to 1 at the most), cos p, sin p.
-constexpr std::size_t kQuadratureFeatures = 4;
-/// Running means of x^2 and v^2.
-constexpr std::size_t kQuadratureStates = 2;
-using QuadratureFeatures = std::array<double, kQuadratureFeatures>;
+using QuadratureFeatures = std::array<double, quiesce_quadrature_features>;
 
-struct QuadratureParams {
-    double window_s;      ///< > 0
-    double envelope_m;    ///< > 0; largest, cut off there; below a thousandth of it is rest
-    double lowest_rad_s;  ///< > 0; w is cut off here
-    double highest_rad_s; ///< > lowest_rad_s
-};
+/// window_s, envelope_m (largest, cut off there) and lowest_rad_s > 0; w is cut off at it and at
+/// highest_rad_s > lowest_rad_s.
+using QuadratureParams = quiesce_quadrature;
 
 /// Takes a sample into the means; dt_s: the sample time.
 void update_quadrature(const QuadratureParams &params, double position_m, double velocity_m_s,

@@ -23,8 +23,8 @@ struct SampledNetworkParams {
     double stroke_m;               ///< > 0; the model ends at -stroke_m
     double sample_time_s;          ///< > 0
     double force_scale_N;          ///< > 0
-    std::vector<std::size_t> lags; ///< of the inputs, in samples, at least one, rising from >= 0
-    std::vector<std::size_t> feedback; ///< of the force, rising from >= 1; may be empty
+    std::vector<int> lags;     ///< of the inputs, in samples, at least one, rising from >= 0
+    std::vector<int> feedback; ///< of the force, rising from >= 1; may be empty
     std::optional<QuadratureParams> quadrature = std::nullopt;
 };
 
@@ -33,7 +33,7 @@ class SampledNetwork final : public Damper {
     /// network: lags x (inputs + features) + feedback inputs, one output.
     SampledNetwork(InputBox box, SampledNetworkParams params, Network network);
 
-    std::size_t state_count() const override { return first_force_ + force_count_; }
+    std::size_t state_count() const override;
     double force_N(const DamperInput &input, const double *state, double *rates) const override;
     void after_step(const DamperInput &input, double *state, double dt_s) const override;
     bool is_sampled() const override { return true; }
@@ -41,17 +41,14 @@ class SampledNetwork final : public Damper {
     double lowest_position_m() const override { return -params_.stroke_m; }
 
   private:
-    double evaluated_N(const double *state) const;
+    quiesce_sampled core(const std::vector<quiesce_layer> &layers) const;
     void take_sample(const DamperInput &input, double *state) const;
 
     InputBox box_;
     SampledNetworkParams params_;
     Network network_;
-    std::size_t width_;        ///< of a moment: inputs and features
-    std::size_t first_moment_; ///< index of the latest moment in the state
-    std::size_t moment_count_; ///< delayed inputs: the latest sample and those before it
-    std::size_t force_count_;
-    std::size_t first_force_; ///< index of the first delayed force in the state
+    std::vector<double> low_;
+    std::vector<double> high_;
 };
 
 } // namespace quiesce

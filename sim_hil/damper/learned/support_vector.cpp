@@ -1,24 +1,20 @@
 #include "support_vector.h"
 
-#include <cmath>
+#include "support_vector_core.h"
 
 namespace quiesce {
 
 double SupportVector::force_N(const DamperInput &input, const double * /*state*/,
                               double * /*rates*/) const {
     const Inputs u = box().scaled(input);
-    const std::size_t count = box().count();
-    const double *vector = params_.support_vectors.data();
-    double sum = params_.intercept;
-    for (const double coefficient : params_.coefficients) {
-        double distance2 = 0.0;
-        for (std::size_t k = 0; k < count; ++k) {
-            distance2 += (u[k] - vector[k]) * (u[k] - vector[k]);
-        }
-        sum += coefficient * std::exp(-params_.gamma * distance2);
-        vector += count;
-    }
-    return params_.force_scale_N * sum;
+    const quiesce_support_vector core{static_cast<int>(box().count()),
+                                      static_cast<int>(params_.coefficients.size()),
+                                      params_.force_scale_N,
+                                      params_.gamma,
+                                      params_.intercept,
+                                      params_.coefficients.data(),
+                                      params_.support_vectors.data()};
+    return quiesce_support_vector_N(&core, u.data());
 }
 
 } // namespace quiesce

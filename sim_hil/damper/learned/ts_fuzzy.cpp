@@ -1,48 +1,31 @@
 #include "ts_fuzzy.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <utility>
+
+#include "ts_fuzzy_core.h"
 
 namespace quiesce {
 
-namespace {
-
-double exponent(const FuzzyCluster &cluster, const Inputs &u) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < cluster.centre.size(); ++k) {
-        const double distance = (u[k] - cluster.centre[k]) / cluster.width[k];
-        sum -= 0.5 * distance * distance;
+TsFuzzy::TsFuzzy(InputBox box, double stroke_m, const std::vector<FuzzyCluster> &clusters)
+    : StaticDamper(std::move(box), stroke_m) {
+    for (const FuzzyCluster &one : clusters) {
+        centres_.insert(centres_.end(), one.centre.begin(), one.centre.end());
+        widths_.insert(widths_.end(), one.width.begin(), one.width.end());
+        gains_N_.insert(gains_N_.end(), one.gain_N.begin(), one.gain_N.end());
+        offsets_N_.push_back(one.offset_N);
     }
-    return sum;
 }
-
-double conclusion_N(const FuzzyCluster &cluster, const Inputs &u) {
-    double force_N = cluster.offset_N;
-    for (std::size_t k = 0; k < cluster.gain_N.size(); ++k) {
-        force_N += cluster.gain_N[k] * u[k];
-    }
-    return force_N;
-}
-
-} // namespace
 
 double TsFuzzy::force_N(const DamperInput &input, const double * /*state*/,
                         double * /*rates*/) const {
     const Inputs u = box().scaled(input);
-    // Relative to the nearest cluster: the sum never vanishes.
-    double reference = -std::numeric_limits<double>::infinity();
-    for (const FuzzyCluster &cluster : clusters_) {
-        reference = std::max(reference, exponent(cluster, u));
-    }
-    double sum = 0.0;
-    double moment = 0.0;
-    for (const FuzzyCluster &cluster : clusters_) {
-        const double weight = std::exp(exponent(cluster, u) - reference);
-        sum += weight;
-        moment += weight * conclusion_N(cluster, u);
-    }
-    return moment / sum;
+    const quiesce_ts_fuzzy core{static_cast<int>(box().count()),
+                                static_cast<int>(offsets_N_.size()),
+                                centres_.data(),
+                                widths_.data(),
+                                gains_N_.data(),
+                                offsets_N_.data()};
+    return quiesce_ts_fuzzy_N(&core, u.data());
 }
 
 } // namespace quiesce

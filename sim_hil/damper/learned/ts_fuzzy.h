@@ -24,13 +24,15 @@ struct FuzzyCluster {
 class TsFuzzy final : public StaticDamper {
   public:
     /// At least one cluster.
-    TsFuzzy(InputBox box, double stroke_m, std::vector<FuzzyCluster> clusters)
-        : StaticDamper(std::move(box), stroke_m), clusters_(std::move(clusters)) {}
+    TsFuzzy(InputBox box, double stroke_m, const std::vector<FuzzyCluster> &clusters);
 
     double force_N(const DamperInput &input, const double *state, double *rates) const override;
 
   private:
-    std::vector<FuzzyCluster> clusters_;
+    std::vector<double> centres_;
+    std::vector<double> widths_;
+    std::vector<double> gains_N_;
+    std::vector<double> offsets_N_;
 };
 
 } // namespace quiesce

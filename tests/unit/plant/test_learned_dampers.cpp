@@ -164,23 +164,23 @@ TEST(TsFuzzy, one_rule_is_linear_and_equal_rules_do_not_matter) {
 }
 
 quiesce::StfParams stf(bool uses_minimum) {
-    quiesce::StfParams p{};
-    p.force_scale_N = 2000.0;
-    p.stroke_m = 0.02;
-    p.disp_scale_m = 0.005;
-    p.velocity_scale_m_s = 0.1;
-    p.current_scale_A = 1.5;
-    p.uses_minimum = uses_minimum;
-    p.disp = p.velocity = {{-1.0, -0.5, 0.0, 0.5, 1.0}, {1.0, 1.0, 1.0, 1.0, 1.0}};
-    p.current = {{0.0, 0.25, 0.5, 0.75, 1.0}, {0.5, 0.5, 0.5, 0.5, 0.5}};
-    p.outputs = {-1.0, -0.7, 0.0, 0.7, 1.0};
-    p.gains = {0.1, 0.3, 0.5, 0.7, 0.9};
-    p.labels = {0, 0, 1, 2, 4, 0, 1, 1, 3, 4, 0, 1, 2, 3, 4, 0, 1, 3, 3, 4, 0, 2, 3, 4, 4};
-    return p;
+    const quiesce_triangles motion{{-1.0, -0.5, 0.0, 0.5, 1.0}, {1.0, 1.0, 1.0, 1.0, 1.0}};
+    const quiesce_triangles current{{0.0, 0.25, 0.5, 0.75, 1.0}, {0.5, 0.5, 0.5, 0.5, 0.5}};
+    return {2000.0,
+            0.005,
+            0.1,
+            1.5,
+            uses_minimum ? 1 : 0,
+            motion,
+            motion,
+            current,
+            {-1.0, -0.7, 0.0, 0.7, 1.0},
+            {0.1, 0.3, 0.5, 0.7, 0.9},
+            {0, 0, 1, 2, 4, 0, 1, 1, 3, 4, 0, 1, 2, 3, 4, 0, 1, 3, 3, 4, 0, 2, 3, 4, 4}};
 }
 
 TEST(NeuroFuzzyStf, nodes_and_a_point_between_them_by_hand) {
-    const quiesce::NeuroFuzzyStf product(stf(false));
+    const quiesce::NeuroFuzzyStf product(stf(false), 0.02);
     EXPECT_NEAR(still_N(product, {0.1, 0.0, 1.5}), 2000.0 * 0.9 * 1.0, 1e-9);
     EXPECT_NEAR(still_N(product, {0.05, 0.0, 0.0}), 2000.0 * 0.1 * 0.7, 1e-9);
     // x at 0.25, v at 0.1 of their scales: grades 0.5/0.5 and 0.8/0.2.
@@ -188,14 +188,14 @@ TEST(NeuroFuzzyStf, nodes_and_a_point_between_them_by_hand) {
     const DamperInput between{0.01, 0.00125, 0.75};
     EXPECT_NEAR(still_N(product, between), 2000.0 * 0.5 * product_u, 1e-9);
     const double minimum_u = (0.5 * 0.0 + 0.2 * 0.7 + 0.5 * 0.7 + 0.2 * 0.7) / 1.4;
-    const quiesce::NeuroFuzzyStf minimum(stf(true));
+    const quiesce::NeuroFuzzyStf minimum(stf(true), 0.02);
     EXPECT_NEAR(still_N(minimum, between), 2000.0 * 0.5 * minimum_u, 1e-9);
 }
 
 TEST(NeuroFuzzyStf, no_membership_gives_no_force_and_no_nan) {
     quiesce::StfParams p = stf(false);
-    p.disp.bases.fill(1e-3);
-    EXPECT_DOUBLE_EQ(still_N(quiesce::NeuroFuzzyStf(p), {0.05, 0.00123, 1.0}), 0.0);
+    std::fill_n(p.disp.bases, quiesce_stf_labels, 1e-3);
+    EXPECT_DOUBLE_EQ(still_N(quiesce::NeuroFuzzyStf(p, 0.02), {0.05, 0.00123, 1.0}), 0.0);
 }
 
 // Networks and support vectors

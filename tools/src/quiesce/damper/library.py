@@ -7,7 +7,7 @@ in company, on every machine.
 """
 
 import importlib.util
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -172,6 +172,11 @@ def values_at(one: Model, orders: Sequence[int], rows: np.ndarray, current_A: fl
     return np.clip(np.stack(columns, axis=-1), low, high)
 
 
+def effective_A(rig: Mapping[str, float], current_A: float) -> float:
+    """The current that parameters follow, of a coil current: the field law among RIG's values."""
+    return module().effective_A(current_A, *(float(rig.get(name, 0.0)) for name in FIELD))
+
+
 def substeps_for(rate_1_s: float, rate_Hz: float) -> int:
     """Integration steps a sample for states that change at this rate."""
     return int(np.clip(np.ceil(rate_1_s / (STEP_RATE * rate_Hz)), 1, MAX_SUBSTEPS))
@@ -258,9 +263,13 @@ class DamperFile:
         """Forces in N at the motion's samples, at its command as the coil current."""
         return self._damper.simulate(record_motion, int(steps))
 
+    def fastest_rate_1_s(self, current_A: float) -> float:
+        """Bound of how fast the states change with this current."""
+        return self._damper.fastest_rate_1_s(current_A)
+
     def substeps(self, record: Record) -> int:
         rate = max(
-            self._damper.fastest_rate_1_s(float(current_A))
+            self.fastest_rate_1_s(float(current_A))
             for current_A in (record.command.min(), record.command.max())
         )
         return substeps_for(rate, record.rate_Hz)

@@ -9,20 +9,19 @@ from quiesce.base.command import real_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
 from quiesce.cli.identify.help import fill
-from quiesce.damper.export.c_names import CSource, c_name
-from quiesce.damper.export.kernel_c import kernel_source
-from quiesce.damper.export.learned_c import learned_source
+from quiesce.damper.export.c_folder import c_folder
+from quiesce.damper.export.c_names import c_name
 from quiesce.damper.export.mat import mat_bytes
 from quiesce.damper.model_file import DamperModel, read_model
 
 NAME = "export"
 HELP = "a model file as C, MAT or a table for Simulink"
-ENDINGS = {"c": (".c", ".cpp", ".h"), "lookup": (".mat", ".m"), "mat": (".mat",)}
-EPILOG = """--to c writes two files, FILE.h and the source. A model of equations becomes C++17
-(.cpp) that any such compiler builds and C calls: it holds the library's own text, the numbers and
-the integration. Learned models without memory (anfis, feed_forward_network, support_vector) become
-plain C11 (.c). Functions and types begin with the file's name. The coil's lag and the field law
-are part of it; mass, skew, offset and drift of the rig only with --with-rig.
+ENDINGS = {"c": (), "lookup": (".mat", ".m"), "mat": (".mat",)}
+EPILOG = """--to c writes a folder of plain C11: FOLDER.h, FOLDER.c, a program main.c that holds
+them to forces of the bench's own model, CMakeLists.txt and README.md. Functions and types begin
+with the folder's name; the caller owns the state. Models of equations give the bench's forces to
+the last bit. The coil's lag and the field law are part of it; mass, skew, offset and drift of the
+rig only with --with-rig.
 
 --to mat writes one struct `damper` with parameters, units, laws, rig and validity; any model.
 
@@ -41,7 +40,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     fill(parser, EPILOG)
     parser.add_argument("model", type=Path, metavar="MODEL.toml", help="damper file")
     parser.add_argument("--to", required=True, choices=sorted(ENDINGS), help="form")
-    parser.add_argument("--out", required=True, type=Path, metavar="FILE", help="file to write")
+    parser.add_argument(
+        "--out", required=True, type=Path, metavar="FILE", help="file to write; of c: a folder"
+    )
     parser.add_argument(
         "--with-rig", action="store_true", help="with mass, skew, offset and drift of the rig"
     )
@@ -62,16 +63,21 @@ def run(args: argparse.Namespace) -> int:
         files = lookup_of(args, damper)
     else:
         files = files_of(damper, args.to, args.out, args.with_rig)
-    with output_files(args.out.parent) as staging:
+    folder = args.out.parent if ENDINGS[args.to] else args.out
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"--out {shown(folder)}: there is a file of this name; name a folder")
+    with output_files(folder) as staging:
         for name, data in files.items():
             (staging / name).write_bytes(data)
     for name in files:
-        print(f"written: {shown(args.out.parent / name)}")
+        print(f"written: {shown(folder / name)}")
     return 0
 
 
 def require_exportable(damper: DamperModel, to: str, out: Path) -> None:
     """UsageError where model or name do not allow it."""
+    if out.suffix and not ENDINGS[to]:
+        raise UsageError(f"--out {out}: --to {to} writes a folder; name it without an ending")
     if out.suffix and out.suffix.lower() not in ENDINGS[to]:
         raise UsageError(f"--out {out}: --to {to} writes {' or '.join(ENDINGS[to])}; name it so")
     if damper.thermal:
@@ -112,11 +118,4 @@ def files_of(damper: DamperModel, to: str, out: Path, with_rig: bool) -> dict[st
     if to == "mat":
         return {f"{stem_of(out)}.mat": mat_bytes(damper)}
     name = c_name(stem_of(out))
-    source = c_source(name, damper, with_rig)
-    return {f"{name}.h": source.header.encode(), f"{name}{source.ending}": source.source.encode()}
-
-
-def c_source(name: str, damper: DamperModel, with_rig: bool = False) -> CSource:
-    if damper.is_kernel:
-        return kernel_source(name, damper, with_rig)
-    return learned_source(name, damper, with_rig)
+    return {file: text.encode() for file, text in c_folder(name, damper, with_rig).items()}

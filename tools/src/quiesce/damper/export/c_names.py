@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from quiesce.base.errors import UsageError
-from quiesce.damper.library import RIG
+from quiesce.damper.library import RIG, models
 from quiesce.damper.model_file import DamperModel
 
 _KEYWORDS = frozenset(
@@ -18,11 +18,11 @@ _KEYWORDS = frozenset(
 
 @dataclass(frozen=True)
 class CSource:
-    """Texts of a header and of a source file, and the source's ending: ".c" or ".cpp"."""
+    """Texts of a header, of a source file, and of another header that the source includes."""
 
     header: str
     source: str
-    ending: str
+    core: str = ""
 
 
 def c_name(stem: str) -> str:
@@ -34,6 +34,11 @@ def c_name(stem: str) -> str:
             "letters, digits and single underscores"
         )
     return name
+
+
+def core_name(name: str) -> str:
+    """Of the header with what a learned model shares with the library."""
+    return f"{name}_core.h"
 
 
 def literal(value: float) -> str:
@@ -58,6 +63,11 @@ def rig_values(damper: DamperModel, with_rig: bool) -> dict[str, float]:
         name: float(damper.rig.get(name, 0.0)) if with_rig or name in always else 0.0
         for name in RIG
     }
+
+
+def title_of(damper: DamperModel) -> str:
+    known = models().get(damper.model)
+    return known.title if known else damper.model.replace("_", " ")
 
 
 def facts(damper: DamperModel, title: str, with_rig: bool) -> list[str]:

@@ -1,235 +1,182 @@
-"""Learned models without memory as plain C11: loops over tables."""
+"""Learned models as plain C11: their numbers as tables, and the text that the library itself runs
+(sim_hil/damper/learned/cores)."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.base.paths import root
+from quiesce.damper.export.c_frame import COIL_ONLY, RUNGE_KUTTA_ON_COIL, framed
 from quiesce.damper.export.c_names import (
     CSource,
-    as_comment,
-    facts,
+    core_name,
     filled,
     header_text,
     literal,
     literals,
     rig_values,
 )
+from quiesce.damper.export.learned_parts import Part, array, box_text, inputs_of, layers_text
+from quiesce.damper.export.learned_states import hysteresis_part, sampled_part
 from quiesce.damper.model_file import DamperModel
 
 TITLES = {
     "anfis": "ANFIS, product and weighted mean",
     "feed_forward_network": "feed-forward network",
+    "hilbert_network": "network over envelope, frequency and phase",
+    "hysteresis_network": "network over hysteresis elements",
+    "neuro_fuzzy_stf": "self-tuning fuzzy model, frozen",
+    "recurrent_network": "recurrent network",
     "support_vector": "support-vector regression",
+    "ts_fuzzy": "Takagi-Sugeno clusters",
 }
-# In the order in which models have them, and what of the call each is.
-_INPUTS = {"current_A": "current_A", "displacement_m": "x", "velocity_m_s": "v"}
+_INCLUDE = re.compile(r'^#include "([^"]+)"\n', re.MULTILINE)
 
-SOURCE = """/* Made by 'quiesce identify export'. C11 (and C++):
- *   cc -std=c11 -O2 -c $NAME.c    (link with -lm)
-$FACTS */
-#include "$NAME.h"
-
-#include <math.h>
-
-enum { INPUTS = $INPUTS };
-
-static const double kLow[INPUTS] = {$LOW};
-static const double kHigh[INPUTS] = {$HIGH};
-static const double kRise_s = $RISE;
-static const double kFall_s = $FALL;
-static const double kInertia_kg = $INERTIA;
-static const double kSkew_s = $SKEW;
-static const double kOffset_N = $OFFSET;
-static const double kDrift_N_s = $DRIFT;
-
-static double clamped(double value, double low, double high) {
-    return value < low ? low : value > high ? high : value;
+STATIC = """static double model_N(const motion *m, const double *z, double *rates) {
+    (void)z;
+    (void)rates;
+$BODY
 }
-
-$MODEL
-static double lagged(double from_A, double to_A, double dt_s, double current_A) {
-    const double target_A = 0.5 * (from_A + to_A);
-    const double time_s = target_A > current_A ? kRise_s : kFall_s;
-    if (!(time_s > 1e-9)) {
-        return to_A;
-    }
-    return target_A + (current_A - target_A) * exp(-dt_s / time_s);
-}
-
-void $NAME_reset($NAME_state *state) {
-    const $NAME_state zero = {{0.0}, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
-    *state = zero;
-}
-
-double $NAME_step($NAME_state *state, double x_m, double v_m_s, double a_m_s2, double command_A,
-                  double dt_s) {
-    if (state->is_started != 0) {
-        state->current_A = lagged(state->command_A, command_A, dt_s, state->current_A);
-        state->elapsed_s += dt_s;
-    } else {
-        state->current_A = command_A;
-        state->is_started = 1;
-    }
-    state->x_m = x_m;
-    state->v_m_s = v_m_s;
-    state->a_m_s2 = a_m_s2;
-    state->command_A = command_A;
-    const double x = x_m - kSkew_s * v_m_s;
-    const double v = v_m_s - kSkew_s * a_m_s2;
-    const double current_A = state->current_A;
-    (void)x;
-    (void)v;
-    (void)current_A;
-    const double seen[INPUTS] = {$SEEN};
-    double u[INPUTS];
-    for (int k = 0; k < INPUTS; ++k) {
-        u[k] = clamped(seen[k], kLow[k], kHigh[k]);
-    }
-    return model_N(u) + kInertia_kg * a_m_s2 + kOffset_N + kDrift_N_s * state->elapsed_s;
-}
-"""
-
-SCALED = """    double s[INPUTS];
-    for (int k = 0; k < INPUTS; ++k) {
-        s[k] = 2.0 * ((u[k] - kLow[k]) / (kHigh[k] - kLow[k])) - 1.0;
-    }
 """
 
 
 def learned_source(name: str, damper: DamperModel, with_rig: bool) -> CSource:
-    """The texts of NAME.h and NAME.c. UsageError for models that cannot be exported so."""
-    if damper.model not in TITLES or "lags" in damper.parameters:
-        raise UsageError(
-            f"model {damper.model}{' with delays' if damper.model in TITLES else ''} has no C form "
-            f"yet (those of equations and {', '.join(TITLES)} without delays have); --to mat takes "
-            "any model"
-        )
+    """The texts of NAME.h, NAME.c and NAME_core.h. UsageError for what has no C form."""
+    if "temperature_C" in damper.parameters:
+        raise UsageError("a model with the temperature as input has no C form; use --to mat")
+    part = part_of(damper)
+    title, rig = TITLES[damper.model], rig_values(damper, with_rig)
+    advance = part.advance or (RUNGE_KUTTA_ON_COIL if part.has_rates else COIL_ONLY)
+    source = framed(name, damper, title, rig, with_rig, part.text, advance, core=core_name(name))
+    header = header_text(name, damper, title, max(1, part.states), part.uses_accel, with_rig)
+    return CSource(header, source, core_text(name, part.cores))
+
+
+def part_of(damper: DamperModel) -> Part:
     keys = damper.parameters
-    if "temperature_C" in keys:
-        raise UsageError("a model with the temperature as input has no C form yet; use --to mat")
-    inputs = [key for key in _INPUTS if key in keys]
-    writers = {"anfis": anfis_text, "feed_forward_network": network_text}
-    model = writers.get(damper.model, vectors_text)(keys, inputs)
-    rig, title = rig_values(damper, with_rig), TITLES[damper.model]
-    fields = {
-        "$FACTS": as_comment(facts(damper, title, with_rig), " *"),
-        "$INPUTS": str(len(inputs)),
-        "$LOW": literals(keys[key]["range"][0] for key in inputs),
-        "$HIGH": literals(keys[key]["range"][1] for key in inputs),
-        "$RISE": literal(rig["rise_s"]),
-        "$FALL": literal(rig["fall_s"]),
-        "$INERTIA": literal(rig["inertia_kg"]),
-        "$SKEW": literal(rig["skew_s"]),
-        "$OFFSET": literal(rig["offset_N"]),
-        "$DRIFT": literal(rig["drift_N_s"]),
-        "$SEEN": ", ".join(_INPUTS[key] for key in inputs),
-        "$MODEL": model,
-        "$NAME": name,
+    if damper.model == "hysteresis_network":
+        return hysteresis_part(damper)
+    if damper.model in ("hilbert_network", "recurrent_network") or "lags" in keys:
+        return sampled_part(keys)
+    writers: dict[str, Callable[[Mapping[str, Any], Sequence[str]], tuple[str, str]]] = {
+        "anfis": anfis_text,
+        "feed_forward_network": network_text,
+        "neuro_fuzzy_stf": stf_text,
+        "support_vector": vectors_text,
+        "ts_fuzzy": clusters_text,
     }
-    header = header_text(name, damper, title, 1, False, with_rig)
-    return CSource(header, filled(SOURCE, fields), ".c")
+    tables, body = writers[damper.model](keys, inputs_of(keys))
+    core = {"feed_forward_network": "network"}.get(damper.model, damper.model)
+    return Part(tables + "\n" + filled(STATIC, {"$BODY": body}), ("input_box", core))
 
 
-def array(name: str, values: Sequence[float] | np.ndarray) -> str:
-    numbers = [literal(value) for value in np.ravel(np.asarray(values, dtype=float))]
-    lines = [", ".join(numbers[k : k + 6]) for k in range(0, len(numbers), 6)]
-    body = ",\n    ".join(lines)
-    return f"static const double {name}[{len(numbers)}] = {{\n    {body},\n}};\n"
+def core_text(name: str, cores: Sequence[str]) -> str:
+    """These headers and those that they include, each once, as one."""
+    folder = root() / "sim_hil/damper/learned/cores"
+    parts: list[str] = []
+    seen: set[str] = set()
+
+    def add(file: Path) -> None:
+        if file.name in seen:
+            return
+        seen.add(file.name)
+        if not file.is_file():
+            raise UsageError(f"{file} is not there; export needs it (QUIESCE_ROOT)")
+        text = file.read_text(encoding="utf-8")
+        for included in _INCLUDE.findall(text):
+            add(folder / included)
+        parts.append(_INCLUDE.sub("", text).strip() + "\n")
+
+    for core in cores:
+        add(folder / f"{core}_core.h")
+    return f"/* Of {name}.c: what the Quiesce library itself runs. */\n\n" + "\n".join(parts)
 
 
-def anfis_text(keys: Mapping[str, Any], inputs: Sequence[str]) -> str:
+def anfis_text(keys: Mapping[str, Any], inputs: Sequence[str]) -> tuple[str, str]:
     counts = [len(keys[key]["centres"]) for key in inputs]
-    firsts = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    return f"""enum {{ RULES = {int(np.prod(counts))} }};
-static const int kCounts[INPUTS] = {{{", ".join(map(str, counts))}}};
-static const int kFirsts[INPUTS] = {{{", ".join(str(int(k)) for k in firsts)}}};
-{array("kCentres", np.concatenate([keys[key]["centres"] for key in inputs]))}
-{array("kWidths", np.concatenate([keys[key]["widths"] for key in inputs]))}
-{array("kConsequents_N", keys["consequents_N"])}
-static double exponent(int k, int j, double value) {{
-    const double distance = (value - kCentres[kFirsts[k] + j]) / kWidths[kFirsts[k] + j];
-    return -0.5 * distance * distance;
-}}
-
-/* Weights are relative to the strongest rule, so that their sum does not vanish. */
-static double model_N(const double *u) {{
-    double nearest[INPUTS];
-    for (int k = 0; k < INPUTS; ++k) {{
-        nearest[k] = exponent(k, 0, u[k]);
-        for (int j = 1; j < kCounts[k]; ++j) {{
-            nearest[k] = fmax(nearest[k], exponent(k, j, u[k]));
-        }}
-    }}
-    double sum = 0.0;
-    double moment = 0.0;
-    for (int rule = 0; rule < RULES; ++rule) {{
-        double total = 0.0;
-        int rest = rule;
-        for (int k = INPUTS - 1; k >= 0; --k) {{
-            total += exponent(k, rest % kCounts[k], u[k]) - nearest[k];
-            rest /= kCounts[k];
-        }}
-        const double weight = exp(total);
-        sum += weight;
-        moment += weight * kConsequents_N[rule];
-    }}
-    return moment / sum;
-}}
+    tables = f"""{box_text(keys, inputs)}
+static const int counts[INPUTS] = {{{", ".join(map(str, counts))}}};
+{array("centres", np.concatenate([keys[key]["centres"] for key in inputs]))}
+{array("widths", np.concatenate([keys[key]["widths"] for key in inputs]))}
+{array("consequents_N", keys["consequents_N"])}
+static const struct quiesce_anfis model = {{INPUTS, counts, {int(np.prod(counts))}, centres, widths,
+                                           consequents_N}};
 """
-
-
-def network_text(keys: Mapping[str, Any], inputs: Sequence[str]) -> str:
-    layers = keys["layer"]
-    units = [int(layer["units"]) for layer in layers]
-    widest = max([*units, len(inputs)])
-    tables = "\n".join(
-        array(f"kWeights{k}", layer["weights"]) + array(f"kBiases{k}", layer["biases"])
-        for k, layer in enumerate(layers)
+    return (
+        tables,
+        f"""    double u[INPUTS];
+    clamped_inputs(m, u);
+    double grades[{sum(counts)}];
+    return quiesce_anfis_N(&model, u, grades);""",
     )
-    calls = "\n".join(
-        f"    layer(kWeights{k}, kBiases{k}, {before}, {count}, {int(k + 1 == len(layers))}, "
-        f"{'s' if k == 0 else 'ab'[k % 2]}, {'ab'[(k + 1) % 2]});"
-        for k, (before, count) in enumerate(zip([len(inputs), *units], units, strict=False))
+
+
+def network_text(keys: Mapping[str, Any], inputs: Sequence[str]) -> tuple[str, str]:
+    layers = layers_text("layers", keys["layer"], len(inputs))
+    tables = f"{box_text(keys, inputs, is_scaled=True)}\n{layers.text}"
+    return (
+        tables,
+        f"""    double u[INPUTS];
+    scaled_inputs(m, u);
+    double hidden[{2 * layers.widest}];
+    double out;
+    quiesce_network_run(layers, {layers.count}, u, &out, hidden, {layers.widest});
+    return {literal(keys["force_scale_N"])} * out;""",
     )
-    spare = "    double a[WIDEST];\n" if len(layers) > 1 else ""
-    return f"""enum {{ WIDEST = {widest} }};
-{tables}
-static void layer(const double *weights, const double *biases, int inputs, int units, int is_last,
-                  const double *in, double *out) {{
-    for (int j = 0; j < units; ++j) {{
-        double sum = biases[j];
-        for (int k = 0; k < inputs; ++k) {{
-            sum += weights[j * inputs + k] * in[k];
-        }}
-        out[j] = is_last ? sum : tanh(sum);
-    }}
-}}
 
-static double model_N(const double *u) {{
-{SCALED}    double b[WIDEST];
-{spare}{calls}
-    return {literal(keys["force_scale_N"])} * {"ab"[len(layers) % 2]}[0];
-}}
+
+def vectors_text(keys: Mapping[str, Any], inputs: Sequence[str]) -> tuple[str, str]:
+    tables = f"""{box_text(keys, inputs, is_scaled=True)}
+{array("coefficients", keys["coefficients"])}
+{array("support_vectors", keys["support_vectors"])}
+static const struct quiesce_support_vector model = {{
+    INPUTS, {len(keys["coefficients"])}, {literal(keys["force_scale_N"])},
+    {literal(keys["gamma"])}, {literal(keys["intercept"])}, coefficients, support_vectors}};
 """
+    return (
+        tables,
+        """    double u[INPUTS];
+    scaled_inputs(m, u);
+    return quiesce_support_vector_N(&model, u);""",
+    )
 
 
-def vectors_text(keys: Mapping[str, Any], inputs: Sequence[str]) -> str:
-    coefficients = keys["coefficients"]
-    return f"""enum {{ VECTORS = {len(coefficients)} }};
-{array("kCoefficients", coefficients)}
-{array("kVectors", keys["support_vectors"])}
-static double model_N(const double *u) {{
-{SCALED}    double sum = {literal(keys["intercept"])};
-    for (int j = 0; j < VECTORS; ++j) {{
-        double distance2 = 0.0;
-        for (int k = 0; k < INPUTS; ++k) {{
-            const double apart = s[k] - kVectors[j * INPUTS + k];
-            distance2 += apart * apart;
-        }}
-        sum += kCoefficients[j] * exp(-{literal(keys["gamma"])} * distance2);
-    }}
-    return {literal(keys["force_scale_N"])} * sum;
-}}
+def clusters_text(keys: Mapping[str, Any], inputs: Sequence[str]) -> tuple[str, str]:
+    rules = keys["rule"]
+    arrays = "\n".join(
+        array(name, np.concatenate([one[key] for one in rules]))
+        for name, key in (("centres", "centre"), ("widths", "width"), ("gains_N", "gain_N"))
+    )
+    tables = f"""{box_text(keys, inputs, is_scaled=True)}
+{arrays}
+{array("offsets_N", [one["offset_N"] for one in rules])}
+static const struct quiesce_ts_fuzzy model = {{INPUTS, {len(rules)}, centres, widths, gains_N,
+                                              offsets_N}};
 """
+    return (
+        tables,
+        """    double u[INPUTS];
+    scaled_inputs(m, u);
+    return quiesce_ts_fuzzy_N(&model, u);""",
+    )
+
+
+def stf_text(keys: Mapping[str, Any], _inputs: Sequence[str]) -> tuple[str, str]:
+    scales = [keys[name] for name in ("force_scale_N", "disp_scale_m", "velocity_scale_m_s")]
+    sets = ",\n    ".join(
+        f"{{{{{literals(keys[key]['centres'])}}}, {{{literals(keys[key]['bases'])}}}}}"
+        for key in ("displacement", "velocity", "current")
+    )
+    tables = f"""static const struct quiesce_stf model = {{
+    {literals([*scales, keys["current_scale_A"]])}, {int(keys["conjunction"] == "minimum")},
+    {sets},
+    {{{literals(keys["outputs"])}}},
+    {{{literals(keys["gains"])}}},
+    {{{", ".join(str(int(label)) for label in keys["rules"])}}},
+}};
+"""
+    return tables, "    return quiesce_stf_N(&model, m->i, m->x, m->v);"
