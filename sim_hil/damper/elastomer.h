@@ -62,9 +62,7 @@ class Elastomer final : public Damper {
     double stiffest_N_s_m(double current_A) const override {
         return law_.stiffness_N_m(current_A) * law_.loss_s();
     }
-    double stiffest_N_m(double current_A) const override {
-        return law_.stiffness_N_m(current_A);
-    }
+    double stiffest_N_m(double current_A) const override { return law_.stiffness_N_m(current_A); }
     double lowest_position_m() const override { return -stroke_m_; }
 
   private:

@@ -24,9 +24,7 @@ KernelModel describe() {
         kToldOf<Kernel>,
         Kernel::kStates,
         Kernel::kUsesAccel,
-        [](const double *p, double speed_m_s) {
-            return Kernel::fastest_rate_1_s(p, speed_m_s);
-        },
+        [](const double *p, double speed_m_s) { return Kernel::fastest_rate_1_s(p, speed_m_s); },
         Kernel::is_passive,
         [](const CurrentLaw *laws, double stroke_m, double speed_m_s, const FieldLaw<double> &field,
            const FluidLaw &fluid) -> std::shared_ptr<const Damper> {

@@ -40,12 +40,8 @@ class SwitchedStiffness final : public Damper {
                    double * /*rates*/) const override {
         return law_.force_N(motion_of(input));
     }
-    double stiffest_N_s_m(double current_A) const override {
-        return law_.damping_N_s_m(current_A);
-    }
-    double stiffest_N_m(double current_A) const override {
-        return law_.stiffness_N_m(current_A);
-    }
+    double stiffest_N_s_m(double current_A) const override { return law_.damping_N_s_m(current_A); }
+    double stiffest_N_m(double current_A) const override { return law_.stiffness_N_m(current_A); }
     double lowest_position_m() const override { return -stroke_m_; }
 
   private:

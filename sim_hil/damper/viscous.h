@@ -31,9 +31,7 @@ class Viscous final : public Damper {
                    double * /*rates*/) const override {
         return law_.force_N(motion_of(input));
     }
-    double stiffest_N_s_m(double current_A) const override {
-        return law_.damping_N_s_m(current_A);
-    }
+    double stiffest_N_s_m(double current_A) const override { return law_.damping_N_s_m(current_A); }
     double lowest_position_m() const override { return -stroke_m_; }
 
   private:

@@ -308,10 +308,10 @@ NB_MODULE(quiesce_dampers, module) {
     module.def("fastest_rate_1_s", [](const std::string &model, const Row &p, double speed_m_s) {
         return model_with(model, p).fastest_rate_1_s(p.data(), speed_m_s);
     });
-    module.def("effective_A", [](double current_A, double exponent, double saturation,
-                                 double reference_A) {
-        return FieldLaw<double>{exponent, saturation, reference_A}.effective(current_A);
-    });
+    module.def("effective_A",
+               [](double current_A, double exponent, double saturation, double reference_A) {
+                   return FieldLaw<double>{exponent, saturation, reference_A}.effective(current_A);
+               });
     module.def("is_passive", [](const std::string &model, const Row &p) {
         return model_with(model, p).is_passive(p.data());
     });

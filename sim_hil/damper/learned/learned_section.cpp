@@ -98,8 +98,7 @@ std::shared_ptr<const Damper> read_sampled(TomlTable &keys, const LearnedContext
         params.feedback = rising_integers(keys, "feedback", 1, kMostLag);
     }
     InputBox box = read_inputs(keys);
-    const std::size_t width =
-        box.count() + (params.quadrature ? quiesce_quadrature_features : 0);
+    const std::size_t width = box.count() + (params.quadrature ? quiesce_quadrature_features : 0);
     const std::size_t inputs = params.lags.size() * width + params.feedback.size();
     Network network = read_network(keys, inputs, 1);
     return std::make_shared<SampledNetwork>(std::move(box), std::move(params), std::move(network));

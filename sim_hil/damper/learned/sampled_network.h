@@ -20,9 +20,9 @@
 namespace quiesce {
 
 struct SampledNetworkParams {
-    double stroke_m;               ///< > 0; the model ends at -stroke_m
-    double sample_time_s;          ///< > 0
-    double force_scale_N;          ///< > 0
+    double stroke_m;           ///< > 0; the model ends at -stroke_m
+    double sample_time_s;      ///< > 0
+    double force_scale_N;      ///< > 0
     std::vector<int> lags;     ///< of the inputs, in samples, at least one, rising from >= 0
     std::vector<int> feedback; ///< of the force, rising from >= 1; may be empty
     std::optional<QuadratureParams> quadrature = std::nullopt;

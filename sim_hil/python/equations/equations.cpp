@@ -75,9 +75,8 @@ std::vector<ModelEquations> plain_equations() {
 TracedFunction field_law_equations() {
     const FieldLaw<Traced> law{traced_name("exponent"), traced_name("saturation"),
                                traced_name("reference")};
-    return {"effective",
-            {"i", "exponent", "saturation", "reference"},
-            law.effective(traced_name("i"))};
+    return {
+        "effective", {"i", "exponent", "saturation", "reference"}, law.effective(traced_name("i"))};
 }
 
 std::vector<TracedFunction> elementary_equations() {

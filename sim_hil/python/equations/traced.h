@@ -115,7 +115,9 @@ inline Traced square_root(const Traced &a) {
     ONE(sine)
 
 #define QUIESCE_TRACED_ONE(name)                                                                   \
-    inline Traced name(const Traced &a) { return Traced(trace_of(#name, {a.node})); }
+    inline Traced name(const Traced &a) {                                                          \
+        return Traced(trace_of(#name, {a.node}));                                                  \
+    }
 #define QUIESCE_TRACED_TWO(name)                                                                   \
     inline Traced name(const Traced &a, const Traced &b) {                                         \
         return Traced(trace_of(#name, {a.node, b.node}));                                          \

@@ -10,7 +10,10 @@ import pytest
 from quiesce.base.command import Parser
 from quiesce.base.errors import UsageError
 from quiesce.damper.data.record import Record
+from quiesce.damper.library import Model, Scales
 from quiesce.damper.model_file import DamperModel
+
+SCALES = Scales(1000.0, 8e-3, 0.1)
 
 
 def act(action: ModuleType, *arguments: str | Path) -> int:
@@ -77,3 +80,14 @@ def two_tones(
     command = np.broadcast_to(np.asarray(current_A, float), time_s.shape).copy()
     zero = np.zeros(len(time_s))
     return Record("two tones", rate_Hz, time_s, disp, velocity, accel, zero, command, "A")
+
+
+def middle_of(one: Model) -> DamperModel:
+    """A model with every parameter well inside its search range, and none of them 0."""
+    values = {}
+    for parameter in one.parameters:
+        low, high = parameter.search_range(SCALES)
+        is_wide = low > 0.0 and high / low > 8.0
+        middle = float(np.sqrt(low * high) if is_wide else 0.3 * low + 0.7 * high)
+        values[parameter.name] = min(max(middle, parameter.min), parameter.max)
+    return DamperModel(one.name, one.name, 0.05, 0.2, values)

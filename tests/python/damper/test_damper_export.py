@@ -10,7 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from damper_actions import act, dissipative_tanh, kwok_rd1005, refused, two_tones, write
+from damper_actions import (
+    act,
+    dissipative_tanh,
+    kwok_rd1005,
+    middle_of,
+    refused,
+    two_tones,
+    write,
+)
 from learned_examples import LEARNED, LIMITS, layers, learned, network
 from quiesce.base.errors import UsageError
 from quiesce.cli.identify import export
@@ -19,7 +27,6 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.example import EXAMPLE
 from quiesce.damper.export.c_names import c_name
 from quiesce.damper.export.learned_c import TITLES
-from quiesce.damper.library import Scales
 from quiesce.damper.model_file import DamperModel, read_model
 from quiesce.damper.simulate import simulator_of_file
 from scipy.io import loadmat
@@ -29,7 +36,6 @@ FLAGS = (
     "-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion",
     "-Wshadow", "-Werror",
 )  # fmt: skip
-SCALES = Scales(1000.0, 8e-3, 0.1)
 
 
 def built(folder: Path, *arguments: str, compiler: str = "gcc") -> None:
@@ -80,17 +86,6 @@ def library_force(damper: DamperModel, record: Record) -> np.ndarray:
     )
     steps = library.substeps_for(rate_1_s, record.rate_Hz)
     return library.simulate(one, orders, row, library.motion(record), steps)[0]
-
-
-def middle_of(one: library.Model) -> DamperModel:
-    """A model with every parameter well inside its search range, and none of them 0."""
-    values = {}
-    for parameter in one.parameters:
-        low, high = parameter.search_range(SCALES)
-        is_wide = low > 0.0 and high / low > 8.0
-        middle = float(np.sqrt(low * high) if is_wide else 0.3 * low + 0.7 * high)
-        values[parameter.name] = min(max(middle, parameter.min), parameter.max)
-    return DamperModel(one.name, one.name, 0.05, 0.2, values)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -291,7 +291,7 @@ TEST(Quadrature, tells_envelope_frequency_and_phase_of_a_sine) {
     const quiesce::QuadratureParams params{0.2, 0.004, 20.0, 500.0};
     const SampledMotion motion;
     const double omega = kTwoPi * 20.0;
-    double means[quiesce::kQuadratureStates] = {};
+    double means[quiesce_quadrature_states] = {};
     for (std::size_t k = 0; k < motion.disp_m.size(); ++k) {
         quiesce::update_quadrature(params, motion.disp_m[k], motion.velocity_m_s[k], 0.001, means);
         if (k % 50 == 0 && k > 0) { // whole cycles: the means' ratio is that of a sine
@@ -307,7 +307,7 @@ TEST(Quadrature, tells_envelope_frequency_and_phase_of_a_sine) {
 
 TEST(Quadrature, rest_has_no_phase_and_extremes_are_cut_off) {
     const quiesce::QuadratureParams params{0.2, 0.004, 20.0, 500.0};
-    double means[quiesce::kQuadratureStates] = {};
+    double means[quiesce_quadrature_states] = {};
     for (const double feature : quiesce::quadrature_features(params, 0.0, 0.0, means)) {
         EXPECT_EQ(feature, 0.0);
     }

@@ -8,10 +8,10 @@
 
 struct quiesce_anfis {
     int inputs;
-    const int *counts; /* memberships of each input */
-    int rules;         /* product of the counts */
-    const double *centres; /* of all inputs, one after the other */
-    const double *widths;  /* likewise, > 0 */
+    const int *counts;           /* memberships of each input */
+    int rules;                   /* product of the counts */
+    const double *centres;       /* of all inputs, one after the other */
+    const double *widths;        /* likewise, > 0 */
     const double *consequents_N; /* the last input's membership varies fastest */
 };
 

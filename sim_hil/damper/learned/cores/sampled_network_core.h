@@ -88,9 +88,9 @@ static inline void quiesce_quadrature_write(const struct quiesce_quadrature *q, 
     const double least = q->lowest_rad_s;
     out[0] = out[1] = out[2] = out[3] = 0.0;
     if (!(envelope_m < rest_m)) {
-        out[0] = 2.0 * (quiesce_clamped(envelope_m, 0.0, q->envelope_m) - 0.0) /
-                     (q->envelope_m - 0.0) -
-                 1.0;
+        out[0] =
+            2.0 * (quiesce_clamped(envelope_m, 0.0, q->envelope_m) - 0.0) / (q->envelope_m - 0.0) -
+            1.0;
         out[1] = 2.0 * (w_rad_s - least) / (q->highest_rad_s - least) - 1.0;
         out[2] = x_m / envelope_m;
         out[3] = turned_m / envelope_m;

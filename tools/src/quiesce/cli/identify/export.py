@@ -1,4 +1,4 @@
-"""`quiesce identify export MODEL.toml --to c|lookup|mat --out FILE`: a model for other programs."""
+"""`quiesce identify export MODEL.toml --to FORM --out FILE`: a model for other programs."""
 
 import argparse
 import re
@@ -12,16 +12,22 @@ from quiesce.cli.identify.help import fill
 from quiesce.damper.export.c_folder import c_folder
 from quiesce.damper.export.c_names import c_name
 from quiesce.damper.export.mat import mat_bytes
+from quiesce.damper.export.modelica import modelica_name, modelica_package
 from quiesce.damper.model_file import DamperModel, read_model
 
 NAME = "export"
-HELP = "a model file as C, MAT or a table for Simulink"
-ENDINGS = {"c": (), "lookup": (".mat", ".m"), "mat": (".mat",)}
+HELP = "a model file as C, Modelica, MAT or a table for Simulink"
+ENDINGS = {"c": (), "lookup": (".mat", ".m"), "mat": (".mat",),
+           "modelica": (".mo",)}  # fmt: skip
 EPILOG = """--to c writes a folder of plain C11: FOLDER.h, FOLDER.c, a program main.c that holds
 them to forces of the bench's own model, CMakeLists.txt and README.md. Functions and types begin
 with the folder's name; the caller owns the state. Models of equations give the bench's forces to
 the last bit. The coil's lag and the field law are part of it; mass, skew, offset and drift of the
 rig only with --with-rig.
+
+--to modelica writes a package FILE.mo that needs no library: Force (x, v, command in, force out),
+Damper (between two flanges that fit those of Modelica.Mechanics.Translational) and Example. For
+models of equations; the coil's lag and the field law are part of it.
 
 --to mat writes one struct `damper` with parameters, units, laws, rig and validity; any model.
 
@@ -31,6 +37,7 @@ loop in mid-stroke: the loop's width, the coil's lag and the rig are not in it.
 
 examples:
   quiesce identify export damper.toml --to c --out my_damper
+  quiesce identify export damper.toml --to modelica --out Damper.mo
   quiesce identify export damper.toml --to mat --out damper.mat
   quiesce identify export damper.toml --to lookup --out table.mat --max-current-A 2
 """
@@ -58,6 +65,8 @@ def run(args: argparse.Namespace) -> int:
     damper = read_model(args.model)
     if args.max_current_A is not None and args.to != "lookup":
         raise UsageError("--max-current-A is of --to lookup")
+    if args.with_rig and args.to != "c":
+        raise UsageError("--with-rig is of --to c")
     require_exportable(damper, args.to, args.out)
     if args.to == "lookup":
         files = lookup_of(args, damper)
@@ -117,5 +126,8 @@ def files_of(damper: DamperModel, to: str, out: Path, with_rig: bool) -> dict[st
     """Names and contents. UsageError where model or name do not allow it."""
     if to == "mat":
         return {f"{stem_of(out)}.mat": mat_bytes(damper)}
+    if to == "modelica":
+        name = modelica_name(stem_of(out))
+        return {f"{name}.mo": modelica_package(name, damper).encode()}
     name = c_name(stem_of(out))
     return {file: text.encode() for file, text in c_folder(name, damper, with_rig).items()}

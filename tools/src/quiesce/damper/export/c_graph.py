@@ -53,7 +53,7 @@ def call(what: str, of: list[str], value: Any) -> str:
     return f"{'sqrt' if what == 'square_root' else what}({', '.join(of)})"
 
 
-C = Language(leaf, call)
+C = Language(leaf, call, 6)
 
 
 def statements(

@@ -101,10 +101,11 @@ def called_in(nodes: Sequence[Node], roots: Iterable[int]) -> set[str]:
 @dataclass(frozen=True)
 class Language:
     """How a node is written: leaf(node), and call(what, texts of the operands, node's value) for
-    what is no operator."""
+    what is no operator. minus: how tightly a leading minus binds; operators are at 3 .. 5."""
 
     leaf: Callable[[Node], str]
     call: Callable[[str, list[str], Any], str]
+    minus: int
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,9 @@ class Written:
     roots: list[str]
 
 
-def written(nodes: Sequence[Node], roots: Sequence[int], language: Language) -> Written:
+def written(
+    nodes: Sequence[Node], roots: Sequence[int], language: Language, prefix: str = "t"
+) -> Written:
     """What is used more than once gets a name, t0, t1, ..; the rest stands where it is used."""
     places = reached(nodes, roots)
     uses = Counter(place for k in places for place in nodes[k].of)
@@ -126,7 +129,7 @@ def written(nodes: Sequence[Node], roots: Sequence[int], language: Language) -> 
     for k in places:
         text, precedence = _text(nodes[k], [texts[j] for j in nodes[k].of], language)
         if uses[k] > 1 and nodes[k].what not in LEAVES:
-            name = f"t{len(steps)}"
+            name = f"{prefix}{len(steps)}"
             steps.append((name, kind_of(nodes[k].what), text))
             text, precedence = name, TIGHTEST
         texts[k] = (text, precedence)
@@ -136,9 +139,9 @@ def written(nodes: Sequence[Node], roots: Sequence[int], language: Language) -> 
 def _text(node: Node, of: list[tuple[str, int]], language: Language) -> tuple[str, int]:
     if node.what in LEAVES:
         text = language.leaf(node)
-        return text, 6 if text.startswith("-") else TIGHTEST
+        return text, language.minus if text.startswith("-") else TIGHTEST
     if node.what == "negative":
-        return f"-{_held(of[0], 7)}", 6
+        return f"-{_held(of[0], TIGHTEST)}", language.minus
     own = _PRECEDENCE.get(node.what)
     if own is None:
         return language.call(node.what, [text for text, _ in of], node.value), TIGHTEST
