@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
+from scipy.io import loadmat
 
 DATA = ROOT / "sim_hil/data"
 
@@ -58,6 +59,30 @@ def test_laws_stand_beside_constants_in_all_files(quiesce, quake: Path, tmp_path
 def test_the_same_seeds_give_the_same_numbers(quiesce, quake: Path) -> None:
     words = ["compare", *RIG, "--record", quake, "--law", "fuzzy", "--json"]
     assert quiesce(*words).stdout == quiesce(*words).stdout
+
+
+def test_what_laws_did_goes_to_other_programs(quiesce, quake: Path, tmp_path: Path) -> None:
+    words = ["compare", *RIG, "--record", quake, "--law", "fuzzy:as=a/b", "--out", tmp_path / "out"]
+    result = quiesce(*words, "--format", "mat")
+    assert result.returncode == 0, result.stderr
+    stems = ("no_current", "all_current", "a_b")
+    assert f"history_quake_{stems[2]}.mat" in result.stdout
+    found = {
+        stem: loadmat(tmp_path / f"out/history_quake_{stem}.mat", simplify_cells=True)
+        for stem in stems
+    }
+    assert np.ptp(np.diff(found["a_b"]["t_s"])) < 1e-9
+    assert found["no_current"]["upper_current_cmd_mA"].max() == 0.0
+    assert found["all_current"]["upper_current_cmd_mA"].max() > 0.0
+    cells = json.loads((tmp_path / "out/compare.json").read_text())
+    peak_mm = next(one["figures"]["disp_peak_mm"] for one in cells if one["law"] == "a/b")
+    peaks = [np.abs(values).max() for name, values in found["a_b"].items() if "true_um" in name]
+    assert max(peaks) * 1e-3 >= peak_mm * 0.99
+
+
+def test_format_without_a_folder_is_refused(quiesce, quake: Path) -> None:
+    result = quiesce("compare", *RIG, "--record", quake, "--format", "uff")
+    assert result.returncode == 2 and "--out FOLDER says where" in result.stderr
 
 
 def test_at2_files_are_read(quiesce, tmp_path: Path) -> None:

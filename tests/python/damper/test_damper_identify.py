@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import pyuff
 from quiesce.cli.main import main
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
@@ -73,6 +74,22 @@ def test_finds_the_truth_and_writes_a_model(
     assert (tmp_path / "report.html").is_file()
     assert (tmp_path / "models/kwok_tanh.toml").is_file()
     assert simulate is not None
+
+
+@pytest.mark.slow
+def test_fitted_forces_go_to_other_programs(
+    example: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = arguments(example, tmp_path, "--model", "bingham", "--test", "time_s=3,6")
+    assert main([*words, "--train", "time_s=0,3", "--format", "uff"]) == 0
+    assert "02_test_rig.csv.uff" in capsys.readouterr().out
+    train, test = (tmp_path / f"runs/{name}_rig.csv.uff" for name in ("01_train", "02_test"))
+    sets = {one["id1"].strip(): one for one in pyuff.UFF(str(test)).read_sets()}
+    measured, modelled = sets["force"]["data"], sets["bingham_force"]["data"]
+    assert len(pyuff.UFF(str(train)).read_sets()) == len(sets) == 5
+    report = json.loads((tmp_path / "report.json").read_text())
+    error = float(np.linalg.norm(measured - modelled) / np.linalg.norm(measured))
+    assert error == pytest.approx(report["models"][0]["test"]["error"], rel=1e-3)
 
 
 @pytest.mark.slow

@@ -30,6 +30,7 @@ from quiesce.damper.plan import (
     make_plan,
     step_level_A,
 )
+from scipy.io import loadmat
 
 USUAL = Damper(0.05, 2000.0, 2.0, 0.3, 10.0, 0.9)
 DAMPERS = {
@@ -70,7 +71,7 @@ def test_every_test_begins_and_ends_at_rest_in_mid_stroke(plan: Plan) -> None:
 def test_every_kind_of_test_is_there_once_and_explained(plan: Plan) -> None:
     # Chirps belong to the published protocol.
     assert {test.kind for test in plan.tests} == set(KINDS) - {"chirp"}
-    assert len({cli_plan.file_name(plan, test) for test in plan.tests}) == len(plan.tests)
+    assert len({cli_plan.file_name(plan, test, "csv") for test in plan.tests}) == len(plan.tests)
     assert all(test.duration_s > 0.0 and test.pause_s > 0.0 for test in plan.tests)
 
 
@@ -257,3 +258,16 @@ def test_folder_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises((UsageError, OSError)):
         act(cli_plan, *OPTIONS, "--out", tmp_path / "file/plan")
+
+
+def test_excitations_go_to_other_programs(tmp_path: Path) -> None:
+    options = (*OPTIONS, "--protocol", "sines-chirps", "--out")
+    assert act(cli_plan, *options, tmp_path / "csv") == 0
+    assert act(cli_plan, *options, tmp_path / "mat", "--format", "mat") == 0
+    rows = list(csv.DictReader((tmp_path / "mat/plan.csv").open()))
+    assert all((tmp_path / "mat" / row["file"]).suffix == ".mat" for row in rows)
+    name = rows[0]["file"]
+    found = loadmat(tmp_path / "mat" / name, simplify_cells=True)
+    text = np.genfromtxt(tmp_path / "csv" / name.replace(".mat", ".csv"), delimiter=",", names=True)
+    for column in ("time_s", "disp_m", "current_A"):
+        assert found[column] == pytest.approx(text[column], abs=1e-4)

@@ -10,7 +10,7 @@ import pytest
 from conftest import run_quiesce
 from quiesce.base.errors import UsageError
 from quiesce.recording.open import FORMATS, open_table
-from quiesce.recording.write import WRITERS, name_and_unit
+from quiesce.recording.write import WRITERS, name_and_unit, time_text, write_columns
 from quiesce_benchmarks.campaign import written
 from quiesce_benchmarks.campaign.parts.formats import formats_ok, trouble_with
 from scipy.io import savemat
@@ -263,3 +263,26 @@ def test_units_end_the_names_of_columns() -> None:
     assert name_and_unit("floor_accel_m_s2") == ("floor_accel", "m/s2")
     assert name_and_unit("upper_stroke_mm") == ("upper_stroke", "mm")
     assert name_and_unit("count") == ("count", "")
+
+
+def test_text_has_whole_numbers_as_such_and_nine_digits_of_others(tmp_path: Path) -> None:
+    columns = {
+        "t_s": np.array([0.0, 0.25]),
+        "count": np.array([3, -4]),
+        "x_m": np.array([1 / 3, 2]),
+    }
+    write_columns(tmp_path / "a.csv", columns, {"t_s": time_text})
+    assert (tmp_path / "a.csv").read_bytes() == b"t_s,count,x_m\n0,3,0.333333333\n0.25,-4,2\n"
+
+
+@pytest.mark.parametrize("suffix", list(WRITERS))
+def test_whole_numbers_become_numbers_of_other_programs(tmp_path: Path, suffix: str) -> None:
+    columns = {"t_s": np.arange(50) / 100.0, "count": np.arange(50) - 7}
+    write_columns(tmp_path / f"a{suffix}", columns)
+    found = open_table(tmp_path / f"a{suffix}").numbers(["count"])[1]
+    assert found[:, 0].tolist() == columns["count"].tolist()
+
+
+def test_columns_of_other_lengths_are_a_mistake_of_the_caller(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="shorter"):
+        write_columns(tmp_path / "a.csv", {"t_s": np.arange(3.0), "x": np.arange(2.0)})

@@ -6,8 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import pyuff
 from conftest import ROOT
 from PIL import Image
+from scipy.io import loadmat
 
 EXAMPLE = ROOT / "sim_hil/data/recordings/step_10_20Hz.csv"
 MEASURED = ROOT.parent / "shared/data/vibration"
@@ -46,6 +48,33 @@ def test_replay_of_the_example_finds_both_frequencies(quiesce, tmp_path: Path) -
         assert (rows["current_cmd_mA"][chosen] > 4800).all()
     with Image.open(tmp_path / "out/replay.png") as picture:
         assert min(picture.size) > 500
+
+
+@pytest.mark.parametrize("form", ["mat", "uff"])
+def test_telemetry_goes_to_other_programs(quiesce, tmp_path: Path, form: str) -> None:
+    words = ("--column", "accel_m_s2", "--unit", "m_s2", "--every", "20")
+    replay(quiesce, EXAMPLE, *words)
+    rows = read_csv(tmp_path / "out/replay.csv")
+    figures = replay(quiesce, EXAMPLE, *words, "--format", form)
+    assert figures["outputs"] == [f"out/replay.{form}", "out/replay.png"]
+    if form == "mat":
+        found = loadmat(tmp_path / "out/replay.mat", simplify_cells=True)
+        assert {name: found[name].tolist() for name in rows} == {
+            name: values.tolist() for name, values in rows.items() if name != "t_s"
+        } | {"t_s": found["t_s"].tolist()}
+        assert found["t_s"] == pytest.approx(rows["t_s"], abs=1e-6)
+    else:
+        sets = pyuff.UFF(str(tmp_path / "out/replay.uff")).read_sets()
+        found = {one["id1"].strip(): one["data"] for one in sets}
+        assert found["current_cmd"] == pytest.approx(rows["current_cmd_mA"], rel=1e-5)
+        assert sets[0]["abscissa_inc"] == pytest.approx(0.02)
+
+
+def test_unknown_format_is_refused(quiesce, tmp_path: Path) -> None:
+    words = ("--column", "accel_m_s2", "--unit", "m_s2", "--format", "xls", "--out", "out")
+    result = quiesce("replay", EXAMPLE, *words)
+    assert result.returncode == 2 and "choose from" in result.stderr
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow

@@ -2,14 +2,18 @@
 
 import argparse
 import json
+import re
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
+from quiesce.cli.file_format import add_format
 from quiesce.cli.rig_options import add_motions, add_rig, records_of, several_rig_files, shaking_of
 from quiesce.cli.terminal import show
 from quiesce.compare.clairvoyant import CLAIRVOYANT, Found
@@ -22,6 +26,7 @@ from quiesce.compare.run import BY_INDEX, Case, Cell, Comparison
 from quiesce.compare.table import as_csv, as_data, text
 from quiesce.engine.bench import Bench
 from quiesce.law.rig import load_rig
+from quiesce.recording.write import write_columns
 
 MOST_SEEDS = 1000
 DRAWN = 6  # laws over time, or nothing can be told apart
@@ -44,10 +49,10 @@ examples:
       --law linear:table=optimal.table,tracker=compare --law fuzzy --seeds 5
 
 Beside the laws stand no current, all current, and the best of nine constant currents, which only
-hindsight knows. Written to --out: compare.html, compare.csv, compare.json, and with --clairvoyant
-clairvoyant_RECORD.csv, the current over time. GOAL of --clairvoyant is index (the default), a
-figure such as weighted_m_s2, or several with weights: weighted_m_s2:0.7,tyre_share:0.3; it also
-chooses the best constant current.
+hindsight knows. Written to --out: compare.html, compare.csv, compare.json; with --clairvoyant
+clairvoyant_RECORD.csv, the current over time; with --format history_RECORD_LAW, what the page
+draws. GOAL of --clairvoyant is index (the default), a figure such as weighted_m_s2, or several with
+weights: weighted_m_s2:0.7,tyre_share:0.3; it also chooses the best constant current.
 """
 
 
@@ -75,6 +80,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         help="beside each record the best waveform that a search finds, about a minute each",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="page, CSV and JSON")
+    add_format(parser, "what laws did over time, a file each, which are then written, too", None)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=run)
 
@@ -98,25 +104,39 @@ class OfRig:
         return Shown(board.name, self.cells, traces, board.bodies[-1], board.dampers[0])
 
 
+def histories(
+    args: argparse.Namespace, rigs: list[OfRig], drawn: list[Shown], record: Record
+) -> dict[str, dict[str, np.ndarray]]:
+    """By the stem of a file: the clairvoyant's currents; with --format what the page draws, too."""
+    files = {}
+    for one, of_rig in zip(rigs, drawn, strict=True):
+        rig = [one.comparison.rig.board.name] if len(rigs) > 1 else []
+        for name, found in one.found.items():
+            files["_".join([CLAIRVOYANT, *rig, name])] = found.columns()
+        if args.format:
+            for label, trace in of_rig.traces.items():
+                stem = "_".join(["history", *rig, record.name, label])
+                files[re.sub(r"[^\w.+-]", "_", stem)] = {"t_s": trace["t_s"], **trace}
+    return files
+
+
 def written(args: argparse.Namespace, rigs: list[OfRig], record: Record) -> str:
     cells = [cell for one in rigs for cell in one.cells]
-    waveforms = {
-        "_".join([CLAIRVOYANT, *([one.comparison.rig.board.name] if len(rigs) > 1 else []), name])
-        + ".csv": found.csv()
-        for one in rigs
-        for name, found in one.found.items()
-    }
+    drawn = [one.shown(record) for one in rigs]
     files = {
-        "compare.html": page([one.shown(record) for one in rigs]),
+        "compare.html": page(drawn),
         "compare.csv": as_csv(cells),
         "compare.json": json.dumps(as_data(cells), indent=1) + "\n",
-        **waveforms,
     }
+    over_time = histories(args, rigs, drawn, record)
+    ending = args.format or "csv"
     with output_files(args.out) as folder:
         for name, content in files.items():
             (folder / name).write_text(content, encoding="utf-8")
-    names = ", ".join([shown(args.out / "compare.html"), *list(files)[1:]])
-    return f"written: {names}"
+        for stem, columns in over_time.items():
+            write_columns(folder / f"{stem}.{ending}", columns)
+    others = [*list(files)[1:], *(f"{stem}.{ending}" for stem in over_time)]
+    return f"written: {', '.join([shown(args.out / 'compare.html'), *others])}"
 
 
 def on_rig(
@@ -147,6 +167,8 @@ def on_rig(
 
 
 def run(args: argparse.Namespace) -> int:
+    if args.format and not args.out:
+        raise UsageError("--format says how files are written; --out FOLDER says where")
     files = several_rig_files(args)
     records = records_of(args)
     with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:

@@ -13,7 +13,7 @@ from quiesce.base.paths import shown
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.trace import Trace, read_trace
-from quiesce.recording.write import writer_of
+from quiesce.recording.write import time_text, write_columns
 from quiesce.signal.recording import COLUMN_UNITS, M_S2_PER_UNIT
 
 EPILOG = """examples:
@@ -85,14 +85,8 @@ def measured(scenario: scenarios.Scenario, trace: Trace) -> dict[str, np.ndarray
 
 def write(file: Path, time_s: np.ndarray, columns: dict[str, np.ndarray]) -> None:
     """As the suffix asks for; text without one that is known."""
-    if (writer := writer_of(file)) is not None:
-        writer(file, {"t_s": time_s, **columns})
-        return
-    with file.open("w") as stream:
-        stream.write(",".join(["t_s", *columns]) + "\n")
-        for t_s, *values in zip(time_s, *columns.values(), strict=True):
-            cells = [f"{t_s:.6f}".rstrip("0").rstrip("."), *(f"{value:.6f}" for value in values)]
-            stream.write(",".join(cells) + "\n")
+    texts = {name: "{:.6f}".format for name in columns}
+    write_columns(file, {"t_s": time_s, **columns}, {**texts, "t_s": time_text})
 
 
 def run(args: argparse.Namespace) -> int:

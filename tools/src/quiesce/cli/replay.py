@@ -11,6 +11,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
+from quiesce.cli.file_format import add_format
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import load_board
 from quiesce.signal.recording import M_S2_PER_UNIT, Recording, read_recording
@@ -22,7 +23,7 @@ from quiesce.signal.replay import (
     one_column,
     replay,
     summarize,
-    write_csv,
+    write_telemetry,
 )
 from quiesce.signal.replay_plot import plot_replay
 from quiesce.signal.resample import METHOD, is_same_rate
@@ -37,7 +38,8 @@ EPILOG = """examples:
 The file has one header line, a column of time in seconds and columns of acceleration. It is
 resampled to the control rate (tick_rate_Hz), turned into counts of the sensor that the parameters
 describe, and run through the controller with its output enabled. Written: replay.csv (telemetry
-under its C names) and replay.png. With a reference column, the firmware's frequency at each of its
+under its C names; --format for
+another) and replay.png. With a reference column, the firmware's frequency at each of its
 updates (every 4 ms) is compared with the reference's own peak (2 s Hann window); the latencies of
 both are taken out.
 
@@ -80,6 +82,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         metavar="DIR",
         help=f"folder to write to ({results_text('replay/FILE')})",
     )
+    add_format(parser, "replay.csv")
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     add_board_options(parser.add_argument_group("columns for the sensors of a board"))
     add_reference_options(parser.add_argument_group("comparison with a reference sensor"))
@@ -272,8 +275,9 @@ def run(args: argparse.Namespace) -> int:
     agreement = judge(args, replayed, reference) if reference else None
 
     out = args.out or results_folder() / "replay" / args.file.stem
+    telemetry = f"replay.{args.format}"
     with output_files(out) as staging:
-        write_csv(staging / "replay.csv", replayed, args.every)
+        write_telemetry(staging / telemetry, replayed, args.every)
         plot_replay(staging / "replay.png", replayed, title_of(args), reference)
     figures = {
         "file": str(args.file),
@@ -283,7 +287,7 @@ def run(args: argparse.Namespace) -> int:
         "duration_s": round(recording.duration_s, 6),
         **summarize(replayed),
         "reference": agreement_figures(agreement) if agreement else None,
-        "outputs": [shown(out / name) for name in ("replay.csv", "replay.png")],
+        "outputs": [shown(out / name) for name in (telemetry, "replay.png")],
     }
     if args.json:
         print(json.dumps(figures, indent=1))

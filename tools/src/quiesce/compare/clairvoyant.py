@@ -2,7 +2,6 @@
 that a search finds when it knows the whole record, without noise or delay. No proof of the best."""
 
 import hashlib
-import io
 import json
 import tomllib
 from collections.abc import Sequence
@@ -109,14 +108,12 @@ class Found:
     trace: Trace
     figures: Figures
 
-    def csv(self) -> str:
+    def columns(self) -> dict[str, Floats]:
         """t_s, then current_A, of several dampers NAME_current_A."""
         names = [f"{name}_current_A" for name in self.dampers]
-        head = "t_s," + ("current_A" if len(names) == 1 else ",".join(names))
-        rows = np.column_stack([np.arange(len(self.command_A)) / TICK_RATE_Hz, self.command_A])
-        out = io.StringIO()
-        np.savetxt(out, rows, fmt="%.9g", delimiter=",", header=head, comments="")
-        return out.getvalue()
+        names = ["current_A"] if len(names) == 1 else names
+        time_s = np.arange(len(self.command_A)) / TICK_RATE_Hz
+        return {"t_s": time_s, **dict(zip(names, self.command_A.T, strict=True))}
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ One sweep without current, then dwells at fixed frequencies with current steps. 
 and ends at rest, so that each can be simulated from zero and nothing leaks from one to the next.
 """
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from quiesce.base.errors import UsageError
-from quiesce.recording.write import writer_of
+from quiesce.recording.write import write_columns
 
 # Part of a sweep over which the drive rises at its start and falls at its end.
 FADE_s = 0.5
@@ -155,11 +154,4 @@ def write_line(file: Path, line: Timeline, accel_m_s2: np.ndarray | None = None)
     an acceleration it is a recording."""
     columns = [line.time_s, line.drive_V, line.current_A]
     columns += [] if accel_m_s2 is None else [accel_m_s2]
-    if (writer := writer_of(file)) is not None:
-        writer(file, dict(zip(COLUMNS, columns, strict=False)))
-        return
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(COLUMNS[: len(columns)])
-        for row in zip(*columns, strict=True):
-            writer.writerow([f"{value:.9g}" for value in row])
+    write_columns(file, dict(zip(COLUMNS, columns, strict=False)))

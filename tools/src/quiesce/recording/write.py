@@ -1,7 +1,9 @@
-"""Columns into files of other programs. A format is a function and a line in WRITERS."""
+"""Columns into files, text and those of other programs: a function and a line in WRITERS each."""
 
+import csv
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +12,8 @@ from quiesce.recording.columns import ROLES
 from quiesce.recording.units import normal
 
 Columns = Mapping[str, np.ndarray]
+Text = Callable[[Any], str]
+Texts = Mapping[str, Text]
 TIME_HISTORY, TIME = 1, 17  # of a universal data set 58: function, abscissa
 NAME_LETTERS, LABEL_LETTERS = 80, 20
 
@@ -63,8 +67,32 @@ WRITERS: dict[str, Callable[[Path, Columns], None]] = {
     ".uff": write_uff,
     ".unv": write_uff,
 }
+# What a command that names its files itself can be asked for.
+FORMATS = ("csv", "mat", "uff")
 
 
-def writer_of(file: Path) -> Callable[[Path, Columns], None] | None:
-    """None where the name asks for text."""
-    return WRITERS.get(file.suffix.lower())
+def write_columns(file: Path, columns: Columns, texts: Texts | None = None) -> None:
+    """As the suffix asks for, as text without one that is known. Columns of one length, the first
+    the time in s at even steps; units end the names. texts: how a column's numbers are written as
+    text; others as whole numbers where they are such, with nine digits where not."""
+    if (writer := WRITERS.get(file.suffix.lower())) is not None:
+        writer(file, {name: np.asarray(values, float) for name, values in columns.items()})
+        return
+    texts = texts or {}
+    cells = [
+        map(texts.get(name, _text_of(np.asarray(values))), np.asarray(values).tolist())
+        for name, values in columns.items()
+    ]
+    with file.open("w", newline="", encoding="utf-8") as stream:
+        rows = csv.writer(stream, lineterminator="\n")
+        rows.writerow(columns)
+        rows.writerows(zip(*cells, strict=True))
+
+
+def _text_of(values: np.ndarray) -> Text:
+    return str if values.dtype.kind in "iub" else "{:.9g}".format
+
+
+def time_text(time_s: float) -> str:
+    """To the microsecond, without zeros at the end."""
+    return f"{time_s:.6f}".rstrip("0").rstrip(".")

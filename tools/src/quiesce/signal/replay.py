@@ -1,6 +1,5 @@
 """Runs the firmware's chain over recorded motion, through the bench."""
 
-import csv
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from quiesce.engine.bench import Bench, setting_options, target_options
 from quiesce.engine.board import Board, Sensor
 from quiesce.engine.params import effective_params
 from quiesce.engine.trace import Trace, read_trace
+from quiesce.recording.write import time_text, write_columns
 from quiesce.signal import picture
 from quiesce.signal.channels import Channel, read_channels, tick_counts
 from quiesce.signal.recording import M_S2_PER_UNIT, Recording
@@ -126,13 +126,10 @@ def replay(
     return Replayed(rate_Hz, time_s, trace, summary, board)
 
 
-def write_csv(file: Path, replayed: Replayed, every_ticks: int) -> None:
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["t_s", *replayed.trace])
-        columns = [values.astype(int)[::every_ticks] for values in replayed.trace.values()]
-        for time_s, *values in zip(replayed.time_s[::every_ticks], *columns, strict=True):
-            writer.writerow([f"{time_s:.6f}".rstrip("0").rstrip("."), *values])
+def write_telemetry(file: Path, replayed: Replayed, every_ticks: int) -> None:
+    """In the format that the suffix asks for, text without one that is known."""
+    columns = {name: values.astype(int)[::every_ticks] for name, values in replayed.trace.items()}
+    write_columns(file, {"t_s": replayed.time_s[::every_ticks], **columns}, {"t_s": time_text})
 
 
 def summarize(replayed: Replayed) -> dict[str, Any]:

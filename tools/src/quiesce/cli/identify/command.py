@@ -14,6 +14,7 @@ from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.base.searches.names import NAMES as SEARCHES
+from quiesce.cli.file_format import add_format
 from quiesce.cli.identify import compare, example, export, inverse, online
 from quiesce.cli.identify import plan as cli_plan
 from quiesce.cli.identify.data_options import add_data_options
@@ -79,6 +80,9 @@ def add_fit_options(group: argparse._ArgumentGroup) -> None:
         help="model names with commas, or quick, parametric, all (quick); 'list' prints them",
     )  # fmt: skip
     group.add_argument("--out", type=Path, metavar="DIR", help=f"({results_text('identify/NAME')})")
+    add_format(
+        group, "measured and modelled forces of each test, which are then written, too", None
+    )
     group.add_argument(
         "--fix", action="append", default=[], metavar="NAME=VALUE",
         help="hold a parameter (SI), e.g. n=2 or skew_s=0; repeatable",
@@ -320,6 +324,7 @@ def report(
 ) -> int:
     from quiesce.damper.ranking import ranked
     from quiesce.damper.report.page import write_report
+    from quiesce.damper.report.run_files import write_runs
     from quiesce.damper.report.runs import runs_of, shown_part, whiteness_of
     from quiesce.damper.report.tables import json_report, text_report
     from quiesce.damper.report.where import sentences
@@ -331,6 +336,7 @@ def report(
     where = sentences(runs) if all(run.is_finite for run in runs) else []
     context = {"title": args.files[0].stem, "command": "quiesce " + " ".join(sys.argv[1:])}
     write_report(store.out, fitted, train, test, notes, context)
+    files = write_runs(store.out / "runs", fitted, train, test, args.format) if args.format else []
     has_passive = store.keep_best(fitted)
     if args.json:
         print(json.dumps(json_report(fitted, train, test, notes, context, white, where)))
@@ -338,5 +344,6 @@ def report(
         show(text_report(fitted, train, test, notes, white, where))
         written = ["report.html", "report.json", "models/"]
         written += [BEST] if has_passive else []
+        written += [f"runs/{name}" for name in files]
         print(f"\nwritten    {', '.join(shown(store.out / name) for name in written)}")
     return 0

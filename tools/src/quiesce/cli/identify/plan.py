@@ -10,20 +10,24 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import real_number
 from quiesce.base.paths import shown
 from quiesce.base.table import format_table
+from quiesce.cli.file_format import add_format
 from quiesce.cli.identify.help import fill
 from quiesce.cli.terminal import show
 from quiesce.damper import sines_and_chirps
 from quiesce.damper.plain import plain
 from quiesce.damper.plan import KINDS, Damper, Plan, Test, excitation, make_plan, needs
+from quiesce.recording.write import write_columns
 
 NAME = "plan"
 HELP = "which tests to run for a damper"
 # A damper of 2 kN and 50 mm weighs about 0.9 kg.
 _MASS_kg_J = 0.9 / (2000.0 * 0.05)
+# Of the excitations.
+TEXTS = {"time_s": "{:.4f}".format, "disp_m": "{:.7f}".format, "current_A": "{:g}".format}
 EPILOG = """Without --max-speed-m-s the largest speed is that of --rig-max-Hz at the usable
 amplitude, at most 0.3 m/s. Amplitudes use 80 % of the stroke. --out writes plan.csv, plan.toml
-and, for every test, a CSV file to play: time_s, disp_m (from mid-stroke), current_A. Record the
-force beside it as force_N and give the files to quiesce identify; hold the random ones out.
+and, for every test, a file to play (--format): time_s, disp_m (from mid-stroke), current_A. Record
+the force beside it as force_N and give the files to quiesce identify; hold the random ones out.
 
 examples:
   quiesce identify plan --stroke-mm 50 --max-force-N 2000 --max-current-A 2
@@ -64,6 +68,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "self-tuning fuzzy model was published with, up to the limits stated here (%(default)s)",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write plan and excitations")
+    add_format(parser, "the excitations")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -71,8 +76,8 @@ def run(args: argparse.Namespace) -> int:
     damper = damper_of(args)
     plan = make_plan(damper) if args.protocol == "full" else sines_and_chirps.make_plan(damper)
     if args.out:
-        write_plan(args.out, plan)
-    show(json.dumps(numbers_of(plan), indent=1) if args.json else text_of(plan))
+        write_plan(args.out, plan, args.format)
+    show(json.dumps(numbers_of(plan, args.format), indent=1) if args.json else text_of(plan))
     if args.out and not args.json:
         print(f"\nwritten: {shown(args.out)}/plan.csv, plan.toml and {len(plan.tests)} excitations")
     return 0
@@ -141,7 +146,7 @@ def text_of(plan: Plan) -> str:
     )
 
 
-def numbers_of(plan: Plan) -> dict:
+def numbers_of(plan: Plan, ending: str) -> dict:
     return plain(
         {
             "damper": vars(plan.damper),
@@ -151,48 +156,45 @@ def numbers_of(plan: Plan) -> dict:
             "needs": needs(plan),
             "warnings": plan.warnings,
             "tests": [
-                {**vars(test), "file": file_name(plan, test), "tells": KINDS[test.kind]}
+                {**vars(test), "file": file_name(plan, test, ending), "tells": KINDS[test.kind]}
                 for test in plan.tests
             ],
         }
     )
 
 
-def file_name(plan: Plan, test: Test) -> str:
+def file_name(plan: Plan, test: Test, ending: str) -> str:
     """In the order in which to run them."""
-    return f"{plan.tests.index(test) + 1:02d}_{test.name}.csv"
+    return f"{plan.tests.index(test) + 1:02d}_{test.name}.{ending}"
 
 
-def table_text(plan: Plan) -> str:
+def table_text(plan: Plan, ending: str) -> str:
     head = "file,kind,amplitude_mm,freq_Hz,speed_m_s,current_A,duration_s,pause_s,heating_K"
     lines = [head]
     for test in plan.tests:
         numbers = (1e3 * test.amplitude_m, test.freq_Hz, test.speed_m_s)
         times = (test.duration_s, test.pause_s, test.heating_K)
         cells = [
-            file_name(plan, test), test.kind, *(f"{value:.6g}" for value in numbers),
+            file_name(plan, test, ending), test.kind, *(f"{value:.6g}" for value in numbers),
             command_text(test), *(f"{value:.4g}" for value in times),
         ]  # fmt: skip
         lines.append(",".join(cells))
     return "\n".join([*lines, ""])
 
 
-def excitation_text(plan: Plan, test: Test) -> str:
+def write_excitation(file: Path, plan: Plan, test: Test) -> None:
     found = excitation(plan, test)
-    rows = zip(found.time_s, found.disp_m, found.current_A, strict=True)
-    lines = [f"{t:.4f},{x:.7f},{i:g}" for t, x, i in rows]
-    return "\n".join(["time_s,disp_m,current_A", *lines, ""])
+    columns = {"time_s": found.time_s, "disp_m": found.disp_m, "current_A": found.current_A}
+    write_columns(file, columns, TEXTS)
 
 
-def write_plan(folder: Path, plan: Plan) -> None:
-    numbers = numbers_of(plan)
+def write_plan(folder: Path, plan: Plan, ending: str) -> None:
+    numbers = numbers_of(plan, ending)
     for test in numbers["tests"]:
         if test["current_A"] is None:
             test["current_A"] = "switched"
     with output_files(folder) as staging:
-        (staging / "plan.csv").write_text(table_text(plan), encoding="utf-8")
+        (staging / "plan.csv").write_text(table_text(plan, ending), encoding="utf-8")
         (staging / "plan.toml").write_text(tomli_w.dumps(numbers), encoding="utf-8")
         for test in plan.tests:
-            (staging / file_name(plan, test)).write_text(
-                excitation_text(plan, test), encoding="utf-8"
-            )
+            write_excitation(staging / file_name(plan, test, ending), plan, test)
