@@ -2,17 +2,22 @@
 
 import json
 import math
+import os
+import threading
 import time
+import tty
 from collections import deque
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from live_page import packet_of
 from quiesce.base.errors import UsageError
+from quiesce.can.buses import Bus
 from quiesce.can.database import load
 from quiesce.can.e2e import protect
-from quiesce.can.link import Back, Lost
+from quiesce.can.link import Back, Link, Lost
 from quiesce.can.parameters import parameters
 from quiesce.live.control import Control
 from quiesce.live.desk import Desk
@@ -282,6 +287,42 @@ def test_stop_is_repeated_until_it_is_reported(monkeypatch: pytest.MonkeyPatch) 
     assert stop.told() == {"state": "confirmed", "is_sent": True, "waited_s": 0.0}
     stop.reported("NONE")
     assert stop.state == "idle"
+
+
+def test_recordings_have_what_is_sent_where_its_time_is() -> None:
+    """Frames come on a line while several threads send, and the desk is late."""
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    with Link(Bus("slcan", os.ttyname(slave), None, ()), echoes=True) as link:
+        desk = Desk(link, DATABASE)
+        taken: list[Any] = []
+        desk.recordings.take = taken.append  # type: ignore[method-assign]
+
+        def sending(number: int) -> None:
+            for _ in range(40):
+                assert link.send(0x600 + number, b"\1") is not None
+                time.sleep(1e-3)
+
+        senders = [threading.Thread(target=sending, args=(number,)) for number in range(3)]
+        for one in senders:
+            one.start()
+        frames = 0
+        while any(one.is_alive() for one in senders) or frames < 50:
+            os.write(master, b"t1000\r")
+            frames += 1
+            time.sleep(2e-3)
+            if frames % 10 == 0:
+                desk.drain()
+        end_s = time.monotonic() + 10.0
+        while len(taken) < frames + 120 and time.monotonic() < end_s:
+            desk.drain()
+            time.sleep(0.01)
+    os.close(master)
+    os.close(slave)
+    own = [one for one in taken if not one.is_rx and one.arbitration_id >= 0x600]
+    assert len(own) == 120 and sum(one.is_rx for one in taken) == frames
+    stamps_s = [one.timestamp for one in taken]
+    assert stamps_s == sorted(stamps_s)
 
 
 STATUS = DATABASE.by_name["Status"]

@@ -7,7 +7,6 @@ import queue
 import threading
 import time
 from collections import deque
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,14 +48,15 @@ class Link:
     """Opened by entering it, UsageError where that fails; later losses are events and it opens
     again by itself.
 
-    echoes: what one thread sends comes back as Sent. The thread that reads puts it where its time
-    belongs: frames that arrived before may wait, in the driver or here, to be read.
+    echoes: what is sent, by any thread, comes back as Sent. The thread that reads puts it where its
+    time belongs: frames that arrived before may wait, in the driver or here, to be read.
     """
 
     def __init__(self, bus: Bus, echoes: bool = False) -> None:
         self.bus = bus
         self._echoes = echoes
         self._sent: deque[Any] = deque()  # by time, not told yet
+        self._telling = threading.Lock()  # of that
         self._driver: Any = None
         self._events: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._stop = threading.Event()
@@ -110,9 +110,9 @@ class Link:
 
     def untold(self) -> list[Any]:
         """What was sent last and is no event yet, as nothing arrived after it; it is none later."""
-        found = []
-        while self._sent:
-            found.append(self._sent.popleft())
+        with self._telling:
+            found = list(self._sent)
+            self._sent.clear()
         return found
 
     def send(self, frame_id: int, data: bytes) -> Any:
@@ -120,18 +120,16 @@ class Link:
         from quiesce.can.python_can import can
 
         message = can.Message(
-            arbitration_id=frame_id,
-            is_extended_id=False,
-            data=data,
-            timestamp=time.time(),
-            is_rx=False,
-        )
-        if self._echoes:
-            self._sent.append(message)  # before an answer to it can be read
+            arbitration_id=frame_id, is_extended_id=False, data=data, is_rx=False
+        )  # fmt: skip
+        with self._telling:  # in the order of their times
+            message.timestamp = time.time()
+            if self._echoes:
+                self._sent.append(message)  # before an answer to it can be read
         is_sent = self.send_message(message)
-        if self._echoes and not is_sent:
-            with suppress(ValueError):  # told already, as sent to a bus that broke under it
-                self._sent.remove(message)
+        if not is_sent:
+            with self._telling:  # where it is told already it went to a bus that broke under it
+                self._sent = deque(one for one in self._sent if one is not message)
         return message if is_sent else None
 
     def send_message(self, message: Any) -> bool:
@@ -169,8 +167,8 @@ class Link:
 
     def _tell_sent(self, until_s: float) -> None:
         """Nothing older is to be read any more."""
-        while self._sent and self._sent[0].timestamp <= until_s:
-            with suppress(IndexError):  # taken by untold()
+        with self._telling:
+            while self._sent and self._sent[0].timestamp <= until_s:
                 self._events.put(Sent(self._sent.popleft()))
 
     def _stamp(self, message: Any) -> None:

@@ -114,7 +114,7 @@ def run(args: argparse.Namespace) -> int:
         until_stopped() as stop,
         listen(args.host, args.port) as at,
         watched(args) as (bus, rig),
-        Link(bus) as link,
+        Link(bus, echoes=True) as link,
     ):
         print(f"{address(args.host, at.getsockname()[1], token)}  (Ctrl-C ends it)", flush=True)
         if not is_local(args.host):

@@ -1,7 +1,6 @@
 """What a server knows of its bus. The link's thread reads; all here runs in the server's loop."""
 
 import math
-import threading
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +9,7 @@ from typing import Any
 
 from quiesce.can.database import Database
 from quiesce.can.e2e import JUMPED, OK
-from quiesce.can.link import Back, Link, Lost
+from quiesce.can.link import Back, Link, Lost, Sent
 from quiesce.can.recorder import Preamble, RawStream
 from quiesce.can.services import IDENTIFICATION, REPLY, VERSION_PARTS
 from quiesce.can.traffic import Traffic
@@ -32,32 +31,6 @@ NONE = "NONE"
 FLAGS = ("is_enabled", "is_estop", "lock_is_on", "freq_is_valid", "raw_is_streaming", "fault_count")
 
 
-class Sent:
-    """A link that also keeps what was sent through it, for who records."""
-
-    def __init__(self, link: Link) -> None:
-        self._link = link
-        self._frames: list[Any] = []
-        self._sending = threading.Lock()
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._link, name)
-
-    def send(self, frame_id: int, data: bytes) -> Any:
-        """By any thread."""
-        with self._sending:
-            message = self._link.send(frame_id, data)
-            if message is not None:
-                self._frames.append(message)
-        return message
-
-    def taken(self) -> list[Any]:
-        """What was sent since. Taken before what has come: no answer is before its request."""
-        with self._sending:
-            frames, self._frames = self._frames, []
-        return frames
-
-
 @dataclass(frozen=True)
 class Before:
     """Parameters to revert to: of the last save from here, else those that were found at first."""
@@ -67,7 +40,8 @@ class Before:
 
 
 class Desk:
-    """drain() takes what has come; the rest answers what viewers ask."""
+    """drain() takes what has come; the rest answers what viewers ask. Of a link that echoes what is
+    sent, recordings have that, too."""
 
     def __init__(
         self,
@@ -78,7 +52,7 @@ class Desk:
     ) -> None:
         self.database = database
         self.series = catalogue(database)
-        self._link = link = Sent(link)
+        self._link = link
         self.stop = Stop(link, database)
         self.preamble = Preamble(link, database)
         self.jobs = Jobs(link, database, self.preamble)
@@ -108,7 +82,6 @@ class Desk:
             if event is None:
                 break
             self.take(event)
-        self._take_sent()
         self.recordings.look(self.rings, self.series)
         self.stop.poll()
         if not self.jobs.tap.is_open:
@@ -122,16 +95,14 @@ class Desk:
         if self._raw is None or self._raw.poll() is None:
             self.preamble.poll()
 
-    def _take_sent(self) -> None:
-        for message in self._link.taken():
-            self.recordings.take(message)
-
     def take(self, event: Any) -> None:
-        """A frame, the loss or return of the bus, or a mark of STOP."""
+        """A frame, one of our own, the loss or return of the bus, or a mark of STOP."""
         if isinstance(event, Pressed):
             self.stop.passed(event)
             return
-        self._take_sent()
+        if isinstance(event, Sent):
+            self.recordings.take(event.message)
+            return
         self.recordings.take(event)
         if isinstance(event, Lost):
             self._lost, self._losses = event.reason, self._losses + 1
