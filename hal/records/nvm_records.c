@@ -111,7 +111,7 @@ static uint32_t take_entry(hal_nvm_t *nvm, uint32_t at, const head_t head, bool 
         return NVM_HEAD_WORDS;
     }
     nvm->record[record].at = at;
-    nvm->record[record].count = count;
+    nvm->record[record].count = (uint16_t)count;
     return end - at;
 }
 

@@ -61,8 +61,8 @@ struct hal_nvm {
     bool is_mended; ///< since the start
     struct {
         uint32_t at; ///< its last whole entry; 0: none
-        uint32_t count;
         uint32_t writes;
+        uint16_t count;  ///< of its words
         bool is_doubted; ///< something after that entry is not whole and may have been another one
     } record[HAL_NVM_RECORDS];
 

@@ -29,7 +29,7 @@ FaultKind read_fault_kind(TomlTable &table) {
 
 InjectedFault read_placed_fault(TomlTable &table, double end_s) {
     const double start_s = table.number("t_s", {0.0, end_s, "s"});
-    const InjectedFault fault = read_fault(table, start_s);
+    InjectedFault fault = read_fault(table, start_s);
     table.reject_unknown_keys();
     return fault;
 }
