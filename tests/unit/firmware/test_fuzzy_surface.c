@@ -66,7 +66,7 @@ static void test_no_rules_fire(void) {
     const int32_t input[2] = {0, 0};
     uint64_t fired = 1;
     TEST_ASSERT_EQUAL_UINT32(0, fuzzy_fired(surface(), input, &fired));
-    TEST_ASSERT_EQUAL_UINT64(0, fired);
+    TEST_ASSERT_TRUE(fired == 0); // no 64 bits in Unity everywhere
 }
 
 // What follows is one assignment to a good table, and what the check says then.
