@@ -1,6 +1,7 @@
 #include "hysteresis_network.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace quiesce {
@@ -80,8 +81,8 @@ double HysteresisNetwork::added_N(const DamperInput &input, double current_A, do
     m.members = members.data();
     m.layer_counts = layer_counts.data();
     std::vector<double> features(params_.means.size());
-    quiesce_hysteresis_features(&m, input.position_m, input.velocity_m_s, input.accel_m_s2, base_N,
-                                state, features.data());
+    const std::array motion = {input.position_m, input.velocity_m_s, input.accel_m_s2};
+    quiesce_hysteresis_features(&m, motion.data(), base_N, state, features.data());
     std::vector<double> room(2 * members_.front().output_count() + 2 * kMostUnits);
     return quiesce_hysteresis_added_N(&m, features.data(), current_A, room.data());
 }

@@ -83,9 +83,11 @@ std::vector<TracedFunction> elementary_equations() {
     const Traced x = traced_name("x");
     const Traced y = traced_name("y");
     const Traced z = traced_name("z");
+// NOLINTBEGIN(bugprone-macro-parentheses): a template's name takes none
 #define QUIESCE_ONE(name) function_of(#name, 1, name<Traced>(x)),
 #define QUIESCE_TWO(name) function_of(#name, 2, name<Traced>(x, y)),
 #define QUIESCE_THREE(name) function_of(#name, 3, name<Traced>(x, y, z)),
+    // NOLINTEND(bugprone-macro-parentheses)
     return {QUIESCE_TRACED_FUNCTIONS(QUIESCE_ONE, QUIESCE_TWO, QUIESCE_THREE)};
 #undef QUIESCE_ONE
 #undef QUIESCE_TWO

@@ -55,10 +55,12 @@ inline Traced traced_name(const std::string &name) {
     return Traced(std::make_shared<const TraceNode>(TraceNode{"name", {}, 0.0, 0, name}));
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type takes none
 #define QUIESCE_TRACED_BINARY(Type, Operand, op, what)                                             \
     inline Type operator op(const Operand &a, const Operand &b) {                                  \
         return Type{trace_of(what, {a.node, b.node})};                                             \
     }
+// NOLINTEND(bugprone-macro-parentheses)
 QUIESCE_TRACED_BINARY(Traced, Traced, +, "+")
 QUIESCE_TRACED_BINARY(Traced, Traced, -, "-")
 QUIESCE_TRACED_BINARY(Traced, Traced, *, "*")

@@ -73,16 +73,16 @@ static inline double quiesce_hysteresis_field(const struct quiesce_hysteresis *m
     return toe * (1.0 + m->saturation) / (m->saturation + toe);
 }
 
-/* out: features of them. */
-static inline void quiesce_hysteresis_features(const struct quiesce_hysteresis *m, double x_m,
-                                               double v_m_s, double a_m_s2, double base_N,
+/* motion: position in m, velocity in m/s, acceleration in m/s2. out: features of them all. */
+static inline void quiesce_hysteresis_features(const struct quiesce_hysteresis *m,
+                                               const double *motion, double base_N,
                                                const double *state, double *out) {
     const int own = quiesce_hysteresis_states(m);
     int count = 0;
-    out[count++] = x_m;
-    out[count++] = v_m_s;
+    out[count++] = motion[0];
+    out[count++] = motion[1];
     if (m->uses_accel) {
-        out[count++] = a_m_s2;
+        out[count++] = motion[2];
     }
     for (int k = 0; k < own; ++k) {
         out[count++] = state[k];

@@ -87,8 +87,9 @@ static double model_N(const motion *m, const double *z, double *rates) {
     quiesce_hysteresis_rates(&model, m->v, m->i, z, rates);
     const double current_A = quiesce_hysteresis_current_A(&model, m->i, z);
     $BASE
+    const double moved[] = {m->x, m->v, m->a};
     double features[$FEATURES];
-    quiesce_hysteresis_features(&model, m->x, m->v, m->a, from_base_N, z, features);
+    quiesce_hysteresis_features(&model, moved, from_base_N, z, features);
     double room[$ROOM];
     return from_base_N + quiesce_hysteresis_added_N(&model, features, current_A, room);
 }
