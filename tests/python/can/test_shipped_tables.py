@@ -11,7 +11,7 @@ from quiesce.table.file import table_bytes
 from quiesce.table.kinds import LINEAR
 from quiesce.table.words import sealed
 
-FOLDER = ROOT / "targets/mps2"
+FOLDER = ROOT / "targets/node"
 SMALL = table_bytes(sealed(LINEAR.magic, [7]), board=5)
 LARGEST = table_bytes(sealed(LINEAR.magic, range(2045)))
 

@@ -23,7 +23,8 @@ def tree(clone: Clone) -> Clone:
         shutil.copy(ROOT / name, clone.root)
     for folder in (
         "tools/benchmarks/mps2 tools/benchmarks/host tools/benchmarks/gen tools/gen tests/gen "
-        "firmware hal/mps2 targets/lockstep targets/mps2 sim_hil tests/unit .ci examples"
+        "firmware hal/mps2 targets/lockstep targets/mps2 targets/stm32f4 sim_hil tests/unit .ci "
+        "examples"
     ).split():
         (clone.root / folder).mkdir(parents=True, exist_ok=True)
     clean = "int clean(int a);\n\nint clean(int a) {\n    return a + 1;\n}\n"
@@ -31,6 +32,7 @@ def tree(clone: Clone) -> Clone:
         "tools/benchmarks/mps2/clean.c",
         "firmware/clean.c",
         "hal/mps2/clean.c",
+        "targets/stm32f4/clean.c",
         "sim_hil/clean.cpp",
     ):
         (clone.root / name).write_text(clean)
@@ -93,6 +95,7 @@ def compile_commands(tree: Clone, build: str, *names: str) -> None:
 def test_tidy_gate(tree: Clone) -> None:
     compile_commands(tree, "host", "firmware/clean.c", "sim_hil/clean.cpp")
     compile_commands(tree, "mps2", "hal/mps2/clean.c")
+    compile_commands(tree, "stm32f4", "targets/stm32f4/clean.c")
     assert gate(tree, "tidy").returncode == 0
     lines = "".join(f"    a += a / {n};\n" for n in range(1, 62))
     (tree.root / "firmware/clean.c").write_text(f"int f(int a) {{\n{lines}    return a;\n}}\n")
@@ -104,6 +107,7 @@ def test_tidy_gate(tree: Clone) -> None:
 def test_tidy_gate_reads_only_what_is_named(tree: Clone) -> None:
     compile_commands(tree, "host", "firmware/clean.c", "firmware/bad.c", "sim_hil/clean.cpp")
     compile_commands(tree, "mps2", "hal/mps2/clean.c")
+    compile_commands(tree, "stm32f4", "targets/stm32f4/clean.c")
     lines = "".join(f"    a += a / {n};\n" for n in range(1, 62))
     (tree.root / "firmware/bad.c").write_text(f"int f(int a) {{\n{lines}    return a;\n}}\n")
     tidy = [str(tree.root / "tools/check/tidy")]
@@ -115,4 +119,5 @@ def test_tidy_gate_reads_only_what_is_named(tree: Clone) -> None:
 def test_tidy_gate_refuses_to_check_nothing(tree: Clone) -> None:
     compile_commands(tree, "host", "sim_hil/clean.cpp")
     compile_commands(tree, "mps2", "hal/mps2/clean.c")
+    compile_commands(tree, "stm32f4", "targets/stm32f4/clean.c")
     assert gate(tree, "tidy").returncode != 0

@@ -36,16 +36,20 @@ def rerun_words(args: argparse.Namespace) -> list[str]:
     return [word for name, file in given.items() if file for word in (f"--{name}", str(file))]
 
 
-def rules_file(file: Path, folder: Path) -> Path:
-    """The table of rules, compiled into the folder where the file is a source."""
+def rules_file(file: Path, folder: Path) -> tuple[Path, list[str]]:
+    """The table of rules, compiled into the folder where the file is a source, and what there is to
+    say of that."""
     if file.suffix.lower().removeprefix(".") not in FORMATS:
-        return file
+        return file, []
     made = folder / f"rules{SUFFIX}"
     found = controller_table(file)
     made.write_bytes(table_bytes(found.words))
-    for note in found.notes:
-        print(f"{shown(file)}: {note}", file=sys.stderr)
-    return made
+    return made, [f"{shown(file)}: {note}" for note in found.notes]
+
+
+def say_all(notes: Sequence[str]) -> None:
+    for note in notes:
+        print(note, file=sys.stderr)
 
 
 def pulses_file(file: Path, folder: Path) -> tuple[Path, list[str]]:
@@ -72,7 +76,8 @@ def table_files(args: argparse.Namespace, folder: Path) -> tuple[dict[str, Path]
     files = {name: file for name in OPTIONS if (file := getattr(args, name)) is not None}
     settings: list[str] = []
     if "rules" in files:
-        files["rules"] = rules_file(files["rules"], folder)
+        files["rules"], notes = rules_file(files["rules"], folder)
+        say_all(notes)
     if "pulses" in files:
         files["pulses"], settings = pulses_file(files["pulses"], folder)
     return {name.replace("_", "-"): file for name, file in files.items()}, settings
@@ -104,9 +109,10 @@ def find_tables(
     """folder: for files that are made. UsageError where none of the laws takes one of them."""
     tables = Tables()
     if args.rules:
-        tables.rules = rules_file(args.rules, folder)
+        tables.rules, notes = rules_file(args.rules, folder)
         for law in _takers(bench, laws, "--rules", args.rules, tables.rules):
             tables.add(law, "--rules", str(tables.rules))
+        say_all(notes)
     if args.pulses:
         file, settings = pulses_file(args.pulses, folder)
         effective_params(bench, settings)  # refuses bad ones before anything runs
