@@ -11,14 +11,13 @@ from quiesce.can.roads import ROADS
 from quiesce.can.services import BUSY, DONE, Reply, Services, no_answer
 from quiesce.can.transfer import Channel, Progress, TooLarge, TransferFailed
 from quiesce.table.file import read_data
-from quiesce.table.words import opened
+from quiesce.table.words import WORD, opened, signed
 
 TRIES = 3  # of a whole transfer
 BUSY_S = 5.0
 STORE_S = 3.0  # the controller gives its store 2 s
 # A last frame may be behind its check, which has the higher priority: asked again after this time.
 BEHIND_S = 0.05
-WORD = 1 << 32
 
 REFUSED, NOTHING_RECEIVED = "TABLE_REFUSED", "NOTHING_RECEIVED"
 NOTHING, STORE_FAILED = "NOTHING_TO_SEND", "STORE_FAILED"
@@ -195,8 +194,3 @@ REASONS = {
     "NO_SUCH_OPERATION": "this controller's firmware takes no tables over CAN",
     NO_SUCH_TABLE: "this controller's firmware knows no such table",
 }
-
-
-def signed(word: int) -> int:
-    """As the signal holds it."""
-    return word - WORD if word >= WORD // 2 else word

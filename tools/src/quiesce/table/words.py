@@ -29,6 +29,11 @@ def crc_of(words: Sequence[int]) -> int:
     return zlib.crc32(packed(words))
 
 
+def signed(word: int) -> int:
+    """The int32 that a word holds."""
+    return word - WORD if word >= WORD // 2 else word
+
+
 def size_text(count: int) -> str:
     return f"{count} words, {WORD_BYTES * count} bytes"
 
@@ -59,7 +64,7 @@ def opened(words: Sequence[int]) -> list[int]:
         raise ValueError(f"{count} words where its head says {words[2]}")
     if words[1] != crc_of(words[2:]):
         raise ValueError("its CRC-32 is not that of its words: it is damaged")
-    return [word - WORD if word >= WORD // 2 else word for word in words[HEAD_WORDS:]]
+    return [signed(word) for word in words[HEAD_WORDS:]]
 
 
 class Reader:

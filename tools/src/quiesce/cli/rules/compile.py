@@ -22,7 +22,7 @@ from quiesce.rules.engine.function_engine import FunctionEngine
 from quiesce.rules.engine.native_build import FIRMWARE_SOURCES, SYSTEM_SOURCES
 from quiesce.rules.engine.precise import POINTS, Precise
 from quiesce.rules.engine.system_engine import SystemEngine
-from quiesce.rules.integers.c_files import header_c, source_c, units_text
+from quiesce.rules.integers.c_files import call_text, header_c, source_c, units_text
 from quiesce.rules.integers.compiled import CompiledBase
 from quiesce.rules.integers.demo import DEMO, cmake_text, demo_c, page_text
 from quiesce.rules.integers.emit import why_not_straight
@@ -199,9 +199,7 @@ def plain_made(compiled: CompiledBase, name: str) -> Made:
 
 
 def plain_call(compiled: CompiledBase, name: str) -> str:
-    if why_not_straight(compiled):
-        return f"fuzzy_evaluate((const fuzzy_table_t *)(const void *){name}_table, input, output)"
-    return f"{name}(input, output)"
+    return call_text(name) if why_not_straight(compiled) else f"{name}(input, output)"
 
 
 def precise_made(precise: Precise, name: str) -> Made:
@@ -237,7 +235,7 @@ def surface_made(surface: Surface, name: str) -> Made:
     }
     inputs = random_counts(surface.scaled, surface.scaled.system.inputs)
     outputs, _ = TableEngine(surface.words).evaluate(inputs)
-    call, units = surface_files.call_text(name), system_files.units_text(surface.scaled)
+    call, units = call_text(name), system_files.units_text(surface.scaled)
     demo = demo_files(name, call, units, inputs, outputs)
     rows, columns = surface.nodes
     size = f"{WORD_BYTES * len(surface.words)} bytes; {rows} x {columns} values"

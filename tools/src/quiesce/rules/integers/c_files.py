@@ -19,6 +19,11 @@ def table_text(values: Sequence[int], name: str) -> str:
     return f"const uint32_t {name}_table[{len(words)}] = {{\n" + "\n".join(lines) + "\n};\n"
 
 
+def call_text(name: str) -> str:
+    """Of the engine with the table."""
+    return f"fuzzy_evaluate((const fuzzy_table_t *)(const void *){name}_table, input, output)"
+
+
 def units_text(compiled: CompiledBase) -> list[str]:
     """What the integers stand for, a line a variable."""
     lines = []

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from quiesce.table.kinds import RULES
-from quiesce.table.words import WORD, crc_of
+from quiesce.table.words import WORD, crc_of, signed
 
 MAGIC = RULES.magic
 HEADER_WORDS, CELL_WORDS, RAMP_WORDS, RULE_WORDS, OUTPUT_WORDS = 16, 4, 4, 4, 8
@@ -74,12 +74,12 @@ def read_rules(values: Sequence[int]) -> Rules:
         words[15] >> 24 == 1,
         tuple(_axis(words, words[4 + i]) for i in range(inputs)),
         tuple(_terms(words, words[9 + i]) for i in range(outputs)),
-        tuple(_rule(_part(words, rules_at + RULE_WORDS * i, RULE_WORDS), outputs)
+        tuple(_rule(part(words, rules_at + RULE_WORDS * i, RULE_WORDS), outputs)
               for i in range(rules)),
     )  # fmt: skip
 
 
-def _part(words: Sequence[int], at: int, count: int) -> Sequence[int]:
+def part(words: Sequence[int], at: int, count: int) -> Sequence[int]:
     if at < HEADER_WORDS or at + count > len(words):
         raise ValueError("a part of its rules lies outside of them")
     return words[at : at + count]
@@ -90,26 +90,22 @@ def _bytes(word: int) -> tuple[int, int, int, int]:
     return a, b, c, d
 
 
-def _signed(word: int) -> int:
-    return word - WORD if word >= WORD // 2 else word
-
-
 def _axis(words: Sequence[int], head: int) -> Axis:
     at, cells, stride = head & 0xFFFF, head >> 16 & 0xFF, head >> 24
     found: dict[int, list[tuple[int, int]]] = {}
     for k in range(cells):
-        last, first, shift, ramps = _part(words, at + k * stride, CELL_WORDS)
+        last, first, shift, ramps = part(words, at + k * stride, CELL_WORDS)
         if CELL_WORDS + RAMP_WORDS * ramps > stride or shift > 31:
             raise ValueError("a cell of its rules holds more than it has room for")
         for i in range(ramps):
-            low, high, slope, number = _part(
+            low, high, slope, number = part(
                 words, at + k * stride + CELL_WORDS + RAMP_WORDS * i, RAMP_WORDS
             )
             if number >= MAX_SETS:
                 raise ValueError(f"set {number} of its rules; the last one is {MAX_SETS - 1}")
-            start = _signed(high) << 32 | low
-            for n in (_signed(first), _signed(last)):
-                mu = (start + _signed(slope) * ((n - _signed(first)) << shift)) >> 32
+            start = signed(high) << 32 | low
+            for n in (signed(first), signed(last)):
+                mu = (start + signed(slope) * ((n - signed(first)) << shift)) >> 32
                 found.setdefault(number, []).append((n, mu))
     return Axis({number: _extent(ends) for number, ends in sorted(found.items())})
 
@@ -124,14 +120,14 @@ def _extent(ends: list[tuple[int, int]]) -> tuple[int, int, int]:
 
 
 def _terms(words: Sequence[int], at: int) -> Terms:
-    head, _, origin, _, data, _, fraction, _ = _part(words, at, OUTPUT_WORDS)
+    head, _, origin, _, data, _, fraction, _ = part(words, at, OUTPUT_WORDS)
     method, count, _, _ = _bytes(head)
     if not (method <= CENTROID and 1 <= count <= MAX_TERMS and fraction < 32):
         raise ValueError(f"an output of its rules has method {method} and {count} terms")
-    values = _part(words, data, count)
+    values = part(words, data, count)
     if method == CENTROID:
         return Terms((), count)
-    return Terms(tuple(_signed(origin) + value / 2.0**fraction for value in values), count)
+    return Terms(tuple(signed(origin) + value / 2.0**fraction for value in values), count)
 
 
 def _rule(words: Sequence[int], outputs: int) -> Rule:

@@ -5,10 +5,6 @@ from quiesce.rules.surface.compile import Surface
 from quiesce.rules.system.c_files import header_text
 
 
-def call_text(name: str) -> str:
-    return f"fuzzy_evaluate((const fuzzy_table_t *)(const void *){name}_table, input, output)"
-
-
 def header_c(surface: Surface, name: str, banner: str) -> str:
     title = f"Surface of fuzzy system {surface.scaled.system.name} in integers (fuzzy.h)"
     declaration = (

@@ -1,15 +1,14 @@
 """Surfaces as words of a table of rules, and back (firmware/fuzzy/fuzzy_table.h, FUZZY_SURFACE)."""
 
 import math
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.rules.integers.rule_words import HEADER_WORDS, MAGIC
+from quiesce.rules.integers.rule_words import HEADER_WORDS, MAGIC, part
 from quiesce.rules.surface.place import Grid
-from quiesce.table.words import WORD, crc_of
+from quiesce.table.words import WORD, crc_of, packed, signed, unpacked
 
 FORM = 4
 NODE_WORDS = 3
@@ -32,14 +31,14 @@ def surface_words(grid: Grid, is_for_controller: bool) -> list[int]:
     """grid: nodes in counts of the inputs, values in those of the output."""
     origin = math.floor(grid.values.min())
     shift = finest_shift(float(grid.values.max()) - origin)
-    values = np.rint((grid.values - origin) * 2.0 ** (shift - 30)).astype(np.uint32)
+    values = np.rint((grid.values - origin) * 2.0 ** (shift - 30))
     body: list[int] = []
     axes = []
     for nodes in grid.nodes:
         axes.append(HEADER_WORDS + len(body) | (len(nodes) - 1) << 16 | NODE_WORDS << 24)
         body += node_words([int(node) for node in nodes])
     output = HEADER_WORDS + len(body)
-    body += halves(values.ravel().tolist())
+    body += halves(values)
     # Bits of memberships and rules: there are none.
     head = [HEADER_WORDS + len(body), 2 | 1 << 8 | FORM << 24, *axes, 0, 0, 0, output, 0, 0, 0]
     rest = [*head, 0, origin % WORD, shift << 16 | int(is_for_controller) << 24, *body]
@@ -68,10 +67,9 @@ def node_words(nodes: Sequence[int]) -> list[int]:
     return [*words, nodes[-1] % WORD, 0, 0]
 
 
-def halves(values: Sequence[int]) -> list[int]:
+def halves(values: np.ndarray) -> list[int]:
     """Two in a word, the lower first."""
-    data = struct.pack(f"<{len(values)}H", *values) + b"\0\0" * (len(values) % 2)
-    return list(struct.unpack(f"<{len(data) // 4}I", data))
+    return unpacked(values.astype("<u2").tobytes() + b"\0\0" * (values.size % 2))
 
 
 def is_surface(words: Sequence[int]) -> bool:
@@ -84,8 +82,8 @@ def read_surface(words: Sequence[int]) -> SurfaceTable:
         raise ValueError(f"{len(words)} words that are no surface")
     nodes = tuple(read_nodes(words, words[4 + i]) for i in range(2))
     rows, columns = len(nodes[0]), len(nodes[1])
-    packed = part(words, words[9], (rows * columns + 1) // 2)
-    values = np.frombuffer(struct.pack(f"<{len(packed)}I", *packed), dtype="<u2")
+    halved = part(words, words[9], (rows * columns + 1) // 2)
+    values = np.frombuffer(packed(halved), dtype="<u2")
     values = values[: rows * columns].reshape(rows, columns)
     shift = words[15] >> 16 & 0xFF
     counts = signed(words[14]) + values * 2.0 ** (30 - shift)
@@ -95,13 +93,3 @@ def read_surface(words: Sequence[int]) -> SurfaceTable:
 def read_nodes(words: Sequence[int], axis: int) -> tuple[int, ...]:
     at, cells = axis & 0xFFFF, axis >> 16 & 0xFF
     return tuple(signed(word) for word in part(words, at, NODE_WORDS * (cells + 1))[::NODE_WORDS])
-
-
-def part(words: Sequence[int], at: int, count: int) -> Sequence[int]:
-    if at < HEADER_WORDS or at + count > len(words):
-        raise ValueError("a part of its surface lies outside of it")
-    return words[at : at + count]
-
-
-def signed(word: int) -> int:
-    return word - WORD if word >= WORD // 2 else word
