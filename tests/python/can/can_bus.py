@@ -43,6 +43,11 @@ class Controller:
         self._process = subprocess.Popen(command, pass_fds=[master])
         os.close(master)
 
+    def turn_enable(self) -> None:
+        """The operator at the board gives the enable, or lets go."""
+        assert self._process is not None
+        self._process.send_signal(signal.SIGUSR1)
+
     def stop(self) -> None:
         """As if its cable were pulled."""
         if self._process is not None:

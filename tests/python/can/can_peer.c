@@ -8,7 +8,7 @@
 //   --corrupt N    every Nth frame has a bit flipped
 //   --store DIR    records are files in it, which the next start finds
 //   --silent       answers no requests
-//   --idle         the operator lets go
+//   --idle         the operator lets go; SIGUSR1: takes it, lets go again, ...
 //   --operator     the enable is that of OperatorCommand, and so is the clock: between two of its
 //                  frames are the ticks of its cycle, however busy the machine
 //   --interface N  says that its messages are of this version
@@ -51,10 +51,16 @@ typedef struct {
 } peer_t;
 
 static volatile sig_atomic_t stop;
+static volatile sig_atomic_t has_turned; // the operator, an odd number of times
 
 static void end(int number) {
     (void)number;
     stop = 1;
+}
+
+static void turn(int number) {
+    (void)number;
+    has_turned = !has_turned;
 }
 
 static FILE *open_record(const peer_t *peer, keeper_record_t record, const char *mode) {
@@ -142,7 +148,7 @@ static void send_frame(peer_t *peer, const can_frame_t *frame) {
 static void tick(peer_t *peer, unsigned number) {
     const double counts = 20000.0 * sin(2.0 * PI * 8.0 * number / 1000.0);
     const node_inputs_t inputs = {
-        .enable = number > 0 && !peer->is_idle, // its edge arms
+        .enable = number > 0 && peer->is_idle == (has_turned != 0), // its edge arms
         .sensor = {{.counts = (int32_t)counts + (int32_t)(number * 7919u % 13u), .is_fresh = true}},
         .ticks_elapsed = 1,
         .work_us = 20,
@@ -231,6 +237,7 @@ int main(int argc, char **argv) {
     peer.is_idle = flag(argc, argv, "--idle");
     peer.is_silent = flag(argc, argv, "--silent");
     (void)signal(SIGTERM, end);
+    (void)signal(SIGUSR1, turn);
     slcan_decoder_init(&peer.decoder);
     quiesce_params_t params;
     quiesce_params_default(&params);

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from quiesce.base.errors import BenchFailure, UsageError
+from quiesce.commission.by_hand import to_play
 from quiesce.commission.folder import STATE, Folder
 from quiesce.commission.hand import Left, Nobody
 from quiesce.commission.run import Order, begun, listed
@@ -17,11 +18,14 @@ from quiesce.commission.steps import NAMES, STEPS
 from quiesce.commission.steps.calibrate import from_gravity
 from quiesce.commission.steps.damper import put_on
 from quiesce.commission.steps.excite import rate_Hz, within
+from quiesce.commission.steps.find import base_of
 from quiesce.commission.steps.load import limited
 from quiesce.commission.steps.tune import verified_rows
-from quiesce.commission.steps.verify import share
-from quiesce.commission.steps.wiring import limits
+from quiesce.commission.steps.verify import require_bound, share
+from quiesce.commission.steps.verify import run as verify
+from quiesce.commission.steps.wiring import BEFORE, kept_parameters, limits
 from quiesce.commission.wants import Wants, same, wants_of
+from quiesce.commission.work import Work
 from quiesce.plant.library import Plant
 from quiesce.tune.law import Row
 
@@ -123,8 +127,8 @@ def test_wants_that_are_not_whole_or_differ_are_refused() -> None:
         same(Wants(), Wants(modal_mass_kg=2.0))
 
 
-def order(folder: Path, begin: str | None = None, wants: Wants | None = None) -> Order:
-    return Order(folder, wants, begin, None, False)
+def order(folder: Path, begin: str | None = None, **given: object) -> Order:
+    return Order(folder, given, begin, None, False)
 
 
 def test_going_back_forgets_what_came_after(tmp_path: Path) -> None:
@@ -140,7 +144,7 @@ def test_going_back_forgets_what_came_after(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="nothing is begun"):
         begun(order(tmp_path / "new"))
     with pytest.raises(UsageError, match="is_quick"):
-        begun(order(tmp_path, wants=Wants(plant=str(PLANT), is_quick=True)))
+        begun(order(tmp_path, plant=str(PLANT), is_quick=True))
 
 
 def test_what_is_refused_changes_nothing_of_a_folder(tmp_path: Path) -> None:
@@ -149,11 +153,13 @@ def test_what_is_refused_changes_nothing_of_a_folder(tmp_path: Path) -> None:
     folder.done("wiring", {})
     before = folder.file.read_bytes()
     for wrong in (
-        Order(tmp_path, None, None, None, True),
-        Order(tmp_path, Wants(drive_V=1.0), None, None, True),
-        Order(tmp_path, Wants(drive_V=1.0), "wiring", None, False),
-        Order(tmp_path, Wants(plant=str(PLANT)), "tune", None, True),
-        Order(tmp_path, None, "tune", None, False),
+        Order(tmp_path, {}, None, None, True),
+        Order(tmp_path, {"drive_V": 1.0}, None, None, True),
+        Order(tmp_path, {"drive_V": 1.0, "plant": None}, "wiring", None, False),
+        Order(tmp_path, {"plant": str(PLANT)}, "tune", None, True),
+        Order(tmp_path, {}, "tune", None, False),
+        Order(tmp_path, {"plant": str(no_driver(tmp_path))}, None, None, True),
+        Order(tmp_path, {"plant": str(tmp_path / "none.toml")}, "wiring", None, False),
     ):
         with pytest.raises(UsageError):
             begun(wrong)
@@ -182,7 +188,8 @@ def test_no_law_may_ask_for_more_than_the_limit() -> None:
     got = limited(tuned, 1500)
     assert [got[name] for name in got if name.endswith("_mA")] == [1500] * 3
     assert "current_lag_ms" not in got
-    trial = limits(600, 120)
+    trial = limits(600, 120, 900)
+    assert trial["safe_current_mA"] == 600 and limits(600, 120, 50)["safe_current_mA"] == 50
     assert trial["max_current_mA"] == 600 and trial["current_error_mA"] == 300
     assert max(trial["constant_current_mA"], trial["unlock_current_mA"]) == 120
 
@@ -191,6 +198,75 @@ def test_the_limit_is_the_driver_s_or_less() -> None:
     assert limit_mA(Wants(plant=str(PLANT))) == 5000
     assert limit_mA(Wants(plant=str(PLANT), max_current_A=2.0)) == 2000
     assert limit_mA(Wants(plant=str(PLANT), max_current_A=9.0)) == 5000
+
+
+def no_driver(folder: Path) -> Path:
+    """A file that is not a whole plant."""
+    file = folder / "no_driver.toml"
+    text = PLANT.read_text()
+    start = text.index("[driver]")
+    file.write_text(text[:start] + text[text.index("\n[", start) :])
+    return file
+
+
+def test_a_plant_without_a_driver_is_refused_in_one_line(tmp_path: Path) -> None:
+    plant = no_driver(tmp_path)
+    for text in (plant.read_text(), "= 3"):
+        plant.write_text(text)
+        with pytest.raises(UsageError) as error:
+            begun(order(tmp_path / "rig", plant=str(plant)))
+        assert "no_driver.toml" in str(error.value) and "\n" not in str(error.value)
+        assert not (tmp_path / "rig").exists()
+
+
+def test_what_is_given_anew_changes_that_and_keeps_the_rest(tmp_path: Path) -> None:
+    first = {"max_current_A": 2.0, "drive_V": 0.2, "modal_mass_kg": 7.0, "is_quick": True}
+    begun(order(tmp_path, **first))
+    folder = Folder(tmp_path)
+    for name in NAMES[:6]:
+        folder.done(name, {})
+    for given in ({"damper": "mr.toml"}, {"is_quick": False}):
+        with pytest.raises(UsageError, match="this folder was begun with"):
+            begun(order(tmp_path, **given))
+    assert begun(order(tmp_path, drive_V=0.2))[1] == Wants(**first)
+    assert begun(order(tmp_path, "tune", max_current_A=1.5))[1] == Wants(
+        **{**first, "max_current_A": 1.5}
+    )
+    wants = begun(order(tmp_path, "damper", damper="mr.toml"))[1]
+    assert wants == Wants(**{**first, "max_current_A": 1.5, "damper": "mr.toml"})
+    assert Folder(tmp_path).wants == wants.data()
+
+
+def test_options_say_only_what_is_named(tmp_path: Path) -> None:
+    import argparse
+
+    from quiesce.cli.commission import add_parser, given_by
+
+    parser = argparse.ArgumentParser()
+    add_parser(parser.add_subparsers())
+    damper = tmp_path / "mr.toml"
+    damper.touch()
+
+    def given(*words: str) -> dict[str, object]:
+        return given_by(parser.parse_args(["commission", "rig", *words]))
+
+    assert given() == given("--from", "tune") == {}
+    assert given("--damper", str(damper)) == {"damper": str(damper)}
+    assert given("--no-quick", "--band", "2", "9") == {"is_quick": False, "band_Hz": (2.0, 9.0)}
+    assert given("--sim", str(PLANT), "--set", "law=off")["start"] == ("law=off",)
+
+
+@pytest.mark.parametrize("begin", ["wiring", "excite", "find"])
+def test_going_back_before_a_recording_is_going_to_record_again(tmp_path: Path, begin: str) -> None:
+    folder = Folder(tmp_path)
+    folder.wants = Wants(plant=str(PLANT)).data()
+    for name in NAMES[:5]:
+        folder.done(name, {})
+    files = [to_play(tmp_path, name) for name in ("first_look", "recording")]
+    for file in files:
+        file.touch()
+    begun(order(tmp_path, begin))
+    assert [file.exists() for file in files] == [begin == "find"] * 2
 
 
 def row(freq_Hz: float, is_between: bool = False) -> Row:
@@ -207,6 +283,35 @@ def test_frequencies_around_the_first_mode_are_verified_once_each() -> None:
 def test_the_share_is_of_all_frequencies_together() -> None:
     rows = [{"verified_pct": 9.0, "bound_pct": 10.0}, {"verified_pct": 30.0, "bound_pct": 40.0}]
     assert share(rows) == pytest.approx(39.0 / 50.0)
+    require_bound(rows)
+
+
+def test_a_share_of_nothing_is_told_before_anything_is_shaken(tmp_path: Path) -> None:
+    folder = Folder(tmp_path)
+    folder.results["tune"] = {"predicted": [{"freq_Hz": 9.0, "bound_pct": 0.0}] * 2}
+
+    def opened() -> None:
+        raise AssertionError("it is shaken")
+
+    with pytest.raises(BenchFailure, match="no current takes anything off") as error:
+        verify(Work(Wants(), folder, lambda _: None, opened))
+    assert "\n" not in str(error.value)
+
+
+def test_a_recording_is_of_a_structure_with_the_damper_that_was_on_it_then(tmp_path: Path) -> None:
+    folder = Folder(tmp_path)
+    for has_damper in (True, False):
+        folder.results["excite"] = {"has_damper": has_damper}
+        work = Work(Wants(plant=str(PLANT), damper="mr.toml"), folder, print, lambda: None)
+        assert (base_of(work) == PLANT) == has_damper
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"law": "phase"}', "[" * 100_000])
+def test_parameters_that_are_not_whole_are_refused_in_one_line(tmp_path: Path, text: str) -> None:
+    (tmp_path / BEFORE).write_text(text)
+    with pytest.raises(UsageError, match=BEFORE) as error:
+        kept_parameters(Work(Wants(), Folder(tmp_path), print, lambda: None))
+    assert "\n" not in str(error.value)
 
 
 def test_what_is_recorded_is_as_slow_as_it_may_be() -> None:

@@ -21,7 +21,7 @@ def steps(folder: Path, wants: Wants | None, end: str) -> Folder:
     def no_bus() -> None:
         raise AssertionError("a simulated rig needs no bus")
 
-    order = Order(folder, wants, None, end, False)
+    order = Order(folder, vars(wants) if wants else {}, None, end, False)
     return commission(order, Nobody(), lambda _: None, no_bus, lambda _: None)
 
 

@@ -1,7 +1,12 @@
-"""Frames of EmergencyStop, one after the other."""
+"""Frames of EmergencyStop, one after the other, until the controller says that it has stopped."""
+
+import threading
+import time
 
 from quiesce.can.database import Database
 from quiesce.can.e2e import ALIVE_PERIOD, protect
+from quiesce.can.link import Link
+from quiesce.can.traffic import Traffic
 
 MESSAGE = "EmergencyStop"
 
@@ -22,3 +27,25 @@ class StopFrames:
         data = protect(self._layout, self._alive, self._data)
         self._alive = (self._alive + 1) % ALIVE_PERIOD
         return data
+
+
+def press(
+    link: Link, database: Database, timeout_s: float, given_up: threading.Event | None = None
+) -> str | None:
+    """Presses, paced by the message's cycle, until fault ESTOP is reported. Returns the state that
+    is reported with it, None: not in time, or given up."""
+    frames = StopFrames(database)
+    start_s = time.monotonic()
+    while time.monotonic() - start_s < timeout_s and not (given_up and given_up.is_set()):
+        # A new look each time: only a report from after the press counts.
+        traffic = Traffic(database)
+        link.send(frames.frame_id, frames.next())
+        end_s = time.monotonic() + frames.cycle_s
+        while (left_s := end_s - time.monotonic()) > 0.0:
+            event = link.receive(left_s)
+            if hasattr(event, "arbitration_id"):
+                traffic.take(event)
+            status = traffic.values("Status")
+            if status and str(status["fault"]) == "ESTOP":
+                return str(status["state"])
+    return None

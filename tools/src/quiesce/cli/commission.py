@@ -3,7 +3,7 @@
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quiesce.base.command import real_number, whole_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
@@ -14,7 +14,6 @@ from quiesce.cli.can.bus_options import add_bus_options, bus_of
 from quiesce.cli.can.command import with_packages
 
 if TYPE_CHECKING:
-    from quiesce.commission.wants import Wants
     from quiesce.rig import Rig
 
 STEPS = (
@@ -37,14 +36,16 @@ examples:
   quiesce commission press --bus socketcan:can0 --max-current 2 --drive 0.1 --base-plant mine.toml
   quiesce commission press --bus socketcan:can0           goes on where it was left
   quiesce commission press --list                         what is done, and what came of it
-  quiesce commission press --bus socketcan:can0 --from tune
+  quiesce commission press --bus socketcan:can0 --from tune --no-quick
 
 FOLDER has everything: its state is commission.json, written after each step. Leave at any time with
 q, or Ctrl-C: the coil gets its safe current, and the step that was under way is done again. Before
 anything drives the coil of real hardware it asks, and only 'yes' goes on; no law asks for more than
---max-current. On a bus it needs OperatorCommand to be what enables the controller, or an enable at
-hand. --sim runs by itself. docs/howto/commission.md explains each step.
-Exit codes: 1 a step failed, the line says what to look at; 130 left.
+--max-current. On a bus OperatorCommand enables the controller; where it does not, it asks for the
+enable that you have at hand, ends with EmergencyStop, and has you take the enable away after that.
+--sim runs by itself. docs/howto/commission.md explains each step.
+Exit codes: 1 a step failed, the line says what to look at; 2 an option, a file or a recording that
+is wrong or missing; 130 left.
 """
 
 
@@ -65,7 +66,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "--sim", type=Path, metavar="PLANT.toml", help="a rig in the computer, in place of a bus"
     )
     parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE",
+        "--set", action="append", metavar="NAME=VALUE",
         help="parameter that the simulated controller starts with; repeatable",
     )  # fmt: skip
     add_bus_options(parser)
@@ -83,12 +84,13 @@ def add_structure(group: argparse._ArgumentGroup) -> None:
         help="a damper file; the structure is then excited without it (found in the recording)",
     )  # fmt: skip
     group.add_argument(
-        "--modal-mass", type=positive, default=1.0, metavar="kg",
-        help="of the first mode at the sensor; scales forces (%(default)g)",
+        "--modal-mass", type=positive, metavar="kg",
+        help="of the first mode at the sensor; scales forces (1)",
     )  # fmt: skip
     group.add_argument(
-        "--damper-elsewhere", action="store_true", help="the damper does not act at the sensor"
-    )
+        "--damper-elsewhere", action=argparse.BooleanOptionalAction,
+        help="the damper does not act at the sensor",
+    )  # fmt: skip
     group.add_argument(
         "--modes", type=whole_number(1, 16), metavar="N", help="in the swept band (found)"
     )
@@ -107,47 +109,44 @@ def add_structure(group: argparse._ArgumentGroup) -> None:
         "--first-mode", type=real_number(0.1, 100.0), metavar="Hz", help="saves the first look"
     )
     group.add_argument(
-        "--as-mounted", action="store_true",
+        "--as-mounted", action=argparse.BooleanOptionalAction,
         help="leave the accelerometer where it is: its scale is its data sheet's",
     )  # fmt: skip
     group.add_argument(
-        "--setting", choices=("balanced", "displacement"), default="balanced",
-        help="what the pulses are for (%(default)s)",
+        "--setting", choices=("balanced", "displacement"),
+        help="what the pulses are for (balanced)",
     )  # fmt: skip
-    group.add_argument("--quick", action="store_true", help="a shorter sweep, fewer frequencies")
+    group.add_argument(
+        "--quick", action=argparse.BooleanOptionalAction,
+        help="a shorter sweep, fewer frequencies",
+    )  # fmt: skip
 
 
-def wants_of_options(args: argparse.Namespace) -> "Wants | None":
-    """None where nothing but a folder is named: what it was begun with holds."""
-    from quiesce.commission.wants import BAND_Hz, Wants
-
-    if args.sim is None and args.max_current is None and args.drive is None:
-        return None
-    if args.set and args.sim is None:
-        raise UsageError("--set is of the simulated controller; give --sim, too")
+def given_by(args: argparse.Namespace) -> dict[str, Any]:
+    """Of Wants, what is named: the rest is as the folder was begun with."""
     for option in ("sim", "base_plant", "damper"):
         file = getattr(args, option)
         if file is not None and not file.is_file():
             raise UsageError(f"--{option.replace('_', '-')} {file}: there is no such file")
-    low_Hz, high_Hz = args.band or BAND_Hz
-    if low_Hz >= high_Hz:
-        raise UsageError(f"--band {low_Hz:g} {high_Hz:g}: the first must be lower")
-    return Wants(
-        plant=whole(args.sim),
-        start=tuple(args.set),
-        base_plant=whole(args.base_plant),
-        damper=whole(args.damper),
-        modal_mass_kg=args.modal_mass,
-        is_damper_elsewhere=args.damper_elsewhere,
-        mode_count=args.modes,
-        max_current_A=args.max_current,
-        drive_V=args.drive,
-        band_Hz=(low_Hz, high_Hz),
-        first_mode_Hz=args.first_mode,
-        is_as_mounted=args.as_mounted,
-        setting=args.setting,
-        is_quick=args.quick,
-    )
+    if args.band is not None and args.band[0] >= args.band[1]:
+        raise UsageError(f"--band {args.band[0]:g} {args.band[1]:g}: the first must be lower")
+    said = {
+        "plant": whole(args.sim),
+        "start": None if args.set is None else tuple(args.set),
+        "base_plant": whole(args.base_plant),
+        "damper": whole(args.damper),
+        "modal_mass_kg": args.modal_mass,
+        "is_damper_elsewhere": args.damper_elsewhere,
+        "mode_count": args.modes,
+        "max_current_A": args.max_current,
+        "drive_V": args.drive,
+        "band_Hz": None if args.band is None else tuple(args.band),
+        "first_mode_Hz": args.first_mode,
+        "is_as_mounted": args.as_mounted,
+        "setting": args.setting,
+        "is_quick": args.quick,
+    }
+    return {name: one for name, one in said.items() if one is not None}
 
 
 def whole(file: Path | None) -> str | None:
@@ -186,7 +185,7 @@ def run(args: argparse.Namespace) -> int:
         rows = [[name, text or "-"] for name, text in listed(Folder(args.folder))]
         print(format_table(["step", "what came of it"], rows, (0, 1)))
         return 0
-    order = Order(args.folder, wants_of_options(args), args.begin, args.until, args.fresh)
+    order = Order(args.folder, given_by(args), args.begin, args.until, args.fresh)
     hand = Nobody() if args.sim else Terminal()
     try:
         commission(order, hand, lambda text: say(f"quiesce: {text}"), lambda: bus_rig(args), tell)

@@ -20,7 +20,7 @@ def page(work: Work, has_pair: bool) -> str:
         cards=cards(verified),
         rows=(HEAD, [row_of(one) for one in verified["rows"]]),
         steps=(["step", "what came of it"], [list(one) for one in work.lines]),
-        doubts=doubts(results),
+        doubts=doubts(work),
         settings="\n".join(f"{name} = {one}" for name, one in work.folder.settings.items()),
         is_simulated=work.wants.plant is not None,
         has_pair=has_pair,
@@ -60,8 +60,14 @@ def row_of(one: dict[str, Any]) -> list[str]:
     ]
 
 
-def doubts(results: dict[str, Any]) -> list[str]:
+def doubts(work: Work) -> list[str]:
+    results = work.folder.results
     out = [str(one) for one in results["find"]["warnings"]]
+    if int(work.folder.settings.get("safe_current_mA", 0)):
+        out.append(
+            f"Without control flows safe_current_mA, {work.folder.settings['safe_current_mA']} mA; "
+            "what is predicted, and the bound, are against none."
+        )
     if results["wiring"]["measured_mA"] is None:
         out.append("Nobody measures the coil's current: that it flows was seen by its effect only.")
     if not results["calibrate"]["is_turned"]:

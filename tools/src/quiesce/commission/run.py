@@ -1,21 +1,22 @@
 """Steps one after the other, from the first that is not done."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.commission.by_hand import SiteByHand
+from quiesce.commission.by_hand import SiteByHand, to_play
 from quiesce.commission.folder import STATE, Folder
 from quiesce.commission.hand import Hand
-from quiesce.commission.simulated import TABLE, SimulatedSite
+from quiesce.commission.simulated import TABLE, SimulatedSite, limit_mA
 from quiesce.commission.site import Site
-from quiesce.commission.steps import NAMES, STEPS
+from quiesce.commission.steps import NAMES, STEPS, excite, wiring
 from quiesce.commission.wants import Wants, same, wants_of
-from quiesce.commission.work import Work
+from quiesce.commission.work import RECORDING, Work
 from quiesce.rig import Rig
 
 Tell = Callable[[str], None]
@@ -26,7 +27,7 @@ class Order:
     """begin: the step to go back to; end: the last one to do; None: all that are left."""
 
     folder: Path
-    wants: Wants | None  # None: what the folder has
+    given: Mapping[str, Any]  # of Wants, what is said now; the folder has the others
     begin: str | None
     end: str | None
     is_fresh: bool
@@ -61,37 +62,46 @@ def commission(
 def begun(order: Order) -> tuple[Folder, Wants]:
     """UsageError where the folder was begun for something else, or for nothing yet: it stays as it
     is then."""
-    if order.wants is not None:
-        require_limit(order.wants)
-    is_new = order.is_fresh or not Folder(order.folder).wants
-    if is_new and order.wants is None:
+    old = Folder(order.folder) if not order.is_fresh else None
+    is_new = old is None or not old.wants
+    if is_new and not order.given:
         raise UsageError(
             f"{shown(order.folder)}: nothing is begun there; name what to begin with: --sim "
             "PLANT.toml, or --max-current A and --drive V of a rig on a bus"
         )
+    before = Wants() if old is None or is_new else wants_of(old.wants)
+    wants = replace(before, **order.given)
+    require_whole(wants)
     first = NAMES.index(order.begin) if order.begin is not None else len(NAMES)
     if is_new and order.begin is not None and first > 0:
         raise UsageError(f"--from {order.begin}: {NAMES[0]} is not done yet")
+    if not is_new and order.begin is None:
+        same(before, wants)
     if is_new:
-        for name in (STATE, TABLE):
+        for name in (STATE, TABLE, wiring.BEFORE):
             (order.folder / name).unlink(missing_ok=True)
     folder = Folder(order.folder)
-    wants = order.wants if is_new or order.wants is not None else wants_of(folder.wants)
-    assert wants is not None
-    if not is_new and order.begin is None:
-        same(wants_of(folder.wants), wants)
     if order.begin is not None:
         if missing := [one for one in NAMES[:first] if one not in folder.results]:
             raise UsageError(f"--from {order.begin}: {missing[0]} is not done yet")
         folder.forget(list(NAMES[first:]))
+    if is_new or first <= NAMES.index(excite.NAME):
+        for name in (excite.LOOK, RECORDING):
+            to_play(order.folder, name).unlink(missing_ok=True)
     folder.wants = wants.data()
     folder.save()
     return folder, wants
 
 
-def require_limit(wants: Wants) -> None:
-    """Of what is real somebody has to say it."""
-    if wants.plant is None and wants.max_current_A is None:
+def require_whole(wants: Wants) -> None:
+    """UsageError where that cannot be wanted together, or is not enough: of what is real somebody
+    has to say what it carries."""
+    if wants.plant is not None:
+        limit_mA(wants)
+        return
+    if wants.start:
+        raise UsageError("--set is of the simulated controller; give --sim, too")
+    if wants.max_current_A is None:
         raise UsageError("what may coil and driver carry? --max-current A")
 
 

@@ -1,6 +1,5 @@
 """A rig in the computer, which needs no hand."""
 
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -83,6 +82,9 @@ class SimulatedSite:
             file.write_text(tomli_w.dumps(bare(self._plant)), encoding="utf-8")
         write_line(self._folder.path / f"{name}.csv", line, record(Plant(file), line, SEED))
 
+    def mount_damper(self) -> None:
+        """It is the plant's own again."""
+
 
 def bare(plant: Path) -> dict[str, object]:
     """The plant's data, its damper taken off."""
@@ -91,10 +93,10 @@ def bare(plant: Path) -> dict[str, object]:
 
 
 def limit_mA(wants: Wants) -> int:
-    """Of the plant's driver, or less where less is wanted."""
+    """Of the plant's driver, or less where less is wanted. UsageError where its file is no
+    plant's."""
     assert wants.plant is not None
-    data = tomllib.loads(Path(wants.plant).read_text(encoding="utf-8"))
-    full_A = float(data["driver"]["max_current_A"])
+    full_A = Plant(wants.plant).max_current_A
     return round(1e3 * min(full_A, wants.max_current_A or full_A))
 
 

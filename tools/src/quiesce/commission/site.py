@@ -41,6 +41,9 @@ class Site(Protocol):
     def played(self, line: Timeline, name: str, has_damper: bool) -> None:
         """Plays drive and current, and leaves the recording as NAME.csv in the folder."""
 
+    def mount_damper(self) -> None:
+        """It was off while something was played."""
+
 
 class _Armed(Protocol):
     def __enter__(self) -> None: ...

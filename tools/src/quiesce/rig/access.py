@@ -10,6 +10,7 @@ from quiesce.can.buses import Bus
 from quiesce.can.changes import apply
 from quiesce.can.database import Database, load
 from quiesce.can.e2e import JUMPED, OK
+from quiesce.can.emergency import press
 from quiesce.can.link import Link
 from quiesce.can.parameters import settings_of, text_of
 from quiesce.can.services import DONE, TRIES, Services, no_answer
@@ -128,6 +129,12 @@ class Rig:
     def send(self, frame_id: int, data: bytes) -> bool:
         """A frame of somebody else who is on this bus. Whether the bus took it."""
         return self._link.send(frame_id, data) is not None
+
+    def emergency_stop(self, timeout_s: float) -> bool:
+        """EmergencyStop until the controller reports fault ESTOP. Whether it did, in time."""
+        while self._link.receive_now() is not None:
+            pass  # what came before the press confirms nothing
+        return press(self._link, self._database, timeout_s) is not None
 
     def wait(self, trigger: Trigger, timeout_s: float = 10.0) -> None:
         """Until it is so, or is so already. BenchFailure where it is not in time."""

@@ -84,7 +84,7 @@ def commissioned(drawn: Drawn, folder: Path, is_quick: bool) -> list[dict[str, f
     def tell(text: str) -> None:
         print(f"live: commission: {text}", file=sys.stderr, flush=True)
 
-    done = commission(Order(folder, wants, None, None, False), Nobody(), tell, no_bus, tell)
+    done = commission(Order(folder, vars(wants), None, None, False), Nobody(), tell, no_bus, tell)
     rows: list[dict[str, float]] = done.results["verify"]["rows"]
     return rows
 

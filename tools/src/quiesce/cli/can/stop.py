@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-import time
 from typing import Any
 
 from quiesce.base.command import finite_number
@@ -42,6 +41,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from quiesce.can.database import load
+    from quiesce.can.emergency import press
     from quiesce.can.link import Link
     from quiesce.can.stopping import until_stopped
 
@@ -78,25 +78,3 @@ def is_confirmed(name: str) -> bool:
         f"Emergency stop of the controller on {name}? [y/N] ", end="", file=sys.stderr, flush=True
     )
     return sys.stdin.readline().strip().lower() in ("y", "yes")
-
-
-def press(link: Any, database: Any, timeout_s: float, stop: Any) -> str | None:
-    """Presses until it is reported. Returns the state, None: not in time."""
-    from quiesce.can.emergency import StopFrames
-    from quiesce.can.traffic import Traffic
-
-    frames = StopFrames(database)
-    start_s = time.monotonic()
-    while time.monotonic() - start_s < timeout_s and not stop.is_set():
-        # A new look each time: only a report from after the press counts.
-        traffic = Traffic(database)
-        link.send(frames.frame_id, frames.next())
-        end_s = time.monotonic() + frames.cycle_s
-        while (left_s := end_s - time.monotonic()) > 0.0:
-            event = link.receive(left_s)
-            if hasattr(event, "arbitration_id"):
-                traffic.take(event)
-            status = traffic.values("Status")
-            if status and str(status["fault"]) == "ESTOP":
-                return str(status["state"])
-    return None

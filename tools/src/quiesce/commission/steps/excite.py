@@ -45,8 +45,12 @@ def run(work: Work) -> dict[str, Any]:
     if work.wants.damper is not None:
         line = replace(line, current_A=np.zeros_like(line.current_A))
     work.tell(f"{duration_s(plan):.0f} s at {plan.rate_Hz} Hz")
-    work.site.played(line, RECORDING, work.wants.damper is None)
+    has_damper = work.wants.damper is None
+    work.site.played(line, RECORDING, has_damper)
+    if not has_damper:
+        work.site.mount_damper()
     return {
+        "has_damper": has_damper,
         "first_Hz": first_Hz,
         "rate_Hz": plan.rate_Hz,
         "drive_V": plan.drive_V,

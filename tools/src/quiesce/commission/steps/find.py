@@ -37,7 +37,7 @@ def run(work: Work) -> dict[str, Any]:
 
 def base_of(work: Work) -> Path:
     """Without a damper where it was off while this was recorded."""
-    if work.wants.damper is None:
+    if work.result("excite").get("has_damper", work.wants.damper is None):
         return work.base_plant
     file = work.path / BARE_BASE
     file.write_text(tomli_w.dumps(bare(work.base_plant)), encoding="utf-8")

@@ -23,7 +23,13 @@ def run(work: Work) -> dict[str, Any]:
     settings = limited(work.result("tune")["parameters"], work.site.limit_mA)
     work.give(settings)
     tables = work.site.rig.tables()
-    took_s = put(tables, table, work.tell)
+    try:
+        took_s = put(tables, table, work.tell)
+    except BenchFailure as error:  # law phase has to be there first: others refuse pulses
+        raise BenchFailure(
+            f"pulses: {error}; the parameters that go with them are in effect already, not kept "
+            "for the next start"
+        )
     is_saved = not work.site.is_simulated  # one in the computer keeps nothing
     if is_saved:
         save(tables, table)

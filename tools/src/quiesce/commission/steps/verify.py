@@ -24,6 +24,7 @@ AMP, FREQ, VALID, RMS = (
 
 def run(work: Work) -> dict[str, Any]:
     points = work.result("tune")["predicted"]
+    require_bound(points)
     strongest = max(points, key=lambda one: one["bound_pct"])["freq_Hz"]
     rows = []
     for one in points:
@@ -31,6 +32,15 @@ def run(work: Work) -> dict[str, Any]:
         rows.append({**one, **compared(work, one["freq_Hz"], one["freq_Hz"] == strongest)})
     work.site.shake(points[0]["freq_Hz"], 0.0)
     return {"rows": rows, "share": share(rows), "recorded_Hz": strongest}
+
+
+def require_bound(points: list[dict[str, Any]]) -> None:
+    """BenchFailure where no current would take anything off: there is no share of nothing."""
+    if sum(one["bound_pct"] for one in points) <= 0.0:
+        raise BenchFailure(
+            "no current takes anything off at the frequencies to verify (tuned/report.html): does "
+            "the damper act on this mode?"
+        )
 
 
 def compared(work: Work, freq_Hz: float, is_recorded: bool) -> dict[str, float]:

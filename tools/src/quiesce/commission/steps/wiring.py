@@ -1,12 +1,14 @@
 """Is everything connected, and the right way round? A small current, for a moment."""
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from quiesce.base.errors import BenchFailure
-from quiesce.can.parameters import name_of, text_of
+from quiesce.base.errors import BenchFailure, UsageError, one_line
+from quiesce.base.paths import shown
+from quiesce.can.parameters import name_of, settings_of, text_of
 from quiesce.commission.samples import take
 from quiesce.commission.site import heard
 from quiesce.commission.work import Work
@@ -20,32 +22,68 @@ LEAST_ERROR_mA = 10
 REST_S, TRIAL_S = 1.0, 1.0
 FELT = 3.0  # times as much as at rest
 NEAR = 0.1  # of the current
+# What the trial takes from the controller for a moment.
+LENT = ("law", "constant_current_mA", "unlock_current_mA")
 VERSION = ("version_major", "version_minor", "version_patch")
 
 
 def run(work: Work) -> dict[str, Any]:
     rig = work.site.rig
     version = ".".join(str(rig.read(f"identification/{part}")) for part in VERSION)
-    keep_parameters(work)
+    before = kept_parameters(work)
     fault = rig.read("status/fault")
     if fault != "NONE":
         raise BenchFailure(f"the controller is in fault {fault}; docs/reference/faults.md")
     sensor = sensed(work)
-    trial_mA = max(1, round(TRIAL_PART * work.site.limit_mA))
-    work.give(limits(work.site.limit_mA, trial_mA))
+    limit_mA = work.site.limit_mA
+    trial_mA = max(1, round(TRIAL_PART * limit_mA))
+    work.give(limits(limit_mA, trial_mA, int(before["safe_current_mA"])))
     work.tell(f"{1e-3 * trial_mA:g} A for a moment")
-    return {"version": version, **sensor, "trial_mA": trial_mA, **driven(work, trial_mA)}
+    try:
+        flows = driven(work, trial_mA)
+    except BaseException:  # Ctrl-C, too
+        try:
+            work.give(lent(before, limit_mA))
+        except BenchFailure as error:
+            work.tell(f"law=constant and {trial_mA} mA stay in the controller: {error}")
+        raise
+    work.give(lent(before, limit_mA))
+    return {"version": version, **sensor, "trial_mA": trial_mA, **flows}
 
 
-def keep_parameters(work: Work) -> None:
-    """As the controller had them, for who wants to go back."""
+def lent(before: dict[str, str], limit_mA: int) -> dict[str, int | str]:
+    """What the trial took, as it was before; no current is above the limit."""
+    return {
+        name: before[name] if name == "law" else min(int(before[name]), limit_mA) for name in LENT
+    }
+
+
+def kept_parameters(work: Work) -> dict[str, str]:
+    """As the controller had them when the folder was begun: what it has when a trial is done again
+    may be what that left. UsageError where the folder's file of them is not whole."""
+    file = work.path / BEFORE
+    if not file.is_file():
+        keep_parameters(work, file)
+    try:
+        said = json.loads(file.read_text(encoding="utf-8"))
+        settings_of([f"{name}={said[name]}" for name in (*LENT, "safe_current_mA")])
+    except (OSError, ValueError, RecursionError, KeyError, TypeError, UsageError) as error:
+        raise UsageError(
+            f"{shown(file)}: not whole: {one_line(error)}; without that file its place is taken by "
+            "what the controller has now"
+        )
+    return {name: str(one) for name, one in said.items()}
+
+
+def keep_parameters(work: Work, file: Path) -> None:
+    """For who wants to go back."""
     values = work.site.rig.tables().services.read_all()
     known = dict(enumerate(parameters()))
     said = {
         name_of(index): text_of(known[index], value) if index in known else str(value)
         for index, value in enumerate(values)
     }
-    (work.path / BEFORE).write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
+    file.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
 
 
 def sensed(work: Work) -> dict[str, Any]:
@@ -73,7 +111,7 @@ def sensed(work: Work) -> dict[str, Any]:
     return {"noise_counts": rest.noise, "rest_counts": rest.mean, "shaken_ratio": ratio}
 
 
-def limits(limit_mA: int, trial_mA: int) -> dict[str, int | str]:
+def limits(limit_mA: int, trial_mA: int, safe_mA: int) -> dict[str, int | str]:
     """What no law may ask for more than, and the trial."""
     error_mA = next(one["default"] for one in parameters() if one["name"] == "current_error_mA")
     return {
@@ -81,7 +119,7 @@ def limits(limit_mA: int, trial_mA: int) -> dict[str, int | str]:
         "max_current_mA": limit_mA,
         "constant_current_mA": trial_mA,
         "unlock_current_mA": trial_mA,
-        "safe_current_mA": 0,
+        "safe_current_mA": min(safe_mA, limit_mA),
         "current_error_mA": max(LEAST_ERROR_mA, min(error_mA, limit_mA // 2)),
     }
 
