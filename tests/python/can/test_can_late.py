@@ -10,9 +10,9 @@ import can
 import pytest
 from quiesce.can.buses import Bus
 from quiesce.can.database import Database, load
-from quiesce.can.e2e import alive_of, protect
+from quiesce.can.e2e import ALIVE_PERIOD, alive_of, protect
 from quiesce.can.link import Link
-from quiesce.can.services import REPLY_S, SILENT_S, Reply, Services
+from quiesce.can.services import REPLY_S, SILENT_S, Reply, Requests, Services
 
 
 @contextmanager
@@ -42,18 +42,19 @@ def controller(name: str, database: Database, late_s: float, deaf: int = 0) -> I
             thread.join()
 
 
-def answer(database: Database, request: can.Message) -> can.Message:
-    """The value is that of its index, plus 1000."""
+def answer(database: Database, request: can.Message, index: int | None = None) -> can.Message:
+    """About the index asked for, or that one. The value is that of the index, plus 1000."""
     asked = database.raw(request.arbitration_id, bytes(request.data))
+    index = asked["param_index"] if index is None else index
     layout = database.by_name["ServiceReply"].protection
     before = database.by_name["ServiceRequest"].protection
     assert layout is not None and before is not None
     data = database.encode(
         "ServiceReply",
         operation=asked["operation"],
-        param_index=asked["param_index"],
+        param_index=index,
         result=database.number("ServiceReply", "result", "DONE"),
-        param_value=1000 + asked["param_index"],
+        param_value=1000 + index,
     )
     return can.Message(
         arbitration_id=database.by_name["ServiceReply"].frame_id,
@@ -75,6 +76,32 @@ def test_an_answer_that_is_later_than_each_try_is_one() -> None:
     with asking("late", late_s=2.5 * REPLY_S) as services:
         for index in (3, 4, 5):  # answers to what was asked before come in between
             assert services.ask("READ", index) == Reply("DONE", index, 1000 + index)
+
+
+def test_a_late_answer_about_another_index_is_none() -> None:
+    """Counters of 4 bits come round: after 16 requests one is as old as the first again."""
+    database = load()
+    requests = Requests(database)
+    first = answer(database, request_of(requests, "READ", 3))
+    for _ in range(ALIVE_PERIOD):
+        last = request_of(requests, "READ", 4)
+    assert requests.reply_in(first, tries=ALIVE_PERIOD - 1) is None
+    assert requests.reply_in(answer(database, last)) == Reply("DONE", 4, 1004)
+
+
+def test_apply_answers_about_the_parameter_that_is_at_fault() -> None:
+    database = load()
+    requests = Requests(database)
+    reply = answer(database, request_of(requests, "APPLY", 0), index=9)
+    assert requests.reply_in(reply) == Reply("DONE", 9, 1009)
+
+
+def request_of(requests: Requests, operation: str, index: int) -> can.Message:
+    return can.Message(
+        arbitration_id=requests.request_id,
+        is_extended_id=False,
+        data=requests.make(operation, index),
+    )
 
 
 def test_a_bus_that_is_silent_for_a_while_is_asked_on() -> None:

@@ -133,9 +133,13 @@ def test_csv_has_configuration_history_and_markers(page: Page, tmp_path: Path) -
         told(viewer, lambda one: one["state"] == "recording" and one["duration_s"] > 2.0)
         with page.viewer() as other:  # who is not read for long is sent away
             other.ask("mark", text='a, "b"')  # needs no control
-            assert other.note() == {"is_ok": True, "text": "marker 1 set"}
+            assert other.note() == {"is_ok": True, "text": "marker 1 set", "of": "mark"}
             other.ask("end_record")
-            assert other.note() == {"is_ok": False, "text": "take control first"}
+            assert other.note() == {
+                "is_ok": False,
+                "text": "take control first",
+                "of": "end_record",
+            }
         record(viewer)
         assert "stop it first" in viewer.note()["text"]
         viewer.until("state", lambda state: not state["job"])  # which tables are in use
@@ -164,7 +168,7 @@ def test_mf4_begins_with_a_fault_and_ends_by_itself(page: Page, tmp_path: Path) 
         controlling(viewer)
         viewer.until("state", lambda state: state["controller"]["state"] == "RUN")
         record(viewer, format="mf4", after_s=1, trigger={"on": "fault"})
-        assert viewer.note() == {"is_ok": True, "text": "waiting for the trigger"}
+        assert viewer.note() == {"is_ok": True, "text": "waiting for the trigger", "of": "record"}
         viewer.until("state", lambda s: s["recorder"]["state"] == "armed" and not s["job"])
         viewer.ask("stop")
         files = finished(viewer, 2)
@@ -234,7 +238,7 @@ def test_a_folder_that_cannot_be_made_is_told(page: Page, tmp_path: Path) -> Non
     (tmp_path / "recordings").write_text("a file")
     with page.viewer() as viewer:
         record(viewer)
-        assert viewer.note() == {"is_ok": False, "text": "take control first"}
+        assert viewer.note() == {"is_ok": False, "text": "take control first", "of": "record"}
         controlling(viewer)
         record(viewer)
         note = viewer.note()

@@ -67,7 +67,7 @@ def test_a_viewer_in_control_moves_the_rig(shared: Page) -> None:
     with shared.viewer() as viewer:
         assert viewer.hello["rig"]["plant"] == "squeeze_2012"
         order(viewer, control=False)
-        assert viewer.note() == {"is_ok": False, "text": "take control first"}
+        assert viewer.note() == {"is_ok": False, "text": "take control first", "of": "rig"}
         viewer.ask("take")
         order(viewer, control=False, excite={"kind": "sine", "freq_Hz": 11.5}, drive_V=0.05)
         found = rig_state(viewer, lambda rig: not rig["control"] and rig["freq_Hz"] == 11.5)

@@ -167,7 +167,7 @@ def test_parameters_are_changed_stored_and_reverted(page: Page) -> None:
         viewer.ask("set", settings={"unlock_current_mA": "3000"})
         changed = viewer.until("parameters", lambda one: one["values"] != before)
         assert value_of(changed, "unlock_current_mA") == 3000
-        assert viewer.note() == {"is_ok": True, "text": "1 changed and read back"}
+        assert viewer.note() == {"is_ok": True, "text": "1 changed and read back", "of": "set"}
         viewer.ask("revert")
         assert viewer.until("parameters", lambda one: one["values"] == before)
         assert viewer.note()["is_ok"]
@@ -176,7 +176,7 @@ def test_parameters_are_changed_stored_and_reverted(page: Page) -> None:
         viewer.ask("save")
         told = viewer.until("parameters", lambda one: one["before"]["is_saved"])
         assert value_of(told["before"], "unlock_current_mA") == 3100
-        assert viewer.note() == {"is_ok": True, "text": "stored for the next start"}
+        assert viewer.note() == {"is_ok": True, "text": "stored for the next start", "of": "save"}
 
 
 @pytest.mark.slow
@@ -210,7 +210,11 @@ def test_one_holds_control_until_he_is_gone(shared: Page) -> None:
             assert second.note()["text"] == f"viewer {first.hello['viewer']} holds control"
             for do in ({"do": "save"}, {"do": "revert"}, {"do": "set", "settings": {"law": "off"}}):
                 second.socket.send(json.dumps(do))
-                assert second.note() == {"is_ok": False, "text": "take control first"}
+                assert second.note() == {
+                    "is_ok": False,
+                    "text": "take control first",
+                    "of": do["do"],
+                }
         second.until("state", lambda state: state["holder"] is None)
         second.ask("take")
         second.until("state", lambda state: state["holder"] == second.hello["viewer"])

@@ -9,7 +9,7 @@ from conftest import ROOT
 from live_page import Page, Viewer
 from quiesce.base.errors import UsageError
 from quiesce.live.protocol import Malformed, command_of
-from quiesce.live.tables import MOST_PARTS, PART_BYTES, TablePart, Upload
+from quiesce.live.tables import MOST_PARTS, PART_BYTES, TablePart, Upload, made
 from quiesce.loading.sources import table_of
 
 RULES = ROOT / "sim_hil/data/rules/squeeze_2012_published.fcl"
@@ -54,6 +54,18 @@ def test_parts_in_their_order_are_a_file() -> None:
             upload.take(TablePart("rules", "a", 1, 3, b""))
 
 
+@pytest.mark.parametrize("kind", ["rules", "pulses"])
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [("a.toml", b"a=" + b"[" * 80_000), ("a.fll", b"(" * 80_000), ("a.table", b""), ("a", b"\xff")],
+)
+def test_whatever_comes_is_told_in_one_line(kind: str, name: str, data: bytes) -> None:
+    with pytest.raises(UsageError) as refused:
+        made(kind, name, data)
+    text = str(refused.value)
+    assert len(text.splitlines()) == 1 and "quiesce-" not in text and name in text
+
+
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     page = Page(tmp_path_factory.mktemp("tables"), "--sim", "--law", "fuzzy")
@@ -73,7 +85,7 @@ def test_who_holds_control_loads_a_table(page: Page) -> None:
     with page.viewer() as viewer:
         viewer.until("parameters", lambda one: one["values"])
         send(viewer, "mine.fcl", b"x")
-        assert viewer.note() == {"is_ok": False, "text": "take control first"}
+        assert viewer.note() == {"is_ok": False, "text": "take control first", "of": "table"}
         viewer.ask("take")
         send(viewer, "mine.fcl", RULES.read_bytes())
         said = viewer.note()

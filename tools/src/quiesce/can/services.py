@@ -44,12 +44,15 @@ class Requests:
         self.reply_id = database.by_name[REPLY].frame_id
         self.identification_id = database.by_name[IDENTIFICATION].frame_id
         self._alive = time.monotonic_ns() // 1000 % ALIVE_PERIOD
+        self._apply = database.number(REQUEST, "operation", "APPLY")
         self._operation = 0
+        self._index = 0
 
     def make(self, operation: str, index: int = 0, value: int = 0) -> bytes:
         """Data of the next request."""
         self._alive = (self._alive + 1) % ALIVE_PERIOD
         self._operation = self.database.number(REQUEST, "operation", operation)
+        self._index = index
         data = self.database.encode(
             REQUEST, operation=self._operation, param_index=index, param_value=value
         )
@@ -59,7 +62,8 @@ class Requests:
 
     def reply_in(self, frame: Any, tries: int = 1) -> Reply | None:
         """The reply to the last request, or to one of the last `tries` that asked the same; None
-        where the frame is something else."""
+        where the frame is something else, such as a late reply about another index. APPLY alone
+        answers with one of its own: of the parameter that is at fault."""
         message = self.database.by_id[self.reply_id]
         data = bytes(frame.data)
         if frame.arbitration_id != self.reply_id or len(data) != message.length:
@@ -70,7 +74,8 @@ class Requests:
         if data[-1] != frame_crc(self.reply_id, data) or age >= tries:
             return None
         raw = self.database.raw(self.reply_id, data)
-        if raw["operation"] != self._operation:
+        is_ours = raw["param_index"] == self._index or self._operation == self._apply
+        if raw["operation"] != self._operation or not is_ours:
             return None
         result = self.database.label(REPLY, "result", raw["result"])
         return Reply(result, raw["param_index"], raw["param_value"])

@@ -9,12 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from quiesce.base.errors import UsageError
+from quiesce.base.errors import UsageError, one_line
 from quiesce.can.roads import LEARNT
 from quiesce.can.services import Services
 from quiesce.can.tables import Tables
 from quiesce.loading.load import put
-from quiesce.loading.sources import WORDS, table_of
+from quiesce.loading.sources import WORDS, Table, table_of
 
 KEYS = {"kind", "name", "part", "parts", "data"}
 KINDS = tuple(one for one in WORDS if one != LEARNT)
@@ -81,16 +81,23 @@ def use(kind: str, name: str, data: bytes) -> Callable[[Services], str]:
     is none, BenchFailure where the controller refuses it: nothing was changed."""
 
     def work(services: Services) -> str:
+        table = made(kind, name, data)
+        put(Tables(services.link, services.requests.database), table, lambda _: None)
+        used = f"{table.kind.name} {table.crc:08x} is in use; the next start has what it had"
+        return "; ".join([f"{name}: {used}", *table.notes])
+
+    return work
+
+
+def made(kind: str, name: str, data: bytes) -> Table:
+    """UsageError, in one line, where it is none, or this computer has no room for it."""
+    try:
         with tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
             file = Path(folder) / name
             file.write_bytes(data)
             try:
-                table = table_of(kind, file)
+                return table_of(kind, file)
             except UsageError as error:
                 raise UsageError(str(error).replace(f"{folder}/", ""))
-        put(Tables(services.link, services.requests.database), table, lambda _: None)
-        return (
-            f"{name}: {table.kind.name} {table.crc:08x} is in use; the next start has what it had"
-        )
-
-    return work
+    except OSError as error:
+        raise UsageError(f"{name}: {one_line(error)}")

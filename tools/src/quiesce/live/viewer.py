@@ -86,7 +86,7 @@ class Viewer:
         elif command.do == "mark":
             self._start(command)
         elif room.control.holder != self._number:
-            self._note(False, "take control first")
+            self._note(False, "take control first", command.do)
         else:
             self._start(command)
         room.tell_now()
@@ -106,7 +106,7 @@ class Viewer:
         except (BenchFailure, UsageError) as error:
             is_done, text = False, str(error)
         if text:
-            self._note(is_done, text)
+            self._note(is_done, text, command.do)
 
     async def _do(self, command: Command) -> tuple[bool, str]:
         """Whether it came about, and a line about it. UsageError for values not allowed."""
@@ -161,9 +161,10 @@ class Viewer:
         both = enumerate(zip(values, self._desk.before.values, strict=True))
         return {index: want for index, (value, want) in both if value != want}
 
-    def _note(self, is_ok: bool, text: str) -> None:
+    def _note(self, is_ok: bool, text: str, of: str = "") -> None:
+        """of: the command that it is about."""
         if len(self._notes) < MOST_NOTES:
-            self._notes.append({"note": {"is_ok": is_ok, "text": text}})
+            self._notes.append({"note": {"is_ok": is_ok, "text": text, "of": of}})
         self._room.tell_now()
 
     # What he is sent

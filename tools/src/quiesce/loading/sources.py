@@ -38,6 +38,8 @@ def table_of(word: str, path: Path) -> Table:
         table = made_of(word, file)
     except ValueError as error:
         raise UsageError(f"{shown(file)}: {error}")
+    except RecursionError:
+        raise UsageError(f"{shown(file)}: nested too deeply to be a table's source")
     if word not in (table.kind.name, table.road):
         better = table.kind.name if table.kind.name in WORDS else table.road
         raise UsageError(

@@ -142,7 +142,7 @@ function lost() {
   status.showBus(["NO CONNECTION to the server, trying again. What is shown is old.", true]);
   parameters.enable(false);
   rig.enable(false);
-  tables.enable(false);
+  tables.lost();
   recorder.show(null, false);
   $("take").disabled = $("release").disabled = true;
 }

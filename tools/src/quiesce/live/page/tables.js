@@ -11,7 +11,7 @@ function base64Of(bytes) {
 
 // As the server takes names: of letters, digits, '.', '_' and '-'.
 function nameOf(file) {
-  const name = file.name.replace(/[^A-Za-z0-9._-]/g, "_").replace(/^[^A-Za-z0-9]+/, "").slice(-64);
+  const name = file.name.replace(/[^A-Za-z0-9._-]/g, "_").slice(-64).replace(/^[^A-Za-z0-9]+/, "");
   return name || "table";
 }
 
@@ -45,9 +45,15 @@ export class Tables {
     }
   }
 
+  lost() {
+    if (this.isWaiting) this.say(false, "The connection was lost; load it again.");
+    this.isWaiting = false;
+    this.enable(false);
+  }
+
   // Whether the note is about the table.
-  hear({ is_ok, text }) {
-    if (!this.isWaiting) return false;
+  hear({ is_ok, text, of }) {
+    if (of !== "table") return false;
     this.isWaiting = false;
     this.say(is_ok, text);
     return true;
