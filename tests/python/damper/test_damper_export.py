@@ -213,6 +213,39 @@ def test_two_models_live_in_one_program(tmp_path: Path) -> None:
     built(tmp_path, "-shared", "-fPIC", "-o", "both.so", "front/front.c", "rear/rear.c", "-lm")
 
 
+@pytest.mark.parametrize("name", ["spencer_prototype", "seat_damper"])
+def test_damper_in_volts_is_in_volts_everywhere(name: str, tmp_path: Path) -> None:
+    file = ROOT / f"sim_hil/data/dampers/{name}.toml"
+    assert act(export, file, "--to", "c", "--out", tmp_path / "one") == 0
+    texts = {one.name: one.read_text() for one in (tmp_path / "one").iterdir()}
+    assert "command_V: the voltage that the driver is asked for" in texts["one.h"]
+    assert "command (V)" in texts["main.c"] and "command_V, dt_s" in texts["README.md"]
+    for file_name, text in texts.items():
+        assert not re.search(r"[a-z]_A\b|current", text), file_name
+    record = replace(two_tones(current_A=np.linspace(0.0, 2.25, 1000)), command_unit="V")
+    found = forces(compiled(tmp_path / "one", "one"), "one", record)
+    expected = library_force(read_model(file), record)
+    assert np.abs(found - expected).max() <= 1e-6 * np.abs(expected).max()
+    assert passes_its_check(tmp_path / "one")
+    # The check goes up to the largest voltage that the file states.
+    assert "2.25," in texts["main.c"]
+
+
+def test_mat_file_of_a_damper_in_volts_says_so(tmp_path: Path) -> None:
+    file = ROOT / "sim_hil/data/dampers/seat_damper.toml"
+    assert act(export, file, "--to", "mat", "--out", tmp_path / "one.mat") == 0
+    found = loadmat(tmp_path / "one.mat", simplify_cells=True)["damper"]
+    assert "effective voltage in V" in found["law"]
+
+
+def test_first_step_has_the_coil_at_its_command_and_says_so(tmp_path: Path) -> None:
+    file = write(tmp_path / "damper.toml", EXAMPLE)
+    assert act(export, file, "--to", "c", "--out", tmp_path / "one") == 0
+    for name in ("one.h", "README.md"):
+        text = (tmp_path / "one" / name).read_text()
+        assert "first step takes its command as the coil's current at once" in text
+
+
 # Learned models (learned_examples.py)
 
 
@@ -349,6 +382,15 @@ def test_model_without_c_form_is_refused_with_a_way_out(tmp_path: Path) -> None:
     file = write(tmp_path / "v.toml", learned("feed_forward_network", keys))
     assert "--to mat" in refused(export, file, "--to", "c", "--out", tmp_path / "x")
     assert not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize(
+    "stem", ["main", "Main", "test", "all", "help", "clean", "install", "math"]
+)
+def test_name_with_a_meaning_of_its_own_is_refused(stem: str, tmp_path: Path) -> None:
+    file = write(tmp_path / "damper.toml", EXAMPLE)
+    assert "name it otherwise" in refused(export, file, "--to", "c", "--out", tmp_path / stem)
+    assert list(tmp_path.iterdir()) == [file]
 
 
 @pytest.mark.parametrize("stem", ["9b", "", "double", "a__b", "ü"])

@@ -8,12 +8,17 @@ import pytest
 from learned_data import error_of, kwok_N, moved, random_motion, segments_of, sine
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import root
+from quiesce.damper.data.folds import folds_of
 from quiesce.damper.data.split import whole
+from quiesce.damper.fit.problem import trimmed
+from quiesce.damper.fit_learned import fit_learned
 from quiesce.damper.learned import MODELS, anfis, learner, support_vector, ts_fuzzy
 from quiesce.damper.learned.inputs import Box
 from quiesce.damper.learned.self_tuning import RULES, Rates, SelfTuning, Triangles
 from quiesce.damper.learned.temperature import ThermalFactors, warmed
 from quiesce.damper.library import DamperFile, Scales, motion
+from quiesce.damper.task import Parts, Plan
+from quiesce.damper.validated import validated
 
 CURRENTS_A = (0.0, 0.5, 1.0, 1.5)
 
@@ -213,6 +218,24 @@ def test_unknown_names_and_data_at_rest_are_refused():
             learner(name).train([whole(record)], scales)
     with pytest.raises(UsageError, match="zero throughout"):
         learner("neuro_fuzzy_stf").train([whole(record)], Scales.of([whole(record)]))
+
+
+@pytest.mark.slow
+def test_settings_of_a_refit_are_chosen_without_the_rows_that_validate_it():
+    """On these data the penalty that all rows choose is another than that of the first fold."""
+    segments, scales = segments_of(
+        *(
+            sine(freq_Hz, size_m, level, cycles=2.0, rate_Hz=200.0)
+            for freq_Hz, size_m in ((1.0, 8e-3), (3.0, 4e-3), (6.0, 2e-3))
+            for level in (0.0, 1.0)
+        )
+    )
+    folds = folds_of(segments)[:1]
+    rows = trimmed(folds[0].fit)
+    alone = support_vector.train(rows, Scales.of(rows))
+    found = fit_learned("support_vector", Parts(segments, [], folds, scales), Plan([]))
+    assert "penalty 100 " in found.notes[0] and "penalty 10 " in alone.notes[0]
+    assert found.folds == validated([alone.simulate], folds).folds
 
 
 # Temperature

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rumoca
+from conftest import ROOT
 from damper_actions import act, dissipative_tanh, kwok_rd1005, middle_of, refused, write
 from learned_examples import network
 from quiesce.base.errors import UsageError
@@ -34,7 +35,7 @@ def example_force_N(file: Path) -> tuple[np.ndarray, Record]:
     force_N = np.array(example.simulate(t=DURATION_s, dt=STEP_s, config=config)["force"])
     time_s = np.arange(10 * (len(force_N) - 1) + 1) * STEP_s / 10
     size_m, w = values["amplitude"], values["w"]
-    command = values["current"] * (1.0 + np.sin(0.5 * w * time_s))
+    command = values["level"] * (1.0 + np.sin(0.5 * w * time_s))
     sine, cosine = np.sin(w * time_s), np.cos(w * time_s)
     motion = (size_m * sine, size_m * w * cosine, -size_m * w**2 * sine)
     record = Record("sine", 10 / STEP_s, time_s, *motion, np.zeros(len(time_s)), command, "A")
@@ -71,6 +72,19 @@ def test_current_laws_coil_and_field_are_part_of_it(tmp_path: Path) -> None:
     laws = DamperModel("laws", EXAMPLE.model, 0.02, 0.3, EXAMPLE.parameters, EXAMPLE.rig | FIELD)
     holds(tmp_path, laws)
     holds(tmp_path, DamperModel("t", "kwok_tanh", 0.025, 0.3, dissipative_tanh().parameters, FIELD))
+
+
+@pytest.mark.parametrize("name", ["spencer_prototype", "seat_damper"])
+def test_damper_in_volts_is_in_volts_everywhere(name: str, tmp_path: Path) -> None:
+    file = ROOT / f"sim_hil/data/dampers/{name}.toml"
+    assert act(export, file, "--to", "modelica", "--out", tmp_path / "Own.mo") == 0
+    text = (tmp_path / "Own.mo").read_text()
+    assert text.count("voltage that the driver is asked for, V") == 2
+    assert "parameter Real level = 1.125" in text and "starts there, without a lag" in text
+    assert "current" not in text and ', A"' not in text and " a A" not in text
+    found, record = example_force_N(tmp_path / "Own.mo")
+    expected = simulator_of_file(file)[1](record)[::10]
+    assert np.abs(found - expected).max() <= 1e-5 * np.abs(expected).max()
 
 
 def test_springs_are_part_of_it(tmp_path: Path) -> None:

@@ -178,7 +178,7 @@ def folds_with(error: float, kinds: Sequence[str] = (CURRENT, MOTION)) -> tuple[
 
 @pytest.fixture(scope="module")
 def validated_models(segments) -> list[Fitted]:
-    band = Band(0.1, 1.0, 500.0)
+    band = Band(0.1, 1.0, 500.0, (CURRENT, MOTION))
     return [
         fitted(name, TRUTH, segments, validation_error=error, folds=folds_with(error), band=band,
                coverage=0.96)
@@ -195,7 +195,8 @@ def test_report_says_for_which_new_data_errors_stand(validated_models, segments)
     for expected in (
         "stands for another current between those of the data; left out in turn: a current",
         "better comes before worse in 100 % of 2000 validations",
-        "within 50 N of it where the force reaches 500 N, within 5 N where it reaches 50 N",
+        "left out (whole currents and whole motions) lie within 50 N of them",
+        "of them where the force reaches 500 N, within 5 N where it reaches 50 N",
         "of the held-out rows 96 %",
     ):
         assert expected in text
@@ -205,12 +206,17 @@ def test_report_says_for_which_new_data_errors_stand(validated_models, segments)
         CURRENT: pytest.approx(0.2),
         MOTION: pytest.approx(0.2),
     }
-    assert first["band_95"] == {"part": 0.1, "power": 1.0, "scale_N": 500.0}
+    assert first["band_95"] == {
+        "part": 0.1, "power": 1.0, "scale_N": 500.0, "kinds": ["current", "motion"],
+    }  # fmt: skip
 
 
 def test_flat_band_is_told_in_one_width(validated_models) -> None:
-    flat = replace(validated_models[1], band=Band(0.02, 0.0, 500.0), coverage=None)
-    assert band_lines([flat]) == ["95 % of the rows that better had not seen lie within 10 N of it"]
+    flat = replace(validated_models[1], band=Band(0.02, 0.0, 500.0, (QUARTERS,)), coverage=None)
+    assert band_lines([flat]) == [
+        "95 % of the rows that refits of better left out (quarters of every test) lie within 10 N "
+        "of them"
+    ]
     assert band_lines([replace(flat, band=None)]) == []
 
 
@@ -226,15 +232,15 @@ def test_page_shows_validation_by_kind(validated_models, segments, tmp_path: Pat
         "For which new data",
         "new motion %",
         "where the error is made",
-        "95 % of new rows",
+        "95 % of the rows left out",
     ):
         assert word in page
 
 
 def test_a_model_is_kept_and_read_again_with_its_validation(segments, tmp_path: Path) -> None:
     train, test = segments
-    one = fitted("truth", TRUTH, segments, folds=folds_with(0.1), band=Band(0.1, 0.5, 9.0),
-                 coverage=0.9)  # fmt: skip
+    one = fitted("truth", TRUTH, segments, folds=folds_with(0.1),
+                 band=Band(0.1, 0.5, 9.0, (MOTION,)), coverage=0.9)  # fmt: skip
     store = Store(tmp_path, "stamp", ["truth"])
     store.keep(one)
     (again,) = store.finished(["truth"], train, test)

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from learned_data import random_motion, sine
-from quiesce.damper.band import Band, Unseen, band_of, coverage, levels_along
+from quiesce.damper.band import Band, LeftOut, band_of, coverage, levels_along
 from quiesce.damper.data.folds import AMPLITUDE, CURRENT, MOTION, QUARTERS, folds_of
 from quiesce.damper.data.record import Record
 from quiesce.damper.data.split import Segment, records_in, whole
+from quiesce.damper.validated import validated
 from quiesce.damper.validation import (
     Blocks,
     FoldScore,
@@ -152,9 +153,9 @@ def test_draws_pair_blocks_so_that_a_common_hard_stretch_cancels() -> None:
 # Bands
 
 
-def unseen(level_N: float, size_N: float, seed: int, rows: int = 4000) -> Unseen:
+def unseen(level_N: float, size_N: float, seed: int, rows: int = 4000) -> LeftOut:
     rng = np.random.default_rng(seed)
-    return Unseen(size_N * rng.standard_normal(rows), np.full(rows, level_N))
+    return LeftOut(size_N * rng.standard_normal(rows), np.full(rows, level_N))
 
 
 def test_band_holds_95_percent_of_noise_at_every_level() -> None:
@@ -186,9 +187,17 @@ def test_every_test_counts_the_same_in_a_band() -> None:
 
 
 def test_model_that_diverges_has_no_finite_band_and_no_rows_no_band() -> None:
-    broken = Unseen(np.array([1.0, np.nan]), np.array([1.0, np.nan]))
+    broken = LeftOut(np.array([1.0, np.nan]), np.array([1.0, np.nan]))
     assert np.isinf(band_of([broken]).part)
     assert band_of([]) is None
+
+
+def test_band_knows_its_folds_and_leaves_harder_ones_out() -> None:
+    folds = folds_of(rig_tests((0.0, 0.5, 1.0), ((1.0, 8e-3), (3.0, 4e-3))))
+    assert {one.kind for one in folds if one.is_harder} == {CURRENT}
+    found = validated([lambda record: 0.9 * record.force_N] * len(folds), folds)
+    assert found.band.kinds == (MOTION,)
+    assert {one.kind for one in found.folds} == {CURRENT, MOTION}
 
 
 def test_level_is_the_peak_of_the_cycle() -> None:

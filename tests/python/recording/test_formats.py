@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import run_quiesce
 from quiesce.base.errors import UsageError
+from quiesce.cli.main import main
 from quiesce.recording.open import FORMATS, open_table
 from quiesce.recording.write import WRITERS, name_and_unit, time_text, write_columns
 from quiesce_benchmarks.campaign import written
@@ -216,6 +217,25 @@ def refusal_of_extra(file: Path) -> str:
 
 
 # Commands
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["identify", "no.csv", "--format", "uff"],
+        ["replay", "no.csv", "--column", "a", "--unit", "g", "--format", "uff"],
+        ["compare", "--rig", "no.toml", "--format", "uff", "--out", "out"],
+        ["record", "no.toml", "--out", "out.UFF"],
+        ["sweep", "--simulate", "no.toml", "--out", "out.unv"],
+    ],
+)
+def test_a_format_that_cannot_be_written_is_refused_before_the_work(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Before a file is opened, even."""
+    monkeypatch.setitem(sys.modules, "pyuff", None)
+    assert main(words) == 2
+    assert "a universal file needs the extra 'files'" in capsys.readouterr().err
 
 
 def identified(folder: Path, *arguments: str | Path) -> dict:

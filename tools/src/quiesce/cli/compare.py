@@ -13,7 +13,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import UsageError, one_line
 from quiesce.base.paths import shown
-from quiesce.cli.file_format import add_format
+from quiesce.cli.file_format import add_format, require_format
 from quiesce.cli.rig_options import add_motions, add_rig, records_of, several_rig_files, shaking_of
 from quiesce.cli.terminal import show
 from quiesce.compare.clairvoyant import CLAIRVOYANT, Found
@@ -169,6 +169,7 @@ def on_rig(
 def run(args: argparse.Namespace) -> int:
     if args.format and not args.out:
         raise UsageError("--format says how files are written; --out FOLDER says where")
+    require_format(args)
     files = several_rig_files(args)
     records = records_of(args)
     with tempfile.TemporaryDirectory(prefix="quiesce-compare-") as name:

@@ -2,7 +2,7 @@
 
 import argparse
 
-from quiesce.recording.write import FORMATS
+from quiesce.recording.write import FORMATS, require_writer
 
 
 def add_format(
@@ -16,3 +16,9 @@ def add_format(
         help=f"of {what}: csv, mat (MATLAB), uff (universal file 58)"
         + (" (%(default)s)" if default else ""),
     )  # fmt: skip
+
+
+def require_format(args: argparse.Namespace) -> None:
+    """UsageError where --format cannot be written: to be called before the work."""
+    if args.format:
+        require_writer(f".{args.format}")

@@ -13,7 +13,7 @@ from quiesce.base.paths import shown
 from quiesce.engine import laws, scenarios
 from quiesce.engine.bench import Bench, setting_options
 from quiesce.engine.trace import Trace, read_trace
-from quiesce.recording.write import time_text, write_columns
+from quiesce.recording.write import require_writer, time_text, write_columns
 from quiesce.signal.recording import COLUMN_UNITS, M_S2_PER_UNIT
 
 EPILOG = """examples:
@@ -90,6 +90,7 @@ def write(file: Path, time_s: np.ndarray, columns: dict[str, np.ndarray]) -> Non
 
 
 def run(args: argparse.Namespace) -> int:
+    require_writer(args.out.suffix)
     bench = Bench()
     law, scenario = laws.find(args.law), scenarios.load(bench, args.scenario)
     if law.name == laws.CONSTANT_BEST:

@@ -11,7 +11,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import finite_number, whole_number
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
-from quiesce.cli.file_format import add_format
+from quiesce.cli.file_format import add_format, require_format
 from quiesce.engine.bench import Bench
 from quiesce.engine.board import load_board
 from quiesce.signal.recording import M_S2_PER_UNIT, Recording, read_recording
@@ -266,6 +266,7 @@ def what_was_played(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def run(args: argparse.Namespace) -> int:
+    require_format(args)
     bench = Bench()
     source = source_of(args, bench)
     columns = source.columns + ([args.reference_column] if args.reference_column else [])

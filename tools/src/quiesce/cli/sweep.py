@@ -12,6 +12,7 @@ from quiesce.base.errors import UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.cli.terminal import show
 from quiesce.plant_id.sweep import SweepPlan, Timeline, dwell_s, timeline, write_line
+from quiesce.recording.write import require_writer
 
 EPILOG = """examples:
   quiesce sweep --out excitation.csv --band 3 60 --drive 0.1 --max-current 2
@@ -233,4 +234,8 @@ def run_find(args: argparse.Namespace) -> int:
 
 
 def run(args: argparse.Namespace) -> int:
-    return run_find(args) if args.identify else write_plan(args)
+    if args.identify:
+        return run_find(args)
+    if args.out:
+        require_writer(args.out.suffix)
+    return write_plan(args)

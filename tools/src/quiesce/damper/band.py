@@ -1,12 +1,13 @@
-"""Prediction bands: where 95 % of the rows of new tests lie about a model's force.
+"""Prediction bands: where 95 % of the rows that refits leave out lie about the refits' forces.
 
-From residuals on rows that the models had not seen (the folds of the validation), as split
-conformal prediction has it (Lei and others, J. Am. Stat. Assoc. 113, 2018), with a width that
-follows the level of the force: width = part * level^power * scale^(1 - power). The level of a row
-is the largest model force within half a cycle of it, so that a band is as wide where a force
-passes through zero as at its peaks. The power comes from a line through the logarithms of every
-block's deviation and level; the part is then the quantile over all rows, every test counting the
-same.
+From the residuals on those rows (the folds of the validation), in the manner of split conformal
+prediction (Lei and others, J. Am. Stat. Assoc. 113, 2018) but without its guarantee: refits of
+parametric models start at the fit to everything, which has seen the rows, and rows of a fold are
+not new tests. The width follows the level of the force: width = part * level^power *
+scale^(1 - power). The level of a row is the largest model force within half a cycle of it, so that
+a band is as wide where a force passes through zero as at its peaks. The power comes from a line
+through the logarithms of every block's deviation and level; the part is then the quantile over all
+rows, every test counting the same.
 """
 
 from collections.abc import Sequence
@@ -33,6 +34,7 @@ class Band:
     part: float
     power: float  # 0: the same everywhere, 1: in proportion to the level
     scale_N: float
+    kinds: tuple[str, ...] = ()  # of folds that it came from, of data.folds.LEAVES_OUT
 
     def half_width_N(self, level_N: np.ndarray) -> np.ndarray:
         level = np.maximum(np.abs(level_N) / self.scale_N, 1e-6)
@@ -40,20 +42,20 @@ class Band:
 
 
 @dataclass(frozen=True)
-class Unseen:
-    """Rows that a model had not seen: measured less modelled force, and the force's level, in N,
+class LeftOut:
+    """Rows that a refit left out: measured less modelled force, and the force's level, in N,
     [rows]."""
 
     residual_N: np.ndarray
     level_N: np.ndarray
 
 
-def unseen_of(segment: Segment, force_N: np.ndarray) -> Unseen:
+def left_out_of(segment: Segment, force_N: np.ndarray) -> LeftOut:
     """force_N: the model's at the segment's rows."""
     level_N = levels_along(segment, force_N)
     residual_N = segment.record.force_N[segment.rows] - force_N
     step = -(-len(force_N) // _MOST_ROWS)
-    return Unseen(residual_N[::step], level_N[::step])
+    return LeftOut(residual_N[::step], level_N[::step])
 
 
 def levels_along(segment: Segment, force_N: np.ndarray) -> np.ndarray:
@@ -67,14 +69,14 @@ def levels_along(segment: Segment, force_N: np.ndarray) -> np.ndarray:
     return maximum_filter1d(size_N, max(1, rows), mode="nearest")
 
 
-def band_of(unseen: Sequence[Unseen]) -> Band | None:
-    """None without a row."""
-    tests = [one for one in unseen if len(one.residual_N)]
+def band_of(left_out: Sequence[LeftOut], kinds: tuple[str, ...] = ()) -> Band | None:
+    """kinds: of the folds that left them out. None without a row."""
+    tests = [one for one in left_out if len(one.residual_N)]
     if not tests:
         return None
     scale_N = max(float(np.max(one.level_N)) for one in tests)
     if not all(np.isfinite(one.residual_N).all() for one in tests) or not scale_N > 0.0:
-        return Band(float("inf"), 1.0, max(scale_N, 1e-300) if np.isfinite(scale_N) else 1.0)
+        return Band(float("inf"), 1.0, max(scale_N, 1e-300) if np.isfinite(scale_N) else 1.0, kinds)
     power = power_of(tests, scale_N)
     shape = Band(1.0, power, scale_N)
     parts = np.concatenate(
@@ -83,10 +85,10 @@ def band_of(unseen: Sequence[Unseen]) -> Band | None:
     weights = np.concatenate(
         [np.full(len(one.residual_N), 1.0 / len(one.level_N)) for one in tests]
     )
-    return Band(weighted_quantile(parts, weights, SHARE), power, scale_N)
+    return Band(weighted_quantile(parts, weights, SHARE), power, scale_N, kinds)
 
 
-def power_of(tests: Sequence[Unseen], scale_N: float) -> float:
+def power_of(tests: Sequence[LeftOut], scale_N: float) -> float:
     """Slope of log deviation over log level of the tests' blocks, within 0 .. 1."""
     levels, sizes = [], []
     for one in tests:

@@ -77,7 +77,7 @@ def fit_learned(
         return module.train(own, Scales.of(own), plan.seed, settings, going_on)
 
     trained = train(parts.train, usual, -1)
-    # What a search found holds for the folds, too.
+    # What a search found holds for the folds, too, where a learner says so.
     settled = replace(usual, **trained.settled)
     refits = [train(fold.fit, settled, k) for k, fold in enumerate(parts.folds)]
     checked = validated([one.simulate for one in refits], parts.folds)

@@ -23,7 +23,7 @@ class Fitted:
     damper: DamperModel
     parameter_count: int  # numbers that were fitted
     train: Score
-    validation_error: float  # inside the training part, by models that had not seen those rows
+    validation_error: float  # inside the training part, of refits without those rows
     passivity: Passivity
     seconds: float
     is_complete: bool  # neither interrupted nor out of time
@@ -31,5 +31,5 @@ class Fitted:
     test: Score | None = None
     notes: list[str] = field(default_factory=list)
     folds: tuple[FoldScore, ...] = ()  # what the validation error is made of
-    band: Band | None = None  # about the force, for rows that were not seen
+    band: Band | None = None  # about the force, from rows that refits left out
     coverage: float | None = None  # part of the test rows inside it

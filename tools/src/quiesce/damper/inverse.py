@@ -18,6 +18,7 @@ import numpy as np
 
 from quiesce.base.errors import UsageError
 from quiesce.damper import library
+from quiesce.damper.command_range import command_unit
 from quiesce.damper.data.record import Record
 from quiesce.damper.model_file import DamperModel
 from quiesce.damper.score import Simulate
@@ -193,7 +194,7 @@ def check_current(max_current_A: float) -> None:
 
 def check_amperes(damper: DamperModel) -> None:
     """UsageError for a file that is valid up to a voltage and to no current."""
-    if "command_V" in damper.valid and not {"max_current_A", "current_A"} & set(damper.valid):
+    if command_unit(damper) != "A":
         raise UsageError(f"{damper.name}: {VOLTAGE}")
 
 

@@ -25,7 +25,7 @@ from quiesce.damper.validation import Blocks, FoldScore
 FOLDER = "models"
 STATE = "state.json"
 BEST = "damper.toml"
-VERSION = 3
+VERSION = 4
 
 
 def stamp_of(train: Sequence[Segment], test: Sequence[Segment], options: Any) -> str:
@@ -135,9 +135,13 @@ class Store:
             score(simulate, test) if test else None,
             state["notes"],
             tuple(fold_from(*values) for values in state["folds"]),
-            Band(*state["band"]) if state["band"] else None,
+            band_from(*state["band"]) if state["band"] else None,
             state["coverage"],
         )
+
+
+def band_from(part: float, power: float, scale_N: float, kinds: list[str]) -> Band:
+    return Band(part, power, scale_N, tuple(kinds))
 
 
 def fold_from(kind: str, left_out: str, tests: list[list[list[float]]]) -> FoldScore:

@@ -1,12 +1,12 @@
-"""Models that each have not seen one fold, on what they have not seen: their errors, and the band
-that these make about the model of everything."""
+"""Refits that each leave one fold out, on what they leave out: their errors, and the band that
+these make about the model of everything."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from quiesce.damper.band import Band, band_of, coverage, unseen_of
+from quiesce.damper.band import Band, band_of, coverage, left_out_of
 from quiesce.damper.data.folds import Fold
 from quiesce.damper.data.split import Segment
 from quiesce.damper.score import Simulate
@@ -35,15 +35,15 @@ class Validated:
 
 def validated(simulates: Sequence[Simulate], folds: Sequence[Fold]) -> Validated:
     """simulates: one model for each fold. The band is made without folds that are harder than new
-    data, where there are others."""
-    is_all_harder = all(one.is_harder for one in folds)
-    scores, unseen = [], []
+    data; folds_of has others."""
+    scores, left_out = [], []
     for simulate, fold in zip(simulates, folds, strict=True):
         with np.errstate(all="ignore"):
             forces_N = forces_on(simulate, fold.validation)
         scores.append(fold_score(fold, forces_N))
-        if fold.is_harder and not is_all_harder:
+        if fold.is_harder:
             continue
         pairs = zip(fold.validation, forces_N, strict=True)
-        unseen += [unseen_of(segment, force_N) for segment, force_N in pairs]
-    return Validated(tuple(scores), band_of(unseen))
+        left_out += [left_out_of(segment, force_N) for segment, force_N in pairs]
+    kinds = tuple(dict.fromkeys(one.kind for one in folds if not one.is_harder))
+    return Validated(tuple(scores), band_of(left_out, kinds))

@@ -38,7 +38,7 @@ class Blocks:
 
 @dataclass(frozen=True)
 class FoldScore:
-    """A model that has not seen a fold's validation rows, on them."""
+    """A refit without a fold's validation rows, on them."""
 
     kind: str  # of data.folds.STANDS_FOR
     left_out: str

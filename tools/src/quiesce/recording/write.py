@@ -3,6 +3,7 @@
 import csv
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -28,9 +29,7 @@ def write_mat(file: Path, columns: Columns) -> None:
 def write_uff(file: Path, columns: Columns) -> None:
     """Data sets 58 as text, against the first column, the time in s at even steps; the unit that a
     name ends in is the ordinate's. Times have six digits there."""
-    with extra("files", "a universal file"):
-        import pyuff
-
+    pyuff = _pyuff()
     (_, time_s), *others = columns.items()
     stream = pyuff.UFF(str(file))
     for number, (name, values) in enumerate(others, 1):
@@ -45,6 +44,12 @@ def write_uff(file: Path, columns: Columns) -> None:
         one |= {"abscissa_axis_units_lab": "s", "ordinate_axis_units_lab": unit}
         one |= {"abscissa_axis_lab": "Time", "ordinate_axis_lab": stem[:LABEL_LETTERS]}
         stream.write_sets(one, "overwrite" if number == 1 else "add")
+
+
+def _pyuff() -> ModuleType:
+    with extra("files", "a universal file"):
+        import pyuff
+    return pyuff
 
 
 def _blank(key: str) -> str | int:
@@ -69,6 +74,13 @@ WRITERS: dict[str, Callable[[Path, Columns], None]] = {
 }
 # What a command that names its files itself can be asked for.
 FORMATS = ("csv", "mat", "uff")
+
+
+def require_writer(suffix: str) -> None:
+    """UsageError where what write_columns needs for files of this suffix (.uff) is not installed:
+    to be called before the work whose results they are to hold."""
+    if WRITERS.get(suffix.lower()) is write_uff:
+        _pyuff()
 
 
 def write_columns(file: Path, columns: Columns, texts: Texts | None = None) -> None:

@@ -14,7 +14,7 @@ from quiesce.base.command import finite_number
 from quiesce.base.errors import EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import results_folder, results_text, shown
 from quiesce.base.searches.names import NAMES as SEARCHES
-from quiesce.cli.file_format import add_format
+from quiesce.cli.file_format import add_format, require_format
 from quiesce.cli.identify import compare, example, export, inverse, online
 from quiesce.cli.identify import plan as cli_plan
 from quiesce.cli.identify.data_options import add_data_options
@@ -222,6 +222,7 @@ def run(args: argparse.Namespace) -> int:
         print_models()
         return 0
     check_numbers(args)
+    require_format(args)
     names, choice = names_of(args.model), choice_of(args)
     data = records_of(args)
     for text in data.suspect:  # before minutes of fitting

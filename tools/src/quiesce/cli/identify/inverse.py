@@ -139,9 +139,10 @@ def check(args: argparse.Namespace, damper: Any, simulate: Any, most_A: float) -
 
 
 def stated_current(damper: Any) -> float:
-    limits = [damper.valid.get(key) for key in ("max_current_A", "current_A")]
-    for limit in limits:
-        values = limit if isinstance(limit, list) else [limit]
-        if all(isinstance(value, int | float) for value in values) and values and max(values) > 0.0:
-            return float(max(values))
-    raise UsageError(f"{damper.name}: the file states no largest current; --max-current-A A does")
+    from quiesce.damper.command_range import largest_command
+
+    if (most_A := largest_command(damper)) is None:
+        raise UsageError(
+            f"{damper.name}: the file states no largest current; --max-current-A A does"
+        )
+    return most_A

@@ -10,7 +10,7 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import real_number
 from quiesce.base.paths import shown
 from quiesce.base.table import format_table
-from quiesce.cli.file_format import add_format
+from quiesce.cli.file_format import add_format, require_format
 from quiesce.cli.identify.help import fill
 from quiesce.cli.terminal import show
 from quiesce.damper import sines_and_chirps
@@ -73,6 +73,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    require_format(args)
     damper = damper_of(args)
     plan = make_plan(damper) if args.protocol == "full" else sines_and_chirps.make_plan(damper)
     if args.out:

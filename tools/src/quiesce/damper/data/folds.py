@@ -21,6 +21,13 @@ STANDS_FOR = {
     AMPLITUDE: "another amplitude",
     QUARTERS: "other rows of the same tests",
 }
+# What each kind leaves out, in words.
+LEAVES_OUT = {
+    CURRENT: "whole currents",
+    MOTION: "whole motions",
+    AMPLITUDE: "whole amplitudes",
+    QUARTERS: "quarters of every test",
+}
 # Folds of a kind at most: usually, and with --effort quick.
 MOST, MOST_QUICK = 3, 2
 # Amplitudes or frequencies this close (ratio less one) are the same.

@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from quiesce.damper.command_range import command_kind, command_unit
 from quiesce.damper.export.c_names import (
     CSource,
     comment,
     core_name,
     facts,
     filled,
+    in_unit,
     literal,
     literals,
     rig_values,
@@ -36,7 +38,7 @@ enum { RUNS = $RUNS, SAMPLES = $SAMPLES };
 
 /* Time between two samples of each run. */
 static const double dt_s[RUNS] = {$STEPS};
-/* Displacement (m), velocity (m/s), acceleration (m/s2), command (A), expected force (N). */
+/* Displacement (m), velocity (m/s), acceleration (m/s2), command ($UNIT), expected force (N). */
 static const double rows[RUNS][SAMPLES][5] = {
 $ROWS
 };
@@ -99,7 +101,7 @@ libm and nothing else. No heap, no globals: the caller owns the state.
 #include "$NAME.h"
 
 $NAME_state state;
-$NAME_reset(&state);
+$NAME_reset(&state); /* the first step takes its command as the coil's $KIND at once */
 /* every dt_s: */
 double force_N = $NAME_step(&state, x_m, v_m_s, a_m_s2, command_A, dt_s);
 ```
@@ -131,15 +133,17 @@ def c_folder(name: str, damper: DamperModel, with_rig: bool = False) -> dict[str
         "$FACTS": "\n".join(f"- {line}" for line in facts(damper, title, with_rig)),
         "$CLOSENESS": "equal to the last bit" if damper.is_kernel else "a few last bits",
         "$SOURCE": source_of(damper),
+        "$KIND": command_kind(damper),
+        "$UNIT": command_unit(damper),
         "$NAME": name,
     }
     return {
-        f"{name}.h": source.header,
-        f"{name}.c": source.source,
+        f"{name}.h": in_unit(source.header, damper),
+        f"{name}.c": in_unit(source.source, damper),
         **({core_name(name): source.core} if source.core else {}),
         "main.c": filled(MAIN, fields),
         "CMakeLists.txt": filled(CMAKE, fields),
-        "README.md": filled(README, fields),
+        "README.md": in_unit(filled(README, fields), damper),
     }
 
 

@@ -21,8 +21,8 @@ static const double skew_s = $SKEW;
 static const double offset_N = $OFFSET;
 static const double drift_N_s = $DRIFT;
 
-/* Displacement in m, its derivatives, and a current in A: of the coil in what the model sees, the
- * command in what the caller says. */
+/* Displacement in m, its derivatives, and the command: after the coil's lag in what the model sees,
+ * as it is asked for in what the caller says. */
 typedef struct {
     double x;
     double v;

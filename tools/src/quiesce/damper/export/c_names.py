@@ -5,9 +5,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from quiesce.base.errors import UsageError
+from quiesce.damper.command_range import command_kind, command_unit
 from quiesce.damper.library import RIG, models
 from quiesce.damper.model_file import DamperModel
 
+# Files of a folder, headers of C, and what CMake, its generators and linkers mean by a target.
+_TAKEN = frozenset(
+    "main m all all_build zero_check test run_tests help clean depend install package "
+    "package_source preinstall edit_cache rebuild_cache list_install_components "
+    "assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal "
+    "stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath "
+    "threads time uchar wchar wctype".split()
+)
 _KEYWORDS = frozenset(
     "auto break case char const continue default do double else enum extern float for goto if "
     "inline int long register restrict return short signed sizeof static struct switch typedef "
@@ -33,7 +42,19 @@ def c_name(stem: str) -> str:
             f"--out: '{stem}' becomes the prefix of C functions; begin it with a letter and use "
             "letters, digits and single underscores"
         )
+    if name.lower() in _TAKEN:  # some file systems do not tell Main from main
+        raise UsageError(
+            f"--out: '{stem}' has a meaning of its own to C or CMake; name it otherwise"
+        )
     return name
+
+
+def in_unit(text: str, damper: DamperModel) -> str:
+    """C that is written for a current in A, with the names of the file's own command: command_V
+    and voltage_V of one in V."""
+    if command_unit(damper) == "A":
+        return text
+    return re.sub(r"\b([a-z]+)_A\b", r"\1_V", re.sub(r"\bcurrent_A\b", "voltage_V", text))
 
 
 def core_name(name: str) -> str:
@@ -115,11 +136,12 @@ typedef struct {
     int is_started;
 } $NAME_state;
 
-/* At rest, without current. */
+/* At rest. The first step takes its command as the coil's $KIND at once; what follows lags. */
 void $NAME_reset($NAME_state *state);
 
 /* Force in N. x_m: displacement from mid-stroke, v_m_s and a_m_s2: its derivatives ($ACCEL),
- * command_A: the current that the driver is asked for, dt_s: time since the last call, > 0. */
+ * command_A: the $KIND that the driver is asked for, dt_s: time since the last call, > 0 (of the
+ * first call it does not count). */
 double $NAME_step($NAME_state *state, double x_m, double v_m_s, double a_m_s2, double command_A,
                   double dt_s);
 
@@ -140,6 +162,7 @@ def header_text(
         "$GUARD": name.upper(),
         "$NAME": name,
         "$SLOTS": str(slots),
+        "$KIND": command_kind(damper),
         "$ACCEL": "it needs the acceleration"
         if needs_accel
         else "the acceleration helps to interpolate, 0 will do",

@@ -1,6 +1,6 @@
 """A model of equations as plain C11: what the library's own text computes, written out."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from quiesce.damper.export.c_frame import (
     COIL_IN_HALVES,
@@ -22,7 +22,7 @@ from quiesce.damper.export.laws import Law, field_of, laws_of
 from quiesce.damper.library import models
 from quiesce.damper.model_file import DamperModel
 
-MODEL = """/* Each parameter: coefficients against the effective current, ascending; its range. */
+MODEL = """/* Each parameter: coefficients against the effective command, ascending; its range. */
 enum { PARAMETERS = $COUNT };
 static const double laws[PARAMETERS][3] = {
 $LAWS
@@ -58,8 +58,8 @@ FASTEST = """
 static double fastest_1_s(double current_A) {
     double p[PARAMETERS];
     parameters(current_A, p);
-$NAMES
-$BODY
+$RATE_NAMES
+$RATE_BODY
 }
 """
 
@@ -93,7 +93,8 @@ def model_text(
     states = {f"z{k}": f"z[{k}]" for k in range(len(one.rates))}
     targets = [*(f"rates[{k}] =" for k in range(len(one.rates))), "return"]
     names = names_in(one.nodes, roots)
-    main = {
+    body = taken(names, sources | seen | states, ["p", "m", "z"] + ["rates"] * (not one.rates))
+    fields = {
         "$COUNT": str(len(laws)),
         "$LAWS": "\n".join(
             f"    {{{literals(law.coefficients)}}}, /* {law.name}: {law.text} */" for law in laws
@@ -101,17 +102,18 @@ def model_text(
         "$RANGES": "\n".join(f"    {{{literals((law.low, law.high))}}}," for law in laws),
         "$FUNCTIONS": functions_text(calls),
         "$EFFECTIVE": f"effective(current_A, {literals(field)})" if has_field else "current_A",
+        "$NAMES": body,
+        "$BODY": statements(one.nodes, roots, targets),
     }
-    body = taken(names, sources | seen | states, ["p", "m", "z"] + ["rates"] * (not one.rates))
-    fastest = taken(names_in(one.nodes, [one.fastest_rate_1_s]), sources, [])
-    if "speed" in names_in(one.nodes, [one.fastest_rate_1_s]):
-        fastest += f"\n    const double speed = {literals([speed_m_s])};"
-    head, _, tail = filled(text, main).partition("/* Bound of")
-    head = filled(head, {"$NAMES": body, "$BODY": statements(one.nodes, roots, targets)})
-    if not tail:
-        return head
-    rate = {
-        "$NAMES": fastest.strip("\n"),
-        "$BODY": statements(one.nodes, [one.fastest_rate_1_s], ["return"]),
+    return filled(text, fields | rate_fields(one, sources, speed_m_s))
+
+
+def rate_fields(one: Equations, sources: Mapping[str, str], speed_m_s: float) -> dict[str, str]:
+    names = names_in(one.nodes, [one.fastest_rate_1_s])
+    text = taken(names, sources, [])
+    if "speed" in names:
+        text += f"\n    const double speed = {literals([speed_m_s])};"
+    return {
+        "$RATE_NAMES": text.strip("\n"),
+        "$RATE_BODY": statements(one.nodes, [one.fastest_rate_1_s], ["return"]),
     }
-    return head + filled("/* Bound of" + tail, rate)

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from quiesce.damper.command_range import command_kind, command_unit
 from quiesce.damper.library import RIG, models
 from quiesce.damper.model_file import DamperModel
 
-LAW = "value = c0 + c1 i + c2 i^2; i: effective current in A; cut off at low and high"
+LAW = "value = c0 + c1 i + c2 i^2; i: effective {} in {}; cut off at low and high"
 RIG_UNITS = {
     "rise_s": "s", "fall_s": "s", "inertia_kg": "kg", "skew_s": "s", "offset_N": "N",
     "drift_N_s": "N/s", "field_exponent": "-", "field_saturation": "-", "field_ref_A": "A",
@@ -35,7 +36,7 @@ def mat_bytes(damper: DamperModel) -> bytes:
         "rig": {name: float(damper.rig.get(name, 0.0)) for name in RIG},
         "rig_units": {name: RIG_UNITS.get(name, "") for name in RIG},
         "parameters": parameters_of(damper),
-        "law": LAW if known else "",
+        "law": LAW.format(command_kind(damper), command_unit(damper)) if known else "",
     }
     out = io.BytesIO()
     savemat(out, {"damper": storable(table)}, long_field_names=True, oned_as="row")

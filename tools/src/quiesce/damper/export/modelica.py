@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.errors import UsageError
+from quiesce.damper.command_range import command_kind, command_unit, largest_command
 from quiesce.damper.export.c_names import facts, filled, literal, title_of
 from quiesce.damper.export.graph import (
     Equations,
@@ -19,7 +20,7 @@ from quiesce.damper.export.graph import (
     written,
 )
 from quiesce.damper.export.laws import Law, SPEED_m_s, field_of, laws_of
-from quiesce.damper.export.vectors import largest_current_A
+from quiesce.damper.export.vectors import STATED
 from quiesce.damper.library import models
 from quiesce.damper.model_file import DamperModel
 
@@ -31,10 +32,10 @@ package $NAME "$TITLE"
   // Made by 'quiesce identify export'. SI units; a force > 0 resists a positive velocity.
 $FACTS
 
-  model Force "force of a motion and of the current that the driver is asked for"
+  model Force "force of a motion and of the $KIND that the driver is asked for"
     input Real x "displacement from mid-stroke, m";
     input Real v "velocity, m/s";
-$ACCEL    input Real command "current that the driver is asked for, A";
+$ACCEL    input Real command "$KIND that the driver is asked for, $UNIT";
     output Real force "N";
 $PARAMETERS
 $VARIABLES
@@ -50,7 +51,7 @@ $EQUATIONS
   model Damper "between two flanges; x is 0 where they are s_rel0 apart"
     Flange flange_a;
     Flange flange_b;
-    input Real command "current that the driver is asked for, A";
+    input Real command "$KIND that the driver is asked for, $UNIT";
     parameter Real s_rel0 = 0.0 "distance of the flanges in mid-stroke, m";
     Force law;
     Real v_rel "velocity at which the flanges part, m/s";
@@ -63,20 +64,24 @@ $FLANGE_ACCEL    law.command = command;
     flange_a.f = -law.force;
   end Damper;
 
-  model Example "a sine at half of the speed that the file states, while the current moves"
+  model Example "a sine at half of the speed that the file states, while the command moves"
     parameter Real amplitude = $AMPLITUDE "m";
     parameter Real w = $OMEGA "rad/s";
-    parameter Real current = $CURRENT "half of the largest, A";
+    parameter Real level = $LEVEL "half of the largest command, $UNIT";
     Force law;
     Real force "N";
   equation
     law.x = amplitude * sin(w * time);
     law.v = amplitude * w * cos(w * time);
-$EXAMPLE_ACCEL    law.command = current * (1.0 + sin(0.5 * w * time));
+$EXAMPLE_ACCEL    law.command = level * (1.0 + sin(0.5 * w * time));
     force = law.force;
     annotation(experiment(StopTime = $STOP, Tolerance = 1e-8));
   end Example;
 end $NAME;
+"""
+
+INITIAL = """  initial equation
+    coil = command; // it starts there, without a lag
 """
 
 _CALLS = {
@@ -155,13 +160,15 @@ def modelica_package(name: str, damper: DamperModel) -> str:
         "$VARIABLES": "\n".join(
             f"    {one};" for one in [*variables, *law_variables, *body_variables]
         ),
-        "$INITIAL": "  initial equation\n    coil = command;\n" if lags(damper) else "",
+        "$INITIAL": INITIAL if lags(damper) else "",
         "$EQUATIONS": "\n".join(
             "    " + folded(f"{line};", "    ") for line in [*lines, *law_lines, *body_lines]
         ),
         "$AMPLITUDE": literal(amplitude_m),
         "$OMEGA": literal(omega),
-        "$CURRENT": literal(0.5 * largest_current_A(damper)),
+        "$LEVEL": literal(0.5 * (largest_command(damper) or STATED)),
+        "$KIND": command_kind(damper),
+        "$UNIT": command_unit(damper),
         "$STOP": literal(4.0 * np.pi / omega),
         "$NAME": name,
     }
@@ -181,7 +188,8 @@ def parameters(damper: DamperModel, laws: Sequence[Law]) -> list[str]:
             value = float(np.clip(law.coefficients[0], law.low, law.high))
             lines.append(f'parameter Real {law.name} = {literal(value)} "{text}";')
             continue
-        powers = ("", " a A", " a A2")
+        unit = command_unit(damper)
+        powers = ("", f" a {unit}", f" a {unit}2")
         lines += [
             f'parameter Real {law.name}_{k} = {literal(value)} "{text}{power}";'
             for k, (value, power) in enumerate(zip(law.coefficients, powers, strict=True))
@@ -209,7 +217,10 @@ def lags(damper: DamperModel) -> bool:
 
 def coil(damper: DamperModel) -> tuple[list[str], list[str]]:
     """Variables and equations from the command to i, the effective current."""
-    variables = ['Real coil "current of the coil, A"', 'Real i "effective current, A"']
+    kind, unit = command_kind(damper), command_unit(damper)
+    variables = [
+        f'Real coil "{kind} after the coil\'s lag, {unit}"', f'Real i "effective {kind}, {unit}"'
+    ]  # fmt: skip
     lines = []
     if lags(damper):
         lines.append(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quiesce.damper import library
+from quiesce.damper.command_range import command_unit, largest_command
 from quiesce.damper.data.record import Record
 from quiesce.damper.export.laws import SPEED_m_s
 from quiesce.damper.model_file import DamperModel, opened
@@ -13,7 +14,7 @@ from quiesce.damper.simulate import simulator
 SAMPLES = 120  # of each run
 PER_PERIOD = 64
 SLOW_Hz, FAST_Hz = 0.5, 20.0
-STATED_A = 1.0  # where a file states no largest current
+STATED = 1.0  # A or V, where a file states no largest command
 
 
 @dataclass(frozen=True)
@@ -25,23 +26,24 @@ class Run:
 
 
 def runs_of(damper: DamperModel) -> list[Run]:
-    """At half and at full current, and with a current that moves. Half of the speed that the file
+    """At half and at full command, and with a command that moves. Half of the speed that the file
     states, within its stroke."""
-    most_A = largest_current_A(damper)
-    moving = 0.5 * most_A * (1.0 + np.sin(np.arange(SAMPLES) / 9.0))
-    still = [np.full(SAMPLES, level) for level in (0.5 * most_A, most_A)]
+    most = largest_command(damper) or STATED
+    moving = 0.5 * most * (1.0 + np.sin(np.arange(SAMPLES) / 9.0))
+    still = [np.full(SAMPLES, level) for level in (0.5 * most, most)]
     speed_m_s = damper.speed_m_s or SPEED_m_s
     freq_Hz = float(np.clip(speed_m_s / (2.0 * np.pi * 0.5 * damper.stroke_m), SLOW_Hz, FAST_Hz))
-    # As many steps as samples, so that the steps do not depend on where the current is.
+    # As many steps as samples, so that the steps do not depend on where the command is.
     quick_Hz = max(freq_Hz, 1.1 * fastest_1_s(damper, moving) / PER_PERIOD)
-    records = [two_tones(speed_m_s, freq_Hz, command) for command in still]
-    records.append(two_tones(speed_m_s, quick_Hz, moving))
+    unit = command_unit(damper)
+    records = [two_tones(speed_m_s, freq_Hz, command, unit) for command in still]
+    records.append(two_tones(speed_m_s, quick_Hz, moving, unit))
     return [Run(record, bench_force_N(damper, record)) for record in records]
 
 
-def two_tones(speed_m_s: float, freq_Hz: float, command_A: np.ndarray) -> Record:
+def two_tones(speed_m_s: float, freq_Hz: float, command: np.ndarray, unit: str) -> Record:
     rate_Hz = PER_PERIOD * freq_Hz
-    time_s = np.arange(len(command_A)) / rate_Hz
+    time_s = np.arange(len(command)) / rate_Hz
     disp, velocity, accel = (np.zeros(len(time_s)) for _ in range(3))
     for part, times in ((0.35, 1.0), (0.1, 2.7)):
         w = 2.0 * np.pi * freq_Hz * times
@@ -49,13 +51,7 @@ def two_tones(speed_m_s: float, freq_Hz: float, command_A: np.ndarray) -> Record
         velocity += part * speed_m_s * np.cos(w * time_s)
         accel -= part * speed_m_s * w * np.sin(w * time_s)
     zero = np.zeros(len(time_s))
-    return Record("vectors", rate_Hz, time_s, disp, velocity, accel, zero, command_A, "A")
-
-
-def largest_current_A(damper: DamperModel) -> float:
-    limits = [damper.valid.get(key) for key in ("max_current_A", "current_A")]
-    numbers = [float(one) for limit in limits for one in np.ravel(limit) if limit is not None]
-    return max([one for one in numbers if one > 0.0], default=STATED_A)
+    return Record("vectors", rate_Hz, time_s, disp, velocity, accel, zero, command, unit)
 
 
 def fastest_1_s(damper: DamperModel, command_A: np.ndarray) -> float:

@@ -39,7 +39,8 @@ class LearnedDamper:
     parameters: Mapping[str, Any]
     parameter_count: int
     notes: Sequence[str] = field(default=())  # what was done, in plain sentences
-    # Settings that a refit to a part of the same rows may take over: what a search found.
+    # Settings that a refit to a part of the same rows takes over. What a search found has seen the
+    # rows that validate the refit: only where a search of its own costs too much, and docs say so.
     settled: Mapping[str, Any] = field(default_factory=dict)
 
     def to_toml(self) -> dict[str, Any]:

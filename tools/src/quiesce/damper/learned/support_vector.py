@@ -84,5 +84,4 @@ def train(
             f"{machine.dual_coef_.size} support vectors of {len(u)} rows; penalty {penalty:g} and "
             f"gamma {gamma:g} by validation",
         ),
-        settled={"penalties": (penalty,), "gammas": (gamma,)},
     )

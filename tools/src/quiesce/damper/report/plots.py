@@ -59,7 +59,7 @@ def plot_time(runs: Sequence[Run], band: Band | None = None) -> str:
         if band is not None and np.isfinite(band.part):
             half_N = band.half_width_N(levels_along(run.segment, run.model_N))[part]
             model_N = run.model_N[part]
-            shade = {"color": COLORS["shade"], "lw": 0.0, "label": "95 % of new rows"}
+            shade = {"color": COLORS["shade"], "lw": 0.0, "label": "95 % of the rows left out"}
             axis.fill_between(time_s, model_N - half_N, model_N + half_N, **shade)
         axis.plot(time_s, run.measured_N[part], color=COLORS["muted"], lw=2.0, label="measured")
         axis.plot(time_s, run.model_N[part], color=COLORS["main"], lw=0.9, label="model")

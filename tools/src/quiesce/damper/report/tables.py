@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from quiesce.base.table import format_table
-from quiesce.damper.data.folds import AMPLITUDE, CURRENT, MOTION, QUARTERS, STANDS_FOR
+from quiesce.damper.data.folds import AMPLITUDE, CURRENT, LEAVES_OUT, MOTION, QUARTERS, STANDS_FOR
 from quiesce.damper.data.split import Segment, levels_of
 from quiesce.damper.fit.intervals import Interval, Whiteness
 from quiesce.damper.fitted import BLACK_BOX, PARAMETRIC, Fitted
@@ -112,13 +112,15 @@ def validation_lines(fitted: Sequence[Fitted]) -> list[str]:
 
 
 def band_lines(fitted: Sequence[Fitted]) -> list[str]:
-    """The first model's band in words."""
+    """The first model's band in words, and which folds it came from."""
     first = ranked(fitted)[0]
     if first.band is None or not math.isfinite(first.band.part):
         return []
     high_N = first.band.scale_N
     widths = first.band.half_width_N(np.array([0.1 * high_N, high_N]))
-    line = f"95 % of the rows that {first.name} had not seen lie within {widths[1]:.3g} N of it"
+    without = " and ".join(LEAVES_OUT[kind] for kind in first.band.kinds)
+    line = f"95 % of the rows that refits of {first.name} left out ({without}) lie within "
+    line += f"{widths[1]:.3g} N of them"
     if widths[0] < _FLAT_BAND * widths[1]:
         line += (
             f" where the force reaches {high_N:.3g} N, within {widths[0]:.3g} N where it reaches "
