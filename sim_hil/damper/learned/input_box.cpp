@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input_box_core.h"
+
 namespace quiesce {
 
 namespace {
@@ -57,17 +59,10 @@ Inputs InputBox::clamped(const DamperInput &input) const {
     return out;
 }
 
-double InputBox::scaled(std::size_t k, double value) const {
-    const InputRange &range = ranges_[k];
-    const double part =
-        (std::clamp(value, range.min, range.max) - range.min) / (range.max - range.min);
-    return 2.0 * part - 1.0;
-}
-
 Inputs InputBox::scaled(const DamperInput &input) const {
     Inputs out = picked(input);
     for (std::size_t k = 0; k < count(); ++k) {
-        out[k] = scaled(k, out[k]);
+        out[k] = quiesce_scaled(out[k], ranges_[k].min, ranges_[k].max);
     }
     return out;
 }

@@ -37,7 +37,6 @@ class InputBox {
     /// Cut off at their ranges; in SI units, or from -1 at min to 1 at max.
     Inputs clamped(const DamperInput &input) const;
     Inputs scaled(const DamperInput &input) const;
-    double scaled(std::size_t k, double value) const;
 
     /// Middle and ends of a kind's range, or `fallback` three times where the model lacks it.
     std::array<double, 3> spread(InputKind kind, double fallback) const;

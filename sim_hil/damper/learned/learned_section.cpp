@@ -68,8 +68,8 @@ void refuse_temperature(TomlTable &keys) {
     }
 }
 
-QuadratureParams read_quadrature(TomlTable keys) {
-    QuadratureParams params{};
+quiesce_quadrature read_quadrature(TomlTable keys) {
+    quiesce_quadrature params{};
     params.window_s = keys.number("window_s", {1e-6, 1e6, "s"});
     params.envelope_m = keys.number("envelope_m", {1e-9, 100.0, "m"});
     params.lowest_rad_s = keys.number("lowest_rad_s", {1e-9, 1e6, "rad/s"});

@@ -15,7 +15,7 @@
 
 #include "input_box.h"
 #include "network.h"
-#include "quadrature.h"
+#include "sampled_network_core.h"
 
 namespace quiesce {
 
@@ -25,7 +25,7 @@ struct SampledNetworkParams {
     double force_scale_N;      ///< > 0
     std::vector<int> lags;     ///< of the inputs, in samples, at least one, rising from >= 0
     std::vector<int> feedback; ///< of the force, rising from >= 1; may be empty
-    std::optional<QuadratureParams> quadrature = std::nullopt;
+    std::optional<quiesce_quadrature> quadrature = std::nullopt;
 };
 
 class SampledNetwork final : public Damper {

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyuff
+from quiesce.base.paths import shown
 from quiesce.cli.main import main
 from quiesce.damper import library
 from quiesce.damper.data.record import Record
@@ -90,6 +91,25 @@ def test_fitted_forces_go_to_other_programs(
     report = json.loads((tmp_path / "report.json").read_text())
     error = float(np.linalg.norm(measured - modelled) / np.linalg.norm(measured))
     assert error == pytest.approx(report["models"][0]["test"]["error"], rel=1e-3)
+
+
+@pytest.mark.slow
+def test_files_of_an_earlier_run_do_not_stay(
+    example: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """anfis is not passive by construction, nor in trials; what the user has put there stays."""
+    words = arguments(example, tmp_path, "--model", "bingham", "--format", "mat", "--json")
+    assert main(words) == 0
+    written = json.loads(capsys.readouterr().out)["written"]
+    assert [Path(one).name for one in written[-2:]] == ["damper.toml", "01_train_rig.csv.mat"]
+    assert all((tmp_path / Path(one).relative_to(shown(tmp_path))).exists() for one in written)
+    (tmp_path / "runs/mine.mat").write_text("mine")
+    assert main(arguments(example, tmp_path, "--model", "anfis", "--json")) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert "passive" not in found["winners"]
+    assert [Path(one).name for one in found["written"]] == ["report.html", "report.json", "models"]
+    assert not (tmp_path / "damper.toml").exists()
+    assert [one.name for one in (tmp_path / "runs").iterdir()] == ["mine.mat"]
 
 
 @pytest.mark.slow

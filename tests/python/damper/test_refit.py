@@ -29,8 +29,8 @@ def rig_tests(currents_A=(0.0, 0.5, 1.0)) -> list[Segment]:
 
 
 def fitted(rows: list[Segment]):
-    fit = RigFit(KWOK, rows, PLAN, [], 1e6, lambda *_: None)
-    return fit.fitted(setting_of(KWOK, rows, PLAN.choice), [])
+    fit = RigFit(KWOK, rows, PLAN, None, 1e6, lambda *_: None)
+    return fit.fitted(setting_of(KWOK, rows, PLAN.choice))
 
 
 def test_refit_is_as_good_as_a_fit_from_scratch() -> None:
@@ -42,6 +42,19 @@ def test_refit_is_as_good_as_a_fit_from_scratch() -> None:
         assert again.error <= 1.02 * fitted(fold.fit)[1].error, fold.left_out
         levels = 2 if fold.kind == CURRENT else 3
         assert problem.setting.nodes_A == pytest.approx(np.linspace(0.0, 1.0, levels))
+
+
+def test_a_fit_that_goes_on_from_a_refit_counts_what_that_took() -> None:
+    """The fit to everything is spoilt, so that the refit's values lead to a better one."""
+    segments = rig_tests()
+    problem, found = fitted(segments)
+    middle = problem.values_from(np.full((1, len(problem.nonlinear)), 0.5))
+    start, errors = problem.project(middle)
+    spoilt = replace(found, values=start[0], error=float(errors[0]))
+    fit = RigFit(KWOK, segments, PLAN, None, 1e6, lambda *_: None)
+    again = fit.gone_on_from([(problem, found)], (problem, spoilt))
+    assert again.error < spoilt.error
+    assert again.evaluations == problem.evaluations > found.evaluations
 
 
 def test_refit_that_has_no_time_is_marked_and_no_worse_than_its_start() -> None:

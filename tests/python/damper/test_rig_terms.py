@@ -49,7 +49,7 @@ def fitted(
 ) -> tuple[dict[str, float], list[str]]:
     candidate = parametric_candidates()[name]
     plan = Plan([name], choice, quick=True, stop=threading.Event())
-    fit = RigFit(candidate, [segment], plan, [], 300.0, lambda *_: None)
+    fit = RigFit(candidate, [segment], plan, None, 300.0, lambda *_: None)
     problem, found, notes = fit.with_rig(setting_of(candidate, [segment], choice))
     names = [one.name for one in problem.variables]
     return dict(zip(names, map(float, found.values), strict=True)), notes

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -16,7 +17,6 @@
 #include "periodic_orbit.h"
 #include "plant.h"
 #include "plant_file.h"
-#include "quadrature.h"
 #include "sampled_network.h"
 #include "sine_segment.h"
 #include "static_network.h"
@@ -287,15 +287,24 @@ TEST(SampledNetwork, its_force_is_fed_back_and_held_between_samples) {
     }
 }
 
+using QuadratureFeatures = std::array<double, quiesce_quadrature_features>;
+
+QuadratureFeatures quadrature_features(const quiesce_quadrature &params, double position_m,
+                                       double velocity_m_s, const double *means) {
+    QuadratureFeatures out{};
+    quiesce_quadrature_write(&params, position_m, velocity_m_s, means, out.data());
+    return out;
+}
+
 TEST(Quadrature, tells_envelope_frequency_and_phase_of_a_sine) {
-    const quiesce::QuadratureParams params{0.2, 0.004, 20.0, 500.0};
+    const quiesce_quadrature params{0.2, 0.004, 20.0, 500.0};
     const SampledMotion motion;
     const double omega = kTwoPi * 20.0;
     double means[quiesce_quadrature_states] = {};
     for (std::size_t k = 0; k < motion.disp_m.size(); ++k) {
-        quiesce::update_quadrature(params, motion.disp_m[k], motion.velocity_m_s[k], 0.001, means);
+        quiesce_quadrature_update(&params, motion.disp_m[k], motion.velocity_m_s[k], 0.001, means);
         if (k % 50 == 0 && k > 0) { // whole cycles: the means' ratio is that of a sine
-            const quiesce::QuadratureFeatures found = quiesce::quadrature_features(
+            const QuadratureFeatures found = quadrature_features(
                 params, motion.disp_m[k], motion.velocity_m_s[k], means);
             EXPECT_NEAR(found[0], 2.0 * 0.003 / 0.004 - 1.0, 0.1);
             EXPECT_NEAR(found[1], 2.0 * (omega - 20.0) / 480.0 - 1.0, 0.1);
@@ -306,17 +315,17 @@ TEST(Quadrature, tells_envelope_frequency_and_phase_of_a_sine) {
 }
 
 TEST(Quadrature, rest_has_no_phase_and_extremes_are_cut_off) {
-    const quiesce::QuadratureParams params{0.2, 0.004, 20.0, 500.0};
+    const quiesce_quadrature params{0.2, 0.004, 20.0, 500.0};
     double means[quiesce_quadrature_states] = {};
-    for (const double feature : quiesce::quadrature_features(params, 0.0, 0.0, means)) {
+    for (const double feature : quadrature_features(params, 0.0, 0.0, means)) {
         EXPECT_EQ(feature, 0.0);
     }
-    quiesce::update_quadrature(params, 0.0, 1e6, 0.001, means);
-    const quiesce::QuadratureFeatures fast = quiesce::quadrature_features(params, 0.0, 1e6, means);
+    quiesce_quadrature_update(&params, 0.0, 1e6, 0.001, means);
+    const QuadratureFeatures fast = quadrature_features(params, 0.0, 1e6, means);
     EXPECT_DOUBLE_EQ(fast[0], 1.0);
     EXPECT_DOUBLE_EQ(fast[1], 1.0);
     means[1] = 0.0;
-    EXPECT_DOUBLE_EQ(quiesce::quadrature_features(params, 0.1, 0.0, means)[1], -1.0);
+    EXPECT_DOUBLE_EQ(quadrature_features(params, 0.1, 0.0, means)[1], -1.0);
 }
 
 quiesce::PlantModel plant_with(std::shared_ptr<const Damper> damper) {

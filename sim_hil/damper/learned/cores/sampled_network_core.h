@@ -1,5 +1,5 @@
 /* A network over delayed copies of what the damper sees and, where it is recurrent, over its own
- * earlier forces (sampled_network.h); with a quadrature, over that, too (quadrature.h). */
+ * earlier forces (sampled_network.h); with a quadrature, over that, too. */
 #ifndef QUIESCE_SAMPLED_NETWORK_CORE_H
 #define QUIESCE_SAMPLED_NETWORK_CORE_H
 
@@ -20,6 +20,17 @@ enum {
     quiesce_quadrature_features = 4
 };
 
+/* Envelope, instantaneous frequency and phase of a displacement, from its past only.
+ *
+ * The published features are those of the analytic signal x + j H[x], whose Hilbert transform H
+ * needs the whole record, the future included. In place of H[x] stands what it is for a swing of
+ * one frequency, -v / w, with w from running means over a window:
+ *
+ *   w = sqrt(mean(v^2) / mean(x^2)),  d = sqrt(x^2 + (v/w)^2),  x = d cos p,  -v/w = d sin p
+ *
+ * Both means start at 0 and share their window, so that their ratio holds from the first sample.
+ * The phase is a pair, cos p and sin p: p itself jumps. Source: review of MR damper models, eq 34.
+ * All > 0; w is cut off at lowest_rad_s and at highest_rad_s, which is more. */
 struct quiesce_quadrature {
     double window_s;
     double envelope_m; /* below a thousandth of it is rest, which has neither frequency nor phase */

@@ -56,7 +56,7 @@ def fit_model(name: str, segments: Sequence[Segment], seed: int) -> Simulate:
     if name == NETWORK:
         smaller = parametric_candidates()["viscoplastic_1"]
         first = Problem(setting_of(smaller, segments, Choice()), segments)
-        found = grown_fit(problem, seed, [(first, grown_fit(first, seed, []))])
+        found = grown_fit(problem, seed, (first, grown_fit(first, seed, None)))
     else:
         found = fit_small(problem, seed)
     return simulate_values(problem, found.values)

@@ -57,7 +57,7 @@ def fit_candidate(
     start_s = monotonic()
     progress = saying(candidate.name, say)
     setting = setting_of(candidate, parts.train, plan.choice)
-    fit = RigFit(candidate, parts.train, plan, [smaller], _WHOLE_PART * plan.seconds, progress)
+    fit = RigFit(candidate, parts.train, plan, smaller, _WHOLE_PART * plan.seconds, progress)
     problem, found, notes = fit.with_rig(setting)
     refits = []
     for k, fold in enumerate(parts.folds):
@@ -130,12 +130,12 @@ def weigh_of(rows: Sequence[Segment]) -> str:
 @dataclass
 class RigFit:
     """One candidate against one set of rows, first without the terms of the rig that have to earn
-    their place. known: fits to start from, of the smaller model and of other rows."""
+    their place. smaller: a fit to start from, of the model that this one grows from."""
 
     candidate: Candidate
     rows: Sequence[Segment]
     plan: Plan
-    known: Sequence[tuple[Problem, Fit] | None]
+    smaller: tuple[Problem, Fit] | None
     seconds: float
     progress: Progress
 
@@ -146,9 +146,9 @@ class RigFit:
         """The fit, and notes on terms that the data ask for and that are left out."""
         choice = self.plan.choice
         if choice.rig is not None or choice.method != "default":
-            return *self.fitted(setting, self.known), []
+            return *self.fitted(setting), []
         doubtful = doubtful_terms(setting)
-        bare = self.fitted(without(setting, doubtful), self.known)
+        bare = self.fitted(without(setting, doubtful))
         terms = told_terms(doubtful, self.rows)
         if not terms or not bare[1].is_complete:
             return *bare, []
@@ -205,15 +205,13 @@ class RigFit:
         values, error = polish(problem, starts[best], most, is_over)
         if not error < found.error:
             return found
-        return replace(found, values=values, error=error)
+        return replace(found, values=values, error=error, evaluations=problem.evaluations)
 
-    def fitted(
-        self, setting: Setting, known: Sequence[tuple[Problem, Fit] | None]
-    ) -> tuple[Problem, Fit]:
+    def fitted(self, setting: Setting) -> tuple[Problem, Fit]:
         problem = self.problem_of(setting)
         left_s = self.seconds - (monotonic() - self.start_s)
         return problem, fit_problem(
-            self.candidate, problem, self.plan, known, left_s, self.progress
+            self.candidate, problem, self.plan, self.smaller, left_s, self.progress
         )
 
     def problem_of(self, setting: Setting) -> Problem:
@@ -227,7 +225,7 @@ def fit_problem(
     candidate: Candidate,
     problem: Problem,
     plan: Plan,
-    known: Sequence[tuple[Problem, Fit] | None],
+    smaller: tuple[Problem, Fit] | None,
     left_s: float,
     progress: Progress,
 ) -> Fit:
@@ -235,10 +233,9 @@ def fit_problem(
     if plan.choice.method != "default":
         return paper_method(plan.choice.method)(problem, plan.seed, effort, progress)
     if candidate.model.startswith(NETWORK):
-        return grown_fit(problem, plan.seed, known, effort, progress)
+        return grown_fit(problem, plan.seed, smaller, effort, progress)
     start = np.zeros((1, len(problem.variables)))
-    starts = [grow(problem, start, *one) for one in known if one is not None]
-    values = np.concatenate(starts) if starts else None
+    values = None if smaller is None else grow(problem, start, *smaller)
     return fit_small(problem, plan.seed, effort, progress, values)
 
 

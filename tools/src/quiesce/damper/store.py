@@ -89,10 +89,13 @@ class Store:
             (staging / f"{one.name}.{STATE}").write_text(text + "\n", encoding="utf-8")
 
     def keep_best(self, models: Sequence[Fitted]) -> bool:
-        """DIR/damper.toml becomes the best passive one of these, where there is any."""
+        """DIR/damper.toml becomes the best passive one of these; where there is none, there is no
+        such file, of an earlier run neither."""
         passive = best(models).get("passive")
         if passive is not None:
             write_model(self.out / BEST, passive.damper)
+        else:
+            (self.out / BEST).unlink(missing_ok=True)
         return passive is not None
 
     def finished(

@@ -84,7 +84,7 @@ def fitted(name: str, segment: Segment, seed: int) -> dict[str, float]:
     """By variable, terms of the rig that were taken in among them."""
     candidate, choice = parametric_candidates()[name], Choice()
     plan = Plan([name], choice, seed, quick=True)
-    fit = RigFit(candidate, [segment], plan, [], 1e6, lambda *_: None)
+    fit = RigFit(candidate, [segment], plan, None, 1e6, lambda *_: None)
     problem, found, _ = fit.with_rig(setting_of(candidate, [segment], choice))
     names = [one.name for one in problem.variables]
     return dict(zip(names, map(float, found.values), strict=True))

@@ -21,6 +21,7 @@ from quiesce.cli.identify.data_options import add_data_options
 from quiesce.cli.terminal import show
 
 NAME = "identify"
+RUNS = "runs"  # folder of the forces of each test
 # Each has NAME, HELP, add_options(parser) and run(args).
 ACTIONS: tuple[ModuleType, ...] = (cli_plan, example, compare, online, inverse, export)
 
@@ -36,7 +37,7 @@ examples:
   quiesce identify rig.csv --fix n=2 --bound 'rho_1_m=1000:5000' --model normalised_bouc_wen
 
 Writes report.html, report.json and models/NAME.toml for every model; plants read such a file
-([damper] file = "..."), so do 'tune' and the actions above. damper.toml is the best passive one.
+([damper] file = "..."), so do 'tune' and the actions above. damper.toml is the best passive one of the run.
 --model takes names, 'quick' (static models and small networks), 'parametric', or 'all'.
 Models are printed and written as they come, damper.toml with each that is better.
 Errors are ||F - F_model|| / ||F|| with the model running free; the ranking goes by validation
@@ -252,8 +253,18 @@ def by_least_squares(train: Any, test: Any, plan: Any, store: Any) -> Any:
     from quiesce.damper.closed_form import closed_form
 
     fitted = closed_form(train, test, plan)
+    start_folder(store, [])
     store.keep(fitted)
     return fitted
+
+
+def start_folder(store: Any, done: Sequence[Any]) -> None:
+    """damper.toml and runs/ of an earlier run go, but for what `done` makes of them."""
+    from quiesce.damper.report.run_files import clear_runs
+
+    store.keep_best(done)
+    if not done:
+        clear_runs(store.out / RUNS)
 
 
 def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> list[Any]:
@@ -264,6 +275,7 @@ def fit_all(train: Any, test: Any, plan: Any, done: Any, store: Any) -> list[Any
     from quiesce.damper.identify import identify
     from quiesce.damper.ranking import ranked
 
+    start_folder(store, done)
     progress = Progress(len(plan.names) - len(done))
     results: list[Any] = []
     failure: list[BaseException] = []
@@ -337,14 +349,15 @@ def report(
     where = sentences(runs) if all(run.is_finite for run in runs) else []
     context = {"title": args.files[0].stem, "command": "quiesce " + " ".join(sys.argv[1:])}
     write_report(store.out, fitted, train, test, notes, context)
-    files = write_runs(store.out / "runs", fitted, train, test, args.format) if args.format else []
-    has_passive = store.keep_best(fitted)
+    files = write_runs(store.out / RUNS, fitted, train, test, args.format) if args.format else []
+    names = ["report.html", "report.json", "models/"]
+    names += [BEST] if store.keep_best(fitted) else []
+    names += [f"{RUNS}/{name}" for name in files]
+    written = [shown(store.out / name) for name in names]
     if args.json:
-        print(json.dumps(json_report(fitted, train, test, notes, context, white, where)))
+        found = json_report(fitted, train, test, notes, context, white, where)
+        print(json.dumps({**found, "written": written}))
     else:
         show(text_report(fitted, train, test, notes, white, where))
-        written = ["report.html", "report.json", "models/"]
-        written += [BEST] if has_passive else []
-        written += [f"runs/{name}" for name in files]
-        print(f"\nwritten    {', '.join(shown(store.out / name) for name in written)}")
+        print(f"\nwritten    {', '.join(written)}")
     return 0

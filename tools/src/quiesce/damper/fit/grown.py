@@ -1,7 +1,5 @@
 """Fits of models that grow: a network starts from the fit of the one with an element less."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from quiesce.damper.fit.problem import SEARCH_SUBSTEPS, Problem
@@ -15,17 +13,16 @@ EFFORT = Effort(polished=6, polish_evaluations=40)
 def grown_fit(
     problem: Problem,
     seed: int,
-    known: Sequence[tuple[Problem, Fit] | None],
+    smaller: tuple[Problem, Fit] | None,
     effort: Effort = EFFORT,
     progress: Progress | None = None,
 ) -> Fit:
-    """Least squares from the best of many random points; a part of them have, for each of the fits
-    that are known (of the smaller model, of other rows), its values for variables of the same name.
-    The best end is polished on."""
+    """Least squares from the best of many random points; half of them have, where there is a fit of
+    the smaller model, its values for variables of the same name. The best end is polished on."""
     clock = Clock(problem, effort, progress)
     errors: list[float] = []
     try:
-        values = starts(problem, seed, known, effort.polished)
+        values = starts(problem, seed, smaller, effort.polished)
         errors = polish_all(problem, values, effort, clock)
         if clock.best is not None and not clock.is_over():
             errors = errors[1:] + polish_all(problem, clock.best[None, :], effort, clock)
@@ -35,16 +32,15 @@ def grown_fit(
 
 
 def starts(
-    problem: Problem, seed: int, known: Sequence[tuple[Problem, Fit] | None], count: int
+    problem: Problem, seed: int, smaller: tuple[Problem, Fit] | None, count: int
 ) -> np.ndarray:
-    """The best of random points, [count, variables]; those that grew from one fit compete among
-    themselves."""
+    """The best of random points, [count, variables]; those that grew compete among themselves."""
     rng = np.random.default_rng(seed)
     values = problem.values_from(sobol(len(problem.nonlinear), _LOOKS * count, rng))
-    usable = [one for one in known if one is not None]
-    groups = np.array_split(values, len(usable) + 1)
-    for k, (before, fit) in enumerate(usable):
-        groups[k] = grow(problem, groups[k], before, fit)
+    groups = [values]
+    if smaller is not None:
+        grown, fresh = np.array_split(values, 2)
+        groups = [grow(problem, grown, *smaller), fresh]
     chosen = []
     for k, group in enumerate(groups):
         projected, errors = problem.project(group, SEARCH_SUBSTEPS)

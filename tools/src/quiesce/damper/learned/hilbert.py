@@ -3,8 +3,9 @@ velocity and current, all of them now and a few samples ago.
 
 Source: review of MR damper models, eq 34. Published, the three are those of the analytic signal,
 whose Hilbert transform needs the whole record, the future included (`published`). A damper file and
-a plant have the causal form only (`Quadrature.features`, sim_hil/damper/learned/quadrature.h). The
-phase p is given as cos p and sin p: p itself jumps.
+a plant have the causal form only (`Quadrature.features`; quiesce_quadrature in
+sim_hil/damper/learned/cores/sampled_network_core.h). The phase p is given as cos p and sin p: p
+itself jumps.
 """
 
 from collections.abc import Callable, Sequence

@@ -10,8 +10,9 @@ from quiesce.damper.fitted import Fitted
 from quiesce.damper.report.runs import Run, runs_of
 from quiesce.damper.report.tables import winners
 from quiesce.damper.simulate import simulator
-from quiesce.recording.write import Columns, write_columns
+from quiesce.recording.write import FORMATS, Columns, write_columns
 
+_WRITTEN = re.compile(rf"\d\d+_(train|test)_.*\.({'|'.join(FORMATS)})")
 COMMANDS = {"A": "current_A", "V": "voltage_V"}
 
 
@@ -23,7 +24,7 @@ def write_runs(
     ending: str,
 ) -> list[str]:
     """A file a test, 01_train_NAME.ENDING: motion, command, force_N as measured, and MODEL_force_N
-    of every winner. Their names."""
+    of every winner. Their names. What an earlier run wrote there goes."""
     models = list({id(one): one for one in winners(fitted).values()}.values())
     runs = [runs_of(simulator(one.damper), train, test) for one in models]
     names = []
@@ -31,7 +32,19 @@ def write_runs(
         for number, of_test in enumerate(zip(*runs, strict=True), 1):
             names.append(f"{number:02d}_{stem_of(of_test[0])}.{ending}")
             write_columns(staging / names[-1], columns_of(models, of_test))
+        clear_runs(folder)
     return names
+
+
+def clear_runs(folder: Path) -> None:
+    """Removes what write_runs has written there, and the folder where nothing else is in it."""
+    if not folder.is_dir():
+        return
+    for file in folder.iterdir():
+        if _WRITTEN.fullmatch(file.name) and file.is_file():
+            file.unlink()
+    if not any(folder.iterdir()):
+        folder.rmdir()
 
 
 def stem_of(run: Run) -> str:
