@@ -19,7 +19,18 @@ std::size_t feature_count(const HysteresisNetworkParams &p) {
 }
 
 HysteresisNetwork::HysteresisNetwork(HysteresisNetworkParams params, std::vector<Network> members)
-    : params_(std::move(params)), members_(std::move(members)) {}
+    : params_(std::move(params)), members_(std::move(members)) {
+    for (const Network &member : members_) {
+        layers_.push_back(member.core());
+        widest_ = std::max(widest_, member.widest());
+    }
+    for (const std::vector<quiesce_layer> &layers : layers_) {
+        first_layers_.push_back(layers.data());
+        layer_counts_.push_back(static_cast<int>(layers.size()));
+    }
+    core_ = core();
+    own_states_ = static_cast<std::size_t>(quiesce_hysteresis_states(&core_));
+}
 
 quiesce_hysteresis HysteresisNetwork::core() const {
     const HysteresisNetworkParams &p = params_;
@@ -47,19 +58,14 @@ quiesce_hysteresis HysteresisNetwork::core() const {
             p.skip.data(),
             size(p.means),
             static_cast<int>(members_.front().output_count()),
-            nullptr,
-            nullptr,
+            first_layers_.data(),
+            layer_counts_.data(),
             static_cast<int>(members_.size()),
-            kMostUnits};
-}
-
-std::size_t HysteresisNetwork::own_states() const {
-    const quiesce_hysteresis m = core();
-    return static_cast<std::size_t>(quiesce_hysteresis_states(&m));
+            static_cast<int>(widest_)};
 }
 
 std::size_t HysteresisNetwork::state_count() const {
-    return own_states() + (params_.base ? params_.base->state_count() : 0);
+    return own_states_ + (params_.base ? params_.base->state_count() : 0);
 }
 
 bool HysteresisNetwork::uses_accel() const {
@@ -69,22 +75,11 @@ bool HysteresisNetwork::uses_accel() const {
 /// What the networks add to the base. state: this model's own elements.
 double HysteresisNetwork::added_N(const DamperInput &input, double current_A, double base_N,
                                   const double *state) const {
-    std::vector<std::vector<quiesce_layer>> networks;
-    std::vector<const quiesce_layer *> members;
-    std::vector<int> layer_counts;
-    for (const Network &member : members_) {
-        networks.push_back(member.core());
-        members.push_back(networks.back().data());
-        layer_counts.push_back(static_cast<int>(networks.back().size()));
-    }
-    quiesce_hysteresis m = core();
-    m.members = members.data();
-    m.layer_counts = layer_counts.data();
-    std::vector<double> features(params_.means.size());
+    const std::size_t features = params_.means.size();
+    std::vector<double> room(features + 2 * members_.front().output_count() + 2 * widest_);
     const std::array motion = {input.position_m, input.velocity_m_s, input.accel_m_s2};
-    quiesce_hysteresis_features(&m, motion.data(), base_N, state, features.data());
-    std::vector<double> room(2 * members_.front().output_count() + 2 * kMostUnits);
-    return quiesce_hysteresis_added_N(&m, features.data(), current_A, room.data());
+    quiesce_hysteresis_features(&core_, motion.data(), base_N, state, room.data());
+    return quiesce_hysteresis_added_N(&core_, room.data(), current_A, room.data() + features);
 }
 
 /// 0 without a base. state and rates: those of all elements.
@@ -95,8 +90,8 @@ double HysteresisNetwork::base_N(const DamperInput &input, double current_A, con
     }
     DamperInput seen = input;
     seen.current_A = current_A;
-    return params_.base->force_N(seen, state + own_states(),
-                                 rates == nullptr ? nullptr : rates + own_states());
+    return params_.base->force_N(seen, state + own_states_,
+                                 rates == nullptr ? nullptr : rates + own_states_);
 }
 
 double HysteresisNetwork::force_N(const DamperInput &input, const double *state,
@@ -104,9 +99,8 @@ double HysteresisNetwork::force_N(const DamperInput &input, const double *state,
     // A base with states writes its rates in any case.
     std::vector<double> unused(rates == nullptr ? state_count() : 0);
     double *out = rates == nullptr ? unused.data() : rates;
-    const quiesce_hysteresis m = core();
-    quiesce_hysteresis_rates(&m, input.velocity_m_s, input.current_A, state, out);
-    const double current_A = quiesce_hysteresis_current_A(&m, input.current_A, state);
+    quiesce_hysteresis_rates(&core_, input.velocity_m_s, input.current_A, state, out);
+    const double current_A = quiesce_hysteresis_current_A(&core_, input.current_A, state);
     const double from_base_N = base_N(input, current_A, state, out);
     return from_base_N + added_N(input, current_A, from_base_N, state);
 }

@@ -50,6 +50,9 @@ class HysteresisNetwork final : public Damper {
   public:
     /// members: at least one, each from the features to one output for each power of g, from 0 on.
     HysteresisNetwork(HysteresisNetworkParams params, std::vector<Network> members);
+    /// core_ points into it.
+    HysteresisNetwork(const HysteresisNetwork &) = delete;
+    HysteresisNetwork &operator=(const HysteresisNetwork &) = delete;
 
     std::size_t state_count() const override;
     double force_N(const DamperInput &input, const double *state, double *rates) const override;
@@ -60,8 +63,6 @@ class HysteresisNetwork final : public Damper {
     double lowest_position_m() const override { return -params_.stroke_m; }
 
   private:
-    std::size_t own_states() const;
-    /// Without its members.
     quiesce_hysteresis core() const;
     double added_N(const DamperInput &input, double current_A, double base_N,
                    const double *state) const;
@@ -72,6 +73,12 @@ class HysteresisNetwork final : public Damper {
 
     HysteresisNetworkParams params_;
     std::vector<Network> members_;
+    std::vector<std::vector<quiesce_layer>> layers_; ///< of each member
+    std::vector<const quiesce_layer *> first_layers_;
+    std::vector<int> layer_counts_;
+    std::size_t widest_ = 0; ///< of the members' hidden layers
+    quiesce_hysteresis core_ = {};
+    std::size_t own_states_ = 0;
 };
 
 } // namespace quiesce

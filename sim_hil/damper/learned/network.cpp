@@ -1,5 +1,6 @@
 #include "network.h"
 
+#include <algorithm>
 #include <array>
 
 namespace quiesce {
@@ -11,6 +12,14 @@ std::vector<quiesce_layer> Network::core() const {
                        layer.weights.data(), layer.biases.data()});
     }
     return out;
+}
+
+std::size_t Network::widest() const {
+    std::size_t most = 0;
+    for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
+        most = std::max(most, layers_[k].units);
+    }
+    return most;
 }
 
 void Network::run(const double *in, double *out) const {

@@ -26,6 +26,8 @@ class Network {
 
     std::size_t input_count() const { return layers_.front().inputs; }
     std::size_t output_count() const { return layers_.back().units; }
+    /// Of its layers but the last; 0 where there is only that.
+    std::size_t widest() const;
 
     /// in: input_count() values; out: output_count().
     void run(const double *in, double *out) const;

@@ -10,9 +10,12 @@ SampledNetwork::SampledNetwork(InputBox box, SampledNetworkParams params, Networ
         low_.push_back(box_.range(k).min);
         high_.push_back(box_.range(k).max);
     }
+    layers_ = network_.core();
+    core_ = core();
+    states_ = static_cast<std::size_t>(quiesce_sampled_states(&core_));
 }
 
-quiesce_sampled SampledNetwork::core(const std::vector<quiesce_layer> &layers) const {
+quiesce_sampled SampledNetwork::core() const {
     return {params_.sample_time_s,
             params_.force_scale_N,
             static_cast<int>(box_.count()),
@@ -23,22 +26,15 @@ quiesce_sampled SampledNetwork::core(const std::vector<quiesce_layer> &layers) c
             params_.feedback.data(),
             static_cast<int>(params_.feedback.size()),
             params_.quadrature ? &*params_.quadrature : nullptr,
-            layers.data(),
-            static_cast<int>(layers.size()),
-            kMostUnits};
-}
-
-std::size_t SampledNetwork::state_count() const {
-    const quiesce_sampled m = core({});
-    return static_cast<std::size_t>(quiesce_sampled_states(&m));
+            layers_.data(),
+            static_cast<int>(layers_.size()),
+            static_cast<int>(network_.widest())};
 }
 
 void SampledNetwork::take_sample(const DamperInput &input, double *state) const {
-    const std::vector<quiesce_layer> layers = network_.core();
-    const quiesce_sampled m = core(layers);
-    std::vector<double> room(network_.input_count() + 2 * kMostUnits);
+    std::vector<double> room(network_.input_count() + 2 * network_.widest());
     const Inputs picked = box_.picked(input);
-    quiesce_sampled_take(&m, picked.data(), input.position_m, input.velocity_m_s, state,
+    quiesce_sampled_take(&core_, picked.data(), input.position_m, input.velocity_m_s, state,
                          room.data());
 }
 

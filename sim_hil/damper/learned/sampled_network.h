@@ -33,7 +33,11 @@ class SampledNetwork final : public Damper {
     /// network: lags x (inputs + features) + feedback inputs, one output.
     SampledNetwork(InputBox box, SampledNetworkParams params, Network network);
 
-    std::size_t state_count() const override;
+    /// core_ points into it.
+    SampledNetwork(const SampledNetwork &) = delete;
+    SampledNetwork &operator=(const SampledNetwork &) = delete;
+
+    std::size_t state_count() const override { return states_; }
     double force_N(const DamperInput &input, const double *state, double *rates) const override;
     void after_step(const DamperInput &input, double *state, double dt_s) const override;
     bool is_sampled() const override { return true; }
@@ -41,7 +45,7 @@ class SampledNetwork final : public Damper {
     double lowest_position_m() const override { return -params_.stroke_m; }
 
   private:
-    quiesce_sampled core(const std::vector<quiesce_layer> &layers) const;
+    quiesce_sampled core() const;
     void take_sample(const DamperInput &input, double *state) const;
 
     InputBox box_;
@@ -49,6 +53,9 @@ class SampledNetwork final : public Damper {
     Network network_;
     std::vector<double> low_;
     std::vector<double> high_;
+    std::vector<quiesce_layer> layers_;
+    quiesce_sampled core_ = {};
+    std::size_t states_ = 0;
 };
 
 } // namespace quiesce

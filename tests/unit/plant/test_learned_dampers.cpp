@@ -304,8 +304,8 @@ TEST(Quadrature, tells_envelope_frequency_and_phase_of_a_sine) {
     for (std::size_t k = 0; k < motion.disp_m.size(); ++k) {
         quiesce_quadrature_update(&params, motion.disp_m[k], motion.velocity_m_s[k], 0.001, means);
         if (k % 50 == 0 && k > 0) { // whole cycles: the means' ratio is that of a sine
-            const QuadratureFeatures found = quadrature_features(
-                params, motion.disp_m[k], motion.velocity_m_s[k], means);
+            const QuadratureFeatures found =
+                quadrature_features(params, motion.disp_m[k], motion.velocity_m_s[k], means);
             EXPECT_NEAR(found[0], 2.0 * 0.003 / 0.004 - 1.0, 0.1);
             EXPECT_NEAR(found[1], 2.0 * (omega - 20.0) / 480.0 - 1.0, 0.1);
             EXPECT_NEAR(found[2] * found[2] + found[3] * found[3], 1.0, 1e-12);

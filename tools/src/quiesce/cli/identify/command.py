@@ -37,7 +37,8 @@ examples:
   quiesce identify rig.csv --fix n=2 --bound 'rho_1_m=1000:5000' --model normalised_bouc_wen
 
 Writes report.html, report.json and models/NAME.toml for every model; plants read such a file
-([damper] file = "..."), so do 'tune' and the actions above. damper.toml is the best passive one of the run.
+([damper] file = "..."), so do 'tune' and the actions above. damper.toml is the best passive one of
+the run.
 --model takes names, 'quick' (static models and small networks), 'parametric', or 'all'.
 Models are printed and written as they come, damper.toml with each that is better.
 Errors are ||F - F_model|| / ||F|| with the model running free; the ranking goes by validation
