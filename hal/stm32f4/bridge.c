@@ -37,7 +37,6 @@ static void open_timer(bridge_t *self, uint32_t timer_Hz) {
     reg_write(TIM(TIM1_BDTR), TIM1_BDTR_BKE | TIM1_BDTR_OSSI | TIM1_BDTR_OSSR);
     reg_write(TIM(TIM1_EGR), TIM1_EGR_UG);
     reg_write(TIM(TIM1_SR), 0);
-    reg_write(TIM(TIM1_DIER), TIM1_DIER_BIE);
     reg_write(TIM(TIM1_CR1), TIM1_CR1_ARPE | TIM1_CR1_CEN);
 }
 
@@ -62,14 +61,14 @@ static void open_adc(const bridge_wiring_t *wiring) {
 }
 
 void bridge_open(bridge_t *self, const bridge_wiring_t *wiring, uint32_t timer_Hz) {
-    self->wiring = *wiring;
+    *self = (bridge_t){.wiring = *wiring};
     reg_set(RCC_BASE + RCC_APB2ENR, RCC_APB2ENR_TIM1EN | RCC_APB2ENR_ADC1EN);
     (void)reg_read(RCC_BASE + RCC_APB2ENR);
     pin_analog(wiring->current);
     pin_analog(wiring->supply);
     open_adc(wiring);
+    pin_function(wiring->cut_off, TIMER_FUNCTION, PIN_UP); // before the timer looks at it
     open_timer(self, timer_Hz);
-    pin_function(wiring->cut_off, TIMER_FUNCTION, PIN_UP);
     pin_function(wiring->pwm, TIMER_FUNCTION, PIN_DOWN);
 }
 
@@ -90,20 +89,24 @@ void bridge_duty(const bridge_t *self, int32_t duty) {
     reg_write(TIM(TIM1_CCR1), self->period_counts * limited / (uint32_t)BRIDGE_FULL);
 }
 
-void bridge_enable(const bridge_t *self, bool is_on) {
-    if (!is_on) {
-        bridge_cut();
-        return;
-    }
-    if (!bridge_is_on()) {
-        bridge_duty(self, 0);
-        bridge_forget_break();
-        reg_set(TIM(TIM1_BDTR), TIM1_BDTR_MOE);
-    }
+// While the break input is low the timer takes neither: it stays off, and is cut.
+static void switch_on(const bridge_t *self) {
+    bridge_duty(self, 0);
+    reg_write(TIM(TIM1_SR), TIMER_FLAGS & ~TIM1_SR_BIF);
+    reg_set(TIM(TIM1_BDTR), TIM1_BDTR_MOE);
 }
 
-void bridge_forget_break(void) {
-    reg_write(TIM(TIM1_SR), TIMER_FLAGS & ~TIM1_SR_BIF);
+void bridge_enable(bridge_t *self, bool is_on) {
+    if (!is_on) {
+        bridge_cut();
+    } else if (!self->is_wanted) {
+        switch_on(self);
+    }
+    self->is_wanted = is_on;
+}
+
+bool bridge_is_cut(const bridge_t *self) {
+    return self->is_wanted && !bridge_is_on();
 }
 
 bool bridge_is_on(void) {

@@ -31,6 +31,7 @@ typedef struct {
 typedef struct {
     bridge_wiring_t wiring;
     uint32_t period_counts;
+    bool is_wanted; ///< on
 } bridge_t;
 
 /// Everything is set up, the bridge off, the ADC measuring. timer_Hz: of TIM1, at least 2 MHz.
@@ -42,14 +43,16 @@ bridge_measured_t bridge_take(const bridge_t *self);
 /// duty: 0 .. BRIDGE_FULL, limited; takes effect with the next period.
 void bridge_duty(const bridge_t *self, int32_t duty);
 
-/// On: from duty 0. Off: the output is low at once. After a cut-off only this switches it on again.
-void bridge_enable(const bridge_t *self, bool is_on);
+/// On: from duty 0. Off: the output is low at once. After a cut-off it comes on again only where it
+/// has been switched off first, and the break input is high.
+void bridge_enable(bridge_t *self, bool is_on);
 
 /// Whether the output is on: not where the break input has cut it off.
 bool bridge_is_on(void);
 
-/// In the break's interrupt: it has been seen, so that the interrupt ends.
-void bridge_forget_break(void);
+/// Whether it is switched on and something has cut it off. The break has no interrupt: its flag
+/// cannot be cleared while the input is low, so that it would never end.
+bool bridge_is_cut(const bridge_t *self);
 
 /// Off, whatever else is the matter: for a fault of the processor. Takes no state.
 void bridge_cut(void);

@@ -28,7 +28,6 @@ __attribute__((section(".vectors"), used)) static const struct {
      fault_handler, fault_handler},
     {
         [ADC_INTERRUPT] = interrupt_current,
-        [TIM1_BRK_TIM9_INTERRUPT] = interrupt_break,
         [USART1_INTERRUPT] = interrupt_console,
         [USART2_INTERRUPT] = interrupt_console,
         [USART3_INTERRUPT] = interrupt_console,

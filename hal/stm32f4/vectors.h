@@ -4,6 +4,5 @@
 
 void interrupt_console(void); ///< USART1, 2, 3: the board's
 void interrupt_current(void); ///< ADC: current and supply have been measured
-void interrupt_break(void);   ///< TIM1: the bridge has been cut off
 
 #endif

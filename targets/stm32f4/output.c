@@ -6,7 +6,6 @@
 #include "stm32f4_interrupts.h"
 #include "vectors.h"
 
-#define CUT_OFF_PRIORITY 0x00u
 #define CURRENT_PRIORITY 0x10u
 
 static struct {
@@ -15,7 +14,6 @@ static struct {
     current_loop_t loop;
     volatile uint32_t steps; ///< of the current loop
     uint32_t steps_seen;
-    volatile bool is_cut; ///< by the break input
     volatile bridge_measured_t measured;
 } output;
 
@@ -28,14 +26,9 @@ void interrupt_current(void) {
         bridge_duty(&output.bridge,
                     current_loop_step(&output.loop, measured.current_mA, measured.supply_mV));
     } else {
+        bridge_duty(&output.bridge, 0);
         current_loop_rest(&output.loop);
     }
-}
-
-void interrupt_break(void) {
-    bridge_enable(&output.bridge, false);
-    bridge_forget_break();
-    output.is_cut = true;
 }
 
 void output_open(const clocks_t *clocks) {
@@ -45,7 +38,6 @@ void output_open(const clocks_t *clocks) {
     }
     if (output.kind == OUTPUT_BRIDGE && current_loop_init(&output.loop, &stm32f4_board.loop)) {
         bridge_open(&output.bridge, &stm32f4_board.bridge, clocks->apb2_timer_Hz);
-        nvic_enable(TIM1_BRK_TIM9_INTERRUPT, CUT_OFF_PRIORITY);
         nvic_enable(ADC_INTERRUPT, CURRENT_PRIORITY);
     }
 }
@@ -55,17 +47,14 @@ void output_measure(quiesce_driver_t *driver) {
         return;
     }
     driver->is_measured = output.steps != output.steps_seen;
-    driver->has_failed = !driver->is_measured || output.is_cut;
+    driver->has_failed = !driver->is_measured || bridge_is_cut(&output.bridge);
     driver->current_mA = output.measured.current_mA;
 }
 
 static void write_bridge(int32_t current_mA, bool is_enabled) {
     nvic_hold();
     current_loop_command(&output.loop, is_enabled ? current_mA : 0);
-    if (!is_enabled) {
-        output.is_cut = false;
-    }
-    bridge_enable(&output.bridge, is_enabled && !output.is_cut);
+    bridge_enable(&output.bridge, is_enabled);
     nvic_release();
 }
 

@@ -1,6 +1,7 @@
 // The bridge and the DAC on fakes: what is driven, and what cuts it off.
 #include "bridge.h"
 #include "dac.h"
+#include "fake_break.h"
 #include "fake_registers.h"
 #include "stm32f4_adc.h"
 #include "stm32f4_adc_common.h"
@@ -29,6 +30,7 @@ static bool pwm_drives_before_it_is_off;
 
 static void watch(uint32_t address, bool is_write, uint32_t value) {
     (void)value;
+    fake_break_behave();
     if (is_write && address == GPIOA_BASE + GPIO_MODER && (fake_get(address) >> 16 & 3u) == 2u) {
         pwm_drives_before_it_is_off = (TIM(TIM1_BDTR) & TIM1_BDTR_OSSI) == 0u;
     }
@@ -36,6 +38,7 @@ static void watch(uint32_t address, bool is_write, uint32_t value) {
 
 void setUp(void) {
     fake_reset(FAKE_F446);
+    fake_break_reset();
     fake_use_hook(watch);
     bridge_open(&bridge, &wiring, TIMER_Hz);
 }
@@ -51,7 +54,8 @@ static void test_it_opens_switched_off_with_its_break_armed(void) {
     TEST_ASSERT_BITS_LOW(TIM1_BDTR_AOE | TIM1_BDTR_BKP, TIM(TIM1_BDTR)); // low cuts, for good
     TEST_ASSERT_BITS_LOW(1u << 8, TIM(TIM1_CR2));                        // OIS1: idles low
     TEST_ASSERT_EQUAL_UINT32(0, TIM(TIM1_CCR1));
-    TEST_ASSERT_BITS_HIGH(TIM1_DIER_BIE, TIM(TIM1_DIER));
+    TEST_ASSERT_EQUAL_HEX32(0, TIM(TIM1_DIER)); // no interrupt whose flag nothing can clear
+    TEST_ASSERT_BITS_LOW(TIM1_SR_BIF, TIM(TIM1_SR)); // the pin is the timer's before that looks
 }
 
 static void test_the_periods_are_20_kHz_and_every_second_one_measures(void) {
@@ -112,20 +116,39 @@ static void test_it_is_switched_on_from_no_duty_and_off_at_once(void) {
     TEST_ASSERT_EQUAL_UINT32(0, TIM(TIM1_CCR1));
 }
 
-// RM0090, TIM1 break: the hardware clears MOE and sets BIF.
-static void test_a_break_stays_until_it_is_switched_on_again(void) {
+static void test_a_break_stays_until_it_is_switched_off_and_on_again(void) {
     bridge_enable(&bridge, true);
     bridge_duty(&bridge, BRIDGE_FULL / 2);
-    fake_set(TIM1_BASE + TIM1_BDTR, TIM(TIM1_BDTR) & ~TIM1_BDTR_MOE);
-    fake_set(TIM1_BASE + TIM1_SR, TIM1_SR_BIF | TIM1_SR_UIF);
+    TEST_ASSERT_FALSE(bridge_is_cut(&bridge));
+    fake_break_line(true);
+    fake_break_line(false);
+    fake_set(TIM1_BASE + TIM1_SR, TIM(TIM1_SR) | TIM1_SR_UIF);
     TEST_ASSERT_FALSE(bridge_is_on());
+    TEST_ASSERT_TRUE(bridge_is_cut(&bridge));
+    bridge_enable(&bridge, true); // of every tick: it was not switched off
+    TEST_ASSERT_FALSE(bridge_is_on());
+    bridge_enable(&bridge, false);
+    TEST_ASSERT_FALSE(bridge_is_cut(&bridge));
     bridge_duty(&bridge, BRIDGE_FULL / 2);
-    TEST_ASSERT_FALSE(bridge_is_on());
-    bridge_forget_break();
-    TEST_ASSERT_EQUAL_HEX32(TIM1_SR_UIF, TIM(TIM1_SR));
     bridge_enable(&bridge, true);
     TEST_ASSERT_TRUE(bridge_is_on());
+    TEST_ASSERT_FALSE(bridge_is_cut(&bridge));
+    TEST_ASSERT_EQUAL_HEX32(TIM1_SR_UIF, TIM(TIM1_SR)); // another's flag is left alone
     TEST_ASSERT_EQUAL_UINT32(0, TIM(TIM1_CCR1));
+}
+
+static void test_while_the_break_input_is_low_it_does_not_come_on(void) {
+    fake_break_line(true);
+    TEST_ASSERT_FALSE(bridge_is_cut(&bridge)); // off is no failure
+    for (uint32_t i = 0; i < 3u; i++) {
+        bridge_enable(&bridge, true);
+        TEST_ASSERT_FALSE(bridge_is_on());
+        TEST_ASSERT_TRUE(bridge_is_cut(&bridge));
+        bridge_enable(&bridge, false);
+    }
+    fake_break_line(false);
+    bridge_enable(&bridge, true);
+    TEST_ASSERT_TRUE(bridge_is_on());
 }
 
 static void test_without_these_registers_it_stays_off(void) {
@@ -153,7 +176,8 @@ int main(void) {
     RUN_TEST(test_what_is_measured_has_its_scales);
     RUN_TEST(test_duties_are_limited_and_whole_at_both_ends);
     RUN_TEST(test_it_is_switched_on_from_no_duty_and_off_at_once);
-    RUN_TEST(test_a_break_stays_until_it_is_switched_on_again);
+    RUN_TEST(test_a_break_stays_until_it_is_switched_off_and_on_again);
+    RUN_TEST(test_while_the_break_input_is_low_it_does_not_come_on);
     RUN_TEST(test_without_these_registers_it_stays_off);
     RUN_TEST(test_the_dac_opens_at_zero_and_is_limited);
     return UNITY_END();
