@@ -8,12 +8,17 @@
 
 #define WATCHDOG_MOST_MS 32000u
 
-/// Starts it, or gives it another time. timeout_ms: 1 .. WATCHDOG_MOST_MS, at 32 kHz; what it is on
-/// a chip may be two thirds or twice of that. Returns false iff the registers do not take it: then
-/// the old time, or none, holds.
+/// Starts it, waits until the time holds, 60 ms at the most at 168 MHz, and feeds it. timeout_ms:
+/// 1 .. WATCHDOG_MOST_MS, at 32 kHz; what it is on a chip may be two thirds or twice of that.
+/// Returns false iff the time does not hold yet: it runs, by the time that it had.
 bool watchdog_start(uint32_t timeout_ms);
 
-/// Only the supervisor calls it.
+/// Another time, without waiting: call again until it returns true, and feed then. The hardware
+/// takes up to 48 ms; meanwhile, and for a timeout_ms out of its range, it returns false and the
+/// old time holds.
+bool watchdog_set(uint32_t timeout_ms);
+
+/// The supervisor calls it, and who has set another time.
 void watchdog_feed(void);
 
 #endif

@@ -39,7 +39,6 @@ typedef struct {
     bus_t bus;
     slcan_decoder_t decoder;
     bool acknowledge_was_up;
-    bool has_watchdog;
 } board_t;
 
 static hal_uart_t console;
@@ -158,19 +157,20 @@ static void run_tick(board_t *board, uint32_t ticks) {
     supervise();
 }
 
-// The processor stands still while flash is erased: only where nothing is driven, and the watchdog
-// is told before and after.
+// The processor stands still while flash is erased: only where nothing is driven, and once the
+// watchdog has the time for it. The hardware takes another time within 48 ms, so that every pass
+// asks for what is due.
 static void store_waiting(board_t *board) {
     hal_nvm_memory_t *const memory = &board->memory;
-    const bool erases = memory->phase != NVM_STM32F4_IDLE;
-    if (erases && !memory->may_erase && !is_driven(board)) {
-        memory->may_erase = watchdog_start(ERASE_WATCHDOG_MS) || !board->has_watchdog;
+    const bool erases = memory->phase != NVM_STM32F4_IDLE && (memory->may_erase || !is_driven(board));
+    const bool has_time = watchdog_set(erases ? ERASE_WATCHDOG_MS : WATCHDOG_MS);
+    const bool has_none = board->clocks.source == CLOCK_ABSENT;
+    if (erases && !memory->may_erase && (has_time || has_none)) {
+        watchdog_feed();
+        memory->may_erase = true;
     }
     free_node_store(&board->common);
-    if (memory->may_erase && memory->phase == NVM_STM32F4_IDLE) {
-        memory->may_erase = false;
-        (void)watchdog_start(WATCHDOG_MS);
-    }
+    memory->may_erase = memory->may_erase && memory->phase != NVM_STM32F4_IDLE;
 }
 
 // In an emulator, which has neither, samples and currents are the bus's.
@@ -202,7 +202,9 @@ static void start_common(board_t *board) {
 
 static void start(board_t *board) {
     clocks_start(&board->clocks, stm32f4_board.crystal_Hz, stm32f4_board.crystal_is_external);
-    board->has_watchdog = watchdog_start(START_WATCHDOG_MS);
+    if (board->clocks.source != CLOCK_ABSENT) {
+        (void)watchdog_start(START_WATCHDOG_MS); // it runs in any case, by half a second at the least
+    }
     board->cause = reset_cause_take();
     board->tick.clock_Hz = board->clocks.apb1_timer_Hz;
     open_inputs();
@@ -212,7 +214,6 @@ static void start(board_t *board) {
     start_common(board);
     output_open(&board->clocks);
     use_rate(board);
-    (void)watchdog_start(WATCHDOG_MS);
 }
 
 // Sleeps where nothing waits: until the next tick, a byte or a step of the current loop. A bus that

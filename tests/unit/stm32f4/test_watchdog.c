@@ -12,42 +12,74 @@
 #define SR (IWDG_BASE + IWDG_SR)
 #define CSR (RCC_BASE + RCC_CSR)
 
+#define CORE_Hz 168000000.0
+#define READ_CYCLES 10.0 ///< of a poll, at the least
+#define UPDATE_PERIODS 6.0
+#define LSI_Hz 32000.0
+
 static bool is_unlocked;
 static bool is_started;
 static bool is_stuck; ///< an update that never ends
 static uint32_t feeds;
 static uint32_t kept_pr;
 static uint32_t kept_rlr;
+static uint32_t next_pr; ///< what an update brings
+static uint32_t next_rlr;
+static double now_s;
+static double end_s; ///< of the update
+static uint32_t writes_into_an_update;
 
-// RM0090 Rev 18, page 709: PR and RLR take writes after 0x5555, until another key.
-static void guard(uint32_t address, bool is_write, uint32_t value) {
-    if (!is_write) {
-        fake_set(SR, is_stuck ? IWDG_SR_RVU : 0u);
-        return;
+static double slowest_period_s(void) {
+    const uint32_t prescaler = next_pr > kept_pr ? next_pr : kept_pr;
+    return (4u << prescaler) / LSI_Hz;
+}
+
+// A value goes over to the watchdog's own clock: until then SR says so, and reads have the old one.
+static void update(uint32_t address, uint32_t value) {
+    writes_into_an_update += fake_get(SR) & (address == PR ? IWDG_SR_PVU : IWDG_SR_RVU);
+    if (is_unlocked) {
+        *(address == PR ? &next_pr : &next_rlr) = value;
+        fake_set(SR, fake_get(SR) | (address == PR ? IWDG_SR_PVU : IWDG_SR_RVU));
+        end_s = now_s + UPDATE_PERIODS * slowest_period_s();
     }
-    if (address == KR) {
+    fake_set(PR, kept_pr);
+    fake_set(RLR, kept_rlr);
+}
+
+static void end_update(void) {
+    if (fake_get(SR) != 0u && now_s >= end_s && !is_stuck) {
+        fake_set(SR, 0);
+        fake_set(PR, kept_pr = next_pr);
+        fake_set(RLR, kept_rlr = next_rlr);
+    }
+}
+
+// RM0090 Rev 18, page 709: PR and RLR take writes after 0x5555, until another key; SR.
+static void guard(uint32_t address, bool is_write, uint32_t value) {
+    now_s += READ_CYCLES / CORE_Hz;
+    end_update();
+    if (is_write && address == KR) {
         is_unlocked = value == 0x5555u;
         is_started = is_started || value == 0xCCCCu;
         feeds += value == 0xAAAAu ? 1u : 0u;
-    } else if (!is_unlocked) {
-        fake_set(PR, kept_pr);
-        fake_set(RLR, kept_rlr);
+    } else if (is_write) {
+        update(address, value);
     }
-    kept_pr = fake_get(PR);
-    kept_rlr = fake_get(RLR);
 }
 
 void setUp(void) {
     fake_reset(FAKE_F405);
     fake_use_hook(guard);
     is_unlocked = is_started = is_stuck = false;
-    feeds = 0;
-    kept_pr = 0;
-    kept_rlr = fake_get(RLR);
+    feeds = writes_into_an_update = 0;
+    kept_pr = next_pr = 0;
+    kept_rlr = next_rlr = fake_get(RLR);
+    now_s = end_s = 0.0;
 }
 
 void tearDown(void) {
     TEST_ASSERT_NULL_MESSAGE(fake_mistake(), fake_mistake());
+    TEST_ASSERT_EQUAL_UINT32(0, writes_into_an_update);
 }
 
 static double time_ms(void) {
@@ -65,8 +97,45 @@ static void test_times_are_what_was_asked_for_at_32_kHz(void) {
     TEST_ASSERT_EQUAL_UINT32(sizeof times_ms / sizeof times_ms[0], feeds);
 }
 
+// As the image's idle loop does, some us a pass.
+static uint32_t passes_until_set(uint32_t timeout_ms) {
+    uint32_t passes = 1;
+    while (!watchdog_set(timeout_ms) && passes < 100000u) {
+        now_s += 5e-6;
+        passes++;
+    }
+    return passes;
+}
+
+static void test_another_time_holds_within_50_ms_and_is_written_once(void) {
+    static const uint32_t times_ms[] = {8000, 50, 32000, 50};
+    TEST_ASSERT_TRUE(watchdog_start(2000));
+    for (uint32_t i = 0; i < sizeof times_ms / sizeof times_ms[0]; i++) {
+        const uint32_t writes = fake_writes(RLR);
+        const double begin_s = now_s;
+        TEST_ASSERT_TRUE(passes_until_set(times_ms[i]) > 1u); // it takes time, and nobody waits
+        TEST_ASSERT_TRUE(now_s - begin_s < 0.05);
+        TEST_ASSERT_TRUE(time_ms() <= times_ms[i] && time_ms() > 0.99 * times_ms[i]);
+        TEST_ASSERT_EQUAL_UINT32(writes + 1u, fake_writes(RLR));
+        TEST_ASSERT_EQUAL_UINT32(1, passes_until_set(times_ms[i]));
+        TEST_ASSERT_EQUAL_UINT32(writes + 1u, fake_writes(RLR));
+        TEST_ASSERT_FALSE(is_unlocked);
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, feeds); // the start's: a loop that only asks supervises nothing
+}
+
+static void test_a_time_that_is_thought_better_of_is_not_taken_for_the_first(void) {
+    TEST_ASSERT_TRUE(watchdog_start(2000));
+    TEST_ASSERT_FALSE(watchdog_set(8000));
+    TEST_ASSERT_FALSE(watchdog_set(2000)); // still on its way to 8 s
+    TEST_ASSERT_TRUE(passes_until_set(2000) < 100000u);
+    TEST_ASSERT_TRUE(time_ms() <= 2000.0 && time_ms() > 1980.0);
+}
+
 static void test_times_out_of_range_change_nothing(void) {
     TEST_ASSERT_FALSE(watchdog_start(0));
+    TEST_ASSERT_FALSE(watchdog_set(0));
+    TEST_ASSERT_FALSE(watchdog_set(WATCHDOG_MOST_MS + 1u));
     TEST_ASSERT_FALSE(watchdog_start(WATCHDOG_MOST_MS + 1u));
     TEST_ASSERT_EQUAL_UINT32(0, fake_all_writes());
 }
@@ -114,6 +183,8 @@ static void test_the_causes_of_a_reset(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_times_are_what_was_asked_for_at_32_kHz);
+    RUN_TEST(test_another_time_holds_within_50_ms_and_is_written_once);
+    RUN_TEST(test_a_time_that_is_thought_better_of_is_not_taken_for_the_first);
     RUN_TEST(test_times_out_of_range_change_nothing);
     RUN_TEST(test_an_update_that_never_ends_is_told);
     RUN_TEST(test_feeding_writes_its_key_alone);
