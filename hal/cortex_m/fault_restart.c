@@ -8,6 +8,10 @@ _Noreturn void fault_restart(void) {
     if (cpu_fault.count <= FAULT_MOST_RESTARTS) {
         SCB_AIRCR = AIRCR_RESET;
     }
+    fault_stay_silent();
+}
+
+_Noreturn void fault_stay_silent(void) {
     for (;;) {
         __asm__ volatile("wfi");
     }

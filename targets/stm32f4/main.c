@@ -32,7 +32,6 @@
 typedef struct {
     free_node_t common;
     clocks_t clocks;
-    reset_cause_t cause;
     hal_nvm_memory_t memory;
     hal_tick_t tick;
     hal_accel_t accel;
@@ -205,7 +204,6 @@ static void start(board_t *board) {
     if (board->clocks.source != CLOCK_ABSENT) {
         (void)watchdog_start(START_WATCHDOG_MS); // it runs in any case, by half a second at the least
     }
-    board->cause = reset_cause_take();
     board->tick.clock_Hz = board->clocks.apb1_timer_Hz;
     open_inputs();
     open_console(&board->clocks);
@@ -227,9 +225,21 @@ static void rest(const board_t *board) {
     nvic_release();
 }
 
+// What the watchdog has ended counts like a fault of the processor. After too many there is nothing
+// but the safe state, until power-off: asked before the watchdog runs, which would end it.
+static void stop_where_nothing_helps(void) {
+    if (reset_cause_take() == RESET_WATCHDOG) {
+        fault_count_watchdog();
+    }
+    if (fault_is_final()) {
+        fault_stay_silent();
+    }
+}
+
 int main(void) {
     static board_t board;
     safe_outputs();
+    stop_where_nothing_helps();
     start(&board);
     for (;;) {
         const uint32_t ticks = hal_tick_elapsed(&board.tick);
