@@ -8,6 +8,7 @@
 #define CAN_FUNCTION 9u // alternate function of CAN1's pins
 #define ENTER_POLLS 20000u
 #define MAILBOXES 3u
+#define EMPTY (CAN_TSR_TME0 | CAN_TSR_TME1 | CAN_TSR_TME2)
 #define WORD_BYTES 4u
 
 // A bit: one quantum of synchronisation, then both segments; the sample about seven eighths in.
@@ -54,7 +55,7 @@ bool can_stm32f4_open(can_stm32f4_t *self, const can_wiring_t *wiring, uint32_t 
     if (!reg_wait(CAN(CAN_MSR), CAN_MSR_INAK | CAN_MSR_SLAK, CAN_MSR_INAK, ENTER_POLLS)) {
         return false;
     }
-    reg_set(CAN(CAN_MCR), CAN_MCR_ABOM);
+    reg_set(CAN(CAN_MCR), CAN_MCR_ABOM | CAN_MCR_TXFP); // in the order of the requests
     reg_write(CAN(CAN_BTR), timing);
     pass_all();
     pin_function(wiring->rx, CAN_FUNCTION, PIN_UP);
@@ -117,6 +118,16 @@ bool can_stm32f4_send(can_stm32f4_t *self, const can_frame_t *frame) {
         }
     }
     return false;
+}
+
+uint32_t can_stm32f4_waiting(const can_stm32f4_t *self) {
+    return self->is_open ? ~reg_read(CAN(CAN_TSR)) & EMPTY : 0u;
+}
+
+void can_stm32f4_abort(can_stm32f4_t *self) {
+    if (self->is_open) {
+        reg_write(CAN(CAN_TSR), CAN_TSR_ABRQ0 | CAN_TSR_ABRQ1 | CAN_TSR_ABRQ2);
+    }
 }
 
 void can_stm32f4_watch(can_stm32f4_t *self) {

@@ -1,5 +1,5 @@
 /// CAN1, polled: every standard and extended frame is received, three frames at a time are on their
-/// way out, the lowest id first. After bus-off it comes back by itself. Untested on silicon; what
+/// way out, in the order in which they were put. After bus-off it comes back by itself. Untested on silicon; what
 /// to measure: docs/howto/stm32f4.md.
 #ifndef CAN_STM32F4_H
 #define CAN_STM32F4_H
@@ -29,6 +29,12 @@ bool can_stm32f4_receive(can_stm32f4_t *self, can_frame_t *frame);
 
 /// Returns false iff three frames are on their way, or it is not open; then nothing is sent.
 bool can_stm32f4_send(can_stm32f4_t *self, const can_frame_t *frame);
+
+/// Of the three frames on their way, a bit each; which bit is whose says nothing.
+uint32_t can_stm32f4_waiting(const can_stm32f4_t *self);
+
+/// Takes back those that are not on the bus this moment.
+void can_stm32f4_abort(can_stm32f4_t *self);
 
 /// Once a tick: counts what has happened to the bus.
 void can_stm32f4_watch(can_stm32f4_t *self);

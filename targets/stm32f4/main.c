@@ -148,7 +148,8 @@ static void run_tick(board_t *board, uint32_t ticks) {
         restart(board, params);
     }
     const uint32_t count = node_frames(&common->node, frames);
-    bus_put(&board->bus, frames, count, &common->queue.unsent);
+    const bus_tick_t said = {frames, count, ticks * (US / (uint32_t)common->node.params.tick_rate_Hz)};
+    bus_put(&board->bus, &said, &common->queue.unsent);
     if (free_node_end(common, frames, count)) {
         fault_forget();
     }

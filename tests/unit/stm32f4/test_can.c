@@ -1,5 +1,6 @@
 // CAN1 on fakes: the manual's mailboxes, FIFO and flags.
 #include "can_stm32f4.h"
+#include "fake_can.h"
 #include "fake_registers.h"
 #include "stm32f4_can.h"
 #include "unity.h"
@@ -8,40 +9,12 @@
 #define BUS_Hz 42000000u
 
 static can_stm32f4_t can;
-static bool is_deaf;     ///< it never enters its initialisation
-static uint32_t waiting; ///< frames in the FIFO
-static uint32_t sent;
 static const can_wiring_t wiring = {.rx = PIN_B(8), .tx = PIN_B(9), .bit_rate_Hz = 500000};
-
-static void put_levels(void) {
-    const uint32_t others = fake_get(CAN(CAN_RF0R)) & ~(CAN_RF0R_FMP | CAN_RF0R_RFOM);
-    fake_set(CAN(CAN_RF0R), others | waiting);
-}
-
-// RM0090, bxCAN: INAK follows INRQ; RFOM releases a frame; TXRQ empties a mailbox.
-static void behave(uint32_t address, bool is_write, uint32_t value) {
-    if (address == CAN(CAN_MSR) && !is_write) {
-        const uint32_t mcr = fake_get(CAN(CAN_MCR));
-        const bool is_in = (mcr & CAN_MCR_INRQ) != 0u && !is_deaf;
-        fake_set(address,
-                 (is_in ? CAN_MSR_INAK : 0u) | ((mcr & CAN_MCR_SLEEP) != 0u ? CAN_MSR_SLAK : 0u));
-    } else if (address == CAN(CAN_RF0R) && is_write) {
-        waiting -= (value & CAN_RF0R_RFOM) != 0u ? 1u : 0u;
-        put_levels();
-    }
-    for (uint32_t i = 0; i < 3u; i++) {
-        if (address == CAN(CAN_TX_TIR(i)) && is_write && (value & CAN_TX_TIR_TXRQ) != 0u) {
-            fake_set(CAN(CAN_TSR), fake_get(CAN(CAN_TSR)) & ~(CAN_TSR_TME0 << i));
-            sent++;
-        }
-    }
-}
 
 void setUp(void) {
     fake_reset(FAKE_F405);
-    fake_use_hook(behave);
-    is_deaf = false;
-    waiting = sent = 0;
+    fake_can_reset();
+    fake_use_hook(fake_can_behave);
 }
 
 void tearDown(void) {
@@ -76,7 +49,7 @@ static void test_what_cannot_be_made_is_refused(void) {
     TEST_ASSERT_FALSE(can_stm32f4_open(&can, &none, BUS_Hz));
     TEST_ASSERT_FALSE(can_stm32f4_open(&can, &odd, BUS_Hz));
     TEST_ASSERT_EQUAL_UINT32(0, fake_all_writes());
-    is_deaf = true;
+    fake_can.is_deaf = true;
     TEST_ASSERT_FALSE(can_stm32f4_open(&can, &wiring, BUS_Hz)); // and does not hang
     TEST_ASSERT_FALSE(can_stm32f4_send(&can, &frame));
     TEST_ASSERT_FALSE(can_stm32f4_receive(&can, &frame));
@@ -99,8 +72,8 @@ static void test_frames_are_received_as_they_were_sent(void) {
     can_frame_t frame = {0};
     open();
     TEST_ASSERT_FALSE(can_stm32f4_receive(&can, &frame));
-    waiting = 2;
-    put_levels();
+    fake_can.waiting = 2;
+    fake_can_put_levels();
     fake_set(CAN(CAN_RX_RIR(0u)), 0x123u << 21);
     fake_set(CAN(CAN_RX_RDTR(0u)), 5);
     fake_set(CAN(CAN_RX_RDLR(0u)), 0x44332211u);
@@ -133,10 +106,41 @@ static void test_three_frames_are_taken_and_a_fourth_is_not(void) {
     TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFFu, fake_get(CAN(CAN_TX_TIR(1u))));
     TEST_ASSERT_TRUE(can_stm32f4_send(&can, &frame));
     TEST_ASSERT_FALSE(can_stm32f4_send(&can, &frame));
-    TEST_ASSERT_EQUAL_UINT32(3, sent);
+    TEST_ASSERT_EQUAL_UINT32(3, fake_can.sent);
     fake_set(CAN(CAN_TSR), CAN_TSR_TME1);
     TEST_ASSERT_TRUE(can_stm32f4_send(&can, &frame));
-    TEST_ASSERT_EQUAL_UINT32(4, sent);
+    TEST_ASSERT_EQUAL_UINT32(4, fake_can.sent);
+}
+
+static void test_frames_of_one_identifier_go_out_in_their_order(void) {
+    can_frame_t frame = {.id = 0x100, .length = 1};
+    open();
+    for (uint32_t i = 0; i < 12u; i++) { // mailboxes are filled as they become free
+        frame.data[0] = (uint8_t)i;
+        if (!can_stm32f4_send(&can, &frame)) {
+            TEST_ASSERT_EQUAL_UINT32(i - 3u, fake_can_carry());
+            TEST_ASSERT_TRUE(can_stm32f4_send(&can, &frame));
+        }
+    }
+    frame = (can_frame_t){.id = 0x001, .length = 1, .data = {12}};
+    TEST_ASSERT_EQUAL_UINT32(9, fake_can_carry());
+    TEST_ASSERT_TRUE(can_stm32f4_send(&can, &frame));
+    for (uint32_t i = 10; i < 13u; i++) {
+        TEST_ASSERT_EQUAL_UINT32(i, fake_can_carry());
+    }
+}
+
+static void test_frames_on_their_way_are_taken_back(void) {
+    const can_frame_t frame = {.id = 0x100, .length = 1};
+    open();
+    TEST_ASSERT_EQUAL_HEX32(0, can_stm32f4_waiting(&can));
+    TEST_ASSERT_TRUE(can_stm32f4_send(&can, &frame));
+    TEST_ASSERT_TRUE(can_stm32f4_send(&can, &frame));
+    TEST_ASSERT_EQUAL_HEX32(CAN_TSR_TME0 | CAN_TSR_TME1, can_stm32f4_waiting(&can));
+    can_stm32f4_abort(&can);
+    TEST_ASSERT_EQUAL_UINT32(2, fake_can.aborted);
+    TEST_ASSERT_EQUAL_HEX32(0, can_stm32f4_waiting(&can));
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, fake_can_carry());
 }
 
 static void test_bus_off_and_lost_frames_are_counted_once_each(void) {
@@ -164,6 +168,8 @@ int main(void) {
     RUN_TEST(test_it_lets_all_through_and_leaves_its_initialisation);
     RUN_TEST(test_frames_are_received_as_they_were_sent);
     RUN_TEST(test_three_frames_are_taken_and_a_fourth_is_not);
+    RUN_TEST(test_frames_of_one_identifier_go_out_in_their_order);
+    RUN_TEST(test_frames_on_their_way_are_taken_back);
     RUN_TEST(test_bus_off_and_lost_frames_are_counted_once_each);
     return UNITY_END();
 }
