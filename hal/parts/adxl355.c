@@ -106,6 +106,19 @@ static bool range_code(uint32_t range_g, uint8_t *code) {
     return range_g == 2u || range_g == 4u || range_g == 8u;
 }
 
+// Settings are for standby, says the data sheet.
+bool adxl355_set_rate(adxl355_t *self, uint32_t rate_Hz, part_problem_t *problem) {
+    uint8_t filter = 0;
+    problem->verdict = PART_WELL;
+    if (!filter_code(rate_Hz, &filter)) {
+        return fail(problem, PART_NO_RATE);
+    }
+    memset(self->is_fresh, 0, sizeof self->is_fresh); // of the old rate
+    return set_register(self, POWER_CTL, POWER_STANDBY, problem) &&
+           set_register(self, FILTER, filter, problem) &&
+           set_register(self, POWER_CTL, POWER_MEASURE, problem);
+}
+
 bool adxl355_start(adxl355_t *self, part_bus_t bus, uint32_t range_g, uint32_t rate_Hz,
                    part_problem_t *problem) {
     uint8_t range = 0;
@@ -121,8 +134,7 @@ bool adxl355_start(adxl355_t *self, part_bus_t bus, uint32_t range_g, uint32_t r
     const uint8_t range_register = (uint8_t)((RANGE_RESET & ~RANGE_MASK) | range);
     return check_part(self, problem) && reset(self, problem) &&
            set_register(self, RANGE, range_register, problem) &&
-           set_register(self, FILTER, filter, problem) &&
-           set_register(self, POWER_CTL, POWER_MEASURE, problem);
+           adxl355_set_rate(self, rate_Hz, problem);
 }
 
 /// 20 bits, left-justified in three bytes, most significant first.

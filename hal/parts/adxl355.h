@@ -21,6 +21,10 @@ typedef struct {
 bool adxl355_start(adxl355_t *self, part_bus_t bus, uint32_t range_g, uint32_t rate_Hz,
                    part_problem_t *problem);
 
+/// Another rate of a part that has been started, within some 100 us. Returns false where it has no
+/// such rate, and measures on at the old one, or where the transfer failed.
+bool adxl355_set_rate(adxl355_t *self, uint32_t rate_Hz, part_problem_t *problem);
+
 /// As hal_accel_read.
 bool adxl355_read(adxl355_t *self, hal_axis_t axis, int32_t *counts);
 

@@ -8,6 +8,8 @@
 #define MOST_CLOCK_Hz 8000000u // of the ADXL355 10 MHz, of the IIS3DWB 10 MHz
 #define MOST_DIVIDER 7u        // over 256
 
+#define FIRST_RATE_Hz 1000u    // of the ADXL355
+
 /// A byte takes 12 us at the slowest clock that is made: more polls than that.
 #define BYTE_POLLS 5000u
 /// A pause's loop takes three cycles and more.
@@ -66,7 +68,7 @@ static void open_spi(const accel_wiring_t *wiring, uint32_t bus_Hz) {
 }
 
 bool accel_stm32f4_open(hal_accel_t *accel, const accel_wiring_t *wiring, uint32_t bus_Hz,
-                        uint32_t core_Hz, uint32_t rate_Hz) {
+                        uint32_t core_Hz) {
     *accel = (hal_accel_t){.wiring = *wiring};
     const part_bus_t bus = {.exchange = exchange, .pause_ms = pause_ms, .context = &accel->wiring};
     core_rate_Hz = core_Hz;
@@ -74,7 +76,9 @@ bool accel_stm32f4_open(hal_accel_t *accel, const accel_wiring_t *wiring, uint32
     case ACCEL_ADXL355:
         open_spi(wiring, bus_Hz);
         accel->is_started =
-            adxl355_start(&accel->adxl355, bus, wiring->range_g, rate_Hz, &accel->problem);
+            adxl355_start(&accel->adxl355, bus, wiring->range_g, FIRST_RATE_Hz, &accel->problem);
+        accel->is_adxl355 = accel->is_started;
+        accel->rate_Hz = FIRST_RATE_Hz;
         break;
     case ACCEL_IIS3DWB:
         open_spi(wiring, bus_Hz);
@@ -83,6 +87,14 @@ bool accel_stm32f4_open(hal_accel_t *accel, const accel_wiring_t *wiring, uint32
     case ACCEL_NONE:
     default:
         break;
+    }
+    return accel->is_started;
+}
+
+bool accel_stm32f4_set_rate(hal_accel_t *accel, uint32_t rate_Hz) {
+    if (accel->is_adxl355 && (rate_Hz != accel->rate_Hz || !accel->is_started)) {
+        accel->rate_Hz = rate_Hz;
+        accel->is_started = adxl355_set_rate(&accel->adxl355, rate_Hz, &accel->problem);
     }
     return accel->is_started;
 }

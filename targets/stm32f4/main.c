@@ -86,8 +86,11 @@ static uint32_t us_since(const board_t *board, uint32_t count) {
     return (tick_stm32f4_count() - count) / (board->tick.clock_Hz / US);
 }
 
+// The sensor's samples come at the tick's rate; one that has no such rate gives none.
 static void use_rate(board_t *board) {
-    (void)hal_tick_start(&board->tick, (uint32_t)board->common.node.params.tick_rate_Hz);
+    const uint32_t rate_Hz = (uint32_t)board->common.node.params.tick_rate_Hz;
+    (void)accel_stm32f4_set_rate(&board->accel, rate_Hz);
+    (void)hal_tick_start(&board->tick, rate_Hz);
 }
 
 // The button acknowledges where it is seen to go down: a line that is stuck does not.
@@ -100,13 +103,14 @@ static bool is_acknowledged(board_t *board) {
 
 static void read_inputs(board_t *board) {
     free_node_t *const common = &board->common;
+    const hal_axis_t axis = (hal_axis_t)common->node.params.accel_axis;
     common->estop_line = pin_read(stm32f4_board.estop);
     common->inputs.enable = !pin_read(stm32f4_board.enable);
     common->inputs.fault_reset = is_acknowledged(board);
     common->inputs.rx_lost = console.overruns + board->bus.can.rx_lost;
     common->inputs.bus_off_count = board->bus.can.bus_off_count;
     common->inputs.sensor[0].is_fresh =
-        hal_accel_read(&board->accel, HAL_AXIS_Z, &common->inputs.sensor[0].counts);
+        hal_accel_read(&board->accel, axis, &common->inputs.sensor[0].counts);
     output_measure(&common->inputs.driver[0]);
 }
 
@@ -177,14 +181,12 @@ static void store_waiting(board_t *board) {
 static bool open_sensor(board_t *board) {
     const accel_wiring_t *const wiring = &stm32f4_board.accel;
     const clocks_t *const clocks = &board->clocks;
-    quiesce_params_t shipped;
-    quiesce_params_default(&shipped);
     if (clocks->source == CLOCK_ABSENT || wiring->part == ACCEL_NONE) {
         return false;
     }
     (void)accel_stm32f4_open(&board->accel, wiring,
                              wiring->spi == SPI1_BASE ? clocks->apb2_Hz : clocks->apb1_Hz,
-                             clocks->core_Hz, (uint32_t)shipped.tick_rate_Hz);
+                             clocks->core_Hz);
     return true; // one that does not start gives no sample, and the controller says so
 }
 

@@ -23,6 +23,7 @@ static bool is_read;
 static bool is_silent; ///< nothing answers, the data never come
 static bool is_adxl;
 static uint32_t bytes_unselected;
+static uint32_t set_while_measuring; ///< settings of the ADXL355, which are for standby
 
 static uint8_t answer(uint8_t out) {
     uint8_t in = 0;
@@ -34,6 +35,8 @@ static uint8_t answer(uint8_t out) {
     } else if (is_adxl ? address == 0x2Fu : address == 0x12u && (out & 1u) != 0u) {
         part[0x2D] = 1; // reset
     } else {
+        const bool is_setting = is_adxl && (address == 0x28u || address == 0x2Cu);
+        set_while_measuring += is_setting && (part[0x2D] & 1u) == 0u ? 1u : 0u;
         part[address++] = out;
     }
     place++;
@@ -64,7 +67,7 @@ static bool open(accel_part_t kind, uint8_t drdy, uint32_t range_g) {
                                    .drdy = drdy,
                                    .range_g = range_g};
     is_adxl = kind == ACCEL_ADXL355;
-    return accel_stm32f4_open(&accel, &wiring, BUS_Hz, CORE_Hz, 1000);
+    return accel_stm32f4_open(&accel, &wiring, BUS_Hz, CORE_Hz);
 }
 
 void setUp(void) {
@@ -76,12 +79,13 @@ void setUp(void) {
     part[2] = 0xED;
     part[0x0F] = 0x7B;
     is_selected = is_silent = false;
-    bytes_unselected = 0;
+    bytes_unselected = set_while_measuring = 0;
 }
 
 void tearDown(void) {
     TEST_ASSERT_NULL_MESSAGE(fake_mistake(), fake_mistake());
     TEST_ASSERT_EQUAL_UINT32(0, bytes_unselected);
+    TEST_ASSERT_EQUAL_UINT32(0, set_while_measuring);
     TEST_ASSERT_FALSE(is_selected);
 }
 
@@ -112,6 +116,39 @@ static void test_the_adxl355_is_asked_where_its_line_says_so(void) {
     TEST_ASSERT_TRUE(hal_accel_read(&accel, HAL_AXIS_Y, &counts));
     TEST_ASSERT_EQUAL_INT32(5, counts);
     TEST_ASSERT_EQUAL_UINT32(writes + 28u, fake_writes(DR)); // 14 bytes a call that has one
+}
+
+static void test_the_adxl355_follows_the_rate_of_the_tick(void) {
+    static const struct {
+        uint32_t rate_Hz;
+        uint8_t filter;
+    } cases[] = {{4000, 0}, {2000, 1}, {500, 3}, {1000, 2}};
+    int32_t counts;
+    TEST_ASSERT_TRUE(open(ACCEL_ADXL355, PIN_NONE, 2));
+    for (uint32_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        TEST_ASSERT_TRUE(accel_stm32f4_set_rate(&accel, cases[i].rate_Hz));
+        TEST_ASSERT_EQUAL_HEX8(cases[i].filter, part[0x28]);
+        TEST_ASSERT_EQUAL_HEX8(0x00, part[0x2D]);
+    }
+    const uint32_t writes = fake_writes(DR);
+    TEST_ASSERT_TRUE(accel_stm32f4_set_rate(&accel, 1000)); // nothing to do: no sample is lost
+    TEST_ASSERT_EQUAL_UINT32(writes, fake_writes(DR));
+    part[0x04] = 1;
+    TEST_ASSERT_FALSE(accel_stm32f4_set_rate(&accel, 800)); // it has none such, and says nothing
+    TEST_ASSERT_EQUAL(PART_NO_RATE, accel.problem.verdict);
+    TEST_ASSERT_FALSE(hal_accel_read(&accel, HAL_AXIS_X, &counts));
+    TEST_ASSERT_TRUE(accel_stm32f4_set_rate(&accel, 2000)); // and comes back
+    TEST_ASSERT_TRUE(hal_accel_read(&accel, HAL_AXIS_X, &counts));
+}
+
+static void test_a_part_that_is_not_there_takes_no_rate(void) {
+    part[0] = 0;
+    TEST_ASSERT_FALSE(open(ACCEL_ADXL355, PIN_NONE, 2));
+    const uint32_t writes = fake_writes(DR);
+    TEST_ASSERT_FALSE(accel_stm32f4_set_rate(&accel, 1000));
+    TEST_ASSERT_EQUAL_UINT32(writes, fake_writes(DR));
+    TEST_ASSERT_TRUE(open(ACCEL_IIS3DWB, PIN_NONE, 2));
+    TEST_ASSERT_TRUE(accel_stm32f4_set_rate(&accel, 2500)); // any: one rate for all
 }
 
 static void test_the_iis3dwb_is_read_in_its_byte_order(void) {
@@ -160,6 +197,8 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_the_clock_is_one_that_both_parts_take);
     RUN_TEST(test_the_adxl355_is_asked_where_its_line_says_so);
+    RUN_TEST(test_the_adxl355_follows_the_rate_of_the_tick);
+    RUN_TEST(test_a_part_that_is_not_there_takes_no_rate);
     RUN_TEST(test_the_iis3dwb_is_read_in_its_byte_order);
     RUN_TEST(test_a_part_that_is_not_there_gives_no_sample);
     RUN_TEST(test_an_spi_that_is_silent_does_not_hang);
