@@ -42,12 +42,22 @@ void output_open(const clocks_t *clocks) {
     }
 }
 
+// What a window of the current loop tells, 0.1 s or more of it: a coil that is open or short.
+static bool coil_has_failed(void) {
+    current_loop_report_t report = {.coil = CURRENT_LOOP_UNKNOWN};
+    nvic_hold();
+    (void)current_loop_report(&output.loop, output.measured.supply_mV, &report);
+    nvic_release();
+    return report.coil == CURRENT_LOOP_OPEN || report.coil == CURRENT_LOOP_SHORT;
+}
+
 void output_measure(quiesce_driver_t *driver) {
     if (output.kind != OUTPUT_BRIDGE) {
         return;
     }
+    const bool coil_fails = coil_has_failed();
     driver->is_measured = output.steps != output.steps_seen;
-    driver->has_failed = !driver->is_measured || bridge_is_cut(&output.bridge);
+    driver->has_failed = !driver->is_measured || bridge_is_cut(&output.bridge) || coil_fails;
     driver->current_mA = output.measured.current_mA;
 }
 

@@ -161,6 +161,7 @@ static void test_the_dac_opens_at_zero_and_is_limited(void) {
     dac_open();
     TEST_ASSERT_BITS_HIGH(RCC_APB1ENR_DACEN, fake_get(RCC_BASE + RCC_APB1ENR));
     TEST_ASSERT_BITS_HIGH(DAC_CR_EN1, fake_get(DAC_BASE + DAC_CR));
+    TEST_ASSERT_BITS_HIGH(DAC_CR_BOFF1, fake_get(DAC_BASE + DAC_CR)); // the buffer ends at 0.2 V
     TEST_ASSERT_EQUAL_UINT32(0, fake_get(DAC_BASE + DAC_DHR12R1));
     TEST_ASSERT_EQUAL_UINT32(3, fake_get(GPIOA_BASE + GPIO_MODER) >> 8 & 3u);
     dac_write(2048);

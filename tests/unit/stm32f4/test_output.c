@@ -13,6 +13,7 @@
 #define TIM(r) fake_get(TIM1_BASE + (r))
 #define NO_CURRENT 1551u
 #define SUPPLY_12V 1354u
+#define COUNT_mA 16u
 #define A_TICK 10 ///< steps of the current loop
 
 const stm32f4_board_t stm32f4_board = {
@@ -113,6 +114,42 @@ static void test_an_interrupt_that_stays_away_is_a_failure(void) {
     TEST_ASSERT_FALSE(output_is_alive());
 }
 
+// A resistor in the coil's place: what flows after a step follows from its duty.
+static bool fails_within(uint32_t ticks, uint32_t resistance_mohm, int32_t command_mA) {
+    bool has_failed = false;
+    tick(command_mA, true);
+    for (uint32_t i = 0; i < ticks && !has_failed; i++) {
+        for (int j = 0; j < A_TICK; j++) {
+            const uint32_t voltage_mV = 12000u * TIM(TIM1_CCR1) / (TIM(TIM1_ARR) + 1u);
+            measure_counts(NO_CURRENT + voltage_mV * 1000u / resistance_mohm / COUNT_mA,
+                           SUPPLY_12V);
+            interrupt_current();
+        }
+        output_measure(&driver);
+        output_write(command_mA, true);
+        has_failed = driver.has_failed;
+    }
+    return has_failed;
+}
+
+static void test_a_coil_that_is_open_or_short_is_a_failure(void) {
+    static const struct {
+        uint32_t resistance_mohm;
+        int32_t command_mA;
+        bool fails;
+    } cases[] = {{5000, 1000, false},   {6500, 1000, false}, {5000, 0, false}, {5000, 100, false},
+                 {1000000, 1000, true}, {800, 1000, true},   {1800, 1000, false}};
+    for (uint32_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        setUp();
+        tick(0, false);
+        TEST_ASSERT_EQUAL(cases[i].fails,
+                          fails_within(400, cases[i].resistance_mohm, cases[i].command_mA));
+        output_write(0, false);
+        tick(0, false);
+        TEST_ASSERT_FALSE(driver.has_failed); // off: whoever acknowledges gets on
+    }
+}
+
 static void test_only_the_current_interrupts(void) {
     TEST_ASSERT_EQUAL_HEX32(1u << ADC_INTERRUPT, fake_nvic_enabled[0]);
     TEST_ASSERT_EQUAL_HEX32(0, fake_nvic_enabled[1] | fake_nvic_enabled[2]);
@@ -122,6 +159,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_fault_line_that_stays_low_ends_it_and_holds_up_nothing);
     RUN_TEST(test_an_interrupt_that_stays_away_is_a_failure);
+    RUN_TEST(test_a_coil_that_is_open_or_short_is_a_failure);
     RUN_TEST(test_only_the_current_interrupts);
     return UNITY_END();
 }
