@@ -17,9 +17,9 @@
 #define FAULT_MOST_RESTARTS 3u
 
 typedef struct {
-    uint32_t magic; ///< FAULT_MAGIC
-    uint32_t count; ///< faults since power-up or fault_forget; saturates
-    uint32_t exception; ///< 0: no processor's, the watchdog has ended the run
+    uint32_t magic;        ///< FAULT_MAGIC
+    uint32_t count;        ///< faults since power-up or fault_forget; saturates
+    uint32_t exception;    ///< 0: no processor's, the watchdog has ended the run
     uint32_t pc, lr, xpsr; ///< 0 where the stack was not in memory
     uint32_t cfsr, hfsr;   ///< configurable and hard fault status
     uint32_t check;        ///< complement of the sum of the words above

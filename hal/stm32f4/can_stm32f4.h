@@ -1,6 +1,6 @@
 /// CAN1, polled: every standard and extended frame is received, three frames at a time are on their
-/// way out, in the order in which they were put. After bus-off it comes back by itself. Untested on silicon; what
-/// to measure: docs/howto/stm32f4.md.
+/// way out, in the order in which they were put. After bus-off it comes back by itself. Untested on
+/// silicon; what to measure: docs/howto/stm32f4.md.
 #ifndef CAN_STM32F4_H
 #define CAN_STM32F4_H
 

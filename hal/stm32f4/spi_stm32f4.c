@@ -8,7 +8,7 @@
 #define MOST_CLOCK_Hz 8000000u // of the ADXL355 10 MHz, of the IIS3DWB 10 MHz
 #define MOST_DIVIDER 7u        // over 256
 
-#define FIRST_RATE_Hz 1000u    // of the ADXL355
+#define FIRST_RATE_Hz 1000u // of the ADXL355
 
 /// A byte takes 12 us at the slowest clock that is made: more polls than that.
 #define BYTE_POLLS 5000u

@@ -29,8 +29,8 @@ struct hal_accel {
 };
 
 /// bus_Hz: the clock of the SPI's bus. core_Hz: for the pauses of a part's start. Some 10 ms.
-/// An ADXL355 then measures at 1000 Hz. Returns false, with the reason in accel->problem, iff the part does not start; reads then have
-/// no sample.
+/// An ADXL355 then measures at 1000 Hz. Returns false, with the reason in accel->problem, iff the
+/// part does not start; reads then have no sample.
 bool accel_stm32f4_open(hal_accel_t *accel, const accel_wiring_t *wiring, uint32_t bus_Hz,
                         uint32_t core_Hz);
 

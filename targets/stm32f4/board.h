@@ -39,8 +39,8 @@ typedef struct {
     accel_wiring_t accel; ///< ACCEL_NONE: samples come from the bus
     board_output_t output;
     bridge_wiring_t bridge;
-    current_loop_cfg_t loop;   ///< of the bridge; full scale by the coil: 8 times the supply at most,
-                               ///< else a little current looks like an open coil
+    current_loop_cfg_t loop; ///< of the bridge; full scale by the coil: 8 times the supply at most,
+                             ///< else a little current looks like an open coil
     int32_t dac_full_scale_mA; ///< at the DAC's full scale
 } stm32f4_board_t;
 

@@ -152,7 +152,8 @@ static void run_tick(board_t *board, uint32_t ticks) {
         restart(board, params);
     }
     const uint32_t count = node_frames(&common->node, frames);
-    const bus_tick_t said = {frames, count, ticks * (US / (uint32_t)common->node.params.tick_rate_Hz)};
+    const bus_tick_t said = {frames, count,
+                             ticks * (US / (uint32_t)common->node.params.tick_rate_Hz)};
     bus_put(&board->bus, &said, &common->queue.unsent);
     if (free_node_end(common, frames, count)) {
         fault_forget();
@@ -166,7 +167,8 @@ static void run_tick(board_t *board, uint32_t ticks) {
 // asks for what is due.
 static void store_waiting(board_t *board) {
     hal_nvm_memory_t *const memory = &board->memory;
-    const bool erases = memory->phase != NVM_STM32F4_IDLE && (memory->may_erase || !is_driven(board));
+    const bool erases =
+        memory->phase != NVM_STM32F4_IDLE && (memory->may_erase || !is_driven(board));
     const bool has_time = watchdog_set(erases ? ERASE_WATCHDOG_MS : WATCHDOG_MS);
     const bool has_none = board->clocks.source == CLOCK_ABSENT;
     if (erases && !memory->may_erase && (has_time || has_none)) {
@@ -205,7 +207,8 @@ static void start_common(board_t *board) {
 static void start(board_t *board) {
     clocks_start(&board->clocks, stm32f4_board.crystal_Hz, stm32f4_board.crystal_is_external);
     if (board->clocks.source != CLOCK_ABSENT) {
-        (void)watchdog_start(START_WATCHDOG_MS); // it runs in any case, by half a second at the least
+        (void)watchdog_start(
+            START_WATCHDOG_MS); // it runs in any case, by half a second at the least
     }
     board->tick.clock_Hz = board->clocks.apb1_timer_Hz;
     open_inputs();

@@ -15,22 +15,25 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# First match: where a file's own C and C++ tests are.
+# First match: where a file's own C and C++ tests are; (): in the folder that its path names.
 AREAS = (
-    ("tests/unit/", None),
-    ("firmware/comm/", "comm"),
-    ("firmware/", "firmware"),
-    ("hal/linux/", "linux"),
-    ("hal/records/", "hal"),
-    ("hal/stm32f4/", "stm32f4"),
-    ("targets/linux/", "linux"),
-    ("targets/lockstep/", "comm"),
-    ("sim_hil/board/", "board"),
-    ("sim_hil/plant/", "plant"),
-    ("sim_hil/damper/", "plant"),
-    ("sim_hil/link/", "link"),
-    ("sim_hil/python/", "plant"),
-    ("sim_hil/", "bench"),
+    ("tests/unit/", ()),
+    ("firmware/comm/", ("comm",)),
+    ("firmware/", ("firmware",)),
+    ("hal/linux/", ("linux",)),
+    ("hal/records/", ("hal",)),
+    ("hal/parts/", ("linux", "stm32f4")),
+    ("hal/cortex_m/", ("stm32f4",)),
+    ("hal/stm32f4/", ("stm32f4",)),
+    ("targets/stm32f4/", ("stm32f4",)),
+    ("targets/linux/", ("linux",)),
+    ("targets/lockstep/", ("comm",)),
+    ("sim_hil/board/", ("board",)),
+    ("sim_hil/plant/", ("plant",)),
+    ("sim_hil/damper/", ("plant",)),
+    ("sim_hil/link/", ("link",)),
+    ("sim_hil/python/", ("plant",)),
+    ("sim_hil/", ("bench",)),
 )
 # Their sanitized builds are minutes of templates; `all` has them.
 HEAVY_AREAS = ("plant", "bench", "link")
@@ -71,11 +74,11 @@ TIDY = re.compile(r"^(firmware|hal|targets|sim_hil)/(?!.*generated/).*\.(c|cpp)$
 MOST_TIDY = 24  # files: some minutes of two processors
 
 
-def area_of(path: str) -> str | None:
-    for start, area in AREAS:
+def areas_of(path: str) -> tuple[str, ...]:
+    for start, areas in AREAS:
         if path.startswith(start):
-            return area or path.split("/")[2]
-    return None
+            return areas or (path.split("/")[2],)
+    return ()
 
 
 def includes(source: Path, headers: set[str]) -> bool:
@@ -96,11 +99,11 @@ def unit_tests_of(path: str) -> list[str]:
 def units(paths: list[str]) -> list[str]:
     """The lines of kind `unit`."""
     lines = []
-    areas = {area for path in paths if SOURCE.search(path) and (area := area_of(path))}
+    areas = {area for path in paths if SOURCE.search(path) for area in areas_of(path)}
     names = {
         test
         for path in paths
-        if SOURCE.search(path) and area_of(path) == "firmware"
+        if SOURCE.search(path) and "firmware" in areas_of(path)
         for test in unit_tests_of(path)
     }
     is_firmware = any(path.startswith("firmware/") and SOURCE.search(path) for path in paths)
@@ -132,6 +135,8 @@ def python_tests(path: str) -> list[str]:
         names = (parts[2],)
     elif path.startswith(("docs/", "README.md")):
         names = PAGE_TESTS
+    elif path.startswith("targets/stm32f4/"):
+        names = ("docs/test_stm32f4_page.py",)
     elif path.startswith("examples/"):
         names = ("docs",)
     else:
@@ -194,9 +199,9 @@ def source_of(header: Path) -> str | None:
 def area(lines: list[str]) -> list[str]:
     counts: Counter[str] = Counter({"firmware": 0})
     for path, number in counted(lines).items():
-        found = area_of(path) if SOURCE.search(path) else None
-        if found and found not in (*HEAVY_AREAS, "mps2", "support"):
-            counts[found] += number
+        for found in areas_of(path) if SOURCE.search(path) else ():
+            if found not in (*HEAVY_AREAS, "mps2", "support"):
+                counts[found] += number
     return [counts.most_common(1)[0][0]]
 
 

@@ -54,7 +54,7 @@ static void test_it_opens_switched_off_with_its_break_armed(void) {
     TEST_ASSERT_BITS_LOW(TIM1_BDTR_AOE | TIM1_BDTR_BKP, TIM(TIM1_BDTR)); // low cuts, for good
     TEST_ASSERT_BITS_LOW(1u << 8, TIM(TIM1_CR2));                        // OIS1: idles low
     TEST_ASSERT_EQUAL_UINT32(0, TIM(TIM1_CCR1));
-    TEST_ASSERT_EQUAL_HEX32(0, TIM(TIM1_DIER)); // no interrupt whose flag nothing can clear
+    TEST_ASSERT_EQUAL_HEX32(0, TIM(TIM1_DIER));      // no interrupt whose flag nothing can clear
     TEST_ASSERT_BITS_LOW(TIM1_SR_BIF, TIM(TIM1_SR)); // the pin is the timer's before that looks
 }
 

@@ -137,7 +137,7 @@ static void test_a_coil_that_is_open_or_short_is_a_failure(void) {
         uint32_t resistance_mohm;
         int32_t command_mA;
         bool fails;
-    } cases[] = {{5000, 1000, false},   {6500, 1000, false}, {5000, 0, false}, {5000, 100, false},
+    } cases[] = {{5000, 1000, false},   {6500, 1000, false}, {5000, 0, false},   {5000, 100, false},
                  {1000000, 1000, true}, {800, 1000, true},   {1800, 1000, false}};
     for (uint32_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         setUp();
