@@ -97,7 +97,8 @@ bool iis3dwb_start(iis3dwb_t *self, part_bus_t bus, uint32_t range_g, part_probl
     if (!range_code(range_g, &range)) {
         return fail(problem, PART_NO_RANGE);
     }
-    const uint8_t control = (uint8_t)(CTRL1_ON | CTRL1_LOW_PASS | range << CTRL1_RANGE_AT);
+    const uint8_t control =
+        (uint8_t)(CTRL1_ON | CTRL1_LOW_PASS | (uint32_t)range << CTRL1_RANGE_AT);
     const bool is_well = check_part(self, problem) && reset(self, problem) &&
                          set_register(self, CTRL3_C, CTRL3_USE, problem) &&
                          set_register(self, CTRL8_XL, CTRL8_OVER_100, problem) &&

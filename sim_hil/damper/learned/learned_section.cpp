@@ -42,9 +42,10 @@ quiesce_triangles read_triangles(TomlTable keys) {
 }
 
 void read_labels(TomlTable &keys, int *out) {
+    const double count = static_cast<double>(static_cast<int>(quiesce_stf_labels));
     const std::vector<double> labels = keys.numbers("rules", quiesce_stf_rules);
     for (std::size_t r = 0; r < labels.size(); ++r) {
-        if (!(labels[r] >= 0.0 && labels[r] < quiesce_stf_labels &&
+        if (!(labels[r] >= 0.0 && labels[r] < count &&
               labels[r] == static_cast<double>(static_cast<int>(labels[r])))) {
             keys.fail("rules", "expected 25 integers in 0 .. 4, the output's label of each rule");
         }
