@@ -62,6 +62,7 @@ from quiesce_benchmarks.fuzzy.tables import (
     peer_table,
     random_table,
 )
+from quiesce_benchmarks.fuzzy.type2 import Type2Result, measure_type2
 from quiesce_benchmarks.images import built_image
 from quiesce_benchmarks.report import Figure, Report
 from quiesce_benchmarks.seeds import seed_number
@@ -70,8 +71,8 @@ NAME = "fuzzy"
 HELP = "the fuzzy engines: accuracy, instructions, random rule bases, beside their peers"
 DESCRIPTION = """Measure the fuzzy engines, table and straight-line C, on a reference controller and
 on random rule bases: against an exact reference and against libfuzzylite, pyfuzzylite and
-scikit-fuzzy on the same work; and the instructions of an evaluation on the emulated Cortex-M4
-beside libfuzzylite's. The peers are fetched when first wanted."""
+scikit-fuzzy on the same work, type-2 rules against PyIT2FLS; and the instructions of an evaluation
+on the emulated Cortex-M4 beside libfuzzylite's. The peers are fetched when first wanted."""
 
 FALLBACK_EVALUATIONS = 2000
 
@@ -191,6 +192,11 @@ def foreign_figures(tried: Sequence[Tried]) -> list[Figure]:
         ),
         Figure("gaussian_4x4_bytes", gaussian_bytes(), "B", 8192, "lower"),
     ]
+
+
+def type2_figures(result: Type2Result | None) -> list[Figure]:
+    worst = None if result is None else result.worst_error_pct
+    return [Figure("type2_worst_error_pct", worst, "%", 0.1, "lower")]
 
 
 def count_fallbacks(bench: Bench, result: RandomResult | None, limit: int) -> dict[int, TableCost]:
@@ -332,6 +338,11 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
         tried = measure_foreign()
     except UsageError as error:
         absent.append(f"rule files of other projects: {one_line(error)}")
+    type2: Type2Result | None = None
+    try:
+        type2 = measure_type2(args.seed, say)
+    except UsageError as error:
+        absent.append(f"type-2 rules: {one_line(error)}")
     costs, absent_costs = count_costs(args, size, result)
     plot_errors(folder, grid)
     if costs.engines:
@@ -341,7 +352,16 @@ def measure(args: argparse.Namespace, folder: Path) -> Report:
         *cost_figures(costs),
         *random_figures(result),
         *foreign_figures(tried),
+        *type2_figures(type2),
     ]
-    context = {**context_of(args, grid, result, costs), "foreign": rows(tried)}
-    shown = [*tables(grid, result, costs), *([foreign_table(tried)] if tried else [])]
+    context = {
+        **context_of(args, grid, result, costs),
+        "foreign": rows(tried),
+        "type2": None if type2 is None else asdict(type2),
+    }
+    shown = [
+        *tables(grid, result, costs),
+        *([foreign_table(tried)] if tried else []),
+        *([type2.line()] if type2 else []),
+    ]
     return Report(NAME, figures, context, shown, [*absent, *absent_costs])

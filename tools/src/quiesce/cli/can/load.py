@@ -17,10 +17,10 @@ EPILOG = """examples:
   quiesce can load law clipped.table --dry-run --bus socketcan:can0
   quiesce can load tracker damper.table --bus socketcan:can0
 
-KIND: rules (a rule file .fis, .fll or .fcl, compiled for the controller, or a table), pulses (what
-'quiesce tune' wrote: its folder, the NAME.phase.toml in it, or a table), law (any table of a law),
-tracker (map, bank or network of a damper), learnt (what 'quiesce can fetch learnt' wrote). A
-table's file is named .table.
+KIND: rules (a rule file .fis, .fll, .fcl or .t2fis, compiled for the controller, or a table),
+pulses (what 'quiesce tune' wrote: its folder, the NAME.phase.toml in it, or a table), law (any
+table of a law), tracker (map, bank or network of a damper), learnt (what 'quiesce can fetch
+learnt' wrote). A table's file is named .table.
 
 The table is sent whole, checked by the controller, then used from one tick to the next, also while
 it runs; the slew limits what the current does then. What is refused changes nothing. --dry-run asks

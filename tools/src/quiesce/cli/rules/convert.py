@@ -26,6 +26,7 @@ EPILOG = """examples:
 A file that is no plain rule base (other norms, smooth sets, hedges, values that depend on inputs)
 is written as it is, and must answer the same when it is read again. FLL holds nearly all of it;
 FCL has no resolution; FIS has one block of plain rules, and no default.
+T2FIS (sets of type 2) is read and not written: its rules stand twice in the other format.
 What the target format cannot hold is an error that names it. Notes go to stderr: what was
 approximated, with the largest error of each set, and what was taken for granted.
 """
@@ -35,7 +36,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         "convert",
         help="a rule file in another format",
-        description="Read a rule file (.fcl, .fll, .fis) and write it in one of these formats.",
+        description="Read a rule file (.fcl, .fll, .fis, .t2fis) and write it in another format.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -64,7 +64,7 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("a", metavar="A", type=Path, help="rule file: .fcl, .fll or .fis")
+    parser.add_argument("a", metavar="A", type=Path, help="rule file: .fcl, .fll, .fis or .t2fis")
     parser.add_argument("b", metavar="B", type=Path, help="another one")
     parser.add_argument(
         "--threshold", type=real_number(0.0, math.inf), metavar="X",

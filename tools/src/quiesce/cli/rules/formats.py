@@ -28,7 +28,9 @@ MUCH_BETTER = 0.7  # of an error, so that another form is worth its instructions
 
 
 def add_file_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", type=Path, help="rule file (.fcl, .fll, .fis)")
+    parser.add_argument(
+        "file", metavar="FILE", type=Path, help="rule file (.fcl, .fll, .fis, .t2fis)"
+    )
     parser.add_argument(
         "--lsb",
         action="append",

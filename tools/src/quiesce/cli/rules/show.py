@@ -62,7 +62,9 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", metavar="FILE", type=Path, help="rule file: .fcl, .fll or .fis")
+    parser.add_argument(
+        "file", metavar="FILE", type=Path, help="rule file: .fcl, .fll, .fis or .t2fis"
+    )
     parser.add_argument("--run", metavar="RUN", dest="visited", help="CSV file, trace or scenario")
     parser.add_argument(
         "--column", action="append", default=[], metavar="INPUT=COLUMN[*SCALE]",

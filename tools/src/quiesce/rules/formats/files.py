@@ -11,6 +11,7 @@ from quiesce.rules.formats.fll import read_fll
 from quiesce.rules.formats.same import difference
 from quiesce.rules.formats.same_system import system_difference
 from quiesce.rules.formats.scan import Source, Token
+from quiesce.rules.formats.t2fis import read_t2fis
 from quiesce.rules.formats.write_fcl import fcl_text
 from quiesce.rules.formats.write_fis import fis_text
 from quiesce.rules.formats.write_fll import fll_text
@@ -20,10 +21,10 @@ from quiesce.rules.formats.write_system_fll import fll_system_text
 from quiesce.rules.model import RuleBase
 from quiesce.rules.system.model import System
 
-READERS = {"fcl": read_fcl, "fll": read_fll, "fis": read_fis}
+READERS = {"fcl": read_fcl, "fll": read_fll, "fis": read_fis, "t2fis": read_t2fis}
 WRITERS = {"fcl": fcl_text, "fll": fll_text, "fis": fis_text}
 SYSTEM_WRITERS = {"fcl": fcl_system_text, "fll": fll_system_text, "fis": fis_system_text}
-FORMATS = tuple(READERS)
+FORMATS = tuple(WRITERS)  # that are read and written
 MAX_BYTES = 1 << 20
 MAX_SEGMENTS = 128  # of a chain; at least 2
 
@@ -74,8 +75,8 @@ def read_system(path: Path) -> System:
 
 def format_of(path: Path) -> str:
     format = path.suffix.lower().removeprefix(".")
-    if format not in FORMATS:
-        raise UsageError(f"{shown(path)}: not a rule file; its name ends in .{', .'.join(FORMATS)}")
+    if format not in READERS:
+        raise UsageError(f"{shown(path)}: not a rule file; its name ends in .{', .'.join(READERS)}")
     return format
 
 

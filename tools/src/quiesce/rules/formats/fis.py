@@ -34,7 +34,7 @@ from quiesce.rules.formats.scan import (
     Token,
     scan,
 )
-from quiesce.rules.formats.shapes import FIS_SHAPES, SHOULDERS
+from quiesce.rules.formats.shapes import FIS_SHAPES, SHOULDERS, Shape
 from quiesce.rules.model import AND, CENTROID, OR, WEIGHTED_SUM
 from quiesce.rules.system import model
 from quiesce.rules.system.model import Block, Conclusion, Expression, Join, Proposition
@@ -112,6 +112,12 @@ def head_of(stream: Stream) -> Token:
 
 
 class FisReader:
+    """of_system, of_output: keys besides those that every variable has."""
+
+    of_system: tuple[str, ...] = SYSTEM_KEYS
+    of_output: tuple[str, ...] = ("Enabled", "Default", "LockPrevious", "LockRange")
+    is_term = re.compile("MF[0-9]+")
+
     def __init__(self, source: Source, options: Options) -> None:
         self.source = source
         self.builder = Builder(source, options)
@@ -135,7 +141,7 @@ class FisReader:
             self.section(section)
         self.check_complete(first)
         self.check_counts()
-        drafts = [self.rule(line) for line in self.rule_lines or []]
+        drafts = [draft for line in self.rule_lines or [] for draft in self.drafts(line)]
         for draft in drafts:
             self.check_operator(draft, AND, "AndMethod", "min")
             self.check_operator(draft, OR, "OrMethod", "max")
@@ -175,7 +181,8 @@ class FisReader:
         for tokens in section.lines:
             stream = Stream(self.source, tokens)
             key = stream.expect_kind(NAME, "'KEY=VALUE'")
-            if re.sub("^MF[0-9]+$", "MF", key.text) not in allowed:
+            is_term = "MF" in allowed and self.is_term.fullmatch(key.text)
+            if key.text not in allowed and not is_term:
                 words = ", ".join(allowed)
                 raise self.source.error(key, f"no key {key.shown()} here", f"one of {words}")
             if key.text in found:
@@ -193,7 +200,7 @@ class FisReader:
         return Token(STRING, token.text[1:-1], token.offset)
 
     def system(self, section: Section) -> None:
-        for key, stream in self.entries(section, SYSTEM_KEYS).items():
+        for key, stream in self.entries(section, self.of_system).items():
             if key in COUNTS:
                 self.counts[key] = stream.expect_kind(NUMBER, "a number")
             elif key == "Version":
@@ -224,7 +231,7 @@ class FisReader:
             self.methods[key] = token
 
     def variable(self, section: Section, is_input: bool) -> None:
-        others = ("Enabled",) if is_input else ("Enabled", "Default", "LockPrevious", "LockRange")
+        others = ("Enabled",) if is_input else self.of_output
         entries = self.entries(section, ("Name", "Range", "NumMFs", "MF", *others))
         for key in ("Name", "Range"):
             if key not in entries:
@@ -267,16 +274,26 @@ class FisReader:
         return token.text == "1"
 
     def terms(self, variable: Variable, entries: dict[str, Stream]) -> None:
+        """Each MF in its turn."""
         streams = [(k, s) for k, s in entries.items() if k.startswith("MF")]
-        for number, (key, stream) in enumerate(streams, start=1):
-            if key != f"MF{number}":
-                raise self.source.error(stream.tokens[0], f"found '{key}'", f"'MF{number}'")
+        sides = self.sides(variable)
+        for i, (key, stream) in enumerate(streams):
+            expected = f"MF{i // len(sides) + 1}{sides[i % len(sides)]}"
+            if key != expected:
+                raise self.source.error(stream.tokens[0], f"found '{key}'", f"'{expected}'")
             self.term(variable, stream)
+        if len(streams) % len(sides):
+            last, at = streams[-1][0], streams[-1][1].tokens[0]
+            raise self.source.error(at, f"'{last}' alone", f"'{last[:-1]}{sides[-1]}' behind it")
         if "NumMFs" in entries:
             stream = entries["NumMFs"]
             count = stream.expect_kind(NUMBER, "a number")
             self.finish_line(stream)
-            self.check_count("NumMFs", count, len(streams))
+            self.check_count("NumMFs", count, len(streams) // len(sides))
+
+    def sides(self, variable: Variable) -> tuple[str, ...]:
+        """What follows the number of a term, for each of its sets."""
+        return ("",)
 
     def term(self, variable: Variable, stream: Stream) -> None:
         name = self.text(stream, "a name in quotes")
@@ -299,12 +316,15 @@ class FisReader:
                 raise self.source.error(at, f"{len(values)} numbers of {at.text}", "pairs")
             pairs = list(zip(values[::2], values[1::2], strict=True))
             return Straight(at.text, self.builder.points(at, pairs, [at] * len(pairs)))
-        if at.text not in FIS_SHAPES:
-            words = ", ".join((*(() if variable.is_input else ("constant", "linear")), *FIS_SHAPES))
-            raise self.source.error(at, f"membership function {at.shown()}", f"one of {words}")
-        shape = FIS_SHAPES[at.text]
+        shape = self.shape_of(at, () if variable.is_input else ("constant", "linear"))
         values = self.vector(stream, shape.parameters, at.text in SHOULDERS)
         return self.builder.shape(at, shape, values)
+
+    def shape_of(self, at: Token, others: tuple[str, ...]) -> Shape:
+        if at.text not in FIS_SHAPES:
+            words = ", ".join((*others, *FIS_SHAPES))
+            raise self.source.error(at, f"membership function {at.shown()}", f"one of {words}")
+        return FIS_SHAPES[at.text]
 
     def formula(self, at: Token, stream: Stream) -> Formula:
         """All between the brackets."""
@@ -428,6 +448,10 @@ class FisReader:
         if self.source.number(token) != actual:
             what = f"{key} is {token.text}, there are {actual}"
             raise self.source.error(token, what, f"{actual}")
+
+    def drafts(self, tokens: list[Token]) -> list[Draft]:
+        """Of one line."""
+        return [self.rule(tokens)]
 
     def rule(self, tokens: list[Token]) -> Draft:
         """`1 -2, 3 (0.5) : 1`: sets, terms, weight, connective."""
