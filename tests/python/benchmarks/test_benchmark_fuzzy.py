@@ -47,9 +47,10 @@ FIGURES = [
     "compiled_centroid_worst_instr", "runtime_centroid_worst_instr", "product_and_instr",
     "sugeno_first_order_instr", "product_max_instr", "system_gaussian_4x4_instr",
     "system_sugeno_4x4_instr", "system_mamdani_100_instr", "system_mamdani_1000_instr",
-    "peer_fuzzylite_singleton_instr", "peer_fuzzylite_centroid_instr", "random_bases_tried",
-    "random_bases_compiled_pct", "random_bases_beyond_bound", "foreign_files_compiled_pct",
-    "foreign_worst_error_pct", "gaussian_4x4_bytes",
+    "surface_instr", "peer_fuzzylite_singleton_instr", "peer_fuzzylite_centroid_instr",
+    "random_bases_tried", "random_bases_compiled_pct", "random_bases_beyond_bound",
+    "foreign_files_compiled_pct", "foreign_worst_error_pct", "gaussian_4x4_bytes",
+    "type2_worst_error_pct",
 ]  # fmt: skip
 
 
