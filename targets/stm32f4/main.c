@@ -7,6 +7,7 @@
 #include "fault.h"
 #include "free_node.h"
 #include "idle.h"
+#include "image_info.h"
 #include "nvic.h"
 #include "nvm_stm32f4.h"
 #include "output.h"
@@ -41,6 +42,8 @@ typedef struct {
 } board_t;
 
 static hal_uart_t console;
+
+extern const image_info_t image_info; // info.c
 
 extern const uint32_t stack_limit[]; // image.ld
 
@@ -206,6 +209,9 @@ static void start_common(board_t *board) {
 
 static void start(board_t *board) {
     clocks_start(&board->clocks, stm32f4_board.crystal_Hz, stm32f4_board.crystal_is_external);
+    if (image_state(&image_info) == IMAGE_BROKEN) {
+        fault_stay_silent();
+    }
     if (board->clocks.source != CLOCK_ABSENT) {
         (void)watchdog_start(
             START_WATCHDOG_MS); // it runs in any case, by half a second at the least
