@@ -8,6 +8,7 @@
 #   tables   what its benchmark loads tables into
 #   ports    the golden traces for every processor    budget   the images that a board's budget is held by
 #   coil     the current loop on its coils, and records through power cuts
+#   compilers  nothing yet: the command compiles by itself; boards  images of boards that are bought
 #   page     nothing compiled: what draws the page of `quiesce live`; node: what its benchmark shows
 
 # needs_of COMMAND [ACTION] ...: of `quiesce`; nothing where it starts without a build. A command
@@ -32,6 +33,8 @@ needs_of() {
     "can "* | "report "*) ;;
     "fmu "*) echo bench fmu ;;
     "commission "*) echo bench plant dampers ;;
+    "firmware build") echo compilers ;;
+    "firmware "*) ;;
     "live "*) needs_of_live "$@" ;;
     "completion "*) ;;
     esac
@@ -72,7 +75,7 @@ needs_of_benchmark() {
     laws) echo bench plant dampers ;;
     control | sweep) echo bench plant ;;
     live) echo bench plant dampers node page ;;
-    board) echo bench ports budget coil ;;
+    board) echo bench ports budget coil boards ;;
     trust) echo bench images trust ;;
     tables) echo bench plant dampers images linux tables ;;
     *) echo bench plant dampers ;;
@@ -107,6 +110,8 @@ needs_build() {
         images) mps2+=("${DRIVEN_IMAGES[@]}") ;;
         ports) needs_ports ;;
         budget) build_preset budget quiesce_mps2_node quiesce_mps2_shm node_cost current_cost ;;
+        compilers) ;;
+        boards) build_preset stm32f4 ;;
         coil) host+=(coil_steps test_nvm_cuts) ;;
         esac
     done

@@ -10,7 +10,8 @@ import re
 import subprocess
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
 
 import can
 import pytest
@@ -18,6 +19,8 @@ import serial
 from can_protection import encode, load_database
 from conftest import ROOT, require
 from node_rig import FAULT_ID, MOST_RESTARTS
+from quiesce.firmware.image import read_image, sealed
+from quiesce.firmware.release import sealed_elf
 
 DATABASE = load_database()
 DEADLINE_S = 120.0
@@ -80,9 +83,16 @@ class Console:
         self.monitor.stdin.flush()
 
 
+def compiled(name: str) -> Path:
+    return require(ROOT / f"build/stm32f4/targets/stm32f4/quiesce_stm32f4_{name}.elf")
+
+
+def running(name: str, *options: str) -> AbstractContextManager[Console]:
+    return running_image(compiled(name), *options)
+
+
 @contextmanager
-def running(name: str, *options: str) -> Iterator[Console]:
-    image = require(ROOT / f"build/stm32f4/targets/stm32f4/quiesce_stm32f4_{name}.elf")
+def running_image(image: Path, *options: str) -> Iterator[Console]:
     qemu = subprocess.Popen(
         ["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", *options]
         + ["-serial", "pty", "-monitor", "stdio", "-kernel", str(image)],
@@ -114,6 +124,29 @@ def test_image_of_a_board_boots_and_answers_on_its_console(board: str) -> None:
         demand = console.until("CurrentDemand")
         assert demand["driver_is_enabled"] == 0
         assert console.until("Identification")["interface_version"] == 3
+
+
+def sealed_image(tmp_path: Path) -> tuple[Path, bytes]:
+    """A file in tmp_path for a sealed image, and what goes into it."""
+    elf = compiled("olimex_h405")
+    return tmp_path / "sealed.elf", sealed_elf(elf.read_bytes(), sealed(read_image(elf).payload))
+
+
+def test_a_sealed_image_runs(tmp_path: Path) -> None:
+    file, content = sealed_image(tmp_path)
+    file.write_bytes(content)
+    assert read_image(file).is_whole
+    with running_image(file) as console:
+        assert console.ask("READ") == "DONE"
+
+
+def test_an_image_that_is_not_what_was_sealed_stays_silent(tmp_path: Path) -> None:
+    file, content = sealed_image(tmp_path)
+    name = b"olimex_h405\0"
+    assert content.count(name) == 1
+    file.write_bytes(content.replace(name, b"olimex_h406\0"))
+    with running_image(file) as console:
+        assert_silent(console)
 
 
 def test_python_can_reads_the_console() -> None:

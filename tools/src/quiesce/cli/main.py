@@ -46,6 +46,7 @@ GROUPS = {
         ("table", "table.command", "table files: show, check, diff, stamp"),
         ("can", "can.command", "CAN bus: monitor, record, decode, parameters, emergency stop"),
         ("fmu", "fmu.command", "plant, damper and controller for co-simulation (FMI 2 and 3)"),
+        ("firmware", "firmware.command", "images of boards: build, info, verify, flash"),
         ("commission", "commission", "from an unknown structure to a verified controller, guided"),
         ("live", "live", "a page on which a controller is seen, stopped and commanded"),
     ),

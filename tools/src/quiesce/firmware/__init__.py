@@ -1,0 +1,1 @@
+"""Images of boards: built, sealed, signed, read, verified, flashed."""

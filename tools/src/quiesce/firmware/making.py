@@ -1,0 +1,84 @@
+"""Compiles the image of a board, by CMake, out of a checkout of the project."""
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from quiesce.base.errors import UsageError, one_line
+from quiesce.base.nearest import meant
+from quiesce.base.paths import build_folder, is_installed, root, shown
+from quiesce.table.file import SUFFIX, read_file
+
+PRESET = "stm32f4"
+BOARDS_FILE = "targets/stm32f4/boards.cmake"
+Say = Callable[[str], None]
+STEP = re.compile(r"\[(\d+)/(\d+)\]")
+
+
+def boards() -> list[str]:
+    """Names of the boards with an image. UsageError where this is no checkout."""
+    if is_installed():
+        raise UsageError(
+            "images are compiled out of a checkout of the project, which this package is not; "
+            "`quiesce firmware info`, `verify` and `flash` work here"
+        )
+    text = (root() / BOARDS_FILE).read_text(encoding="utf-8")
+    return re.findall(r"^quiesce_stm32f4_board\((\w+)", text, re.MULTILINE)
+
+
+def require_board(name: str) -> None:
+    known = boards()
+    if name not in known:
+        near = meant(name, known)
+        raise UsageError(f"no board '{name}'; there are {', '.join(known)}{near}")
+
+
+def make(board: str, tables: Sequence[Path], say: Say) -> Path:
+    """The image's ELF file. tables: linked in, in the place of those that ship. say: is told how
+    far it is. UsageError where something is missing, with what the compiler said last."""
+    require_board(board)
+    for table in tables:
+        if table.suffix != SUFFIX:
+            raise UsageError(f"{shown(table)}: no table file; its name ends in {SUFFIX}")
+        read_file(table)
+    for tool in ("cmake", "ninja", "arm-none-eabi-gcc"):
+        if shutil.which(tool) is None:
+            raise UsageError(f"{tool} is not installed; run ./tools/setup")
+    folder = build_folder() / "firmware" / "cmake"
+    linked = ";".join(str(table.resolve()) for table in tables)
+    configure = ["cmake", "--preset", PRESET, "-B", str(folder), f"-DQUIESCE_TABLES={linked}"]
+    run(configure, "configuring", say)
+    target = f"quiesce_stm32f4_{board}"
+    run(["cmake", "--build", str(folder), "--target", target], f"compiling {board}", say)
+    return folder / "targets/stm32f4" / f"{target}.elf"
+
+
+def run(command: Sequence[str], what: str, say: Say) -> None:
+    environment = {**os.environ}
+    if shutil.which("ccache"):
+        environment |= {"CMAKE_C_COMPILER_LAUNCHER": "ccache", "CCACHE_BASEDIR": str(root())}
+    process = subprocess.Popen(
+        command, cwd=root(), env=environment, text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    assert process.stdout is not None
+    lines: list[str] = []
+    for line in process.stdout:
+        lines.append(line.rstrip())
+        step = STEP.match(line)
+        if step:
+            say(f"{what}: {step[1]} of {step[2]}")
+    if process.wait() != 0:
+        said = [line for line in lines if "error" in line.lower()] or lines[-1:]
+        raise UsageError(f"{what} failed: {one_line(said[0] if said else 'nothing was said')}")
+
+
+def compiler_version() -> str:
+    """Of the cross compiler, `arm-none-eabi-gcc 12.2.1`."""
+    done = subprocess.run(
+        ["arm-none-eabi-gcc", "-dumpfullversion"], capture_output=True, text=True, check=True
+    )
+    return done.stdout.strip()
