@@ -13,10 +13,11 @@ from pathlib import Path
 import pytest
 from campaign_files import HEAD, SAMPLING, SMALL, write
 from quiesce.base.errors import UsageError
+from quiesce.base.pools import LOCAL, Pool, Processes, pool_of
+from quiesce.base.runner import ChunkSize
 from quiesce.campaign.facts import facts_of
 from quiesce.campaign.file import Campaign, read_campaign
-from quiesce.campaign.pools import LOCAL, Pool, Processes, pool_of
-from quiesce.campaign.run import ChunkSize, run_missing
+from quiesce.campaign.run import run_missing
 from quiesce.campaign.store import NAME, Store, claimed
 from quiesce.campaign.worker import TRIES, Worker, run_chunk
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import tomli_w
 from quiesce.base.paths import default_plant
+from quiesce.base.pools import Pool
 from quiesce.campaign.facts import facts_of
 from quiesce.campaign.file import Campaign, read_campaign
-from quiesce.campaign.pools import Pool
 from quiesce.campaign.run import run_missing
 from quiesce.campaign.store import Store
 

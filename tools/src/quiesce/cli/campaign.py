@@ -12,12 +12,12 @@ from quiesce.base.atomic import output_files
 from quiesce.base.command import whole_number
 from quiesce.base.errors import EXIT_FAILED, EXIT_INTERRUPTED, UsageError
 from quiesce.base.paths import results_folder, results_text, shown
+from quiesce.base.pools import Pool, pool_of
 from quiesce.base.progress import say
 from quiesce.base.table import format_table
 from quiesce.campaign import tables
 from quiesce.campaign.facts import facts_of
 from quiesce.campaign.file import Campaign, read_campaign
-from quiesce.campaign.pools import Pool, pool_of
 from quiesce.campaign.run import run_missing
 from quiesce.campaign.store import NAME, Store, claimed
 from quiesce.campaign.summary import Summary, as_data, summary_of

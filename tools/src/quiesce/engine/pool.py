@@ -1,10 +1,11 @@
 """Pieces of work on the bench, some at a time."""
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
+from quiesce.base.pools import Threads
 from quiesce.base.progress import Progress
+from quiesce.base.runner import run_each
 from quiesce.engine.bench import Bench
 
 WORKERS = 2
@@ -13,21 +14,25 @@ Done = TypeVar("Done")
 
 
 def run_all(
-    bench: Bench, tasks: Sequence[Callable[[], Done]], workers: int = WORKERS
+    bench: Bench | None, tasks: Sequence[Callable[[], Done]], workers: int = WORKERS
 ) -> list[Done]:
-    """Results in order. Where one fails, those under way are ended and the others left out."""
-    pool = ThreadPoolExecutor(workers)
+    """Results in order. Where one fails, those under way are ended and the others left out. bench:
+    None where the tasks need none."""
+    pool = Threads(workers)
+    found: dict[int, Done] = {}
     try:
-        return [future.result() for future in [pool.submit(task) for task in tasks]]
+        run_each(pool, [(task, ()) for task in tasks], found.__setitem__)
     except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        bench.stop()
+        pool.cancel()
+        if bench:
+            bench.stop()
         raise
     finally:
-        pool.shutdown()
+        pool.close()
+    return [found[number] for number in range(len(tasks))]
 
 
-def run_work(bench: Bench, pieces: Sequence[Work], workers: int = WORKERS) -> list[Any]:
+def run_work(bench: Bench | None, pieces: Sequence[Work], workers: int = WORKERS) -> list[Any]:
     """Results in order, progress on stderr."""
     progress = Progress(len(pieces))
 

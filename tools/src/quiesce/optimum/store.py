@@ -9,14 +9,16 @@ import hashlib
 import json
 import tempfile
 from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
+from quiesce.base.pools import Processes
 from quiesce.base.progress import Progress
+from quiesce.base.runner import run_each
 from quiesce.optimum.bound import INTERVALS, STARTS, bound
 from quiesce.optimum.constant import best_constant
 from quiesce.optimum.goal import ACCEL, AMP, NO_WORSE, Reference, reference
@@ -160,11 +162,13 @@ def compute_all(store: BoundStore, cases: list[Case], workers: int) -> None:
     """Computes what the store does not hold yet."""
     todo = [case for case in cases if not store.has(_key(case), case.goals)]
     progress = Progress(len(todo))
-    with ProcessPoolExecutor(workers) as pool:
-        running = {pool.submit(compute, case): case for case in todo}
-        for future in as_completed(running):
-            store.put(*future.result())
-            progress.done(running[future].name)
+
+    def keep(number: int, result: tuple[str, dict[str, Any]]) -> None:
+        store.put(*result)
+        progress.done(todo[number].name)
+
+    with closing(Processes(workers)) as pool:
+        run_each(pool, [(compute, (case,)) for case in todo], keep)
 
 
 def _key(case: Case) -> str:

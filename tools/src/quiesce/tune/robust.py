@@ -1,15 +1,15 @@
 """How a law does on plants that it was not tuned for: its table alone, and adapting."""
 
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
-from quiesce.base.progress import Progress
 from quiesce.engine.bench import Bench, setting_options
+from quiesce.engine.pool import run_work
 from quiesce.engine.trace import Trace, read_trace
 from quiesce.plant.library import Plant
 from quiesce.plant.variant import Variant
@@ -23,7 +23,6 @@ from quiesce.tune.work import VariantWork, variant_plant
 
 ADAPTED_s = 120.0
 MEASURED_s = 2.0
-THREADS = 2
 
 
 @dataclass(frozen=True)
@@ -83,24 +82,15 @@ def sine_text(plant: Path, freq_Hz: float, duration_s: float) -> str:
 
 def cells(plan: TunePlan, store: TuneStore, law: PhaseLaw, loop: ClosedLoop | None) -> list[Cell]:
     """loop: None leaves the adapting firmware out."""
-    wanted = [(variant, freq_Hz) for variant in plan.variants for freq_Hz in plan.shown_Hz]
-    progress = Progress(len(wanted))
-
-    def make(one: tuple[Variant, float]) -> Cell:
-        cell = _cell(plan, store, law, loop, *one)
-        progress.done(f"closed loop {one[0].name} {one[1]:g} Hz")
-        return cell
-
-    pool = ThreadPoolExecutor(THREADS)
-    try:
-        return [future.result() for future in [pool.submit(make, one) for one in wanted]]
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        if loop:
-            loop.bench.stop()
-        raise
-    finally:
-        pool.shutdown()
+    pieces = [
+        (
+            f"closed loop {variant.name} {freq_Hz:g} Hz",
+            partial(_cell, plan, store, law, loop, variant, freq_Hz),
+        )
+        for variant in plan.variants
+        for freq_Hz in plan.shown_Hz
+    ]
+    return run_work(loop.bench if loop else None, pieces)
 
 
 def _cell(

@@ -1,22 +1,19 @@
-"""The pieces of work of `quiesce tune`: what each computes, and a pool that computes many."""
+"""The pieces of work of `quiesce tune`: what each computes, and many of them by processes."""
 
 import hashlib
-import multiprocessing
 import os
-import signal
 import tempfile
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from quiesce.base.errors import BenchFailure
+from quiesce.base.pools import Processes
 from quiesce.base.progress import Progress
+from quiesce.base.runner import run_each
 from quiesce.optimum.bound import bound
 from quiesce.optimum.constant import best_constant
 from quiesce.optimum.goal import ACCEL, AMP, NO_WORSE, Goal, Reference, reference
@@ -213,33 +210,10 @@ def compute_all(store: TuneStore, pieces: Sequence[Work], jobs: int) -> None:
     progress = Progress(len(todo))
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
-    pool = ProcessPoolExecutor(min(jobs, len(todo)), multiprocessing.get_context("spawn"))
-    try:
-        with _without_interrupts():
-            running = {pool.submit(compute, work): work for work in todo}
-        for future in as_completed(running):
-            store.put(running[future].key, future.result())
-            progress.done(running[future].key)
-    except BrokenProcessPool:
-        raise BenchFailure("a process of the optimisation died; the same command goes on") from None
-    except BaseException:
-        _stop(pool)
-        raise
-    finally:
-        pool.shutdown()
 
+    def keep(number: int, result: Any) -> None:
+        store.put(todo[number].key, result)
+        progress.done(todo[number].key)
 
-@contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Processes that start meanwhile never see Ctrl-C: their parent alone ends them."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _stop(pool: ProcessPoolExecutor) -> None:
-    pool.shutdown(wait=False, cancel_futures=True)
-    for process in multiprocessing.active_children():
-        process.terminate()
+    with closing(Processes(min(jobs, len(todo)))) as pool:
+        run_each(pool, [(compute, (work,)) for work in todo], keep)

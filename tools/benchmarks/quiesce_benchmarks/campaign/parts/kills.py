@@ -12,8 +12,8 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from quiesce.base.pools import LOCAL, pool_of
 from quiesce.base.progress import Progress
-from quiesce.campaign.pools import LOCAL, pool_of
 from quiesce.campaign.store import NAME
 
 from quiesce_benchmarks.campaign.cases import campaign_in, digest_on, open_store

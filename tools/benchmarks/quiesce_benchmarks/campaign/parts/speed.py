@@ -7,10 +7,10 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from quiesce.base.pools import LOCAL, pool_of
 from quiesce.base.progress import Progress
 from quiesce.base.table import format_table
 from quiesce.campaign.file import Campaign
-from quiesce.campaign.pools import LOCAL, pool_of
 from quiesce.campaign.worker import Worker
 
 from quiesce_benchmarks.campaign.cases import CASE_s, campaign_in, digest_on

@@ -1,13 +1,13 @@
-"""Where cases run: processes of this machine, or the workers of a Dask cluster."""
+"""Where pieces of work run: threads or processes of this machine, or a Dask cluster's workers."""
 
 import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
-from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
 from quiesce.base.errors import BenchFailure, UsageError
@@ -18,7 +18,7 @@ CLOSING_s = 20.0
 
 
 class Pool(Protocol):
-    """workers: how many cases run at a time. lost: what a future raises whose worker is gone."""
+    """workers: how many pieces run at a time. lost: what a future raises whose worker is gone."""
 
     workers: int
     lost: tuple[type[BaseException], ...]
@@ -30,6 +30,29 @@ class Pool(Protocol):
 
     def close(self) -> None:
         """Ends what is under way."""
+
+
+class Threads:
+    """Of this process, which starts programs that do the work. None is lost."""
+
+    lost: tuple[type[BaseException], ...] = ()
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+        self._pool = ThreadPoolExecutor(workers)
+
+    def submit(self, task: Callable[..., Any], *words: Any) -> Future[Any]:
+        return self._pool.submit(task, *words)
+
+    def renew(self) -> None:
+        raise AssertionError("no thread is lost")
+
+    def cancel(self) -> None:
+        """What has not begun never does."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def close(self) -> None:
+        self._pool.shutdown(cancel_futures=True)
 
 
 class Processes:
@@ -47,7 +70,8 @@ class Processes:
         return ProcessPoolExecutor(self.workers, context, _begin)
 
     def submit(self, task: Callable[..., Any], *words: Any) -> Future[Any]:
-        return self._pool.submit(task, *words)
+        with _without_interrupts():
+            return self._pool.submit(task, *words)
 
     def renew(self) -> None:
         self.close()
@@ -59,6 +83,16 @@ class Processes:
         for process in processes:
             process.terminate()
         self._pool.shutdown()
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Processes that start meanwhile do not see Ctrl-C before they can ignore it."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin() -> None:
