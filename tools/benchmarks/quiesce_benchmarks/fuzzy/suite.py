@@ -2,13 +2,15 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
 
 from quiesce.base.errors import BenchFailure, UsageError, one_line
+from quiesce.base.pools import Threads
 from quiesce.base.progress import Progress
+from quiesce.base.runner import mapped
 from quiesce.rules.formats.files import write_text
 from quiesce.rules.integers.emit import why_not_straight
 
@@ -146,8 +148,8 @@ def measure_random(seed: int, budget: Budget, say: Say) -> RandomResult:
         progress.done(f"random base {number}")
         return result
 
-    with ThreadPoolExecutor(WORKERS) as pool:
-        found = list(pool.map(judge, range(budget.bases)))
+    with closing(Threads(WORKERS)) as pool:
+        found = mapped(pool, judge, range(budget.bases))
     outcomes = [one for one in found if isinstance(one, Outcome)]
     refused = {i: one for i, one in enumerate(found) if isinstance(one, str)}
     absent = ask_peers(outcomes, budget, say)

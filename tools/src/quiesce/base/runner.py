@@ -93,6 +93,13 @@ def _submitted(pool: Pool, call: Call, chunk: list[int], left: deque[int]) -> Fu
         raise
 
 
+def mapped(pool: Pool, task: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
+    """Results in the order of the items."""
+    found: dict[int, Any] = {}
+    run_each(pool, [(task, (item,)) for item in items], found.__setitem__)
+    return [found[number] for number in range(len(items))]
+
+
 def run_each(pool: Pool, calls: Sequence[Call], keep: Callable[[int, Any], None]) -> None:
     """Pieces that take long each. keep: a piece's place among them, and its result."""
     run_pieces(

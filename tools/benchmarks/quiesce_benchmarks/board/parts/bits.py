@@ -3,11 +3,13 @@
 import hashlib
 import json
 import subprocess
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.base.paths import build_folder, root
+from quiesce.base.pools import Threads
+from quiesce.base.runner import mapped
 from quiesce.base.table import format_table
 from quiesce.engine.bench import ending
 
@@ -85,8 +87,8 @@ def measure(effort: Effort) -> Measured:
         except (BenchFailure, UsageError) as error:
             return str(error)
 
-    with ThreadPoolExecutor(WORKERS) as pool:
-        found = dict(zip(TARGETS, pool.map(hash_on, TARGETS), strict=True))
+    with closing(Threads(WORKERS)) as pool:
+        found = dict(zip(TARGETS, mapped(pool, hash_on, list(TARGETS)), strict=True))
     rows = [[TARGETS[preset], preset, sha] for preset, sha in found.items()]
     same = sum(sha == recorded for sha in found.values())
     table = format_table(["target", "preset", "SHA-256 of its golden traces"], rows, left=(0, 1, 2))

@@ -7,11 +7,13 @@ search on the same earthquakes, for the same cost; both are judged on other eart
 
 import tempfile
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from quiesce.base.pools import Processes
+from quiesce.base.runner import mapped
 from quiesce.base.searches.methods import METHODS
 from quiesce.base.table import format_table
 
@@ -124,8 +126,8 @@ def measure(effort: Effort) -> Measured:
         for repeat in range(repeats)
         for name in LAWS
     ]
-    with ProcessPoolExecutor(2) as pool:
-        found = list(pool.map(trial, works))
+    with closing(Processes(2)) as pool:
+        found = mapped(pool, trial, works)
     by_law = {name: [one for one in found if one["law"] == name] for name in LAWS}
     peaks = {name: np.concatenate([one["peaks"] for one in by_law[name]]) for name in LAWS}
     ratios = peaks[FUZZY] / peaks[CLIPPED]
