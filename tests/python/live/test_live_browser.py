@@ -1,5 +1,6 @@
 """The page of `quiesce live` in Chromium, beside a real controller."""
 
+import re
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -72,6 +73,26 @@ def test_every_sample_of_eight_signals_is_drawn(controller: Controller, tmp_path
     assert max(found["undrawn"]) <= 500  # what came since the last frame
     assert page.end() == 0
     network.end()
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [("fuzzy", r"Darkest: 5 A\. At \d+\.\d\d Hz and \S+ m/s2 RMS it says \S+ A"),
+     ("phase", r"Without a lock: 5 A\. At \d+\.\d\d Hz: \S+ A for \d+ degrees around \d+")],
+)  # fmt: skip
+def test_the_law_s_table_is_drawn_with_the_point_at_which_it_works(
+    tmp_path: Path, law: str, words: str
+) -> None:
+    page = Page(tmp_path, "--sim", "--law", law)
+    with opened(page.address) as browser:
+        text(browser, "#facts", lambda said: "RUN" in said)
+        browser.do("press", "#take")
+        text(browser, "#holder", lambda said: "You hold control" in said)
+        browser.do("press", "#law-fetch")
+        text(browser, "#law-here", lambda said: re.search(words, said) is not None)
+        assert browser.do("painted", "#law-picture") > (20 if law == "fuzzy" else 2)
+        assert [one for one in browser.do("axe") if one[0] in SERIOUS] == []
+    assert page.end() == 0
 
 
 @pytest.mark.parametrize("way", ["click", "key"])

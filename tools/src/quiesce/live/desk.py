@@ -16,10 +16,11 @@ from quiesce.can.traffic import Traffic
 from quiesce.can.transfer import BACK
 from quiesce.live.freeze import FirstFault
 from quiesce.live.jobs import Jobs
+from quiesce.live.law_view import View
 from quiesce.live.protocol import Block
 from quiesce.live.recordings import Recordings
 from quiesce.live.rings import Ring
-from quiesce.live.series import FREQUENCY, catalogue, preferred
+from quiesce.live.series import FREQUENCY, RMS, catalogue, preferred
 from quiesce.live.spectrum import Spectra, SpectrumPlan
 from quiesce.live.stop import Pressed, Stop
 
@@ -61,6 +62,7 @@ class Desk:
         self.traffic = Traffic(database)
         self.newest_s = math.nan  # arrival of the newest frame that can be trusted
         self.before = Before()
+        self.law: View | None = None  # the law's table, as it was fetched last
         self.rings = {one.frame_id: Ring(RING_SAMPLES) for one in self.series}
         self.spectra = Spectra(self.series, self.rings)
         self._raw = RawStream(link, database, self.preamble) if is_raw else None
@@ -175,12 +177,17 @@ class Desk:
         return {**self.spectra.of(plan), "freq_Hz": self._freq_Hz()}
 
     def _freq_Hz(self) -> float | None:
-        reported = next(one for one in self.series if (one.message, one.signal) == FREQUENCY)
+        return self._newest(FREQUENCY) if self._status.get("freq_is_valid") else None
+
+    def _newest(self, signal: tuple[str, str]) -> float | None:
+        """In the unit that people read; None where none has come."""
+        reported = next(one for one in self.series if (one.message, one.signal) == signal)
         ring = self.rings[reported.frame_id]
         _, _, words = ring.read(ring.count - 1, 1)
-        if not len(words) or not self._status.get("freq_is_valid"):
-            return None
-        return round(float(reported.values(words)[0]) * reported.scale, 3)
+        return round(float(reported.values(words)[0]) * reported.scale, 3) if len(words) else None
+
+    def show_law(self, view: View) -> None:
+        self.law = view
 
     def told(self) -> dict[str, Any]:
         """All that is no sample, as values of JSON."""
@@ -220,6 +227,8 @@ class Desk:
             "misunderstood": self.preamble.misunderstood,
             "state": str(self._status.get("state", "")),
             "fault": str(self._status.get("fault", "")),
+            "freq_Hz": self._freq_Hz(),
+            "rms_m_s2": self._newest(RMS),
             **{name: self._status.get(name) for name in FLAGS},
         }
 

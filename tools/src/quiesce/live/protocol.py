@@ -30,6 +30,7 @@ KEYS_OF: dict[str, set[str]] = {
     "set": {"settings"},
     **dict.fromkeys(("save", "revert"), set()),
     "table": TABLE_KEYS,
+    "law": set(),
     "rig": {"order"},
     "record": KEYS,
     "end_record": set(),

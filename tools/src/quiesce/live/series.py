@@ -29,10 +29,11 @@ TITLES = {
 # Signals that another one of their message says are none.
 VALID_BY = {(RAW, "current_meas_mA"): "current_is_measured"}
 FREQUENCY = ("Motion", "freq_uHz")  # that the controller reports
+RMS = ("Status", "rms_um_s2")  # of the acceleration, likewise
 # Drawn where nobody has chosen, the first of each row that the bus carries.
 PREFERRED = (
     ((RAW, "accel_counts"), ("AccelSample", "accel_counts")),
-    (("Status", "rms_um_s2"),),
+    (RMS,),
     (FREQUENCY,),
     (("Motion", "displacement_amp_nm"),),
     (("CurrentDemand", "current_cmd_mA"),),

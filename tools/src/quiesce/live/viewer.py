@@ -12,6 +12,7 @@ from fastapi import WebSocket, WebSocketDisconnect
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.live.desk import Before
 from quiesce.live.jobs import change, store, wanted
+from quiesce.live.law_view import View, look
 from quiesce.live.protocol import MOST_MALFORMED, Command, Malformed, command_of, pack_samples
 from quiesce.live.recordings import ask_tables
 from quiesce.live.room import Room
@@ -39,6 +40,7 @@ class Viewer:
         self._notes: list[dict[str, Any]] = []
         self._values: list[int] | None = None  # of the parameters, as he was told
         self._before: Before | None = None
+        self._law: View | None = None  # as he was told
         self._upload = Upload()
         self._packets = 0
         self._malformed = 0
@@ -117,6 +119,8 @@ class Viewer:
             return True, self._record(command)
         if command.table is not None:
             return await self._load(command.table)
+        if command.do == "law":
+            return await jobs.run("fetching the law's table", look(desk.show_law))
         values = desk.preamble.values
         if not values or not desk.preamble.may_ask:
             why = desk.preamble.misunderstood or "the controller's parameters are not read yet"
@@ -179,6 +183,7 @@ class Viewer:
                 told_beat = beat
                 await self._send_text({"state": self._room.told()})
                 await self._send_parameters()
+                await self._send_law()
             for note in notes:  # after what they are about
                 await self._send_text(note)
             if self._spectrum is not None and beat % SPECTRUM_BEATS == 0:
@@ -190,6 +195,11 @@ class Viewer:
         if values is not self._values or before is not self._before:
             self._values, self._before = values, before
             await self._send_text({"parameters": {"values": values, "before": asdict(before)}})
+
+    async def _send_law(self) -> None:
+        if self._desk.law is not self._law:
+            self._law = self._desk.law
+            await self._send_text({"law": self._law})
 
     def _packet(self) -> bytes:
         shown = self._shown

@@ -1,5 +1,6 @@
 // The page: what comes over the link goes to its parts.
 import { Charts } from "./charts.js";
+import { Law } from "./law.js";
 import { Link } from "./link.js";
 import { Parameters } from "./parameters.js";
 import { Rig } from "./rig.js";
@@ -31,6 +32,7 @@ const rig = new Rig(send);
 const recorder = new Recorder(send, factorOf);
 const spectrum = new Spectrum(send, factorOf);
 const tables = new Tables(send);
+const law = new Law(send);
 const link = new Link({ open: () => {}, close: lost, text: heardText, samples: heardSamples });
 
 function send(object) {
@@ -51,7 +53,8 @@ function heardText(message) {
     if (shown.length) showCharts();
   }
   if (message.spectrum) spectrum.show(message.spectrum);
-  if (message.note && !tables.hear(message.note)) say(message.note.is_ok, message.note.text);
+  if (message.law !== undefined) law.describe(message.law);
+  if (message.note && !tables.hear(message.note) && !law.hear(message.note)) say(message.note.is_ok, message.note.text);
 }
 
 function greet(said) {
@@ -75,6 +78,8 @@ function showState(state) {
   rig.show(state, values, isMine);
   recorder.show(state, isMine);
   tables.enable(isMine && !state.job);
+  law.enable(isMine && !state.job);
+  law.show(state.controller);
   if (state.job) say(true, `${state.job} is under way ...`);
   if (heard !== String(state.heard)) {
     heard = String(state.heard);
@@ -143,6 +148,7 @@ function lost() {
   parameters.enable(false);
   rig.enable(false);
   tables.lost();
+  law.enable(false);
   recorder.show(null, false);
   $("take").disabled = $("release").disabled = true;
 }
