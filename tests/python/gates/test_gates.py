@@ -116,6 +116,41 @@ def test_tidy_gate_reads_only_what_is_named(tree: Clone) -> None:
     assert tree.run(*tidy, "firmware/clean.c", "firmware/bad.c", PATH=path).returncode != 0
 
 
+def test_what_was_clean_is_looked_at_again_once_it_differs(tree: Clone) -> None:
+    (tree.root / "firmware/part.h").write_text("#define PART 3\n")
+    clean = tree.root / "firmware/clean.c"
+    clean.write_text('#include "part.h"\nint f(void);\nint f(void) {\n    return PART;\n}\n')
+    compile_commands(tree, "host", "firmware/clean.c")
+    found = tree.root / "build/tidied"
+
+    def looked_at() -> int:
+        command = [".venv/bin/python", "tools/check/tidy_file.py", "build/host", "firmware/clean.c"]
+        assert tree.run(*command, PATH=os.environ["PATH"]).returncode == 0
+        return len(list(found.iterdir()))
+
+    assert looked_at() == 1
+    assert looked_at() == 1
+    (tree.root / "firmware/part.h").write_text("#define PART 4\n")
+    assert looked_at() == 2
+    clean.write_text(clean.read_text().replace("return PART;", "return PART; // NOLINT"))
+    assert looked_at() == 3
+    with (tree.root / ".clang-tidy").open("a") as settings:
+        settings.write("# changed\n")
+    assert looked_at() == 4
+
+
+def test_what_tidy_finds_is_found_again(tree: Clone) -> None:
+    compile_commands(tree, "host", "firmware/bad.c")
+    lines = "".join(f"    a += a / {n};\n" for n in range(1, 62))
+    (tree.root / "firmware/bad.c").write_text(f"int f(int a) {{\n{lines}    return a;\n}}\n")
+    command = [".venv/bin/python", "tools/check/tidy_file.py", "build/host", "firmware/bad.c"]
+    for _ in range(2):
+        assert tree.run(*command, PATH=os.environ["PATH"]).returncode != 0
+    (tree.root / "firmware/bad.c").write_text("#include \"none.h\"\n")
+    assert tree.run(*command, PATH=os.environ["PATH"]).returncode != 0
+    assert not (tree.root / "build/tidied").exists()
+
+
 def test_tidy_gate_refuses_to_check_nothing(tree: Clone) -> None:
     compile_commands(tree, "host", "sim_hil/clean.cpp")
     compile_commands(tree, "mps2", "hal/mps2/clean.c")
