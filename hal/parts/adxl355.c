@@ -25,34 +25,30 @@
 #define RESET_MS 10u
 
 /// A command byte is the address and, in bit 0, whether it reads.
+static part_register_t at(uint8_t address) {
+    return (part_register_t){address, (uint8_t)((unsigned int)address << 1 | 1u),
+                             (uint8_t)(address << 1)};
+}
+
 static bool read_registers(const adxl355_t *self, uint8_t first, uint8_t *out, size_t count) {
-    uint8_t command[ADXL355_MAX_TRANSFER] = {(uint8_t)((unsigned int)first << 1 | 1u)};
-    uint8_t answer[ADXL355_MAX_TRANSFER] = {0};
-    if (count >= ADXL355_MAX_TRANSFER ||
-        !self->bus.exchange(self->bus.context, command, answer, count + 1u)) {
-        return false;
-    }
-    memcpy(out, &answer[1], count);
-    return true;
+    return part_read(&self->bus, at(first).read, out, count);
 }
 
 static bool write_register(const adxl355_t *self, uint8_t address, uint8_t value) {
-    const uint8_t command[2] = {(uint8_t)(address << 1), value};
-    uint8_t answer[2];
-    return self->bus.exchange(self->bus.context, command, answer, sizeof command);
+    return part_write(&self->bus, at(address).write, value);
 }
 
-static bool fail(part_problem_t *problem, part_verdict_t verdict) {
-    problem->verdict = verdict;
-    return false;
+static bool set_register(const adxl355_t *self, uint8_t address, uint8_t value,
+                         part_problem_t *problem) {
+    return part_set(&self->bus, at(address), value, problem);
 }
 
 static bool check_part(const adxl355_t *self, part_problem_t *problem) {
     static const uint8_t expected[IDS] = {0xAD, 0x1D, 0xED};
     if (!read_registers(self, DEVID_AD, problem->bytes, IDS)) {
-        return fail(problem, PART_NO_TRANSFER);
+        return part_fail(problem, PART_NO_TRANSFER);
     }
-    return memcmp(problem->bytes, expected, IDS) == 0 || fail(problem, PART_NOT_THERE);
+    return memcmp(problem->bytes, expected, IDS) == 0 || part_fail(problem, PART_NOT_THERE);
 }
 
 // A reset may load trimming values wrongly, says the data sheet: compare the shadow registers with
@@ -61,33 +57,21 @@ static bool reset(const adxl355_t *self, part_problem_t *problem) {
     uint8_t before[SHADOWS];
     uint8_t after[SHADOWS];
     if (!read_registers(self, SHADOW, before, SHADOWS)) {
-        return fail(problem, PART_NO_TRANSFER);
+        return part_fail(problem, PART_NO_TRANSFER);
     }
     for (int i = 0; i < RESETS_AT_MOST; i++) {
         if (!write_register(self, RESET, RESET_CODE)) {
-            return fail(problem, PART_NO_TRANSFER);
+            return part_fail(problem, PART_NO_TRANSFER);
         }
         self->bus.pause_ms(self->bus.context, RESET_MS);
         if (!read_registers(self, SHADOW, after, SHADOWS)) {
-            return fail(problem, PART_NO_TRANSFER);
+            return part_fail(problem, PART_NO_TRANSFER);
         }
         if (memcmp(before, after, SHADOWS) == 0) {
             return true;
         }
     }
-    return fail(problem, PART_NO_RESET);
-}
-
-static bool set_register(const adxl355_t *self, uint8_t address, uint8_t value,
-                         part_problem_t *problem) {
-    uint8_t stored;
-    if (!write_register(self, address, value) || !read_registers(self, address, &stored, 1)) {
-        return fail(problem, PART_NO_TRANSFER);
-    }
-    problem->bytes[0] = address;
-    problem->bytes[1] = value;
-    problem->bytes[2] = stored;
-    return stored == value || fail(problem, PART_NOT_STORED);
+    return part_fail(problem, PART_NO_RESET);
 }
 
 /// FILTER: no high-pass, output data rate 4000 Hz / 2^code.
@@ -111,7 +95,7 @@ bool adxl355_set_rate(adxl355_t *self, uint32_t rate_Hz, part_problem_t *problem
     uint8_t filter = 0;
     problem->verdict = PART_WELL;
     if (!filter_code(rate_Hz, &filter)) {
-        return fail(problem, PART_NO_RATE);
+        return part_fail(problem, PART_NO_RATE);
     }
     memset(self->is_fresh, 0, sizeof self->is_fresh); // of the old rate
     return set_register(self, POWER_CTL, POWER_STANDBY, problem) &&
@@ -126,10 +110,10 @@ bool adxl355_start(adxl355_t *self, part_bus_t bus, uint32_t range_g, uint32_t r
     *self = (adxl355_t){.bus = bus};
     problem->verdict = PART_WELL;
     if (!range_code(range_g, &range)) {
-        return fail(problem, PART_NO_RANGE);
+        return part_fail(problem, PART_NO_RANGE);
     }
     if (!filter_code(rate_Hz, &filter)) {
-        return fail(problem, PART_NO_RATE);
+        return part_fail(problem, PART_NO_RATE);
     }
     const uint8_t range_register = (uint8_t)((RANGE_RESET & ~RANGE_MASK) | range);
     return check_part(self, problem) && reset(self, problem) &&

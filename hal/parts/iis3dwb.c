@@ -21,61 +21,43 @@
 #define STATUS_DATA_READY 0x01u
 
 #define OUT_BYTES 6u
-#define MOST_BYTES (OUT_BYTES + 1u)
 #define RESET_MS 10u
 #define START_MS 10u
 
+static part_register_t at(uint8_t address) {
+    return (part_register_t){address, (uint8_t)(address | READ), address};
+}
+
 static bool read_registers(const iis3dwb_t *self, uint8_t first, uint8_t *out, size_t count) {
-    const uint8_t command[MOST_BYTES] = {(uint8_t)(first | READ)};
-    uint8_t answer[MOST_BYTES] = {0};
-    if (count >= MOST_BYTES ||
-        !self->bus.exchange(self->bus.context, command, answer, count + 1u)) {
-        return false;
-    }
-    memcpy(out, &answer[1], count);
-    return true;
+    return part_read(&self->bus, at(first).read, out, count);
 }
 
 static bool write_register(const iis3dwb_t *self, uint8_t address, uint8_t value) {
-    const uint8_t command[2] = {address, value};
-    uint8_t answer[2];
-    return self->bus.exchange(self->bus.context, command, answer, sizeof command);
+    return part_write(&self->bus, at(address).write, value);
 }
 
-static bool fail(part_problem_t *problem, part_verdict_t verdict) {
-    problem->verdict = verdict;
-    return false;
+static bool set_register(const iis3dwb_t *self, uint8_t address, uint8_t value,
+                         part_problem_t *problem) {
+    return part_set(&self->bus, at(address), value, problem);
 }
 
 static bool check_part(const iis3dwb_t *self, part_problem_t *problem) {
     if (!read_registers(self, WHO_AM_I, problem->bytes, 1)) {
-        return fail(problem, PART_NO_TRANSFER);
+        return part_fail(problem, PART_NO_TRANSFER);
     }
-    return problem->bytes[0] == ID || fail(problem, PART_NOT_THERE);
+    return problem->bytes[0] == ID || part_fail(problem, PART_NOT_THERE);
 }
 
 static bool reset(const iis3dwb_t *self, part_problem_t *problem) {
     uint8_t control;
     if (!write_register(self, CTRL3_C, CTRL3_RESET)) {
-        return fail(problem, PART_NO_TRANSFER);
+        return part_fail(problem, PART_NO_TRANSFER);
     }
     self->bus.pause_ms(self->bus.context, RESET_MS);
     if (!read_registers(self, CTRL3_C, &control, 1)) {
-        return fail(problem, PART_NO_TRANSFER);
+        return part_fail(problem, PART_NO_TRANSFER);
     }
-    return (control & CTRL3_RESET) == 0u || fail(problem, PART_NO_RESET);
-}
-
-static bool set_register(const iis3dwb_t *self, uint8_t address, uint8_t value,
-                         part_problem_t *problem) {
-    uint8_t stored;
-    if (!write_register(self, address, value) || !read_registers(self, address, &stored, 1)) {
-        return fail(problem, PART_NO_TRANSFER);
-    }
-    problem->bytes[0] = address;
-    problem->bytes[1] = value;
-    problem->bytes[2] = stored;
-    return stored == value || fail(problem, PART_NOT_STORED);
+    return (control & CTRL3_RESET) == 0u || part_fail(problem, PART_NO_RESET);
 }
 
 // In the order of FS_XL's codes.
@@ -95,7 +77,7 @@ bool iis3dwb_start(iis3dwb_t *self, part_bus_t bus, uint32_t range_g, part_probl
     *self = (iis3dwb_t){.bus = bus};
     problem->verdict = PART_WELL;
     if (!range_code(range_g, &range)) {
-        return fail(problem, PART_NO_RANGE);
+        return part_fail(problem, PART_NO_RANGE);
     }
     const uint8_t control =
         (uint8_t)(CTRL1_ON | CTRL1_LOW_PASS | (uint32_t)range << CTRL1_RANGE_AT);

@@ -31,4 +31,25 @@ typedef struct {
     uint8_t bytes[PART_BYTES];
 } part_problem_t;
 
+#define PART_MOST_READ 15u
+
+/// Bytes behind a command byte, which says where they begin and that they are read. count: at most
+/// PART_MOST_READ. False where the transfer fails.
+bool part_read(const part_bus_t *bus, uint8_t command, uint8_t *out, size_t count);
+
+bool part_write(const part_bus_t *bus, uint8_t command, uint8_t value);
+
+/// A register of a part: its address, and the command bytes that read and write it.
+typedef struct {
+    uint8_t address;
+    uint8_t read;
+    uint8_t write;
+} part_register_t;
+
+/// Writes it and reads it back. False with PART_NO_TRANSFER or PART_NOT_STORED.
+bool part_set(const part_bus_t *bus, part_register_t which, uint8_t value, part_problem_t *problem);
+
+/// Always false, for the caller to return.
+bool part_fail(part_problem_t *problem, part_verdict_t verdict);
+
 #endif

@@ -5,7 +5,6 @@
 #include "fault.h"
 #include "free_node.h"
 #include "nvm_mps2.h"
-#include "slcan.h"
 #include "tick_mps2.h"
 #include "uart_mps2.h"
 
@@ -26,7 +25,6 @@ typedef struct {
     hal_nvm_memory_t memory;
     hal_tick_t tick;
     hal_uart_t uart;
-    slcan_decoder_t decoder;
     uint32_t restarts;
 } board_t;
 
@@ -35,17 +33,6 @@ static void send_waiting(board_t *board) {
     while ((board->uart.registers->state & CMSDK_UART_STATE_TX_FULL) == 0u &&
            frame_queue_take(&board->common.queue, &byte)) {
         hal_uart_write(&board->uart, byte);
-    }
-}
-
-// At most a line, so that a host that floods the line cannot hold up the tick.
-static void receive_waiting(board_t *board) {
-    can_frame_t frame;
-    uint8_t byte;
-    for (uint32_t i = 0; i < SLCAN_MAX_BYTES && hal_uart_read(&board->uart, &byte); i++) {
-        if (slcan_decode(&board->decoder, byte, &frame)) {
-            node_receive(&board->common.node, &frame);
-        }
     }
 }
 
@@ -86,7 +73,6 @@ int main(void) {
     board.memory.words = (volatile uint32_t *)NVM_MPS2_BASE;
     board.tick.timer = CMSDK_TIMER0;
     uart_mps2_open(&board.uart, CMSDK_UART0, UART_BAUD);
-    slcan_decoder_init(&board.decoder);
     free_node_start(&board.common, &start);
     use_rate(&board);
     for (;;) {
@@ -94,7 +80,7 @@ int main(void) {
         if (ticks > 0u) {
             run_tick(&board, ticks);
         }
-        receive_waiting(&board);
+        free_node_receive(&board.common, &board.uart);
         send_waiting(&board);
         free_node_store(&board.common);
     }

@@ -66,6 +66,7 @@ static void find_tables(free_node_t *self) {
 }
 
 void free_node_start(free_node_t *self, const free_node_start_t *start) {
+    slcan_decoder_init(&self->decoder);
     start_controller(self, start);
     self->is_after_fault = start->is_after_fault;
     if (self->is_after_fault) {
@@ -93,6 +94,16 @@ bool free_node_end(free_node_t *self, const can_frame_t *frames, uint32_t count)
 
 bool free_node_is_idle(const free_node_t *self) {
     return self->queue.count == 0u && !self->kept.is_writing;
+}
+
+void free_node_receive(free_node_t *self, hal_uart_t *uart) {
+    can_frame_t frame;
+    uint8_t byte;
+    for (uint32_t i = 0; i < SLCAN_MAX_BYTES && hal_uart_read(uart, &byte); i++) {
+        if (slcan_decode(&self->decoder, byte, &frame)) {
+            node_receive(&self->node, &frame);
+        }
+    }
 }
 
 void free_node_store(free_node_t *self) {

@@ -9,13 +9,16 @@
 #define FREE_NODE_H
 
 #include "frame_queue.h"
+#include "hal/uart.h"
 #include "kept.h"
 #include "node.h"
+#include "slcan.h"
 
 typedef struct {
     node_t node;
     kept_t kept;
     frame_queue_t queue;
+    slcan_decoder_t decoder; ///< of the serial line
     node_inputs_t inputs;
     bool estop_line;     ///< of the board, set by its main; a fault of the processor adds
     bool is_after_fault; ///< of the processor, and nobody has acknowledged
@@ -43,6 +46,10 @@ bool free_node_end(free_node_t *self, const can_frame_t *frames, uint32_t count)
 
 /// Whether nothing waits to be sent or saved.
 bool free_node_is_idle(const free_node_t *self);
+
+/// Frames that have come on the serial line, of at most as many bytes as a frame has: a host that
+/// floods the line cannot hold up the tick.
+void free_node_receive(free_node_t *self, hal_uart_t *uart);
 
 /// A slice of what is being saved, in idle time.
 void free_node_store(free_node_t *self);

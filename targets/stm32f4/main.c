@@ -13,7 +13,6 @@
 #include "output.h"
 #include "reset_cause.h"
 #include "safe.h"
-#include "slcan.h"
 #include "stack.h"
 #include "stm32f4_spi.h"
 #include "tick_stm32f4.h"
@@ -37,7 +36,6 @@ typedef struct {
     hal_tick_t tick;
     hal_accel_t accel;
     bus_t bus;
-    slcan_decoder_t decoder;
     bool acknowledge_was_up;
 } board_t;
 
@@ -71,17 +69,6 @@ static void send_waiting(board_t *board) {
     uint8_t byte;
     while (uart_stm32f4_is_free(&console) && frame_queue_take(&board->common.queue, &byte)) {
         hal_uart_write(&console, byte);
-    }
-}
-
-// At most a line, so that a host that floods the line cannot hold up the tick.
-static void receive_waiting(board_t *board) {
-    can_frame_t frame;
-    uint8_t byte;
-    for (uint32_t i = 0; i < SLCAN_MAX_BYTES && hal_uart_read(&console, &byte); i++) {
-        if (slcan_decode(&board->decoder, byte, &frame)) {
-            node_receive(&board->common.node, &frame);
-        }
     }
 }
 
@@ -219,7 +206,6 @@ static void start(board_t *board) {
     board->tick.clock_Hz = board->clocks.apb1_timer_Hz;
     open_inputs();
     open_console(&board->clocks);
-    slcan_decoder_init(&board->decoder);
     bus_open(&board->bus, &board->clocks);
     start_common(board);
     output_open(&board->clocks);
@@ -258,7 +244,7 @@ int main(void) {
         if (ticks > 0u) {
             run_tick(&board, ticks);
         }
-        receive_waiting(&board);
+        free_node_receive(&board.common, &console);
         send_waiting(&board);
         bus_work(&board.bus, &board.common.node);
         store_waiting(&board);

@@ -14,6 +14,8 @@ FIGURE_PIN = re.compile(r">(P[ABC]\d+) (\w+(?:-\d+)?)<")
 
 def pins_of(board: str) -> dict[str, str]:
     text = (BOARDS / f"{board}.c").read_text()
+    if "USUAL_WIRING" in text:
+        text += (BOARDS / "usual_wiring.h").read_text()
     return {name: f"P{port}{number}" for name, port, number in PIN.findall(text)}
 
 
