@@ -31,6 +31,7 @@ KEPT = {
     "fuzzy": ("seed", "quick", "engines", "peers", "host_instr", "ratios"),
     "install": ("seed", "quick", "reported"),
     "laws": ("seed", "quick", "reported"),
+    "lock": ("seed", "quick", "reported"),
     "papers": ("seed", "quick", "reported"),
     "signal": ("seed", "quick", "settings", "accuracy", "plant_steps", "cost"),
     "tables": ("seed", "quick", "reported"),

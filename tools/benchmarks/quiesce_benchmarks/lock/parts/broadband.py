@@ -42,6 +42,7 @@ RANDOM_s = 60.0
 GRID_STEP_A = 0.25
 QUICK_STEP_A = 1.25
 FRONT_A = (0.25, 1.0, 2.5, 5.0)  # columns of the front
+MEAN_Hz = (2.0, 52.0)  # in which mean frequencies are taken
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class Found:
     constants: dict[float, dict[str, Any]]
     law: dict[str, dict[str, Any]]
     valid_pct: dict[str, float]  # share of the time that a component is trusted
+    mean_Hz: tuple[float, float]  # with the full current: mean_frequencies_Hz
 
     def best_A(self, key: str) -> float:
         return min(self.constants, key=lambda current_A: float(self.constants[current_A][key]))
@@ -80,7 +82,8 @@ class Found:
             for key in (disp, accel)
             for current_A in FRONT_A
         ]
-        return [self.name, f"{self.best_A(disp):.2f}", f"{self.best_A(accel):.2f}", *shares]
+        means = [f"{one:.1f}" for one in self.mean_Hz]
+        return [self.name, f"{self.best_A(disp):.2f}", f"{self.best_A(accel):.2f}", *shares, *means]
 
     def row(self) -> list[str]:
         ratios = [f"{one:.3f}" for one in (self.disp_ratio, self.peak_ratio, self.accel_ratio)]
@@ -115,19 +118,34 @@ def measure_input(rig: Rig, make: Callable[[], Scenario], step_A: float) -> Foun
     constants = {0.0: rig.run(scenario, OPEN_LOOP).figures}
     for current_A in grid_A(rig.full_A, step_A)[1:]:
         constants[current_A] = rig.run(scenario, constant(current_A)).figures
+    full = rig.run(scenario, constant(rig.full_A), columns=("t_s", "a5_mm_s2")).trace
+    assert full is not None
     law, valid_pct = {}, {}
     for setting in SETTINGS:
         done = rig.run(scenario, rig.judged.control(setting), columns=("freq_is_valid",))
         assert done.trace is not None
         law[setting] = done.figures
         valid_pct[setting] = 100.0 * float((done.trace["freq_is_valid"] > 0).mean())
-    return Found(scenario.name, constants, law, valid_pct)
+    means_Hz = mean_frequencies_Hz(full["t_s"], full["a5_mm_s2"])
+    return Found(scenario.name, constants, law, valid_pct, means_Hz)
+
+
+def mean_frequencies_Hz(t_s: np.ndarray, accel: np.ndarray) -> tuple[float, float]:
+    """RMS of the acceleration over that of the velocity, and of the velocity over that of the
+    displacement, of what lies in MEAN_Hz; both over 2 pi. Even steps."""
+    freq_Hz = np.fft.rfftfreq(len(accel), float(np.median(np.diff(t_s))))
+    inside = (freq_Hz >= MEAN_Hz[0]) & (freq_Hz <= MEAN_Hz[1])
+    power = np.abs(np.fft.rfft(accel - accel.mean()))[inside] ** 2
+    of_accel, of_velocity, of_displacement = (
+        float((power / freq_Hz[inside] ** order).sum()) for order in (0, 2, 4)
+    )
+    return (of_accel / of_velocity) ** 0.5, (of_velocity / of_displacement) ** 0.5
 
 
 def tables_of(found: Sequence[Found]) -> tuple[str, ...]:
     heads = [f"{what}\n{current_A:g} A" for what in ("x", "a") for current_A in FRONT_A]
     front = format_table(
-        ["against the best constant", "best for x\nA", "for a\nA", *heads],
+        ["against the best constant", "best for x\nA", "for a\nA", *heads, "a/v\nHz", "v/x\nHz"],
         [one.front() for one in found],
     )
     law = format_table(
