@@ -9,18 +9,19 @@ TEST_SUMMARY="tests/summary.md"
 # inputs_of STEP: the paths that it reads, more rather than fewer. Programs on this machine are built
 # from `code`.
 inputs_of() {
-    local code="CMakeLists.txt CMakePresets.json cmake firmware hal targets sim_hil tests/CMakeLists.txt
-        tests/build_images tests/unit tests/golden tests/system/vm/guest tools/benchmarks examples"
-    local figures=":!tools/benchmarks/quiesce_benchmarks"
+    local compiled="CMakeLists.txt CMakePresets.json cmake firmware hal targets sim_hil tests/CMakeLists.txt
+        tests/build_images tests/unit tests/golden tests/system/vm/guest examples" code
+    code="$compiled $(benchmark_parts)"
     case "$1" in
-    ctest-* | sizes-*) echo "$code $figures" ;;
-    cppcheck) echo "$code $figures tools/check" ;;
-    tidy) echo "$code $figures tools/check .clang-tidy" ;;
+    ctest-* | sizes-*) echo "$code" ;;
+    cppcheck) echo "$code tools/check" ;;
+    tidy) echo "$code tools/check .clang-tidy" ;;
     format) echo "$code examples tests tools/check .clang-format" ;;
     scripts) echo ".ci tools tests" ;;
     ruff) echo "ruff.toml tools tests examples" ;;
     bench-house) echo . ;;
-    bench-*) echo "$code tests/system/vm tools docs/results/bounds $(other_benchmarks "$1")" ;;
+    bench-fuzzy) echo "$code tools/benchmarks/mps2 tests/system/vm docs/results/bounds $(benchmark_reads fuzzy)" ;;
+    bench-*) echo "$code tests/system/vm docs/results/bounds $(benchmark_reads "${1#bench-}")" ;;
     pytest-package) echo "$code tools tests/system docs README.md LICENSE pytest.ini" ;;
     pytest-vm) echo "$code pytest.ini tests tools" ;;
     proofs) echo "$code tests/proof tools" ;;
@@ -28,13 +29,43 @@ inputs_of() {
     esac
 }
 
-# other_benchmarks STEP: what only the other ones read, as paths to leave out.
+# benchmark_parts: of tools/benchmarks all but its Python and the peer that is a project of its own.
+benchmark_parts() {
+    local part
+    for part in "$ROOT"/tools/benchmarks/* "$ROOT"/tools/benchmarks/mps2/*; do
+        part="${part#"$ROOT/"}"
+        case "$part" in
+        */quiesce_benchmarks | tools/benchmarks/mps2 | */fuzzylite) ;;
+        *) echo "$part" ;;
+        esac
+    done
+}
+
+# benchmark_reads NAME: what of Python it can import, and what lies beside that; all of tools where it runs the
+# command line, or where nobody can tell. Found once for each state of the sources.
+benchmark_reads() {
+    local name="$1" known found
+    [ "$name" != identify ] || name=damper
+    known="$ROOT/build/tested/.reads-$(files_hash tools tests/python/gates/house | cut -c1-16)"
+    if [ ! -f "$known" ] && [ -x "$ROOT/.venv/bin/python" ]; then
+        mkdir -p "$ROOT/build/tested"
+        rm -f "$ROOT"/build/tested/.reads-*
+        "$ROOT/.venv/bin/python" "$ROOT/tools/check/reads.py" >"$known.part" 2>/dev/null &&
+            mv "$known.part" "$known"
+    fi
+    found="$(sed -n "s/^$name //p" "$known" 2>/dev/null)" || true
+    if [ "${found:-tools}" = tools ]; then
+        found="tools $(other_benchmarks "$name")"
+    fi
+    echo "$found"
+}
+
+# other_benchmarks NAME: what only the other ones read, as paths to leave out.
 other_benchmarks() {
-    local own="${1#bench-}" folder
-    [ "$own" != identify ] || own=damper
+    local folder
     for folder in "$ROOT"/tools/benchmarks/quiesce_benchmarks/*/; do
         folder="$(basename "$folder")"
-        [ "$folder" = "$own" ] || echo ":!tools/benchmarks/quiesce_benchmarks/$folder"
+        [ "$folder" = "$1" ] || echo ":!tools/benchmarks/quiesce_benchmarks/$folder"
     done
 }
 
