@@ -5,6 +5,8 @@
 #include "quiesce_version.h"
 #include "shipped.h"
 
+#define VERSION(major, minor, patch) ((major)*0x10000u + (minor)*0x100u + (patch))
+
 extern const uint8_t image_begin[]; // image.ld
 
 // All ones: unsealed. `quiesce firmware build` writes over it.
@@ -16,7 +18,7 @@ __attribute__((section(".image_seal"), used)) static const uint8_t seal[SHA256_B
 __attribute__((section(".image_info"), used)) const image_info_t image_info = {
     .magic = IMAGE_INFO_MAGIC,
     .layout = IMAGE_INFO_LAYOUT,
-    .version = QUIESCE_VERSION_MAJOR << 16 | QUIESCE_VERSION_MINOR << 8 | QUIESCE_VERSION_PATCH,
+    .version = VERSION(QUIESCE_VERSION_MAJOR, QUIESCE_VERSION_MINOR, QUIESCE_VERSION_PATCH),
     .param_layout = QUIESCE_PARAM_LAYOUT,
     .begin = image_begin,
     .seal = seal,

@@ -1,4 +1,4 @@
-"""What `./tools/test all` takes a step's inputs to be: what it reads, and no other benchmark's files."""
+"""What `./tools/test all` takes for the inputs of a step: what it reads, and nothing else."""
 
 import shutil
 import subprocess
