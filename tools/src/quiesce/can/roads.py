@@ -1,7 +1,7 @@
 """What `quiesce can` calls the roads of tables and the kinds on them, and who works with a kind."""
 
 from quiesce.table import kinds
-from quiesce.table.kinds import KINDS, Kind
+from quiesce.table.kinds import Kind
 
 LAW, TRACKER, LEARNT = ROADS = ("law", "tracker", "learnt")  # by the number of a kind's road
 
@@ -18,10 +18,3 @@ def chooser_of(kind: Kind) -> str:
 def users_of(kind: Kind) -> tuple[str, ...]:
     """Values of that parameter."""
     return kind.trackers if kind.road == kinds.TRACKER else kind.laws
-
-
-def kind_name(magic: int) -> str:
-    """0: none."""
-    if magic == 0:
-        return "none"
-    return KINDS[magic].name if magic in KINDS else f"0x{magic:08x}"

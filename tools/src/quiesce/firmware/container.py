@@ -28,10 +28,16 @@ def payload_of(data: bytes) -> bytes:
     """The image inside. ValueError where it is cut off."""
     if len(data) < HEADER_BYTES:
         raise ValueError("is cut off in its header")
+    begin, end = ends_of(data)
+    if begin < HEADER_BYTES or len(data) < end:
+        raise ValueError(f"is cut off: {len(data)} bytes, its header says at least {end}")
+    return data[begin:end]
+
+
+def ends_of(data: bytes) -> tuple[int, int]:
+    """Where the image begins and where it ends, as the header says."""
     _, _, header, _, size = struct.unpack_from("<IIHHI", data)
-    if header < HEADER_BYTES or len(data) < header + size:
-        raise ValueError(f"is cut off: {len(data)} bytes, its header says at least {header + size}")
-    return data[header : header + size]
+    return header, header + size
 
 
 def version_of(data: bytes) -> tuple[int, int, int]:
@@ -82,8 +88,7 @@ def check(file: Path, key: Path | None) -> str:
 def strange_tail(data: bytes, public: Any) -> str:
     """What imgtool lets pass behind an image: other records than sign writes, another key's hash,
     bytes that nobody looks at. Empty where nothing is strange."""
-    _, _, header, _, size = struct.unpack_from("<IIHHI", data)
-    at = header + size
+    _, at = ends_of(data)
     magic, length = struct.unpack_from("<HH", data, at)
     if magic != TAIL_MAGIC or at + length != len(data):
         return "something else lies behind it"

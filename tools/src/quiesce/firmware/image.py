@@ -16,7 +16,8 @@ from quiesce.base.extras import extra
 from quiesce.base.paths import shown
 from quiesce.firmware.container import MAGIC as CONTAINER_MAGIC
 from quiesce.firmware.container import payload_of
-from quiesce.table.kinds import KINDS
+from quiesce.table.file import FILE_HEAD_WORDS, read_data
+from quiesce.table.kinds import kind_name
 from quiesce.table.words import WORD_BYTES, crc_of, unpacked
 
 FLASH_BEGIN = 0x08000000
@@ -28,7 +29,7 @@ SEAL_BYTES = 32
 UNSEALED = b"\xff" * SEAL_BYTES
 MOST_TABLES = 16
 MOST_NAME = 64
-TABLE_HEAD_WORDS = 4
+COUNT_AT = 2  # of a table file's words: how many the table has
 
 
 @dataclass(frozen=True)
@@ -201,9 +202,7 @@ def linked(reader: Reader, address: int) -> tuple[LinkedTable, ...]:
     while at := reader.word(address + WORD_BYTES * len(found)):
         if len(found) == MOST_TABLES:
             raise ValueError(f"says that it has more than {MOST_TABLES} tables")
-        head = unpacked(reader.bytes_at(at, WORD_BYTES * (TABLE_HEAD_WORDS + 1)))
-        words = unpacked(reader.bytes_at(at + WORD_BYTES * TABLE_HEAD_WORDS, WORD_BYTES * head[2]))
-        kind = KINDS.get(words[0] if words else 0)
-        name = kind.name if kind else "of a kind that this version does not know"
-        found.append(LinkedTable(name, len(words), crc_of(words)))
+        count = reader.word(at + WORD_BYTES * COUNT_AT)
+        words = read_data(reader.bytes_at(at, WORD_BYTES * (FILE_HEAD_WORDS + count))).words
+        found.append(LinkedTable(kind_name(words[0]), len(words), crc_of(words)))
     return tuple(found)

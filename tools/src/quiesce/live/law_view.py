@@ -13,7 +13,7 @@ from quiesce.rules.engine.engine import TableEngine
 from quiesce.rules.integers.table import range_of_axis
 from quiesce.rules.surface.words import is_surface, read_surface
 from quiesce.table.file import read_data
-from quiesce.table.kinds import KINDS, PULSES, RULES
+from quiesce.table.kinds import PULSES, RULES, kind_name
 from quiesce.tune.phase_words import law_of_words
 
 SIDE = 48  # points of each axis
@@ -27,11 +27,10 @@ def view_of(data: bytes) -> View:
     """data: a table's file, as it is fetched. `kind`, `crc`, and `surface` or `pulses` where there
     is a picture of it. UsageError where this computer cannot compute it."""
     words = read_data(data).words
-    kind = KINDS.get(words[0])
-    view: View = {"kind": kind.name if kind else f"0x{words[0]:08x}", "crc": f"{words[1]:08x}"}
-    if kind is RULES:
+    view: View = {"kind": kind_name(words[0]), "crc": f"{words[1]:08x}"}
+    if words[0] == RULES.magic:
         view["surface"] = surface_of(words)
-    elif kind is PULSES:
+    elif words[0] == PULSES.magic:
         view["pulses"] = pulses_of(words)
     return view
 

@@ -43,3 +43,10 @@ KINDS = {
         MAP, BANK, INVERSE_NETWORK, LEARNT,
     )
 }  # fmt: skip
+
+
+def kind_name(magic: int) -> str:
+    """0: none."""
+    if magic == 0:
+        return "none"
+    return KINDS[magic].name if magic in KINDS else f"0x{magic:08x}"

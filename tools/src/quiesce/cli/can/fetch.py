@@ -52,8 +52,8 @@ def check_out(file: Path) -> None:
 
 def fetched(tables: Any, road: str, file: Path) -> dict[str, Any]:
     """Writes it whole or not at all."""
-    from quiesce.can.roads import kind_name
     from quiesce.table.file import read_data
+    from quiesce.table.kinds import kind_name
 
     data = tables.fetch(road)
     with output_files(file.parent) as staging:

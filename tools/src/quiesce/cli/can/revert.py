@@ -34,7 +34,7 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from quiesce.can.roads import kind_name
+    from quiesce.table.kinds import kind_name
 
     with opened(args) as tables:
         before = tables.state(args.road)

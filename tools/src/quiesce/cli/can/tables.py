@@ -52,7 +52,7 @@ def word(value: int) -> str | None:
 
 def row_of(state: Any) -> dict[str, Any]:
     from quiesce.can.refusals import verdict_of
-    from quiesce.can.roads import kind_name
+    from quiesce.table.kinds import kind_name
 
     refusal = verdict_of(state.refusal) if state.refusal else None
     return {
