@@ -21,6 +21,7 @@ AREAS = (
     ("firmware/comm/", ("comm",)),
     ("firmware/", ("firmware",)),
     ("hal/linux/", ("linux",)),
+    ("hal/image/", ("hal",)),
     ("hal/records/", ("hal",)),
     ("hal/parts/", ("linux", "stm32f4")),
     ("hal/cortex_m/", ("stm32f4",)),

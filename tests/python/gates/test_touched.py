@@ -34,6 +34,7 @@ def test_a_block_of_the_firmware_brings_the_tests_that_see_it() -> None:
         ("hal/records/nvm_records.c", "unit unit/hal tests/unit/hal/all ."),
         ("hal/parts/adxl355.c", "unit unit/linux tests/unit/linux/all ."),
         ("hal/parts/adxl355.c", "unit unit/stm32f4 tests/unit/stm32f4/all ."),
+        ("hal/image/sha256.c", "unit unit/hal tests/unit/hal/all ."),
         ("hal/cortex_m/fault_record.c", "unit unit/stm32f4 tests/unit/stm32f4/all ."),
         ("targets/stm32f4/output.c", "unit unit/stm32f4 tests/unit/stm32f4/all ."),
         ("targets/stm32f4/boards/olimex_h405.c", "pytest tests/python/docs/test_stm32f4_page.py"),

@@ -10,7 +10,7 @@ from quiesce.can.roads import LAW
 from quiesce.can.services import Services
 from quiesce.can.tables import Tables
 from quiesce.rules.engine.engine import TableEngine
-from quiesce.rules.integers.table import range_of_axis
+from quiesce.rules.integers.rule_words import read_rules
 from quiesce.rules.surface.words import is_surface, read_surface
 from quiesce.table.file import read_data
 from quiesce.table.kinds import PULSES, RULES, kind_name
@@ -38,9 +38,9 @@ def view_of(data: bytes) -> View:
 def surface_of(words: Sequence[int]) -> View:
     """current_A: of each acceleration a row over the frequencies."""
     if is_surface(words):
-        ends = [(float(nodes[0]), float(nodes[-1])) for nodes in read_surface(words).nodes]
+        ends = [(nodes[0], nodes[-1]) for nodes in read_surface(words).nodes]
     else:
-        ends = [range_of_axis(words, axis) for axis in range(2)]
+        ends = [axis.ends for axis in read_rules(words).axes]
     freq, accel = (axis_of(low, high) for low, high in ends)
     grid = np.meshgrid(freq, accel)
     out, _ = TableEngine(words).evaluate([one.ravel().astype(np.int32) for one in grid])
@@ -52,9 +52,9 @@ def surface_of(words: Sequence[int]) -> View:
     }
 
 
-def axis_of(low: float, high: float) -> np.ndarray:
+def axis_of(low: int, high: int) -> np.ndarray:
     """Some more than from low to high; frequencies and accelerations are not below 0."""
-    beyond = BEYOND * (high - low)
+    beyond = max(BEYOND * (high - low), SIDE)  # where nothing changes, too
     ends = np.clip([low - beyond, high + beyond], 0, 2**31 - 1)
     return np.rint(np.linspace(*ends, SIDE))
 

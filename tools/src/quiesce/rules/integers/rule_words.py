@@ -22,9 +22,10 @@ LOWEST, HIGHEST = -(2**31), 2**31 - 1  # of an input
 @dataclass(frozen=True)
 class Axis:
     """Of an input: for each set the integers from and to which it is above 0, and where it is
-    greatest."""
+    greatest; ends: those between which something changes."""
 
     sets: dict[int, tuple[int, int, int]]
+    ends: tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -93,8 +94,10 @@ def _bytes(word: int) -> tuple[int, int, int, int]:
 def _axis(words: Sequence[int], head: int) -> Axis:
     at, cells, stride = head & 0xFFFF, head >> 16 & 0xFF, head >> 24
     found: dict[int, list[tuple[int, int]]] = {}
+    bounds: list[int] = []
     for k in range(cells):
         last, first, shift, ramps = part(words, at + k * stride, CELL_WORDS)
+        bounds += [signed(first), signed(last)]
         if CELL_WORDS + RAMP_WORDS * ramps > stride or shift > 31:
             raise ValueError("a cell of its rules holds more than it has room for")
         for i in range(ramps):
@@ -107,7 +110,10 @@ def _axis(words: Sequence[int], head: int) -> Axis:
             for n in (signed(first), signed(last)):
                 mu = (start + signed(slope) * ((n - signed(first)) << shift)) >> 32
                 found.setdefault(number, []).append((n, mu))
-    return Axis({number: _extent(ends) for number, ends in sorted(found.items())})
+    sets = {number: _extent(ends) for number, ends in sorted(found.items())}
+    # All integers are in a cell: beyond these ends there is nothing but the outermost ones.
+    inner = sorted(bounds)[1:-1] or [0]
+    return Axis(sets, (inner[0], inner[-1]))
 
 
 def _extent(ends: list[tuple[int, int]]) -> tuple[int, int, int]:

@@ -20,7 +20,7 @@ from quiesce.rules.integers.compiled import (
 from quiesce.rules.integers.output_shapes import LayerIntegers, Shape, layer_integers
 from quiesce.rules.integers.rule_words import HEADER_WORDS, MAGIC
 from quiesce.rules.model import CENTROID, WEIGHTED_MAX, WEIGHTED_SUM
-from quiesce.table.words import crc_of, signed
+from quiesce.table.words import crc_of
 
 MAX_WORDS = 65535
 MAX_CELLS = 255  # of an input
@@ -148,14 +148,6 @@ def cells_words(cells: Sequence[Cell]) -> list[int]:
         head = [cell.last, cell.first, cell.shift, len(cell.ramps)]
         out += padded([*head, *ramps], stride(cells))
     return out
-
-
-def range_of_axis(words: Sequence[int], axis: int) -> tuple[float, float]:
-    """Of a table's input: from the end of its first cell to the beginning of its last one, between
-    which something changes."""
-    head = words[4 + axis]
-    at, count, size = head & 0xFFFF, head >> 16 & 0xFF, head >> 24
-    return float(signed(words[at])), float(signed(words[at + (count - 1) * size + 1]))
 
 
 def rule_words(rule: IntegerRule) -> list[int]:
