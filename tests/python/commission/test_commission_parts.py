@@ -3,6 +3,7 @@
 import json
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.commission.by_hand import to_play
 from quiesce.commission.folder import STATE, Folder
 from quiesce.commission.hand import Left, Nobody
+from quiesce.commission.lag import lag_of_step
 from quiesce.commission.run import Order, begun, listed
 from quiesce.commission.samples import Samples
 from quiesce.commission.simulated import bare, limit_mA
@@ -185,13 +187,40 @@ def test_nobody_does_and_allows_nothing() -> None:
 def test_no_law_may_ask_for_more_than_the_limit() -> None:
     tuned = {"law": "phase", "max_current_mA": 5000, "unlock_current_mA": 4000,
              "constant_current_mA": 4000, "current_lag_ms": 5}  # fmt: skip
-    got = limited(tuned, 1500)
+    got = limited(tuned, 1500, has_lag=True)
     assert [got[name] for name in got if name.endswith("_mA")] == [1500] * 3
-    assert "current_lag_ms" not in got
+    assert "current_lag_ms" not in got  # it was measured, and given
+    assert limited(tuned, 1500, has_lag=False)["current_lag_ms"] == 5
     trial = limits(600, 120, 900)
     assert trial["safe_current_mA"] == 600 and limits(600, 120, 50)["safe_current_mA"] == 50
     assert trial["max_current_mA"] == 600 and trial["current_error_mA"] == 300
     assert max(trial["constant_current_mA"], trial["unlock_current_mA"]) == 120
+
+
+def stepping(lag_ticks: float, noise_mA: float, lost: tuple[int, ...] = ()) -> Any:
+    """860 mA, then 215 from tick 60 on; ticks and currents."""
+    ticks = np.arange(1000)
+    left = np.exp(-np.maximum(ticks - 60, 0) / max(lag_ticks, 1e-9))
+    current_mA = 215.0 + 645.0 * left + noise_mA * np.random.default_rng(2).standard_normal(1000)
+    kept = ~np.isin(ticks, lost)
+    return ticks[kept], np.rint(current_mA[kept]).astype(int)
+
+
+@pytest.mark.parametrize("lag_ticks", [0.2, 1.0, 2.3, 8.0, 40.0, 150.0])
+def test_the_lag_of_the_coil_is_told_by_a_step(lag_ticks: float) -> None:
+    for noise_mA, lost in ((0.0, ()), (3.0, ()), (3.0, (58, 64, 65, 70))):
+        found = lag_of_step(*stepping(lag_ticks, noise_mA, lost))
+        assert found == pytest.approx(lag_ticks, rel=0.07, abs=0.6)
+
+
+def test_a_current_that_does_not_step_tells_no_lag() -> None:
+    rng = np.random.default_rng(3)
+    ticks = np.arange(1000)
+    assert lag_of_step(ticks, np.full(1000, 860)) is None
+    assert lag_of_step(ticks, np.rint(100.0 * rng.standard_normal(1000)).astype(int)) is None
+    ramp = np.linspace(860.0, 215.0, 1000)
+    found = lag_of_step(ticks, np.rint(ramp).astype(int))
+    assert found is None or found > 300.0
 
 
 def test_the_limit_is_the_driver_s_or_less() -> None:
@@ -327,16 +356,17 @@ def test_a_chosen_damper_is_put_on_what_was_found_without_one(tmp_path: Path) ->
     Plant(structure)
     damper = ROOT / "sim_hil/data/dampers/squeeze_2012_film.toml"
     designed = tmp_path / "plant.toml"
-    name = put_on(structure, damper, designed, PLANT, 2.0)
+    name = put_on(structure, damper, designed, None, 2.0)
     assert name == tomllib.loads(damper.read_text())["name"]
     assert tomllib.loads(designed.read_text())["damper"] == {"file": "damper.toml"}
     assert Plant(designed).modes == Plant(structure).modes
     assert Plant(designed).max_current_A == 2.0
-    put_on(structure, damper, designed, PLANT, 9.0)
+    put_on(structure, damper, designed, {"rise_s": 0.004}, 9.0)
     assert Plant(designed).max_current_A == 3.0  # that its file holds for
+    assert Plant(designed).rise_s == 0.004
     (tmp_path / "none.toml").write_text("= 3")
     with pytest.raises(UsageError, match="not a damper file"):
-        put_on(structure, tmp_path / "none.toml", designed, PLANT, 2.0)
+        put_on(structure, tmp_path / "none.toml", designed, None, 2.0)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from quiesce.base.errors import BenchFailure
 from quiesce.commission.folder import Folder
 from quiesce.commission.hand import Nobody
 from quiesce.commission.run import Order, commission
+from quiesce.commission.simulated import SimulatedSite
 from quiesce.commission.steps import NAMES
 from quiesce.commission.wants import Wants
 
@@ -73,3 +74,29 @@ def test_a_rig_that_is_not_felt_is_told(tmp_path: Path) -> None:
     with pytest.raises(BenchFailure, match="is it on the structure"):
         steps(tmp_path / "rig", wants, "wiring")
     assert Folder(tmp_path / "rig").results == {}
+
+
+def test_the_lag_of_the_coil_is_measured_and_given_to_the_guard(tmp_path: Path) -> None:
+    """Twice the controller's own: pulses at 8 Hz would end in DRIVER_NOT_FOLLOWING."""
+    text = PLANT.read_text()
+    assert text.count("e_s = 0.005") == 1 and text.count("l_s = 0.005") == 1
+    plant = tmp_path / "plant.toml"
+    plant.write_text(text.replace("_s = 0.005", "_s = 0.012"))
+    wants = Wants(plant=str(plant), first_mode_Hz=11.5)
+    done = steps(tmp_path / "rig", wants, "wiring")
+    assert done.results["wiring"]["lag_s"] == pytest.approx(0.012, rel=0.03)
+    assert done.settings["current_lag_ms"] == 12
+    assert done.settings["constant_current_mA"] == 5000  # as it was before the steps
+
+
+def test_a_controller_that_stops_by_itself_has_shown_nothing(tmp_path: Path) -> None:
+    folder = Folder(tmp_path / "rig")
+    folder.settings = {"law": "constant", "constant_current_mA": 2000}
+    why = "stopped by itself: FAULT, fault COIL_OPEN"
+    with (
+        SimulatedSite(Wants(plant=str(PLANT)), folder) as site,
+        pytest.raises(BenchFailure, match=why),
+        site.armed("a trial"),
+    ):
+        site.rig.fault("coil_open", 5.0)
+        site.settle(1.0)

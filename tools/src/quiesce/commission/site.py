@@ -15,6 +15,7 @@ from quiesce.rig import Rig, Trigger
 
 RUN_S = 20.0  # sensors are judged for a while before it runs
 IDLE_S = 5.0
+AT_WORK = ("RUN", "DEGRADED")
 
 
 class Site(Protocol):
@@ -57,18 +58,25 @@ def give(rig: Rig, settings: dict[str, int | str]) -> None:
 
 @contextmanager
 def running(rig: Rig) -> Iterator[None]:
-    """Waits for RUN. Somebody else gives the enable before, and takes it after."""
+    """Waits for RUN. Somebody else gives the enable before, and takes it after. BenchFailure where
+    it has stopped by itself meanwhile: what was measured was not at work."""
     if rig.read("status/fault") != "NONE":
         raise BenchFailure(f"the controller is in fault {rig.read('status/fault')}: see to that")
     rig.wait(Trigger("status/state", equal="RUN"), RUN_S)
     yield
+    state = rig.read("status/state")
+    if state not in AT_WORK:
+        raise BenchFailure(
+            f"the controller stopped by itself: {state}, fault {rig.read('status/fault')}; "
+            "docs/reference/faults.md tells what to look at"
+        )
 
 
 def until_idle(rig: Rig, timeout_s: float = IDLE_S) -> bool:
     """Whether it runs no more."""
     end_s = time.monotonic() + timeout_s
     while time.monotonic() < end_s:
-        if rig.read("status/state") not in ("RUN", "DEGRADED"):
+        if rig.read("status/state") not in AT_WORK:
             return True
     return False
 

@@ -157,10 +157,11 @@ class Rig:
         trigger: Trigger | None = None,
         pre_s: float = 0.0,
         timeout_s: float = 10.0,
+        act: Callable[[], None] | None = None,
     ) -> dict[str, Series]:
         """Every sample of these signals, from pre_s before the trigger (without one: from now on)
         until length_s after it; a trigger within pre_s from now is none. BenchFailure where none
-        comes in time."""
+        comes in time. act: a write or a stimulus, done while it listens."""
         self._require_signals([*paths, *([trigger.path] if trigger else [])])
         if not (0.0 < length_s <= MOST_S and 0.0 <= pre_s <= MOST_S):
             raise UsageError(f"a capture is of 0 .. {MOST_S:g} s, before the trigger and after it")
@@ -168,18 +169,25 @@ class Rig:
         if trigger is None:
             capture.start_s = time.time()
         else:
-            self._listen_for_trigger(capture, pre_s, timeout_s)
+            self._listen_for_trigger(capture, pre_s, timeout_s, act)
+            act = None
         assert capture.start_s is not None
         end_s = capture.start_s + length_s
-        self._listen(capture.take, lambda: False, end_s - time.time())
+        self._listen(capture.take, lambda: False, end_s - time.time(), act)
         return capture.series(pre_s, length_s)
 
-    def _listen_for_trigger(self, capture: Capture, pre_s: float, timeout_s: float) -> None:
+    def _listen_for_trigger(
+        self,
+        capture: Capture,
+        pre_s: float,
+        timeout_s: float,
+        act: Callable[[], None] | None,
+    ) -> None:
         def is_over() -> bool:
             capture.forget(time.time() - pre_s - READ_S)
             return capture.start_s is not None
 
-        self._listen(capture.take, is_over, timeout_s)
+        self._listen(capture.take, is_over, timeout_s, act)
         if capture.start_s is None:
             raise BenchFailure(f"{capture.trigger} did not come about in {timeout_s:g} s")
 
@@ -193,14 +201,17 @@ class Rig:
         on_value: Callable[[str, float, Value], None],
         is_over: Callable[[], bool],
         timeout_s: float,
+        act: Callable[[], None] | None = None,
     ) -> None:
-        """To what comes from now on."""
+        """To what comes from now on, also while `act` is done, which must not listen itself."""
         self._services.wait(0.0)
         while (event := self._link.receive_now()) is not None:
             self._services.take(event)
         self._on_value = on_value
         try:
             end_s = time.monotonic() + timeout_s
+            if act is not None:
+                act()
             while not is_over() and (left_s := end_s - time.monotonic()) > 0.0:
                 event = self._link.receive(min(left_s, LOOK_S))
                 if event is not None:

@@ -28,7 +28,8 @@ def run(work: Work) -> dict[str, Any]:
     if work.wants.damper is None:
         write(designed, limited(read_plant_data(found), most_A))
         return {"is_chosen": False, "name": model_of(designed), "parameters": statuses(work)}
-    name = put_on(found, Path(work.wants.damper), designed, work.base_plant, most_A)
+    coil = coil_of(work)
+    name = put_on(found, Path(work.wants.damper), designed, coil, most_A)
     return {"is_chosen": True, "name": name, "parameters": {}}
 
 
@@ -53,14 +54,22 @@ def statuses(work: Work) -> dict[str, str]:
     return {str(row["name"]): str(row["status"]) for row in rows["parameters"]}
 
 
-def put_on(structure: Path, damper: Path, designed: Path, base: Path, most_A: float) -> str:
-    """Writes a plant file with that damper on the structure; its name. UsageError where they do not
-    go together."""
+def coil_of(work: Work) -> dict[str, Any] | None:
+    """As it was measured in step wiring, else as the base plant says, where it does."""
+    lag_s = work.result("wiring").get("lag_s")
+    return {"rise_s": lag_s} if lag_s is not None else read_plant_data(work.base_plant).get("coil")
+
+
+def put_on(
+    structure: Path, damper: Path, designed: Path, coil: dict[str, Any] | None, most_A: float
+) -> str:
+    """Writes a plant file with that damper on the structure; its name. coil: where the damper's
+    file has none; None: the structure's. UsageError where they do not go together."""
     shutil.copyfile(damper, designed.with_name(FILE))
     data, own = read_plant_data(structure), read_damper(damper)
-    coil = {} if "coil" in own else {"coil": read_plant_data(base).get("coil", data["coil"])}
+    said = {} if "coil" in own else {"coil": coil or data["coil"]}
     rest = {key: one for key, one in data.items() if key not in ("coil", "damper", "integration")}
-    plant = limited({**rest, **coil, "damper": {"file": FILE}}, min(most_A, most_of_damper_A(own)))
+    plant = limited({**rest, **said, "damper": {"file": FILE}}, min(most_A, most_of_damper_A(own)))
     write(designed, {**plant, "integration": {"max_step_us": 1.0}})
     safe_us = 1e6 * Plant(designed).safe_step_s
     step_us = max(1.0, min(USUAL_STEP_us, SAFE_PART * safe_us))

@@ -11,16 +11,17 @@ from quiesce.loading.load import put, save
 from quiesce.loading.sources import table_of
 from quiesce.table.file import SUFFIX
 from quiesce.table.kinds import PULSES
-from quiesce.tune.law import OF_BOARD
 
 NAME = "load"
 TITLE = "load"
+LAG = "current_lag_ms"
 
 
 def run(work: Work) -> dict[str, Any]:
     folder = work.path / TUNED
     table = table_of(PULSES.name, folder)
-    settings = limited(work.result("tune")["parameters"], work.site.limit_mA)
+    has_lag = work.result("wiring").get("lag_s") is not None
+    settings = limited(work.result("tune")["parameters"], work.site.limit_mA, has_lag)
     work.give(settings)
     tables = work.site.rig.tables()
     try:
@@ -41,9 +42,10 @@ def run(work: Work) -> dict[str, Any]:
     return {"crc": f"{table.crc:08x}", "took_s": took_s, "is_saved": is_saved}
 
 
-def limited(parameters: dict[str, int | str], limit_mA: int) -> dict[str, int | str]:
-    """No current above the limit; the board says what is its own."""
-    out = {name: one for name, one in parameters.items() if name not in OF_BOARD}
+def limited(parameters: dict[str, int | str], limit_mA: int, has_lag: bool) -> dict[str, int | str]:
+    """No current above the limit. has_lag: that of the coil was measured, and given, in step
+    wiring; else it is the plant's (a controller with a board file goes by that)."""
+    out = {name: one for name, one in parameters.items() if name != LAG or not has_lag}
     for name in ("max_current_mA", "unlock_current_mA", "constant_current_mA"):
         out[name] = min(int(out[name]), limit_mA)
     return out

@@ -9,6 +9,7 @@ import numpy as np
 from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.base.paths import shown
 from quiesce.can.parameters import name_of, settings_of, text_of
+from quiesce.commission.lag import measured_lag_s
 from quiesce.commission.samples import take
 from quiesce.commission.site import heard
 from quiesce.commission.work import Work
@@ -19,6 +20,7 @@ TITLE = "wiring and polarity"
 BEFORE = "parameters_before.json"
 TRIAL_PART = 0.2  # of the largest current
 LEAST_ERROR_mA = 10
+MOST_LAG_ms = 1000
 REST_S, TRIAL_S = 1.0, 1.0
 FELT = 3.0  # times as much as at rest
 NEAR = 0.1  # of the current
@@ -47,7 +49,7 @@ def run(work: Work) -> dict[str, Any]:
         except BenchFailure as error:
             work.tell(f"law=constant and {trial_mA} mA stay in the controller: {error}")
         raise
-    work.give(lent(before, limit_mA))
+    work.give(lent(before, limit_mA) | lag_setting(flows["lag_s"]))
     return {"version": version, **sensor, "trial_mA": trial_mA, **flows}
 
 
@@ -56,6 +58,11 @@ def lent(before: dict[str, str], limit_mA: int) -> dict[str, int | str]:
     return {
         name: before[name] if name == "law" else min(int(before[name]), limit_mA) for name in LENT
     }
+
+
+def lag_setting(lag_s: float | None) -> dict[str, int | str]:
+    """For the guard, which compares what flows with what the coil lets flow."""
+    return {} if lag_s is None else {"current_lag_ms": min(round(1e3 * lag_s), MOST_LAG_ms)}
 
 
 def kept_parameters(work: Work) -> dict[str, str]:
@@ -132,13 +139,14 @@ def driven(work: Work, trial_mA: int) -> dict[str, Any]:
         site.settle(TRIAL_S)
         asked_mA = heard(site, ["current_demand/current_cmd_mA"], TRIAL_S)
         measured = measured_mA(work)
+        lag_s = measured_lag_s(site, trial_mA) if measured is not None else None
     demand_mA = float(np.median(asked_mA["current_demand/current_cmd_mA"]))
     if abs(demand_mA - trial_mA) > NEAR * trial_mA:
         raise BenchFailure(f"{trial_mA} mA were wanted, the controller asks for {demand_mA:g} mA")
     if measured is not None and abs(measured - trial_mA) > NEAR * trial_mA:
         way = "the wrong way round" if abs(measured + trial_mA) <= NEAR * trial_mA else "not that"
         raise BenchFailure(f"{trial_mA} mA were wanted, {measured:g} mA flow: {way}")
-    return {"demand_mA": demand_mA, "measured_mA": measured}
+    return {"demand_mA": demand_mA, "measured_mA": measured, "lag_s": lag_s}
 
 
 def measured_mA(work: Work) -> float | None:
@@ -155,6 +163,8 @@ def measured_mA(work: Work) -> float | None:
 def line(result: dict[str, Any]) -> str:
     flows = result["measured_mA"]
     current = f"{flows:g} mA flow" if flows is not None else "nobody measures what flows"
+    if (lag_s := result.get("lag_s")) is not None:
+        current += f", {1e3 * lag_s:.1f} ms behind"
     return (
         f"firmware {result['version']}; noise {result['noise_counts']:.1f} counts, shaken "
         f"{result['shaken_ratio']:.0f} times that; {result['demand_mA']:g} mA asked for, {current}"
