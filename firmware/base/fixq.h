@@ -68,6 +68,12 @@ static inline uint64_t div_u64_u16(uint64_t dividend, uint32_t divisor) {
     return (uint64_t)(high / divisor) << 32 | (upper / divisor << 16 | lower / divisor);
 }
 
+/// value / k^2 without a 64-bit division, 1 <= k < 4096; low by at most k^2 / 2^24 of it plus 1.
+static inline uint64_t over_square(uint64_t value, uint32_t k) {
+    const uint32_t weight_q24 = (1u << 24) / (k * k);
+    return (value >> 24) * weight_q24 + (((value & 0xFFFFFFu) * weight_q24) >> 24);
+}
+
 /// floor(sqrt(value)), exact. About 90 instructions.
 uint32_t isqrt_u64(uint64_t value);
 

@@ -53,6 +53,7 @@ typedef struct {
     uint32_t body; ///< that it is on
     int32_t rms_um_s2;
     int32_t freq_uHz;            ///< last dominant frequency
+    bool is_narrow;              ///< without a lock: a narrow band in narrow_low .. narrow_high
     uint32_t phase_turn;         ///< of the lock: acceleration = amp x cos(phase), of the structure
                                  ///< when this tick's command reaches its driver
     uint32_t step_turn;          ///< a tick

@@ -15,6 +15,7 @@ void estimate_init(estimate_t *self, const estimator_cfg_t *cfg, uint32_t sample
     decimate_init(&self->decimate, cfg->tick_rate_Hz, sample_rate_Hz);
     tracker_init(&self->tracker, &cfg->tracker);
     velocity_init(&self->velocity, cfg->tracker.band_low_mHz, cfg->tracker.band_high_mHz);
+    spread_init(&self->spread, &cfg->spread);
     predictor_init(&self->predictor, self->stages);
     self->trust_ticks = 3u * window_ticks / 2u;
 }

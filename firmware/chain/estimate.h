@@ -5,6 +5,7 @@
 
 #include "decimate.h"
 #include "predictor.h"
+#include "spread.h"
 #include "tracker.h"
 #include "velocity.h"
 
@@ -20,6 +21,7 @@ typedef struct {
     uint32_t longest_ms; ///< 128, 256, 512 or 1024; of method fit
     uint32_t hop_ms;     ///< least time from one job's start to the next one's
     tracker_cfg_t tracker;
+    spread_cfg_t spread; ///< of method fit
 } estimator_cfg_t;
 
 typedef struct {
@@ -41,6 +43,7 @@ typedef struct {
     predictor_t predictor;
     tracker_t tracker;
     velocity_t velocity;
+    spread_t spread; ///< of what holds no steady component
     decimate_t decimate;
     uint8_t method;
     bool has_published;                     ///< in this tick

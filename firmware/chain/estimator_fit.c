@@ -12,6 +12,8 @@ enum {
     CALM_s = 2,           // without a contradiction, before a longer window is tried again
     PURE_Q16 = 52429,     // 80 %: share of the energy that one component must explain
     THIRD_FRACTION = 100, // a third harmonic is within 1 % of three times the fundamental
+    SPREAD_A_SAMPLE = 52, // powers to read once more: all of them
+    STEADY_WINDOWS = 3,   // a component that lasts so long is another motion than the one before
 };
 
 void estimator_fit_init(estimator_fit_t *self, const estimator_cfg_t *cfg) {
@@ -27,6 +29,7 @@ void estimator_fit_init(estimator_fit_t *self, const estimator_cfg_t *cfg) {
     tone_fit_init(&self->fit);
     self->slice_pairs = PAIRS_A_SAMPLE >> stages;
     self->slice_powers = POWERS_A_SAMPLE >> stages;
+    self->slice_spread = SPREAD_A_SAMPLE >> stages;
     self->hop_ticks = cfg->hop_ms * cfg->tick_rate_Hz / 1000u;
     self->clean_samples = -estimate_filter_memory(&self->known);
     self->most_level = self->longest_level;
@@ -175,6 +178,30 @@ static void start_gathering(estimator_fit_t *self) {
     self->stage = ESTIMATOR_FIT_GATHER;
 }
 
+// A job's end. What the window holds is no steady component, or not for long: how broad is it?
+static void end_job(estimator_fit_t *self) {
+    estimate_t *known = &self->known;
+    self->stage = ESTIMATOR_FIT_WAIT;
+    if (!spread_is_wanted(&known->spread) ||
+        SPECTRUM_POINTS_LOG2(self->level) != SPREAD_POINTS_LOG2) {
+        return;
+    }
+    if (!known->is_valid) {
+        spread_start(&known->spread);
+        self->stage = ESTIMATOR_FIT_SPREAD;
+    } else if (known->valid_ticks >= STEADY_WINDOWS * known->trust_ticks) {
+        spread_forget(&known->spread);
+    }
+}
+
+// Before the next job needs their place; it need not wait for that.
+static void spread(estimator_fit_t *self) {
+    if (spread_read(&self->known.spread, self->spectrum.power, self->slice_spread)) {
+        self->stage = ESTIMATOR_FIT_WAIT;
+        start_job(self);
+    }
+}
+
 static void choose(estimator_fit_t *self) {
     tracker_t *tracker = &self->known.tracker;
     if (!tracker_choose(tracker, self->spectrum.power)) {
@@ -185,7 +212,7 @@ static void choose(estimator_fit_t *self) {
         tracker->has_drift || (self->is_drifting && self->level == self->longest_level);
     if (tracker->starts == 0) {
         (void)estimate_decide(&self->known, NULL, 0, 0, 0);
-        self->stage = ESTIMATOR_FIT_WAIT;
+        end_job(self);
         return;
     }
     start_gathering(self);
@@ -318,7 +345,7 @@ static void publish(estimator_fit_t *self) {
     if (self->level == self->longest_level) {
         judge_window(self);
     }
-    self->stage = ESTIMATOR_FIT_WAIT;
+    end_job(self);
 }
 
 static void decide(estimator_fit_t *self) {
@@ -335,7 +362,11 @@ static void decide(estimator_fit_t *self) {
     }
     const bool is_good = estimate_decide(&self->known, tones, self->fit.tones,
                                          self->fit.residual_um_s2, self->fit.explained_q16);
-    self->stage = is_good ? ESTIMATOR_FIT_PUBLISH : ESTIMATOR_FIT_WAIT;
+    if (is_good) {
+        self->stage = ESTIMATOR_FIT_PUBLISH;
+    } else {
+        end_job(self);
+    }
     if (self->known.tracker.misses >= LOST_FITS && self->level == self->most_level &&
         self->most_level < self->longest_level) {
         self->most_level++; // so short a window does not help either
@@ -348,6 +379,7 @@ static void work(estimator_fit_t *self) {
         [ESTIMATOR_FIT_READ] = read,      [ESTIMATOR_FIT_CHOOSE] = choose,
         [ESTIMATOR_FIT_GATHER] = gather,  [ESTIMATOR_FIT_FIT] = fit_on,
         [ESTIMATOR_FIT_DECIDE] = decide,  [ESTIMATOR_FIT_PUBLISH] = publish,
+        [ESTIMATOR_FIT_SPREAD] = spread,
     };
     step[self->stage](self);
 }
@@ -370,6 +402,7 @@ static void take(estimator_fit_t *self, const estimator_in_t *in) {
     judge_sample(self, predictor_step(&self->known.predictor, in->accel_um_s2, in->is_good));
     calm_down(self);
     if (in->is_lost) {
+        spread_forget(&self->known.spread);
         restart(self, 0);
     }
     int32_t sample_um_s2;

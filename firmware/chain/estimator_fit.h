@@ -24,12 +24,14 @@ typedef enum {
     ESTIMATOR_FIT_FIT,
     ESTIMATOR_FIT_DECIDE,
     ESTIMATOR_FIT_PUBLISH,
+    ESTIMATOR_FIT_SPREAD, ///< reads the powers once more, of what has no steady component
 } estimator_fit_stage_t;
 
 typedef struct {
     estimate_t known;
     uint32_t slice_powers;  ///< to read a tick
     uint32_t slice_pairs;   ///< of work a tick
+    uint32_t slice_spread;  ///< powers to read once more a tick
     uint32_t longest_level; ///< longest window in use
     uint32_t hop_ticks;
     int32_t clean_samples;     ///< that hold nothing from before the last change

@@ -2,12 +2,6 @@
 
 #define RATE_mHz 250000u
 
-// power / k^2, floor, without a 64-bit division; power < 2^61.
-static uint64_t over_square(uint64_t power, uint32_t k) {
-    const uint32_t weight_q24 = (1u << 24) / (k * k);
-    return (power >> 24) * weight_q24 + (((power & 0xFFFFFFu) * weight_q24) >> 24);
-}
-
 void velocity_init(velocity_t *self, int32_t band_low_mHz, int32_t band_high_mHz) {
     *self = (velocity_t){.band_low_mHz = band_low_mHz, .band_high_mHz = band_high_mHz};
 }

@@ -5,8 +5,10 @@
 // spring that gives nothing back. Above resonance it lets go on the way out: like a mass. The
 // table knows where (docs/explanation/phase-law.md).
 //
-// While nothing is locked on to, the request is unlock_current_mA. From there the pulses are faded
-// in over phase_blend_ms, so that the vibration changes slowly enough to be followed.
+// While nothing is locked on to, the request is unlock_current_mA; in setting balanced it is
+// narrow_current_mA where the motion is a narrow band in which current costs acceleration. From
+// there the pulses are faded in over phase_blend_ms, so that the vibration changes slowly enough to
+// be followed.
 #include "law.h"
 
 #include <stddef.h>
@@ -131,12 +133,19 @@ static void adapt(phase_t *self, const quiesce_params_t *params, const view_t *v
                              });
 }
 
+// Where it is displacement that counts, the constant current that is best for it is so in any band.
+static int32_t unlocked_mA(const quiesce_params_t *params, const view_t *view) {
+    const bool is_narrow = view->tone.is_narrow && !view->is_at_rest &&
+                           params->phase_setting == QUIESCE_PHASE_SETTING_BALANCED;
+    return is_narrow ? params->narrow_current_mA : law_unlock_mA(params, view);
+}
+
 static int32_t request_mA(phase_t *self, const law_setup_t *setup, const view_t *view) {
     const quiesce_params_t *params = &setup->params;
     const view_tone_t *tone = &view->tone;
     if ((view->valid & VIEW_LOCK) == 0 || !view->is_output_on) {
         let_go(self, (view->valid & VIEW_LOCK) != 0);
-        return law_unlock_mA(params, view);
+        return unlocked_mA(params, view);
     }
     if (self->is_stale) {
         refresh(self, setup, tone->step_turn);
@@ -147,7 +156,7 @@ static int32_t request_mA(phase_t *self, const law_setup_t *setup, const view_t 
     // cycle.
     const uint32_t start_turn = (tone->phase_turn + tone->step_turn) << 1;
     const int32_t pulse_mA = phase_pulse_current_mA(&self->pulse, start_turn, tone->step_turn << 1);
-    return blended(self, law_unlock_mA(params, view), pulse_mA);
+    return blended(self, unlocked_mA(params, view), pulse_mA);
 }
 
 static bool step(void *state, const law_setup_t *setup, const view_t *view, law_demand_t *out) {

@@ -185,10 +185,12 @@ def test_nobody_does_and_allows_nothing() -> None:
 
 
 def test_no_law_may_ask_for_more_than_the_limit() -> None:
-    tuned = {"law": "phase", "max_current_mA": 5000, "unlock_current_mA": 4000,
-             "constant_current_mA": 4000, "current_lag_ms": 5}  # fmt: skip
+    tuned = {
+        "law": "phase", "max_current_mA": 5000, "unlock_current_mA": 4000,
+        "constant_current_mA": 4000, "narrow_current_mA": 2000, "current_lag_ms": 5,
+    }  # fmt: skip
     got = limited(tuned, 1500, has_lag=True)
-    assert [got[name] for name in got if name.endswith("_mA")] == [1500] * 3
+    assert [got[name] for name in got if name.endswith("_mA")] == [1500] * 4
     assert "current_lag_ms" not in got  # it was measured, and given
     assert limited(tuned, 1500, has_lag=False)["current_lag_ms"] == 5
     trial = limits(600, 120, 900)

@@ -288,6 +288,61 @@ static void test_hop_spaces_the_estimates(void) {
     TEST_ASSERT_UINT32_WITHIN(2, 15, published);
 }
 
+// Beats of eight components that no window tells apart, 3.9 to 6 Hz, and nothing above.
+static int32_t narrow_band(uint32_t i) {
+    static const uint32_t freqs_mHz[] = {3900, 4230, 4510, 4790, 5110, 5430, 5720, 6010};
+    int32_t sum = 0;
+    for (uint32_t k = 0; k < sizeof freqs_mHz / sizeof freqs_mHz[0]; k++) {
+        sum += signal_sine(60000, freqs_mHz[k], i + 977u * k * k, rate_Hz);
+    }
+    return sum;
+}
+
+static bool becomes_narrow(uint32_t ticks) {
+    for (uint32_t i = 0; i < ticks; i++, now++) {
+        step(narrow_band(now));
+        if (estimator.known.spread.is_narrow) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void start_with_bands(uint32_t tick_rate_Hz, int32_t high_mHz) {
+    start(tick_rate_Hz);
+    cfg.spread = (spread_cfg_t){1000, 50000, 3200, high_mHz, 20000};
+    estimator_init(&estimator, &cfg);
+}
+
+static void test_a_narrow_band_is_told_at_every_rate(void) {
+    static const uint32_t rates[] = {500, 1000, 2000, 4000};
+    for (uint32_t r = 0; r < 4; r++) {
+        start_with_bands(rates[r], 6750);
+        TEST_ASSERT_FALSE(becomes_narrow(2u * rates[r]));
+        TEST_ASSERT_TRUE(becomes_narrow(18u * rates[r]));
+    }
+    start_with_bands(1000, 0);
+    TEST_ASSERT_FALSE(becomes_narrow(20000));
+}
+
+static void test_a_component_that_lasts_ends_what_was_narrow(void) {
+    start_with_bands(1000, 6750);
+    TEST_ASSERT_TRUE(becomes_narrow(20000));
+    feed(&(component_t){300000, 5000}, 1, 0, 9000);
+    TEST_ASSERT_TRUE(is_valid());
+    TEST_ASSERT_FALSE(estimator.known.spread.is_narrow);
+    start_with_bands(1000, 6750); // and alone makes nothing so
+    feed(&(component_t){300000, 5000}, 1, 0, 20000);
+    TEST_ASSERT_FALSE(estimator.known.spread.is_narrow);
+}
+
+static void test_a_lost_input_ends_what_was_narrow(void) {
+    start_with_bands(1000, 6750);
+    TEST_ASSERT_TRUE(becomes_narrow(20000));
+    estimator_step(&estimator, &(estimator_in_t){.accel_um_s2 = 0, .is_lost = true});
+    TEST_ASSERT_FALSE(estimator.known.spread.is_narrow);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_tone_across_the_band_at_every_rate);
@@ -308,5 +363,8 @@ int main(void) {
     RUN_TEST(test_phase_follows_at_every_tick);
     RUN_TEST(test_missing_samples_are_bridged);
     RUN_TEST(test_hop_spaces_the_estimates);
+    RUN_TEST(test_a_narrow_band_is_told_at_every_rate);
+    RUN_TEST(test_a_component_that_lasts_ends_what_was_narrow);
+    RUN_TEST(test_a_lost_input_ends_what_was_narrow);
     return UNITY_END();
 }

@@ -133,6 +133,22 @@ static void test_law_phase_unlocked_requests_its_constant(void) {
     }
 }
 
+// The narrow current is for who asks for acceleration, at work, while nothing is locked on to.
+static void test_law_phase_unlocked_in_a_narrow_band(void) {
+    params->narrow_current_mA = 500;
+    params->safe_current_mA = 70;
+    set_lock(false);
+    tone->is_narrow = true;
+    TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, request());
+    params->phase_setting = QUIESCE_PHASE_SETTING_BALANCED;
+    TEST_ASSERT_EQUAL_INT32(500, request());
+    view.is_at_rest = true;
+    TEST_ASSERT_EQUAL_INT32(70, request());
+    view.is_at_rest = false;
+    tone->is_narrow = false;
+    TEST_ASSERT_EQUAL_INT32(UNLOCK_mA, request());
+}
+
 static void test_law_phase_requests_the_tables_pulse(void) {
     lock_at(5000);
     run(300);
@@ -477,6 +493,7 @@ static void test_law_phase_with_a_floor_tries_no_current(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_law_phase_unlocked_requests_its_constant);
+    RUN_TEST(test_law_phase_unlocked_in_a_narrow_band);
     RUN_TEST(test_law_phase_requests_the_tables_pulse);
     RUN_TEST(test_law_phase_first_tick_with_a_lock_has_its_pulse);
     RUN_TEST(test_law_phase_follows_the_frequency_between_points);

@@ -112,7 +112,15 @@ def share_cards(tuned: Tuned) -> list[tuple[str, str]]:
         if (share := worst_share(tuned.cells, is_adapted)) is not None:
             out.append((f"{share:.2f}", f"of their bound on the other plants: {what}"))
     unlock_A = 1e-3 * float(tuned.parameters["unlock_current_mA"])
-    return [*out, (f"{unlock_A:g} A", "best constant current, while nothing is locked on to")]
+    out.append((f"{unlock_A:g} A", "best constant current, while nothing is locked on to"))
+    low_mHz, high_mHz, narrow_mA = (
+        int(tuned.parameters[f"narrow_{name}"]) for name in ("low_mHz", "high_mHz", "current_mA")
+    )
+    if high_mHz:
+        band = f"{1e-3 * low_mHz:.3g} to {1e-3 * high_mHz:.3g} Hz"
+        what = f"instead of that in setting balanced, where the motion is a narrow band in {band}"
+        out.append((f"{1e-3 * narrow_mA:g} A", what))
+    return out
 
 
 def make_page(tuned: Tuned, pictures: dict[str, str]) -> str:

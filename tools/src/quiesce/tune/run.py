@@ -22,7 +22,8 @@ from quiesce.report.plot_style import svg_of
 from quiesce.table.file import SUFFIX, table_bytes
 from quiesce.tune import plots
 from quiesce.tune.cycle import Cycle, cycles
-from quiesce.tune.law import file_stem, make_law, parameters, rows, setting_words
+from quiesce.tune.law import file_stem, make_law, parameters, results, rows, setting_words
+from quiesce.tune.narrow import narrow_parameters
 from quiesce.tune.page import Tuned, make_page, text
 from quiesce.tune.phase_table import PhaseLaw, law_text
 from quiesce.tune.phase_words import law_words
@@ -146,7 +147,9 @@ def finished(
     folder: Path, name: str, report: str | None,
 ) -> Result:  # fmt: skip
     law = make_law(plant, plan, store, name, order.asked)
-    values = parameters(plant, law)
+    found = results(plan, store)
+    narrow = narrow_parameters(plan.freqs_Hz, found, law.unlock_current_mA)
+    values = parameters(plant, law) | narrow
     judged, shown_cycles = closed_loop(order, plan, plant, store, law, values)
     tuned = Tuned(
         name, shown(plant.file), command(order), plant.modes[0].freq_Hz,

@@ -32,6 +32,8 @@ FIGURES = (
     ("broadband_peak_ratio", "1", 1.05, "lower"),
     ("broadband_accel_ratio", "1", 1.05, "lower"),
     ("broadband_valid_pct", "%", None, "lower"),
+    ("broadband_others_accel_ratio", "1", None, "lower"),
+    ("broadband_others_harm", "1", None, "lower"),
 )
 
 SPEEDS = (1.0, 2.0, 5.0)
@@ -39,6 +41,9 @@ AFTER_s = 2.0  # of free decay
 PEAK_um = 100.0  # without current: well above what counts as rest
 BANDS_Hz = ((3.0, 7.0), (5.0, 6.0), (7.0, 15.0), (4.0, 22.0), (3.0, 22.0), (2.0, 40.0))
 RANDOM_s = 60.0
+# Others, which nothing was chosen by, at parts of the plant's drive.
+OTHERS_Hz = ((2.0, 4.0), (2.0, 5.0), (3.5, 5.0), (4.5, 8.0), (3.0, 9.0), (4.0, 10.0), (6.0, 7.5))
+OTHERS_PARTS = (1.0, 0.4)
 GRID_STEP_A = 0.25
 QUICK_STEP_A = 1.25
 FRONT_A = (0.25, 1.0, 2.5, 5.0)  # columns of the front
@@ -72,6 +77,12 @@ class Found:
     @property
     def accel_ratio(self) -> float:
         return self.ratio(BALANCED, "accel_rms_mm_s2")
+
+    @property
+    def harm(self) -> float:
+        """Of setting balanced's acceleration, against all the current throughout."""
+        key = "accel_rms_mm_s2"
+        return float(self.law[BALANCED][key] / self.constants[max(self.constants)][key])
 
     def front(self) -> list[str]:
         """Best currents, and what others do against them."""
@@ -111,6 +122,16 @@ def quakes(rig: Rig, folder: Path) -> list[Callable[[], Scenario]]:
 def randoms(rig: Rig, seed: int) -> list[Callable[[], Scenario]]:
     drive_V = float(rig.plant.drive_V / np.sqrt(2.0))
     return [partial(random_force, *band, drive_V, seed, RANDOM_s) for band in BANDS_Hz]
+
+
+def others(rig: Rig, seed: int) -> list[Callable[[], Scenario]]:
+    drive_V = float(rig.plant.drive_V / np.sqrt(2.0))
+
+    def made(band_Hz: tuple[float, float], part: float) -> Scenario:
+        one = random_force(*band_Hz, part * drive_V, seed, RANDOM_s)
+        return replace(one, name=f"{one.name}, {part:g} of the drive")
+
+    return [partial(made, band, part) for band in OTHERS_Hz for part in OTHERS_PARTS]
 
 
 def measure_input(rig: Rig, make: Callable[[], Scenario], step_A: float) -> Found:
@@ -159,19 +180,28 @@ def measure(effort: Effort) -> Measured:
     step_A = QUICK_STEP_A if effort.is_quick else GRID_STEP_A
     with phase_rig(effort) as rig:
         makes = [*randoms(rig, effort.seed), *quakes(rig, measurements("earthquake"))]
-        found: list[Found] = rig.work(
+        judged = len(makes)
+        makes += others(rig, effort.seed + 1)
+        measured: list[Found] = rig.work(
             [
                 (f"input {i + 1}", partial(measure_input, rig, make, step_A))
                 for i, make in enumerate(makes)
             ]
         )
+    found, beside = measured[:judged], measured[judged:]
     return Measured(
         {
             "broadband_disp_ratio": max(one.disp_ratio for one in found),
             "broadband_peak_ratio": max(one.peak_ratio for one in found),
             "broadband_accel_ratio": max(one.accel_ratio for one in found),
             "broadband_valid_pct": max(max(one.valid_pct.values()) for one in found),
+            "broadband_others_accel_ratio": max(one.accel_ratio for one in beside),
+            "broadband_others_harm": max(one.harm for one in beside),
         },
-        {"inputs": [one.row() for one in found], "front": [one.front() for one in found]},
-        tables_of(found),
+        {
+            "inputs": [one.row() for one in found],
+            "front": [one.front() for one in found],
+            "others": [[one.name, one.accel_ratio, one.harm] for one in beside],
+        },
+        (*tables_of(found), *tables_of(beside)),
     )
