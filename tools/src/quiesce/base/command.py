@@ -154,7 +154,9 @@ def exit_code_of(program: str, run: Callable[[], int]) -> int:
     except OSError as error:
         with suppress(BrokenPipeError):
             output_is_written()
-        say(f"{error.filename or 'file'}: {error.strerror or error}")
+        # A write does not say where to: files' own commands do.
+        where = error.filename or "standard output, or a file"
+        say(f"{where}: {error.strerror or error}")
         return EXIT_BAD_INPUT
     except Exception as error:
         if os.environ.get("QUIESCE_DEBUG"):
