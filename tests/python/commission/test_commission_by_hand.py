@@ -188,7 +188,7 @@ def test_a_trial_gives_back_what_it_took(
         laws.append(site.rig.read("parameters/law"))
         if end is not None:
             raise end
-        return {"demand_mA": trial_mA, "measured_mA": None}
+        return {"demand_mA": trial_mA, "measured_mA": trial_mA, "lag_s": 0.0123}
 
     monkeypatch.setattr(wiring, "driven", driven)
     with pytest.raises(end) if end else nullcontext():
@@ -197,6 +197,7 @@ def test_a_trial_gives_back_what_it_took(
     values = [site.rig.read(f"parameters/{name}") for name in names]
     assert laws == ["constant"] and values == ["off", 70, 400, 30, 400]
     assert folder.settings["law"] == "off"
+    assert site.rig.read("parameters/current_lag_ms") == (12 if end is None else 5)
 
 
 @pytest.mark.slow
@@ -208,7 +209,7 @@ def test_pulses_that_are_refused_are_told_with_what_is_in_effect(idle, tmp_path:
     folder = Folder(tmp_path / "rig")
     currents = ("max_current_mA", "unlock_current_mA", "constant_current_mA")
     parameters = {**dict.fromkeys(currents, 700), "law": "fuzzy"}  # which takes no pulses
-    folder.results["tune"] = {"parameters": parameters}
+    folder.results |= {"wiring": {"lag_s": None}, "tune": {"parameters": parameters}}
     with pytest.raises(BenchFailure, match="runs law fuzzy.*in effect already, not kept"):
         load_step.run(Work(Wants(), folder, lambda _: None, lambda: site))
     assert site.rig.read("parameters/max_current_mA") == 700

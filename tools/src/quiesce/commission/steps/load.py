@@ -15,7 +15,7 @@ from quiesce.table.kinds import PULSES
 NAME = "load"
 TITLE = "load"
 LAG = "current_lag_ms"
-CURRENTS = ("max_current_mA", "unlock_current_mA", "constant_current_mA", "narrow_current_mA")
+CURRENTS = {"max_current_mA", "unlock_current_mA", "constant_current_mA", "narrow_current_mA"}
 
 
 def run(work: Work) -> dict[str, Any]:
@@ -47,8 +47,8 @@ def limited(parameters: dict[str, int | str], limit_mA: int, has_lag: bool) -> d
     """No current above the limit. has_lag: that of the coil was measured, and given, in step
     wiring; else it is the plant's (a controller with a board file goes by that)."""
     out = {name: one for name, one in parameters.items() if name != LAG or not has_lag}
-    for name in CURRENTS:
-        out[name] = min(int(out.get(name, 0)), limit_mA)
+    for name in CURRENTS & out.keys():
+        out[name] = min(int(out[name]), limit_mA)
     return out
 
 
