@@ -53,9 +53,7 @@ static void take_in(spread_t *self) {
     const uint32_t log2 = 31u - (uint32_t)__builtin_clz(self->spectra + 1u);
     const uint32_t part = log2 < MEMORY_LOG2 ? log2 : MEMORY_LOG2;
     for (uint32_t i = 0; i < 3u; i++) {
-        self->mean[i] = part == 0
-                            ? self->sum[i]
-                            : self->mean[i] - (self->mean[i] >> part) + (self->sum[i] >> part);
+        self->mean[i] += (self->sum[i] >> part) - (self->mean[i] >> part);
     }
     if (self->spectra < UINT8_MAX) {
         self->spectra++;

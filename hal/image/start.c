@@ -27,6 +27,8 @@ static void clear_bss(void) {
 static void paint_stack(void) {
     register uint32_t *stack_pointer __asm__("sp");
     uint32_t *sp;
+    // The register itself, which no compiler can know to have a value.
+    // NOLINTNEXTLINE(clang-diagnostic-uninitialized)
     __asm__ volatile("" : "=r"(sp) : "0"(stack_pointer));
     for (volatile uint32_t *word = stack_limit; word < sp; word++) {
         *word = STACK_PAINT;
