@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from quiesce.commission.samples import LOW, WRAP
+from quiesce.commission.samples import LOW, ticks_of
 from quiesce.commission.site import Site
 
 STEPS = 4
@@ -44,7 +44,7 @@ def step_to(site: Site, to_mA: int) -> float | None:
     )
     if len(low) < 2 or not is_measured.all():
         return None
-    return lag_of_step(np.concatenate([[0], np.cumsum(np.diff(low) % WRAP)]), current_mA)
+    return lag_of_step(ticks_of(low), current_mA)
 
 
 def lag_of_step(ticks: np.ndarray, current_mA: Sequence[int] | np.ndarray) -> float | None:

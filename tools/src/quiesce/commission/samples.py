@@ -54,6 +54,11 @@ class Samples:
                 writer.writerow([f"{tick / self.rate_Hz:.6g}", f"{value:.9g}"])
 
 
+def ticks_of(low: np.ndarray) -> np.ndarray:
+    """Of tick_low, which wraps: ticks since the first one."""
+    return np.concatenate([[0], np.cumsum(np.diff(low) % WRAP)])
+
+
 def take(site: Site, length_s: float) -> Samples:
     """So much of the rig's own time, which may take longer: a rig in a busy computer is slow.
     BenchFailure where the controller sends less than half of them."""
@@ -68,7 +73,7 @@ def take(site: Site, length_s: float) -> Samples:
         low = np.concatenate([low, np.asarray(found[LOW].values, np.int64)])
         counts = np.concatenate([counts, np.asarray(found[COUNTS].values, np.int64)])
         if len(low) > 1:
-            ticks = np.concatenate([[0], np.cumsum(np.diff(low) % WRAP)])
+            ticks = ticks_of(low)
             left_s = length_s - ticks[-1] / rate_Hz
     if left_s > 0.0 or len(low) < LEAST_PART * ticks[-1]:
         raise BenchFailure(

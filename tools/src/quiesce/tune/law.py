@@ -24,6 +24,7 @@ SETTLED_DECAYS = 3.0
 # A vibration must last this many settlings, and at least so long, before it is adapted to.
 START_SETTLINGS, LEAST_START_MS = 15.0, 10_000
 MEASURED_CYCLES, LEAST_MEASURE_MS = 2.0, 1000
+MOST_LAG_ms = 1000
 MODE_REACH = 1.25  # modes up to this part of the band's end decide how slowly things settle
 
 
@@ -131,11 +132,16 @@ def parameters(plant: Plant, law: PhaseLaw) -> dict[str, int | str]:
         "max_current_mA": full_mA,
         "unlock_current_mA": law.unlock_current_mA,
         "constant_current_mA": law.unlock_current_mA,
-        "current_lag_ms": min(round(1e3 * plant.rise_s), 1000),
+        "current_lag_ms": lag_ms(plant.rise_s),
         "adapt_settle_ms": settle_ms,
         "adapt_start_ms": min(max(LEAST_START_MS, start_ms), 1_000_000),
         "adapt_measure_ms": min(max(LEAST_MEASURE_MS, measure_ms), 10_000),
     }
+
+
+def lag_ms(rise_s: float) -> int:
+    """Parameter current_lag_ms of a coil with this time constant."""
+    return min(round(1e3 * rise_s), MOST_LAG_ms)
 
 
 def setting_words(values: dict[str, int | str]) -> str:

@@ -9,18 +9,18 @@ import numpy as np
 from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.base.paths import shown
 from quiesce.can.parameters import name_of, settings_of, text_of
-from quiesce.commission.lag import measured_lag_s
+from quiesce.commission.lag import CURRENT, IS_MEASURED, measured_lag_s
 from quiesce.commission.samples import take
 from quiesce.commission.site import heard
 from quiesce.commission.work import Work
 from quiesce.engine.params import parameters
+from quiesce.tune.law import lag_ms
 
 NAME = "wiring"
 TITLE = "wiring and polarity"
 BEFORE = "parameters_before.json"
 TRIAL_PART = 0.2  # of the largest current
 LEAST_ERROR_mA = 10
-MOST_LAG_ms = 1000
 REST_S, TRIAL_S = 1.0, 1.0
 FELT = 3.0  # times as much as at rest
 NEAR = 0.1  # of the current
@@ -62,7 +62,7 @@ def lent(before: dict[str, str], limit_mA: int) -> dict[str, int | str]:
 
 def lag_setting(lag_s: float | None) -> dict[str, int | str]:
     """For the guard, which compares what flows with what the coil lets flow."""
-    return {} if lag_s is None else {"current_lag_ms": min(round(1e3 * lag_s), MOST_LAG_ms)}
+    return {} if lag_s is None else {"current_lag_ms": lag_ms(lag_s)}
 
 
 def kept_parameters(work: Work) -> dict[str, str]:
@@ -139,22 +139,28 @@ def driven(work: Work, trial_mA: int) -> dict[str, Any]:
         site.settle(TRIAL_S)
         asked_mA = heard(site, ["current_demand/current_cmd_mA"], TRIAL_S)
         measured = measured_mA(work)
+        demand_mA = float(np.median(asked_mA["current_demand/current_cmd_mA"]))
+        require_trial(trial_mA, demand_mA, measured)
         lag_s = measured_lag_s(site, trial_mA) if measured is not None else None
-    demand_mA = float(np.median(asked_mA["current_demand/current_cmd_mA"]))
+    return {"demand_mA": demand_mA, "measured_mA": measured, "lag_s": lag_s}
+
+
+def require_trial(trial_mA: int, demand_mA: float, measured: float | None) -> None:
+    """BenchFailure where that is not the trial: no more current then."""
     if abs(demand_mA - trial_mA) > NEAR * trial_mA:
         raise BenchFailure(f"{trial_mA} mA were wanted, the controller asks for {demand_mA:g} mA")
     if measured is not None and abs(measured - trial_mA) > NEAR * trial_mA:
         way = "the wrong way round" if abs(measured + trial_mA) <= NEAR * trial_mA else "not that"
         raise BenchFailure(f"{trial_mA} mA were wanted, {measured:g} mA flow: {way}")
-    return {"demand_mA": demand_mA, "measured_mA": measured, "lag_s": lag_s}
 
 
 def measured_mA(work: Work) -> float | None:
     """None where nobody measures it."""
     work.site.rig.stream_raw(2)
-    names = ("raw_sample/current_is_measured", "raw_sample/current_meas_mA")
-    found = work.site.rig.capture(names, 0.5)
-    is_measured, current_mA = (np.asarray(found[name].values, float) for name in names)
+    found = work.site.rig.capture((IS_MEASURED, CURRENT), 0.5)
+    is_measured, current_mA = (
+        np.asarray(found[name].values, float) for name in (IS_MEASURED, CURRENT)
+    )
     if not len(is_measured) or not is_measured.any():
         return None
     return float(np.median(current_mA[is_measured > 0.0]))
