@@ -12,7 +12,7 @@ enum {
     CALM_s = 2,           // without a contradiction, before a longer window is tried again
     PURE_Q16 = 52429,     // 80 %: share of the energy that one component must explain
     THIRD_FRACTION = 100, // a third harmonic is within 1 % of three times the fundamental
-    SPREAD_A_SAMPLE = 52, // powers to read once more: all of them
+    SPREAD_HOP_ms = 128,  // an eighth of a window: what it forgets it forgets in time
     STEADY_WINDOWS = 3,   // a component that lasts so long is another motion than the one before
 };
 
@@ -29,8 +29,8 @@ void estimator_fit_init(estimator_fit_t *self, const estimator_cfg_t *cfg) {
     tone_fit_init(&self->fit);
     self->slice_pairs = PAIRS_A_SAMPLE >> stages;
     self->slice_powers = POWERS_A_SAMPLE >> stages;
-    self->slice_spread = SPREAD_A_SAMPLE >> stages;
     self->hop_ticks = cfg->hop_ms * cfg->tick_rate_Hz / 1000u;
+    self->spread_hop_ticks = SPREAD_HOP_ms * cfg->tick_rate_Hz / 1000u;
     self->clean_samples = -estimate_filter_memory(&self->known);
     self->most_level = self->longest_level;
     self->suspend_most_ticks = SUSPEND_ms * cfg->tick_rate_Hz / 1000u;
@@ -182,24 +182,24 @@ static void start_gathering(estimator_fit_t *self) {
 static void end_job(estimator_fit_t *self) {
     estimate_t *known = &self->known;
     self->stage = ESTIMATOR_FIT_WAIT;
-    if (!spread_is_wanted(&known->spread) ||
-        SPECTRUM_POINTS_LOG2(self->level) != SPREAD_POINTS_LOG2) {
+    if (!spread_is_wanted(&known->spread) || self->level != SPREAD_LEVEL) {
         return;
     }
-    if (!known->is_valid) {
-        spread_start(&known->spread);
+    if (!known->is_valid && self->spread_ticks >= self->spread_hop_ticks) {
         self->stage = ESTIMATOR_FIT_SPREAD;
-    } else if (known->valid_ticks >= STEADY_WINDOWS * known->trust_ticks) {
+    } else if (known->is_valid && known->valid_ticks >= STEADY_WINDOWS * known->trust_ticks) {
         spread_forget(&known->spread);
     }
 }
 
-// Before the next job needs their place; it need not wait for that.
+// Before the next job needs the powers' place. It does not wait for that: what reads them slows
+// nothing down.
 static void spread(estimator_fit_t *self) {
-    if (spread_read(&self->known.spread, self->spectrum.power, self->slice_spread)) {
-        self->stage = ESTIMATOR_FIT_WAIT;
-        start_job(self);
-    }
+    const velocity_t *band = &self->known.velocity;
+    spread_take(&self->known.spread, self->spectrum.power, band->first_bin, band->end_bin);
+    self->spread_ticks = 0;
+    self->stage = ESTIMATOR_FIT_WAIT;
+    start_job(self);
 }
 
 static void choose(estimator_fit_t *self) {
@@ -394,6 +394,7 @@ static void age(estimator_fit_t *self) {
     self->sample_age_ticks++;
     self->job_age_ticks++;
     self->job_ticks = increment_sat_u32(self->job_ticks);
+    self->spread_ticks = increment_sat_u32(self->spread_ticks);
     estimate_age(&self->known);
 }
 

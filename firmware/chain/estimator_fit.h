@@ -24,20 +24,21 @@ typedef enum {
     ESTIMATOR_FIT_FIT,
     ESTIMATOR_FIT_DECIDE,
     ESTIMATOR_FIT_PUBLISH,
-    ESTIMATOR_FIT_SPREAD, ///< reads the powers once more, of what has no steady component
+    ESTIMATOR_FIT_SPREAD, ///< all powers once more, of what has no steady component
 } estimator_fit_stage_t;
 
 typedef struct {
     estimate_t known;
     uint32_t slice_powers;  ///< to read a tick
     uint32_t slice_pairs;   ///< of work a tick
-    uint32_t slice_spread;  ///< powers to read once more a tick
     uint32_t longest_level; ///< longest window in use
     uint32_t hop_ticks;
     int32_t clean_samples;     ///< that hold nothing from before the last change
     uint32_t sample_age_ticks; ///< of the newest sample
     uint32_t job_age_ticks;    ///< of the newest sample in the job's window
     uint32_t job_ticks;        ///< since the job began, saturating
+    uint32_t spread_ticks;     ///< since a window's spread was read, saturating
+    uint32_t spread_hop_ticks; ///< least time between two of them
     uint32_t level;            ///< the job's window
     uint32_t published_level;  ///< window of the last published fit
     bool is_suspended;         ///< a change or a burst: which is not known yet

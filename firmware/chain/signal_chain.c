@@ -20,39 +20,31 @@ static void lock_init(dominant_lock_state_t *self, const dominant_lock_t *lock,
                      });
 }
 
-// Whether somebody asks for narrow bands: a law that locks on, in the setting that goes by them.
-static bool wants_bands(const quiesce_params_t *p, const dominant_lock_t *lock) {
-    return lock != NULL && p->phase_setting == QUIESCE_PHASE_SETTING_BALANCED;
-}
-
 void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
                        const quiesce_params_t *p, uint64_t needs, const dominant_lock_t *lock) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
     sensing_init(&self->sensing, board, p, needs);
     self->tracked = (uint8_t)board->tracked;
     rms_init(&self->rms, rate_Hz, (uint32_t)p->rms_window_ms);
-    estimator_init(&self->estimator,
-                   &(estimator_cfg_t){
-                       .method = p->estimator,
-                       .tick_rate_Hz = rate_Hz,
-                       .longest_ms = (uint32_t)p->track_window_ms,
-                       .hop_ms = (uint32_t)p->track_hop_ms,
-                       .tracker =
-                           {
-                               .band_low_mHz = p->band_low_mHz,
-                               .band_high_mHz = p->band_high_mHz,
-                               .min_accel_um_s2 = p->track_min_accel_um_s2,
-                               .snr_dB = p->track_snr_dB,
-                           },
-                       .spread =
-                           {
-                               .band_low_mHz = p->band_low_mHz,
-                               .band_high_mHz = p->band_high_mHz,
-                               .low_mHz = p->narrow_low_mHz,
-                               .high_mHz = wants_bands(p, lock) ? p->narrow_high_mHz : 0,
-                               .least_um_s2 = p->narrow_least_um_s2,
-                           },
-                   });
+    estimator_init(&self->estimator, &(estimator_cfg_t){
+                                         .method = p->estimator,
+                                         .tick_rate_Hz = rate_Hz,
+                                         .longest_ms = (uint32_t)p->track_window_ms,
+                                         .hop_ms = (uint32_t)p->track_hop_ms,
+                                         .tracker =
+                                             {
+                                                 .band_low_mHz = p->band_low_mHz,
+                                                 .band_high_mHz = p->band_high_mHz,
+                                                 .min_accel_um_s2 = p->track_min_accel_um_s2,
+                                                 .snr_dB = p->track_snr_dB,
+                                             },
+                                         .spread =
+                                             {
+                                                 .low_mHz = p->narrow_low_mHz,
+                                                 .high_mHz = lock != NULL ? p->narrow_high_mHz : 0,
+                                                 .least_um_s2 = p->narrow_least_um_s2,
+                                             },
+                                     });
     displacement_reset(&self->displacement);
     if (lock != NULL) {
         lock_init(&self->lock, lock, board, p);

@@ -154,6 +154,9 @@ static bool check_together(const quiesce_params_t *params, quiesce_param_error_t
     if (params->band_low_mHz >= params->band_high_mHz) {
         return refuse(error, INDEX_OF(band_high_mHz), "must be above band_low_mHz");
     }
+    if (params->narrow_high_mHz != 0 && params->narrow_low_mHz >= params->narrow_high_mHz) {
+        return refuse(error, INDEX_OF(narrow_high_mHz), "must be above narrow_low_mHz, or 0");
+    }
     if (params->constant_current_mA > params->max_current_mA) {
         return refuse(error, INDEX_OF(constant_current_mA), "above max_current_mA");
     }

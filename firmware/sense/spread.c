@@ -1,8 +1,8 @@
 #include "spread.h"
 
 enum {
-    RATE_mHz = 250000,
-    FAR = 3,              // times the largest mean frequency
+    RATE_mHz = SPECTRUM_RATE_Hz * 1000,
+    FAR = 2,              // times the largest mean frequency
     FAR_MOST_mHz = 20000, // of which that is beyond all that is read
     FIRST_BIN = 2,        // the Hann window shows a constant part in the one below, too
     HEAD_ROOM = 8,        // bits: sums of 2^6 powers below 2^61 fit 64
@@ -13,26 +13,23 @@ enum {
     STILL_NARROW_Q8 = 105,
 };
 
-static uint32_t bin_at(int32_t freq_mHz, uint32_t half_bins) {
-    return (((uint32_t)freq_mHz << (SPREAD_POINTS_LOG2 + 1u)) / RATE_mHz + half_bins) / 2u;
+static uint32_t bins_q8(int32_t freq_mHz) {
+    return ((uint32_t)freq_mHz << (SPECTRUM_POINTS_LOG2(SPREAD_LEVEL) + 8u)) / RATE_mHz;
 }
 
 // Square of a frequency in bins, Q8.
 static uint32_t square_q8(int32_t freq_mHz) {
-    const uint32_t k_q8 = ((uint32_t)freq_mHz << 16) / RATE_mHz;
+    const uint32_t k_q8 = bins_q8(freq_mHz);
     return (k_q8 * k_q8) >> 8;
 }
 
 void spread_init(spread_t *self, const spread_cfg_t *cfg) {
-    const uint32_t first_bin = bin_at(cfg->band_low_mHz, 1u);
     const int32_t high_mHz = cfg->high_mHz < FAR_MOST_mHz ? cfg->high_mHz : FAR_MOST_mHz;
     *self = (spread_t){
         .least_um_s2 = (uint32_t)cfg->least_um_s2,
         .low_k2_q8 = square_q8(cfg->low_mHz),
         .high_k2_q8 = square_q8(cfg->high_mHz),
-        .first_bin = (uint8_t)(first_bin > FIRST_BIN ? first_bin : FIRST_BIN),
-        .far_bin = (uint8_t)bin_at(FAR * high_mHz, 1u),
-        .end_bin = (uint8_t)(bin_at(cfg->band_high_mHz, 1u) + 1u),
+        .far_bin = (uint8_t)((FAR * bins_q8(high_mHz) + 128u) >> 8),
     };
 }
 
@@ -41,19 +38,12 @@ void spread_forget(spread_t *self) {
     self->is_narrow = false;
 }
 
-void spread_start(spread_t *self) {
-    self->next_bin = self->first_bin;
-    for (uint32_t i = 0; i < 3u; i++) {
-        self->sum[i] = 0;
-    }
-}
-
-static void take_in(spread_t *self) {
+static void take_in(spread_t *self, const uint64_t sum[3]) {
     // The first one is the mean, the second half of it, .. (31 - clz is the log2.)
     const uint32_t log2 = 31u - (uint32_t)__builtin_clz(self->spectra + 1u);
     const uint32_t part = log2 < MEMORY_LOG2 ? log2 : MEMORY_LOG2;
     for (uint32_t i = 0; i < 3u; i++) {
-        self->mean[i] += (self->sum[i] >> part) - (self->mean[i] >> part);
+        self->mean[i] += (sum[i] >> part) - (self->mean[i] >> part);
     }
     if (self->spectra < UINT8_MAX) {
         self->spectra++;
@@ -85,25 +75,19 @@ static bool is_narrow_now(const spread_t *self) {
            velocity * velocity >= (accel * displacement >> 8) * least_q8;
 }
 
-bool spread_read(spread_t *self, const uint64_t *power, uint32_t powers) {
-    uint32_t end = self->next_bin + powers;
-    end = end < self->end_bin ? end : self->end_bin;
-    uint32_t k = self->next_bin;
-    for (; k < end && k < self->far_bin; k++) {
+void spread_take(spread_t *self, const uint64_t *power, uint32_t first_bin, uint32_t end_bin) {
+    uint64_t sum[3] = {0};
+    uint32_t k = first_bin > FIRST_BIN ? first_bin : FIRST_BIN;
+    for (; k < end_bin && k < self->far_bin; k++) {
         const uint64_t of_accel = power[k] >> HEAD_ROOM;
         const uint64_t of_velocity = over_square(of_accel, k);
-        self->sum[0] += of_accel;
-        self->sum[1] += of_velocity;
-        self->sum[2] += over_square(of_velocity, k);
+        sum[0] += of_accel;
+        sum[1] += of_velocity;
+        sum[2] += over_square(of_velocity, k);
     }
-    for (; k < end; k++) {
-        self->sum[0] += power[k] >> HEAD_ROOM;
+    for (; k < end_bin; k++) {
+        sum[0] += power[k] >> HEAD_ROOM;
     }
-    self->next_bin = (uint8_t)end;
-    if (end < self->end_bin) {
-        return false;
-    }
-    take_in(self);
+    take_in(self, sum);
     self->is_narrow = is_narrow_now(self);
-    return true;
 }

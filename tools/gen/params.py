@@ -222,6 +222,7 @@ Live: may also change while the controller is armed, between two ticks; the slew
 that does. All others are refused then: disarm first.
 
 Values that must also agree with each other: `band_low_mHz` < `band_high_mHz`;
+`narrow_low_mHz` < `narrow_high_mHz` unless that is 0;
 `constant_current_mA`, `safe_current_mA` and `unlock_current_mA` <= `max_current_mA`; with
 `current_check` on, `current_error_mA` <= `max_current_mA` / 2;
 `selftune_polarity` is -1 or +1, never 0.

@@ -431,6 +431,7 @@ static void test_all_parameters_at_their_ends_together_run(void) {
         params.sensor_recover_ticks = 1;
         params.current_error_mA = 10;
         params.safe_current_mA = 0;
+        params.narrow_low_mHz = 0;
         params.unlock_current_mA = 0;
         TEST_ASSERT_TRUE(lockstep_start(&server, NULL, &params, NULL));
         run_wildly(20000);

@@ -310,7 +310,7 @@ static bool becomes_narrow(uint32_t ticks) {
 
 static void start_with_bands(uint32_t tick_rate_Hz, int32_t high_mHz) {
     start(tick_rate_Hz);
-    cfg.spread = (spread_cfg_t){1000, 50000, 3200, high_mHz, 20000};
+    cfg.spread = (spread_cfg_t){3200, high_mHz, 20000};
     estimator_init(&estimator, &cfg);
 }
 

@@ -62,6 +62,14 @@ static void test_contradictions_are_named(void) {
     params.band_low_mHz = params.band_high_mHz = 20000;
     TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
     TEST_ASSERT_EQUAL_STRING("band_high_mHz", quiesce_param_info(error.index)->name);
+    setUp();
+    params.narrow_low_mHz = 5000; // never used, as nothing is above it
+    TEST_ASSERT_TRUE(quiesce_params_check(&params, &error));
+    params.narrow_high_mHz = 5000;
+    TEST_ASSERT_FALSE(quiesce_params_check(&params, &error));
+    TEST_ASSERT_EQUAL_STRING("narrow_high_mHz", quiesce_param_info(error.index)->name);
+    params.narrow_high_mHz = 5001;
+    TEST_ASSERT_TRUE(quiesce_params_check(&params, &error));
     const size_t currents[] = {offsetof(quiesce_params_t, constant_current_mA),
                                offsetof(quiesce_params_t, safe_current_mA),
                                offsetof(quiesce_params_t, unlock_current_mA)};

@@ -34,6 +34,7 @@ FIGURES = (
     ("broadband_valid_pct", "%", None, "lower"),
     ("broadband_others_accel_ratio", "1", None, "lower"),
     ("broadband_others_harm", "1", None, "lower"),
+    ("narrow_to_full_s", "s", None, "lower"),
 )
 
 SPEEDS = (1.0, 2.0, 5.0)
@@ -44,6 +45,9 @@ RANDOM_s = 60.0
 # Others, which nothing was chosen by, at parts of the plant's drive.
 OTHERS_Hz = ((2.0, 4.0), (2.0, 5.0), (3.5, 5.0), (4.5, 8.0), (3.0, 9.0), (4.0, 10.0), (6.0, 7.5))
 OTHERS_PARTS = (1.0, 0.4)
+# From a band below resonance on to one with it: how long the smaller current stays.
+BELOW_Hz, WITH_IT_Hz = (3.0, 7.0), ((7.0, 15.0), (9.0, 13.0), (4.0, 22.0))
+MOVES_AFTER_s = 30.0
 GRID_STEP_A = 0.25
 QUICK_STEP_A = 1.25
 FRONT_A = (0.25, 1.0, 2.5, 5.0)  # columns of the front
@@ -134,6 +138,25 @@ def others(rig: Rig, seed: int) -> list[Callable[[], Scenario]]:
     return [partial(made, band, part) for band in OTHERS_Hz for part in OTHERS_PARTS]
 
 
+def full_after_s(rig: Rig, seed: int, band_Hz: tuple[float, float]) -> float:
+    """From the change of bands until the command is all the current again."""
+    drive_V = float(rig.plant.drive_V / np.sqrt(2.0))
+    below = random_force(*BELOW_Hz, drive_V, seed, MOVES_AFTER_s)
+    then = random_force(*band_Hz, drive_V, seed + 1, MOVES_AFTER_s)
+    scenario = replace(
+        below,
+        name=f"{below.name}, then {then.name}",
+        duration_s=2.0 * MOVES_AFTER_s,
+        segments=(*below.segments, *then.segments),
+    )
+    columns = ("t_s", "current_cmd_mA")
+    trace = rig.run(scenario, rig.judged.control(BALANCED), columns=columns).trace
+    assert trace is not None
+    is_full = trace["current_cmd_mA"] >= 999.0 * rig.full_A
+    after = trace["t_s"][(trace["t_s"] >= MOVES_AFTER_s) & is_full]
+    return float(after[0] - MOVES_AFTER_s) if len(after) else MOVES_AFTER_s
+
+
 def measure_input(rig: Rig, make: Callable[[], Scenario], step_A: float) -> Found:
     scenario = make()
     constants = {0.0: rig.run(scenario, OPEN_LOOP).figures}
@@ -188,6 +211,7 @@ def measure(effort: Effort) -> Measured:
                 for i, make in enumerate(makes)
             ]
         )
+        moves_s = [full_after_s(rig, effort.seed + 1, band) for band in WITH_IT_Hz]
     found, beside = measured[:judged], measured[judged:]
     return Measured(
         {
@@ -197,6 +221,7 @@ def measure(effort: Effort) -> Measured:
             "broadband_valid_pct": max(max(one.valid_pct.values()) for one in found),
             "broadband_others_accel_ratio": max(one.accel_ratio for one in beside),
             "broadband_others_harm": max(one.harm for one in beside),
+            "narrow_to_full_s": max(moves_s),
         },
         {
             "inputs": [one.row() for one in found],
