@@ -2,6 +2,8 @@
 
 import json
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ from quiesce.commission.lag import lag_of_step
 from quiesce.commission.run import Order, begun, listed
 from quiesce.commission.samples import Samples
 from quiesce.commission.simulated import bare, limit_mA
-from quiesce.commission.steps import NAMES, STEPS
+from quiesce.commission.steps import NAMES, STEPS, wiring
 from quiesce.commission.steps.calibrate import from_gravity
 from quiesce.commission.steps.damper import put_on
 from quiesce.commission.steps.excite import rate_Hz, within
@@ -386,3 +388,36 @@ def test_a_chosen_damper_is_put_on_what_was_found_without_one(tmp_path: Path) ->
 )
 def test_bad_orders_are_refused_in_one_line(refused, words: list[str], why: str) -> None:
     assert why in refused("commission", *words)
+
+
+class Armed:
+    """A site whose trial runs, and nothing else."""
+
+    @contextmanager
+    def armed(self, why: str) -> Iterator[None]:
+        yield
+
+    def settle(self, length_s: float) -> None:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("asked_mA", "flows_mA", "why"),
+    [
+        (60.0, 120.0, "asks for 60 mA"),
+        (120.0, -120.0, "the wrong way round"),
+        (120.0, 40.0, "not that"),
+    ],
+)
+def test_a_trial_that_goes_wrong_ends_before_the_lag_is_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, asked_mA: float, flows_mA: float, why: str
+) -> None:
+    def measured_lag_s(*_: object) -> None:
+        raise AssertionError("more steps of a current that is not understood")
+
+    monkeypatch.setattr(wiring, "heard", lambda *_: {"current_demand/current_cmd_mA": [asked_mA]})
+    monkeypatch.setattr(wiring, "measured_mA", lambda _: flows_mA)
+    monkeypatch.setattr(wiring, "measured_lag_s", measured_lag_s)
+    work = Work(Wants(), Folder(tmp_path), lambda _: None, Armed)
+    with pytest.raises(BenchFailure, match=why):
+        wiring.driven(work, 120)
