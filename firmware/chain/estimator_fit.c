@@ -182,7 +182,8 @@ static void start_gathering(estimator_fit_t *self) {
 static void end_job(estimator_fit_t *self) {
     estimate_t *known = &self->known;
     self->stage = ESTIMATOR_FIT_WAIT;
-    if (!spread_is_wanted(&known->spread) || self->level != SPREAD_LEVEL) {
+    const uint32_t points_log2 = SPECTRUM_POINTS_LOG2(self->level);
+    if (!spread_is_wanted(&known->spread) || points_log2 != SPREAD_POINTS_LOG2) {
         return;
     }
     if (!known->is_valid && self->spread_ticks >= self->spread_hop_ticks) {

@@ -1,7 +1,7 @@
 #include "spread.h"
 
 enum {
-    RATE_mHz = SPECTRUM_RATE_Hz * 1000,
+    RATE_mHz = 250000,
     FAR = 2,              // times the largest mean frequency
     FAR_MOST_mHz = 20000, // of which that is beyond all that is read
     FIRST_BIN = 2,        // the Hann window shows a constant part in the one below, too
@@ -14,7 +14,7 @@ enum {
 };
 
 static uint32_t bins_q8(int32_t freq_mHz) {
-    return ((uint32_t)freq_mHz << (SPECTRUM_POINTS_LOG2(SPREAD_LEVEL) + 8u)) / RATE_mHz;
+    return ((uint32_t)freq_mHz << (SPREAD_POINTS_LOG2 + 8u)) / RATE_mHz;
 }
 
 // Square of a frequency in bins, Q8.

@@ -10,9 +10,9 @@
 #ifndef SPREAD_H
 #define SPREAD_H
 
-#include "spectrum.h"
+#include "fixq.h"
 
-#define SPREAD_LEVEL SPECTRUM_LONGEST ///< of the spectra that it reads: 1.024 s
+#define SPREAD_POINTS_LOG2 8u ///< of the spectra that it reads, 250 Hz: 1.024 s
 
 typedef struct {
     int32_t low_mHz;     ///< where both mean frequencies are to be, 0 .. 60000 mHz
