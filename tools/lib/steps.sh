@@ -86,6 +86,7 @@ step_done() {
         [ -z "$3" ] || ((STAMPED == 0)) || has_changed || stamp_write "$1" "${@:3:4}"
     else
         FAILED+=("$1")
+        stamp_drop "$1" failed
         word=FAIL result=FAILED where="  (build/logs/$7.log)"
     fi
     record "$1" "$result" "$4" "$5" "$6"
@@ -146,27 +147,43 @@ report() {
     ((${#FAILED[@]} == 0))
 }
 
-# write_summary: what `all` did, for the repository.
+# summary_hash STEP RESULT: of the inputs it passed with; "-" where that is no reason to keep it.
+summary_hash() {
+    local hash=""
+    [[ "$2" != passed && "$2" != kept ]] || hash="$(stamp_field "$1" 1 | grep -E '^[0-9a-f]+$')" || true
+    hash="${hash:0:HASH_LENGTH}"
+    echo "${hash:--}"
+}
+
+# write_summary: what `all` did, for the repository, and for who goes on with it.
 write_summary() {
-    local entry name result wall_s cpu_s line total_s=0 changed=""
+    local entry name result wall_s cpu_s line total_s=0 changed="" reached=" " before=""
+    [ ! -f "$ROOT/$TEST_SUMMARY" ] || before="$(<"$ROOT/$TEST_SUMMARY")"
     git diff --quiet HEAD -- . ":!$TEST_SUMMARY" 2>/dev/null || changed=", with changes of its files"
     {
         echo "# What ./tools/test all last ran"
         echo
-        echo "Written by \`./tools/test all\`; a step that is kept passed before on the same inputs."
+        echo "Written by \`./tools/test all\`. A step that is kept passed before on the same inputs, here or on another"
+        echo "machine; \`before\`: this run has not reached it, an earlier one passed it on these inputs or others."
         echo
         echo "- commit $(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)$changed"
         echo "- files $(files_hash . | cut -c1-16) (their hash, without this one)"
         echo "- $(date -u +%Y-%m-%d), $(nproc) processors, $(uname -m)"
         echo
-        echo "| step | result | time | CPU time | |"
-        echo "|---|---|---|---|---|"
+        echo "| step | result | inputs | time | CPU time | |"
+        echo "|---|---|---|---|---|---|"
         for entry in "${RECORDS[@]}"; do
             IFS='|' read -r name result wall_s cpu_s line <<<"$entry"
             line="$(sed -E 's/^=+ //; s/ =+$//' <<<"$line")"
-            echo "| $name | $result | $wall_s s | $cpu_s s | $line |"
+            echo "| $name | $result | $(summary_hash "$name" "$result") | $wall_s s | $cpu_s s | $line |"
             total_s=$((total_s + wall_s))
+            reached+="$name "
         done
+        while IFS='|' read -r _ name result line; do
+            name="${name// /}" result="${result// /}"
+            [[ "$result" =~ ^(passed|kept|before)$ && "$line" =~ ^\ [0-9a-f]{16}\  ]] || continue
+            [[ "$reached" == *" $name "* ]] || echo "| $name | before |$line"
+        done <<<"$before"
         echo
         echo "All steps together: $((total_s / 60)) minutes."
     } >"$ROOT/$TEST_SUMMARY"

@@ -165,6 +165,37 @@ def test_a_step_that_failed_is_run_again(clone: Clone) -> None:
     assert "kept" not in clone.function("common steps", RESUME.format("true")).stdout
 
 
+def test_another_machine_goes_on_with_what_the_summary_says(clone: Clone) -> None:
+    for name in ("date", "grep", "nproc"):
+        if not (clone.bin / name).exists():
+            (clone.bin / name).symlink_to(shutil.which(name))
+    repository(clone)
+    (clone.root / "tests").mkdir()
+    both = RESUME.format("echo '== 5 passed in 1s =='") + "; MODE=run; step ctest-m32 true"
+    clone.function("common steps", f"{both}; step ctest-m3 false || true; write_summary")
+
+    def elsewhere() -> None:
+        shutil.rmtree(clone.root / "build", ignore_errors=True)
+
+    elsewhere()
+    again = clone.function("common steps", f"{RESUME.format('false')}; report; write_summary")
+    assert again.returncode == 0 and "kept  ctest-host" in again.stdout
+    assert again.stdout.splitlines()[-1] == "5 passed in 1s"
+    text = (clone.root / "tests/summary.md").read_text()
+    rows = [line.split(" | ")[:2] for line in text.splitlines() if line.startswith("| ctest")]
+    assert rows == [["| ctest-host", "kept"], ["| ctest-m32", "before"]]
+    elsewhere()
+    m32 = "MODE=resume; wants ctest-m32 || true; wants ctest-m3 && echo runs m3"
+    result = clone.function("common steps", m32).stdout
+    assert "kept  ctest-m32" in result and "runs m3" in result
+    # What has failed here is run again, whatever is said elsewhere.
+    clone.function("common steps", "step ctest-host false")
+    assert "ok    ctest-host" in clone.function("common steps", RESUME.format("true")).stdout
+    elsewhere()
+    (clone.root / "firmware/a.c").write_text("2\n")
+    assert "ok    ctest-host" in clone.function("common steps", RESUME.format("true")).stdout
+
+
 def test_without_git_every_step_is_run(clone: Clone) -> None:
     for _ in range(2):
         result = clone.function("common steps", RESUME.format("true"))
