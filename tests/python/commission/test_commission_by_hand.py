@@ -286,12 +286,12 @@ def test_a_shaker_is_asked_for_once_and_a_recording_has_to_be_there(idle, tmp_pa
 
 
 def test_on_a_bus_the_limit_has_to_be_named(tmp_path: Path) -> None:
-    def no_bus() -> Rig:
+    def nowhere(*_: object) -> SiteByHand:
         raise AssertionError("nothing is opened")
 
     order = Order(tmp_path / "rig", {"drive_V": 0.1}, None, None, False)
     with pytest.raises(UsageError, match="--max-current"):
-        commission(order, Somebody(), lambda _: None, no_bus, lambda _: None)
+        commission(order, lambda _: None, nowhere, lambda _: None)
 
 
 @pytest.mark.slow

@@ -13,7 +13,6 @@ from conftest import ROOT
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.commission.by_hand import to_play
 from quiesce.commission.folder import STATE, Folder
-from quiesce.commission.hand import Left, Nobody
 from quiesce.commission.lag import lag_of_step
 from quiesce.commission.run import Order, begun, listed
 from quiesce.commission.samples import Samples
@@ -177,13 +176,6 @@ def test_every_step_is_listed_in_its_order(tmp_path: Path) -> None:
 
     assert [name for name, _ in listed(Folder(tmp_path))] == list(NAMES) == list(WORDS)
     assert len({one.TITLE for one in STEPS}) == len(STEPS)
-
-
-def test_nobody_does_and_allows_nothing() -> None:
-    with pytest.raises(Left):
-        Nobody().allow("current")
-    with pytest.raises(Left):
-        Nobody().do("turn it over")
 
 
 def test_no_law_may_ask_for_more_than_the_limit() -> None:

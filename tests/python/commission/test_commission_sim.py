@@ -7,9 +7,8 @@ import pytest
 from conftest import ROOT
 from quiesce.base.errors import BenchFailure
 from quiesce.commission.folder import Folder
-from quiesce.commission.hand import Nobody
 from quiesce.commission.run import Order, commission
-from quiesce.commission.simulated import SimulatedSite
+from quiesce.commission.simulated import own_site
 from quiesce.commission.steps import NAMES
 from quiesce.commission.wants import Wants
 
@@ -19,11 +18,8 @@ WRONG = ("accel_scale_nm_s2=52500", "accel_polarity=-1")
 
 
 def steps(folder: Path, wants: Wants | None, end: str) -> Folder:
-    def no_bus() -> None:
-        raise AssertionError("a simulated rig needs no bus")
-
     order = Order(folder, vars(wants) if wants else {}, None, end, False)
-    return commission(order, Nobody(), lambda _: None, no_bus, lambda _: None)
+    return commission(order, lambda _: None, own_site, lambda _: None)
 
 
 @pytest.mark.slow
@@ -94,7 +90,7 @@ def test_a_controller_that_stops_by_itself_has_shown_nothing(tmp_path: Path) -> 
     folder.settings = {"law": "constant", "constant_current_mA": 2000}
     why = "stopped by itself: FAULT, fault COIL_OPEN"
     with (
-        SimulatedSite(Wants(plant=str(PLANT)), folder) as site,
+        own_site(Wants(plant=str(PLANT)), folder) as site,
         pytest.raises(BenchFailure, match=why),
         site.armed("a trial"),
     ):

@@ -95,6 +95,26 @@ def test_the_law_s_table_is_drawn_with_the_point_at_which_it_works(
     assert page.end() == 0
 
 
+def test_the_guided_session_is_led_on_the_page(tmp_path: Path) -> None:
+    page = Page(tmp_path, "--sim", "--commission", "rig", "--first-mode", "11.5", "--quick")
+    with opened(page.address) as browser:
+        text(browser, "#guide-steps", lambda said: "wiring and polarity to do" in said)
+        browser.do("press", "#take")
+        text(browser, "#holder", lambda said: "You hold control" in said)
+        browser.do("press", "#guide-one")
+        browser.do("press", "#guide-go")
+        text(browser, "#guide-steps", lambda said: "wiring and polarity under way" in said)
+        assert [one for one in browser.do("axe") if one[0] in SERIOUS] == []
+        text(browser, "#guide-steps", lambda said: "1000 mA flow" in said)
+        text(browser, "#guide-ended", lambda said: said == "done")
+        text(browser, "#guide-go", lambda said: said == "Go on")
+        browser.do("press", "#guide-go")
+        text(browser, "#guide-says", lambda said: "2/9" in said)
+        browser.do("press", "#guide-leave")
+        text(browser, "#guide-ended", lambda said: "goes on with the step" in said)
+    assert page.end() == 0
+
+
 @pytest.mark.parametrize("way", ["click", "key"])
 def test_stop_is_confirmed_on_the_page(page: Page, way: str) -> None:
     with opened(page.address) as browser, page.viewer() as viewer:

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,9 @@ from quiesce.cli.can.bus_options import add_bus_options, bus_of
 from quiesce.cli.can.command import with_packages
 
 if TYPE_CHECKING:
-    from quiesce.rig import Rig
+    from quiesce.commission.folder import Folder
+    from quiesce.commission.site import Site
+    from quiesce.commission.wants import Wants
 
 STEPS = (
     "wiring", "calibrate", "excite", "find", "damper", "tune", "load", "verify", "report",
@@ -124,15 +127,21 @@ def add_structure(group: argparse._ArgumentGroup) -> None:
 
 def given_by(args: argparse.Namespace) -> dict[str, Any]:
     """Of Wants, what is named: the rest is as the folder was begun with."""
-    for option in ("sim", "base_plant", "damper"):
+    if args.sim is not None and not args.sim.is_file():
+        raise UsageError(f"--sim {args.sim}: there is no such file")
+    said = {"plant": whole(args.sim), "start": None if args.set is None else tuple(args.set)}
+    return {name: one for name, one in said.items() if one is not None} | structure_by(args)
+
+
+def structure_by(args: argparse.Namespace) -> dict[str, Any]:
+    """Of Wants, what is named of add_structure's."""
+    for option in ("base_plant", "damper"):
         file = getattr(args, option)
         if file is not None and not file.is_file():
             raise UsageError(f"--{option.replace('_', '-')} {file}: there is no such file")
     if args.band is not None and args.band[0] >= args.band[1]:
         raise UsageError(f"--band {args.band[0]:g} {args.band[1]:g}: the first must be lower")
     said = {
-        "plant": whole(args.sim),
-        "start": None if args.set is None else tuple(args.set),
         "base_plant": whole(args.base_plant),
         "damper": whole(args.damper),
         "modal_mass_kg": args.modal_mass,
@@ -178,7 +187,7 @@ class Terminal:
 def run(args: argparse.Namespace) -> int:
     # Imported late: scipy and matplotlib are slow, and a refusal by the parser needs neither.
     from quiesce.commission.folder import Folder
-    from quiesce.commission.hand import Left, Nobody
+    from quiesce.commission.hand import Left
     from quiesce.commission.run import Order, commission, listed
 
     if args.list:
@@ -186,9 +195,8 @@ def run(args: argparse.Namespace) -> int:
         print(format_table(["step", "what came of it"], rows, (0, 1)))
         return 0
     order = Order(args.folder, given_by(args), args.begin, args.until, args.fresh)
-    hand = Nobody() if args.sim else Terminal()
     try:
-        commission(order, hand, lambda text: say(f"quiesce: {text}"), lambda: bus_rig(args), tell)
+        commission(order, lambda text: say(f"quiesce: {text}"), partial(site_of, args), tell)
     except (Left, KeyboardInterrupt) as error:
         why = str(error) or "interrupted"
         print(f"quiesce: {why}; the same command goes on with the step", file=sys.stderr)
@@ -197,11 +205,15 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def bus_rig(args: argparse.Namespace) -> "Rig":
+def site_of(args: argparse.Namespace, wants: "Wants", folder: "Folder") -> "Site":
     from quiesce.can.link import Link
+    from quiesce.commission.by_hand import site_on_bus
+    from quiesce.commission.simulated import own_site
     from quiesce.rig import Rig
 
-    return Rig(Link(bus_of(args)))
+    if wants.plant is not None:
+        return own_site(wants, folder)
+    return site_on_bus(Rig(Link(bus_of(args))), Terminal(), wants, folder)
 
 
 def tell(text: str) -> None:

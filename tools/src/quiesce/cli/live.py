@@ -6,19 +6,23 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quiesce.base.errors import UsageError
 from quiesce.base.extras import extra
 from quiesce.base.paths import build_folder, is_installed
 from quiesce.cli.can.bus_options import VARIABLE, add_bus_options, bus_of
 from quiesce.cli.can.command import with_packages
+from quiesce.cli.commission import add_structure, structure_by, whole
 from quiesce.cli.hil_tables import OPTIONS, add_options, table_files
 
 if TYPE_CHECKING:
     from quiesce.can.buses import Bus
+    from quiesce.can.link import Link
+    from quiesce.live.guide import Guide
+    from quiesce.live.relay import Relay
     from quiesce.live.rig import RigDesk
 
 EPILOG = """examples:
@@ -27,6 +31,7 @@ EPILOG = """examples:
   quiesce live --host 0.0.0.0 --bus socketcan:can0    from a phone; asks for the token it prints
   quiesce live --sim                                  no hardware: a rig in the computer
   quiesce live --sim my_plant.toml --law fuzzy --record quake.csv
+  quiesce live --bus socketcan:can0 --commission press --max-current 2 --drive 0.1
 
 Open the address that it prints. Any number of browsers may look, up to 16; one at a time holds
 control and changes parameters. STOP (button, or the Esc key) sends the emergency stop from every
@@ -34,7 +39,9 @@ one of them. Without a token only this computer gets in. The page is plain HTTP:
 that you do not trust, leave --host alone and use 'ssh -L 8642:127.0.0.1:8642'. A bus is no
 replacement for the emergency stop's own wire. Ctrl-C ends it; the controller goes on, but for one
 of --sim, which ends with it. docs/howto/watch-a-controller.md explains the page,
-docs/howto/rig-in-the-computer.md that rig.
+docs/howto/rig-in-the-computer.md that rig. With --commission the page leads from an unknown
+structure to a controller at work on it, step by step, as 'quiesce commission' does at a terminal,
+and goes on with what either has begun in FOLDER (docs/howto/commission.md).
 """
 
 PORT = 8642
@@ -68,6 +75,12 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
     )  # fmt: skip
     add_bus_options(parser)
     add_rig_options(parser)
+    guide = parser.add_argument_group("guided session")
+    guide.add_argument(
+        "--commission", type=Path, metavar="FOLDER",
+        help="lead a commissioning on the page; FOLDER has its state, recordings and report",
+    )  # fmt: skip
+    add_structure(guide)
     parser.set_defaults(run=with_packages(run))
 
 
@@ -102,6 +115,7 @@ def run(args: argparse.Namespace) -> int:
     if not 0 <= args.port <= 65535:
         raise UsageError(f"--port {args.port}: 0 .. 65535")
     given = token_of(args.token_file)
+    known = known_of(args)
     plots = plots_folder()
     with extra("live", "quiesce live"):
         from quiesce.live.access import Policy, is_local, new_token
@@ -115,13 +129,49 @@ def run(args: argparse.Namespace) -> int:
         listen(args.host, args.port) as at,
         watched(args) as (bus, rig),
         Link(bus, echoes=True) as link,
+        guided(args, known, link, rig) as (relay, guide),
     ):
         print(f"{address(args.host, at.getsockname()[1], token)}  (Ctrl-C ends it)", flush=True)
         if not is_local(args.host):
             print("quiesce: plain HTTP: who listens on the way learns the token", file=sys.stderr)
-        desk = Desk(link, load(), args.raw or rig is not None, args.record_folder)
-        asyncio.run(serve(Room(desk, rig), Policy(args.host, token), plots, at, stop))
+        desk = Desk(link, load(), args.raw or rig is not None, args.record_folder, relay)
+        asyncio.run(serve(Room(desk, rig, guide), Policy(args.host, token), plots, at, stop))
     return 0
+
+
+def known_of(args: argparse.Namespace) -> dict[str, Any]:
+    """Of the structure, for the guided session."""
+    known = structure_by(args)
+    if known and args.commission is None:
+        raise UsageError(
+            "what is known of the structure is for the guided session: give --commission FOLDER"
+        )
+    return known
+
+
+@contextmanager
+def guided(
+    args: argparse.Namespace, known: dict[str, Any], link: "Link", rig: "RigDesk | None"
+) -> "Iterator[tuple[Relay | None, Guide | None]]":
+    """The guided session, and what joins it to a bus that only one program can have."""
+    if args.commission is None:
+        yield None, None
+        return
+    from quiesce.base.paths import default_plant
+    from quiesce.can.database import load
+    from quiesce.live.guide import Guide, Plan
+    from quiesce.live.relay import Relay, is_shared
+
+    with ExitStack() as stack:
+        bus, relay, simulation = link.bus, None, None
+        if not is_shared(bus):
+            relay = stack.enter_context(Relay(link, load()))
+            bus = relay.bus
+        if rig is not None:
+            simulation = rig.simulation
+            known = {"plant": whole(Path(args.sim) if args.sim else default_plant()), **known}
+        plan = Plan(args.commission.resolve(), known, bus, simulation)
+        yield relay, stack.enter_context(Guide(plan))
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from quiesce.can.operator import Operator
 from quiesce.commission.folder import Folder
 from quiesce.commission.hand import Hand
 from quiesce.commission.site import running, until_idle
+from quiesce.commission.wants import Wants
 from quiesce.plant_id.sweep import Timeline, write_line
 from quiesce.rig import Rig
 
@@ -150,6 +151,11 @@ class SiteByHand:
 
     def mount_damper(self) -> None:
         self._hand.do("mount the damper again")
+
+
+def site_on_bus(rig: Rig, hand: Hand, wants: Wants, folder: Folder) -> SiteByHand:
+    assert wants.max_current_A is not None  # begun() has seen to that
+    return SiteByHand(rig, hand, folder, round(1e3 * wants.max_current_A))
 
 
 def to_play(folder: Path, name: str) -> Path:

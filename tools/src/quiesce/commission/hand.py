@@ -15,13 +15,3 @@ class Hand(Protocol):
 
     def allow(self, text: str) -> None:
         """A hazard: comes back only when he has typed yes."""
-
-
-class Nobody:
-    """On a simulated rig nothing needs a hand."""
-
-    def do(self, text: str) -> None:
-        raise Left(f"nobody is here to: {text}")
-
-    def allow(self, text: str) -> None:
-        raise Left(f"nobody is here to allow: {text}")

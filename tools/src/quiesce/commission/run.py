@@ -1,7 +1,7 @@
 """Steps one after the other, from the first that is not done."""
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
@@ -9,17 +9,16 @@ from typing import Any
 
 from quiesce.base.errors import UsageError
 from quiesce.base.paths import shown
-from quiesce.commission.by_hand import SiteByHand, to_play
+from quiesce.commission.by_hand import to_play
 from quiesce.commission.folder import STATE, Folder
-from quiesce.commission.hand import Hand
-from quiesce.commission.simulated import TABLE, SimulatedSite, limit_mA
+from quiesce.commission.simulated import TABLE, limit_mA
 from quiesce.commission.site import Site
 from quiesce.commission.steps import NAMES, STEPS, excite, wiring
 from quiesce.commission.wants import Wants, same, wants_of
 from quiesce.commission.work import RECORDING, Work
-from quiesce.rig import Rig
 
 Tell = Callable[[str], None]
+OpenSite = Callable[[Wants, Folder], Site]
 
 
 @dataclass(frozen=True)
@@ -33,12 +32,10 @@ class Order:
     is_fresh: bool
 
 
-def commission(
-    order: Order, hand: Hand, tell: Tell, open_bus: Callable[[], Rig], told: Tell
-) -> Folder:
-    """open_bus: the controller's, where it is not simulated. told: each result's line. UsageError
-    for what cannot be wanted, BenchFailure where a step fails, Left where he leaves: the steps
-    before it stay done."""
+def commission(order: Order, tell: Tell, open_site: OpenSite, told: Tell) -> Folder:
+    """open_site: where it is done; entered for a step that needs it. told: each result's line.
+    UsageError for what cannot be wanted, BenchFailure where a step fails, Left where he leaves: the
+    steps before it stay done."""
     folder, wants = begun(order)
     last = NAMES.index(order.end) if order.end else len(STEPS) - 1
     lines: list[tuple[str, str]] = []
@@ -50,7 +47,7 @@ def commission(
         with ExitStack() as stack:  # a rig is there for a step that asks for it, and no longer
 
             def opened(stack: ExitStack = stack) -> Site:
-                return stack.enter_context(site_of(wants, folder, hand, open_bus))
+                return stack.enter_context(open_site(wants, folder))
 
             result = step.run(Work(wants, folder, tell, opened, lines))
         folder.done(step.NAME, result)
@@ -103,19 +100,6 @@ def require_whole(wants: Wants) -> None:
         raise UsageError("--set is of the simulated controller; give --sim, too")
     if wants.max_current_A is None:
         raise UsageError("what may coil and driver carry? --max-current A")
-
-
-@contextmanager
-def site_of(
-    wants: Wants, folder: Folder, hand: Hand, open_bus: Callable[[], Rig]
-) -> Iterator[Site]:
-    if wants.plant is not None:
-        with SimulatedSite(wants, folder) as site:
-            yield site
-        return
-    assert wants.max_current_A is not None  # begun() has seen to that
-    with SiteByHand(open_bus(), hand, folder, round(1e3 * wants.max_current_A)) as by_hand:
-        yield by_hand
 
 
 def listed(folder: Folder) -> list[tuple[str, str]]:

@@ -23,25 +23,30 @@ BARE = "without_damper.toml"
 TABLE = "loaded.table"
 
 
+def own_site(wants: Wants, folder: Folder) -> "SimulatedSite":
+    """On a rig of its own, whose controller has no memory: it starts with what earlier steps gave
+    it. UsageError where the plant's file is none."""
+    assert wants.plant is not None
+    table = folder.path / TABLE
+    setup = RigSetup(
+        Path(wants.plant),
+        law=str(folder.settings.get("law", "phase")),
+        settings=[*wants.start, *_settings(folder)],
+        tables=[("pulses", table)] if table.is_file() else [],
+    )
+    return SimulatedSite(open_rig("host", setup), wants, folder)
+
+
 class SimulatedSite:
     is_simulated = True
 
-    def __init__(self, wants: Wants, folder: Folder) -> None:
-        """Its controller has no memory: it starts with what earlier steps gave it."""
+    def __init__(self, rig: Rig, wants: Wants, folder: Folder) -> None:
+        """rig: of the plant that is wanted. UsageError where that plant's file is none."""
         assert wants.plant is not None
+        self.rig = rig
+        self.limit_mA = limit_mA(wants)
         self._plant = Path(wants.plant)
         self._folder = folder
-        self.limit_mA = limit_mA(wants)
-        table = folder.path / TABLE
-        self.rig: Rig = open_rig(
-            "host",
-            RigSetup(
-                self._plant,
-                law=str(folder.settings.get("law", "phase")),
-                settings=[*wants.start, *_settings(folder)],
-                tables=[("pulses", table)] if table.is_file() else [],
-            ),
-        )
 
     def __enter__(self) -> "SimulatedSite":
         self.rig.__enter__()

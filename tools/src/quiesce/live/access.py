@@ -149,7 +149,9 @@ async def refuse(refusal: Refusal, send: Send) -> None:
 def with_headers(send: Send) -> Send:
     async def sending(message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
-            message = {**message, "headers": [*message.get("headers", ()), *HEADERS]}
+            own = list(message.get("headers", ()))
+            names = {name for name, _ in own}
+            message = {**message, "headers": own + [one for one in HEADERS if one[0] not in names]}
         await send(message)
 
     return sending

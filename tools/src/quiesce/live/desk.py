@@ -19,6 +19,7 @@ from quiesce.live.jobs import Jobs
 from quiesce.live.law_view import View
 from quiesce.live.protocol import Block
 from quiesce.live.recordings import Recordings
+from quiesce.live.relay import Relay
 from quiesce.live.rings import Ring
 from quiesce.live.series import FREQUENCY, RMS, catalogue, preferred
 from quiesce.live.spectrum import Spectra, SpectrumPlan
@@ -50,10 +51,12 @@ class Desk:
         database: Database,
         is_raw: bool = False,
         record_folder: Path = Path("recordings"),
+        relay: Relay | None = None,
     ) -> None:
         self.database = database
         self.series = catalogue(database)
         self._link = link
+        self._relay = relay
         self.stop = Stop(link, database)
         self.preamble = Preamble(link, database)
         self.jobs = Jobs(link, database, self.preamble)
@@ -86,7 +89,7 @@ class Desk:
             self.take(event)
         self.recordings.look(self.rings, self.series)
         self.stop.poll()
-        if not self.jobs.tap.is_open:
+        if not self.jobs.is_asking:
             self._ask()
         values = self.preamble.values
         if len(self.before.values) != len(values):  # of no controller yet, or another one
@@ -106,6 +109,8 @@ class Desk:
             self.recordings.take(event.message)
             return
         self.recordings.take(event)
+        if self._relay is not None:
+            self._relay.pass_on(event)
         if isinstance(event, Lost):
             self._lost, self._losses = event.reason, self._losses + 1
             self.jobs.tap.feed(event)

@@ -71,8 +71,23 @@ class Jobs:
     def __init__(self, link: Link, database: Database, preamble: Preamble) -> None:
         self.tap = Tap(link)
         self.name = ""
+        self.is_held = False
         self._database = database
         self._preamble = preamble
+
+    @property
+    def is_asking(self) -> bool:
+        """Nobody else asks the controller for anything then."""
+        return self.tap.is_open or self.is_held
+
+    def hold(self, name: str) -> None:
+        """For somebody who asks by himself, until give_back(); where nothing is under way."""
+        self.name, self.is_held = name, True
+
+    async def give_back(self) -> None:
+        self.is_held = False
+        await self._read_again()
+        self.name = ""
 
     async def run(self, name: str, work: Callable[[Services], str]) -> tuple[bool, str]:
         """Whether it came about, and a line for the viewer. Over when the parameters are known

@@ -32,6 +32,7 @@ KEYS_OF: dict[str, set[str]] = {
     "table": TABLE_KEYS,
     "law": set(),
     "rig": {"order"},
+    "guide": {"order"},
     "record": KEYS,
     "end_record": set(),
     "mark": {"text"},
@@ -60,7 +61,7 @@ class Block:
 @dataclass(frozen=True)
 class Command:
     """What a viewer asks for; `series` of show, `spectrum` of spectrum, `settings` of set, `order`
-    of rig, `plan` of record, `text` of mark, `table` of table."""
+    of rig and guide, `plan` of record, `text` of mark, `table` of table."""
 
     do: str
     series: tuple[int, ...] = ()
@@ -98,7 +99,7 @@ def command_of(text: str | None, series_count: int) -> Command:
         return Command(do, series=shown_of(said["series"], series_count))
     if do == "set":
         return Command(do, settings=settings_of(said["settings"]))
-    if do == "rig":
+    if do in ("rig", "guide"):
         return Command(do, order=order_of(said["order"]))
     try:
         if do == "spectrum":
@@ -141,7 +142,7 @@ def settings_of(value: Any) -> tuple[str, ...]:
 
 
 def order_of(value: Any) -> dict[str, Any]:
-    """What of it is allowed is for the rig to say."""
+    """What of it is allowed is for whoever is ordered to say."""
     if not isinstance(value, dict):
         raise Malformed("'order' is an object")
     return value

@@ -16,24 +16,24 @@ class RigDesk:
     """simulation: at work for as long as the server is."""
 
     def __init__(self, simulation: Simulation, motions: list[Motion]) -> None:
-        self._simulation = simulation
+        self.simulation = simulation
         self._motions = motions
 
     @property
     def failure(self) -> str:
-        return self._simulation.failure
+        return self.simulation.failure
 
     def hello(self) -> dict[str, Any]:
         """What does not change."""
         return {
-            **self._simulation.introduction,
+            **self.simulation.introduction,
             "records": [one.name for one in self._motions],
-            "bus": bus_words(self._simulation.bus),
+            "bus": bus_words(self.simulation.bus),
         }
 
     def told(self) -> dict[str, Any]:
         """Without the places of files."""
-        state = dict(self._simulation.state)
+        state = dict(self.simulation.state)
         for motion in self._motions if state else ():
             state["excitation"] = state["excitation"].replace(
                 str(motion.file.resolve()), motion.name
@@ -49,7 +49,7 @@ class RigDesk:
         if isinstance(excite, dict) and excite.get("kind") == "record":
             order = {**order, "excite": self._record(excite)}
         try:
-            self._simulation.order(**order)
+            self.simulation.order(**order)
         except (RecursionError, OverflowError):
             raise UsageError("an order to the rig nests too deep, or has too large a number")
         return ""

@@ -9,6 +9,7 @@ from quiesce import __version__
 from quiesce.engine.params import parameters
 from quiesce.live.control import Control
 from quiesce.live.desk import Desk
+from quiesce.live.guide import NAME, Guide
 from quiesce.live.protocol import MOST_SERIES, VERSION
 from quiesce.live.rig import RigDesk
 
@@ -20,10 +21,12 @@ MOST_VIEWERS = 16
 class Room:
     """run() for as long as the server does."""
 
-    def __init__(self, desk: Desk, rig: RigDesk | None = None) -> None:
+    def __init__(self, desk: Desk, rig: RigDesk | None = None, guide: Guide | None = None) -> None:
         """rig: the one in the computer, where that is what is watched."""
         self.desk = desk
         self.rig = rig
+        self.guide = guide
+        self._giving_back: asyncio.Task[None] | None = None
         self.control = Control()
         self.viewers: set[int] = set()
         self.is_news = False  # somebody did something: all are told in this beat
@@ -43,6 +46,7 @@ class Room:
             "parameters": list(parameters()),
             "faults": self.desk.fault_names(),
             "rig": self.rig.hello() if self.rig else None,
+            "has_guide": self.guide is not None,
         }
 
     def come(self) -> int | None:
@@ -56,8 +60,37 @@ class Room:
 
     def go(self, viewer: int) -> None:
         self.viewers.discard(viewer)
-        self.control.release(viewer)
+        self.release(viewer)
         self.tell_now()
+
+    def release(self, viewer: int) -> None:
+        if self.guide is not None and self.control.holder == viewer:
+            self.guide.let_go()
+        self.control.release(viewer)
+
+    def stop(self) -> None:
+        """By anybody."""
+        self.desk.stop.press()
+        if self.guide is not None:
+            self.guide.leave()
+        self.tell_now()
+
+    def lead(self, order: dict[str, Any]) -> tuple[bool, str]:
+        """The guided session: whether it came about, and a line. UsageError where it cannot."""
+        if self.guide is None:
+            return False, "there is no guided session: start the server with --commission FOLDER"
+        jobs = self.desk.jobs
+        if "begin" in order and jobs.name:
+            return False, f"wait: {jobs.name} is under way"
+        self.guide.obey(order)
+        if "begin" in order:
+            jobs.hold(NAME)
+        return True, ""
+
+    def _end_guide(self) -> None:
+        """Its process asks the controller for nothing any more."""
+        if self.guide is not None and self.desk.jobs.is_held and not self.guide.is_at_work:
+            self._giving_back = asyncio.create_task(self.desk.jobs.give_back())
 
     def tell_now(self) -> None:
         """With the next beat, whatever its turn."""
@@ -66,7 +99,8 @@ class Room:
     def told(self) -> dict[str, Any]:
         control = {"holder": self.control.holder, "viewers": len(self.viewers)}
         rig = {"rig": self.rig.told()} if self.rig else {}
-        return {**self.desk.told(), **control, **rig}
+        guide = {"guide": self.guide.told()} if self.guide else {}
+        return {**self.desk.told(), **control, **rig, **guide}
 
     async def next_beat(self) -> int:
         """Waits for it; returns its number."""
@@ -82,6 +116,7 @@ class Room:
             await asyncio.sleep(max(0.0, due_s - time.monotonic()))
             stop_was = self.desk.stop.state
             self.desk.drain()
+            self._end_guide()
             if self.desk.stop.state != stop_was:
                 self.tell_now()
             drains += 1

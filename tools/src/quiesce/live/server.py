@@ -23,6 +23,8 @@ PAGE = Path(__file__).with_name("page")
 TRY_AGAIN_LATER = 1013
 PING_S = 5.0  # a viewer who does not answer for as long is gone, and with him his control
 END_S = 2
+# A report has its styles and pictures inside, and no script.
+REPORT_POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"
 STOP_LOOK_S = 0.1
 CONNECTIONS = MOST_STRANGERS + 8 * MOST_VIEWERS  # a browser has six, and the websocket
 
@@ -38,8 +40,7 @@ def application(room: Room, policy: Policy, plots: Path, crowd: Crowd) -> App:
 
     @app.post("/stop")
     async def stop() -> Response:
-        room.desk.stop.press()
-        room.tell_now()
+        room.stop()
         return JSONResponse(room.desk.stop.told())
 
     @app.post("/login")
@@ -56,6 +57,13 @@ def application(room: Room, policy: Policy, plots: Path, crowd: Crowd) -> App:
         if file is None or not file.is_file():
             return Response("no such recording\n", 404)
         return FileResponse(file, filename=name, media_type="application/octet-stream")
+
+    @app.get("/commission/{name:path}")
+    async def commissioned(name: str) -> Response:
+        file = room.guide.page(name) if room.guide is not None else None
+        if file is None:
+            return Response("no such page\n", 404)
+        return FileResponse(file, headers={"content-security-policy": REPORT_POLICY})
 
     @app.websocket("/socket")
     async def viewer(socket: WebSocket) -> None:

@@ -75,13 +75,13 @@ class Viewer:
     def _obey(self, command: Command) -> None:
         room = self._room
         if command.do == "stop":
-            room.desk.stop.press()
+            room.stop()
         elif command.do == "show":
             self._shown = command.series
         elif command.do == "spectrum":
             self._spectrum = command.spectrum
         elif command.do == "release":
-            room.control.release(self._number)
+            room.release(self._number)
         elif command.do == "take":
             if not room.control.take(self._number):
                 self._note(False, f"viewer {room.control.holder} holds control")
@@ -114,6 +114,8 @@ class Viewer:
         """Whether it came about, and a line about it. UsageError for values not allowed."""
         if command.do == "rig":
             return await self._order(command.order)
+        if command.do == "guide":
+            return self._room.lead(command.order)
         desk, jobs = self._desk, self._desk.jobs
         if command.do in ("record", "end_record", "mark"):
             return True, self._record(command)
@@ -138,6 +140,8 @@ class Viewer:
     async def _order(self, order: dict[str, Any]) -> tuple[bool, str]:
         if self._room.rig is None:
             return False, "this is no rig in the computer: nothing here can be ordered"
+        if self._desk.jobs.is_held:
+            return False, f"wait: {self._desk.jobs.name} is under way"
         return True, await asyncio.to_thread(self._room.rig.obey, order)
 
     async def _load(self, part: TablePart) -> tuple[bool, str]:

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, Protocol
 
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.can.buses import Bus
@@ -18,7 +18,6 @@ from quiesce.can.tables import Tables
 from quiesce.can.traffic import Traffic
 from quiesce.engine.params import parameters
 from quiesce.rig.capture import Capture, Series, Trigger, Value
-from quiesce.rig.simulation import Simulation
 from quiesce.rig.variables import Variable, catalogue, named
 
 READ_S = 3.0  # the slowest message comes once a second
@@ -27,10 +26,19 @@ MOST_S = 3600.0
 SIMULATION_TRIES = 10 * TRIES  # a busy computer may leave its rig without time for seconds
 
 
+class Surroundings(Protocol):
+    """What is around a controller in the computer: rig.simulation has it."""
+
+    def __enter__(self) -> Any: ...
+    def __exit__(self, *_: object) -> None: ...
+    def order(self, **what: Any) -> None: ...
+    def next_state(self) -> dict[str, Any]: ...
+
+
 class Rig:
     """Not thread-safe. Entered, it is at work; UsageError where its bus cannot be opened."""
 
-    def __init__(self, link: Link, simulation: Simulation | None = None) -> None:
+    def __init__(self, link: Link, simulation: Surroundings | None = None) -> None:
         """simulation: the rig on that bus, where it is in the computer; entered here."""
         self._link = link
         self._simulation = simulation

@@ -7,8 +7,8 @@ from typing import Any
 
 from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.base.table import format_table
-from quiesce.commission.hand import Nobody
 from quiesce.commission.run import Order, commission
+from quiesce.commission.simulated import own_site
 from quiesce.commission.steps.tune import BOUND_OF
 from quiesce.commission.wants import Wants
 from quiesce.tune.plan import FINE, QUICK
@@ -78,13 +78,10 @@ def commissioned(drawn: Drawn, folder: Path, is_quick: bool) -> list[dict[str, f
         is_quick=is_quick,
     )
 
-    def no_bus() -> Any:
-        raise BenchFailure("a simulated rig has its own")
-
     def tell(text: str) -> None:
         print(f"live: commission: {text}", file=sys.stderr, flush=True)
 
-    done = commission(Order(folder, vars(wants), None, None, False), Nobody(), tell, no_bus, tell)
+    done = commission(Order(folder, vars(wants), None, None, False), tell, own_site, tell)
     rows: list[dict[str, float]] = done.results["verify"]["rows"]
     return rows
 

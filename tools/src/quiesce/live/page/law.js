@@ -1,7 +1,7 @@
 // The table that the law uses, as the controller has it: the surface of its rules with the point at which
 // it works, or its pulses with the frequency that it reports.
+import { $ } from "./dom.js";
 
-const $ = (id) => document.getElementById(id);
 const HEIGHT_px = 300;
 const LEFT_px = 62;
 const BELOW_px = 40;

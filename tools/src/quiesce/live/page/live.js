@@ -1,5 +1,7 @@
 // The page: what comes over the link goes to its parts.
 import { Charts } from "./charts.js";
+import { $ } from "./dom.js";
+import { Guide } from "./guide.js";
 import { Law } from "./law.js";
 import { Link } from "./link.js";
 import { Parameters } from "./parameters.js";
@@ -11,7 +13,6 @@ import * as status from "./status.js";
 import { Stop } from "./stop.js";
 import { Tables } from "./tables.js";
 
-const $ = (id) => document.getElementById(id);
 const SILENT_ms = 1000; // 25 packets are due in it
 const LOOK_ms = 250;
 const ACCEL = ["accel_scale_nm_s2", "accel_offset_counts", "accel_polarity"];
@@ -29,6 +30,7 @@ const charts = new Charts($("charts"), samples);
 const stop = new Stop($("stop"), $("stop-said"), (object) => link.send(object));
 const parameters = new Parameters(send);
 const rig = new Rig(send);
+const guide = new Guide(send);
 const recorder = new Recorder(send, factorOf);
 const spectrum = new Spectrum(send, factorOf);
 const tables = new Tables(send);
@@ -54,7 +56,7 @@ function heardText(message) {
   }
   if (message.spectrum) spectrum.show(message.spectrum);
   if (message.law !== undefined) law.describe(message.law);
-  if (message.note && !tables.hear(message.note) && !law.hear(message.note)) say(message.note.is_ok, message.note.text);
+  if (message.note && ![tables, law, guide].some((one) => one.hear(message.note))) say(message.note.is_ok, message.note.text);
 }
 
 function greet(said) {
@@ -64,6 +66,7 @@ function greet(said) {
   status.makeLamps(hello.faults);
   parameters.describe(hello.parameters);
   rig.describe(hello);
+  guide.describe(hello);
   if (isChosen) link.send({ do: "show", series: shown });
 }
 
@@ -76,11 +79,12 @@ function showState(state) {
   const isMine = status.showControl(state, hello.viewer);
   parameters.enable(isMine && !state.job);
   rig.show(state, values, isMine);
+  guide.show(state, isMine);
   recorder.show(state, isMine);
   tables.enable(isMine && !state.job);
   law.enable(isMine && !state.job);
   law.show(state.controller);
-  if (state.job) say(true, `${state.job} is under way ...`);
+  if (state.job && !state.guide?.is_at_work) say(true, `${state.job} is under way ...`);
   if (heard !== String(state.heard)) {
     heard = String(state.heard);
     offer(state.heard, state.preferred);
@@ -147,6 +151,7 @@ function lost() {
   status.showBus(["NO CONNECTION to the server, trying again. What is shown is old.", true]);
   parameters.enable(false);
   rig.enable(false);
+  guide.enable(false);
   tables.lost();
   law.enable(false);
   recorder.show(null, false);

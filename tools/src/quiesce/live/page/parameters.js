@@ -1,6 +1,5 @@
 // Parameters with unit, range, default; edits are applied together.
-
-const $ = (id) => document.getElementById(id);
+import { $ } from "./dom.js";
 
 const textOf = (parameter, value) => (parameter.labels ? (parameter.labels[value] ?? String(value)) : String(value));
 

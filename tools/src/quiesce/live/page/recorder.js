@@ -1,6 +1,5 @@
 // The recorder: what starts it, how it goes, markers, the files.
-
-const $ = (id) => document.getElementById(id);
+import { $ } from "./dom.js";
 
 const LEVEL = "level"; // a signal passes it
 const sizeOf = (bytes) => (bytes < 1e6 ? `${Math.ceil(bytes / 1000)} kB` : `${(bytes / 1e6).toFixed(1)} MB`);

@@ -1,7 +1,7 @@
 // The rig in the computer (`--sim`): what shakes it, control on and off, faults, and what vibrates with and without.
 // Who holds control moves it; the others see it move.
+import { $, make } from "./dom.js";
 
-const $ = (id) => document.getElementById(id);
 const SEND_ms = 100; // while a slider is moved
 const STEPS = 1000; // of a slider
 const FAULT_s = 1;
@@ -19,12 +19,6 @@ const KINDS = {
 const WORDS = { sine: "sine", chirp: "sweep", random: "random", record: "recorded ground motion", impulse: "knock" };
 const DRIVE = ["sine", "chirp"];
 const FIXED = { random: { duration_s: 60 }, impulse: { pulse_s: 0.01 } };
-
-function make(name, properties, ...children) {
-  const element = Object.assign(document.createElement(name), properties);
-  element.append(...children);
-  return element;
-}
 
 // A slider, logarithmic from least to most, and the number itself, which may be beyond its ends.
 class Dial {

@@ -1,6 +1,6 @@
 // Spectrum of an acceleration, as the server computes it, and below it the ones before: the waterfall.
+import { $ } from "./dom.js";
 
-const $ = (id) => document.getElementById(id);
 const ACCELERATIONS = ["accel_counts", "sample_counts"];
 const HEIGHT_px = 220;
 const ROWS = 120; // of the waterfall

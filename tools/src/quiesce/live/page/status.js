@@ -1,13 +1,9 @@
 // State, faults, the first fault's freeze frame, who holds control.
+import { $, setText } from "./dom.js";
 
-const $ = (id) => document.getElementById(id);
 const OLD_s = 1;
 
 export const age = (age_s) => (age_s < OLD_s ? `${Math.round(age_s * 1000)} ms` : `${age_s.toFixed(1)} s`);
-
-function setText(element, text) {
-  if (element.textContent !== text) element.textContent = text;
-}
 
 function element(name, text, className = "") {
   const made = document.createElement(name);

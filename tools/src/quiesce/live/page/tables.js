@@ -1,6 +1,5 @@
 // Tables into the controller: a file in parts, and what became of it.
-
-const $ = (id) => document.getElementById(id);
+import { $ } from "./dom.js";
 
 const PART_BYTES = 2700;
 const MOST_PARTS = 64;
