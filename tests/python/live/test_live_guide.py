@@ -1,12 +1,16 @@
 """The guided session on the page: led by who holds control, left when he is gone."""
 
+import json
 import os
 import re
 import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from io import StringIO
 from pathlib import Path
 from typing import Any
 from urllib.error import HTTPError
@@ -16,9 +20,15 @@ import pytest
 from can_bus import Controller, build_peer
 from conftest import ROOT
 from live_page import Page, Viewer
+from quiesce.base.errors import UsageError
 from quiesce.can.buses import Bus
-from quiesce.can.database import load
-from quiesce.can.link import Link
+from quiesce.can.lent import lent_bus, packed, pair, unpacked
+from quiesce.can.link import Link, Lost
+from quiesce.can.python_can import can
+from quiesce.commission.folder import Folder
+from quiesce.commission.hand import Left
+from quiesce.commission.led import Leader, Setup, led
+from quiesce.commission.wants import Wants
 from quiesce.live.guide import MODULE
 from quiesce.live.relay import Relay
 from quiesce.rig import Rig, RigSetup
@@ -302,7 +312,7 @@ def test_a_folder_of_another_kind_is_refused(tmp_path: Path) -> None:
     page = Page(tmp_path, "--sim", "--commission", "rig")
     with leading(page) as viewer:
         begin(viewer)
-        assert "this folder was begun with plant = None" in ended(viewer)["text"]
+        assert "this folder was begun with a controller on a bus" in ended(viewer)["text"]
     assert page.end() == 0
 
 
@@ -313,28 +323,130 @@ def test_what_is_known_is_for_a_session(quiesce) -> None:
     assert done.returncode == 2 and "no.toml: there is no such file" in done.stderr
 
 
-def test_a_relay_sends_what_tools_say_and_tells_what_comes(peer: Path, tmp_path: Path) -> None:
+@pytest.mark.slow
+@pytest.mark.parametrize("way", ["killed", "ended"])
+def test_a_session_that_dies_while_it_is_armed_is_stopped(tmp_path: Path, way: str) -> None:
+    """Its enable stays: a contact that nobody opens."""
+    with real_rig(tmp_path) as (page, person):
+        with leading(page) as viewer:
+            begin(viewer)
+            asks = answered(viewer, person, until="give the enable")
+            person.does(asks["text"])
+            order(viewer, answer=True, of=asks["number"])
+            viewer.until("state", lambda state: state["controller"]["state"] == "RUN")
+            if way == "killed":
+                os.kill(process_of(page), signal.SIGKILL)
+                assert "process is gone" in ended(viewer)["text"]
+                viewer.until("state", lambda state: state["controller"]["fault"] == "ESTOP")
+        if way == "ended":
+            assert page.end() == 0
+            with Rig(Link(person.rig.bus)) as rig:
+                assert rig.read("status/fault") == "ESTOP"
+
+
+def test_a_relay_sends_what_is_said_and_tells_what_comes(peer: Path, tmp_path: Path) -> None:
     controller = Controller(peer, tmp_path)
     controller.start("--idle")
+    stop = threading.Event()
+
+    def tell() -> None:
+        while not stop.is_set():
+            if (event := link.receive(0.05)) is not None:
+                relay.pass_on(event)
+
+    teller = threading.Thread(target=tell)
     try:
-        with (
-            Link(Bus("slcan", str(controller.path), None, ())) as link,
-            Relay(link, load()) as relay,
-            Rig(Link(relay.bus)) as rig,
-        ):
-            stop = threading.Event()
-
-            def tell() -> None:
-                while not stop.is_set():
-                    if (event := link.receive(0.05)) is not None:
-                        relay.pass_on(event)
-
-            teller = threading.Thread(target=tell)
+        with Link(Bus("slcan", str(controller.path), None, ())) as link, Relay(link) as relay:
             teller.start()
-            assert rig.read("status/fault") == "NONE"
-            rig.write("parameters/track_window_ms", 512)
-            assert rig.read("parameters/track_window_ms") == 512
+            for _ in range(2):  # opened again it goes on
+                with Rig(Link(lent_bus(relay.theirs.fileno()))) as rig:
+                    assert rig.read("status/fault") == "NONE"
+                    rig.write("parameters/track_window_ms", 512)
+                    assert rig.read("parameters/track_window_ms") == 512
             stop.set()
             teller.join()
     finally:
+        stop.set()
         controller.stop()
+
+
+def test_frames_that_are_lent_are_those_that_come() -> None:
+    frame = {"arbitration_id": 0x123, "is_extended_id": False, "timestamp": 7.25}
+    for data in (b"", b"\1\2", bytes(8), bytes(range(64))):
+        packet = packed(can.Message(**frame, data=data, is_fd=len(data) > 8))
+        found = unpacked(packet)
+        assert (found.timestamp, found.arbitration_id, bytes(found.data)) == (7.25, 0x123, data)
+    for other in ({"is_extended_id": True}, {"is_remote_frame": True}, {"is_error_frame": True}):
+        assert packed(can.Message(**{**frame, **other})) is None
+    for wrong in (b"", bytes(11), bytes(77), bytes(8) + b"\xff" * 4 + b"\1"):
+        with pytest.raises(ValueError):
+            unpacked(wrong)
+
+
+def test_a_bus_whose_lender_is_gone_is_lost() -> None:
+    ours, theirs = pair()
+    ours.send(packed(can.Message(arbitration_id=1, is_extended_id=False, timestamp=1.0)))
+    with Link(lent_bus(theirs.fileno())) as link:
+        assert link.receive(0.0) is None  # it was there before
+        ours.close()
+        lost = link.receive(5.0)
+        assert isinstance(lost, Lost) and "who lent the bus is gone" in lost.reason
+        assert link.send(1, b"") is None
+    with (
+        pytest.raises(UsageError, match="who lent the bus is gone"),
+        Link(lent_bus(theirs.fileno())),
+    ):
+        raise AssertionError("it was opened")
+    theirs.close()
+
+
+class Led:
+    """A session's process, by its pipes."""
+
+    def __init__(self, folder: Path, given: dict[str, Any], *lines: str) -> None:
+        bus = {"interface": "virtual", "channel": "none", "bitrate": None, "options": []}
+        setup = {"folder": str(folder), "given": given, "bus": bus, "is_simulated": True}
+        words = [sys.executable, "-P", "-m", MODULE]
+        env = {**os.environ, "PYTHONPATH": str(ROOT / "tools/src")}
+        done = subprocess.run(
+            words, input="\n".join([json.dumps(setup), *lines]) + "\n", capture_output=True,
+            text=True, timeout=PATIENCE_S, env=env,
+        )  # fmt: skip
+        assert done.returncode == 0 and "Traceback" not in done.stderr
+        said = [json.loads(line) for line in done.stdout.splitlines()]
+        self.ends = [one["ended"] for one in said if "ended" in one]
+
+
+def begin_line(step: object) -> str:
+    return json.dumps({"begin": {"step": step, "is_one": True}})
+
+
+def test_lines_that_are_none_cost_nothing_and_refusals_change_nothing(tmp_path: Path) -> None:
+    folder = tmp_path / "rig"
+    wrong = ["", "no JSON", "[1]", "7", '{"begin": 3}', '{"nothing": 1}', '{"answer": null}']
+    ends = Led(folder, {"plant": str(PLANT)}, *wrong, begin_line("nothing")).ends
+    # Its input ends before it can begin: it is left, or says that there is no such step.
+    assert len(ends) == 1 and not ends[0]["is_ok"] and not folder.exists()
+
+
+def test_a_folder_of_a_real_rig_is_not_given_up_for_one_in_the_computer(tmp_path: Path) -> None:
+    folder = Folder(tmp_path / "rig")
+    folder.wants = Wants(max_current_A=1.0).data()
+    folder.done("wiring", {"made": "by hand"})
+    before = folder.file.read_bytes()
+    setup = Setup(folder.path, {"plant": str(PLANT)}, Bus("virtual", "none", None, ()), True)
+    for step in (None, "wiring"):
+        is_ok, text = led(setup, Leader(StringIO()), {"step": step, "is_one": True})
+        assert not is_ok and "begun with a controller on a bus" in text
+    assert folder.file.read_bytes() == before
+
+
+def test_an_answer_is_to_the_question_that_is_asked() -> None:
+    """One that came after its question was left answers nothing later."""
+    leader = Leader(StringIO())
+    late = threading.Timer(0.3, leader._take, ["answer", False])
+    leader._take("answer", True)
+    late.start()
+    with pytest.raises(Left):
+        leader.allow("current")
+    late.join()

@@ -158,19 +158,16 @@ def guided(
         yield None, None
         return
     from quiesce.base.paths import default_plant
-    from quiesce.can.database import load
     from quiesce.live.guide import Guide, Plan
     from quiesce.live.relay import Relay, is_shared
 
     with ExitStack() as stack:
-        bus, relay, simulation = link.bus, None, None
-        if not is_shared(bus):
-            relay = stack.enter_context(Relay(link, load()))
-            bus = relay.bus
+        relay = None if is_shared(link.bus) else stack.enter_context(Relay(link))
+        simulation = None
         if rig is not None:
             simulation = rig.simulation
             known = {"plant": whole(Path(args.sim) if args.sim else default_plant()), **known}
-        plan = Plan(args.commission.resolve(), known, bus, simulation)
+        plan = Plan(args.commission.resolve(), known, link.bus, relay, simulation)
         yield relay, stack.enter_context(Guide(plan))
 
 

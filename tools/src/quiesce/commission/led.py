@@ -10,6 +10,7 @@ import queue
 import signal
 import threading
 from collections.abc import Mapping
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -17,6 +18,7 @@ from typing import Any, TextIO
 
 from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.can.buses import Bus
+from quiesce.can.lent import lent_bus
 from quiesce.can.link import Link
 from quiesce.can.tables import CRC
 from quiesce.commission.by_hand import site_on_bus
@@ -25,7 +27,7 @@ from quiesce.commission.hand import Left
 from quiesce.commission.run import Order, commission, listed
 from quiesce.commission.simulated import TABLE, SimulatedSite
 from quiesce.commission.site import Site, give, until_idle
-from quiesce.commission.steps import STEPS
+from quiesce.commission.steps import NAMES, STEPS
 from quiesce.commission.wants import Wants
 from quiesce.loading.load import put
 from quiesce.loading.sources import table_of
@@ -60,15 +62,19 @@ class Leader:
         self._wants_out = False
 
     def hear(self, given: TextIO) -> None:
-        """In a thread of its own, until there is no more."""
-        for line in given:
-            for key, value in json.loads(line).items():
-                self._take(key, value)
-        self._leave()
-        self.begins.put(None)
+        """In a thread of its own, until there is no more. What is no line of its is left out."""
+        try:
+            for line in given:
+                with suppress(ValueError, AttributeError, RecursionError):
+                    for key, value in json.loads(line).items():
+                        self._take(key, value)
+        finally:
+            self._leave()
+            self.begins.put(None)
 
     def _take(self, key: str, value: Any) -> None:
-        if key == "begin":
+        if key == "begin" and isinstance(value, dict):
+            self._wants_out = False
             self.begins.put(value)
         elif key == "answer":
             self._answers.put(value)
@@ -89,8 +95,13 @@ class Leader:
             raise KeyboardInterrupt
 
     def start(self) -> None:
-        self._wants_out = False
+        """Left where that was wanted before it came to this."""
         self.is_at_work = True
+        self.require_stay()
+
+    def require_stay(self) -> None:
+        if self._wants_out:
+            raise Left("left")
 
     def tell(self, **what: Any) -> None:
         self._out.write(json.dumps(what, default=float) + "\n")
@@ -99,8 +110,7 @@ class Leader:
     def says(self, text: str) -> None:
         """Left where he wants that."""
         self.tell(says=text)
-        if self._wants_out:
-            raise Left("left")
+        self.require_stay()
 
     # As a Hand
 
@@ -111,10 +121,11 @@ class Leader:
         self._ask(text, True)
 
     def _ask(self, text: str, is_hazard: bool) -> None:
-        if self._wants_out:
-            raise Left("left")
+        self.require_stay()
+        while not self._answers.empty():
+            self._answers.get()  # to a question that was left
         self.tell(asks={"text": text, "is_hazard": is_hazard})
-        if not self._answers.get():
+        if self._answers.get() is not True:
             raise Left("not allowed" if is_hazard else "left")
 
     # As what is around a controller in the computer, which he has
@@ -154,7 +165,26 @@ class LentSite(SimulatedSite):
     """On a rig that goes on between two steps, and may be another one than at the step before."""
 
     def __enter__(self) -> "LentSite":
-        super().__enter__()
+        with ExitStack() as undo:
+            undo.push(super().__exit__)
+            super().__enter__()
+            undo.push(self._at_rest)
+            self._bring_back()
+            undo.pop_all()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        try:
+            self._at_rest()
+        finally:
+            super().__exit__(*error)
+
+    def _at_rest(self, *_: object) -> None:
+        self.rig.write("rig/control", False)
+        self.rig.write("rig/drive_V", 0.0)
+        self.rig.turn_over(0.0)
+
+    def _bring_back(self) -> None:
         if not until_idle(self.rig):
             raise BenchFailure("the controller still runs without its enable")
         give(self.rig, self._folder.settings)
@@ -163,13 +193,9 @@ class LentSite(SimulatedSite):
             table, tables = table_of(PULSES.name, file), self.rig.tables()
             if tables.info(table.road, CRC) != table.crc:
                 put(tables, table, lambda _: None)
-        return self
 
 
 def site_of(setup: Setup, leader: Leader, wants: Wants, folder: Folder) -> Site:
-    if setup.is_simulated != (wants.plant is not None):
-        which = "a rig in the computer" if wants.plant else "a controller on a bus"
-        raise UsageError(f"this folder was begun with {which}")
     if setup.is_simulated:
         return LentSite(Rig(Link(setup.bus), leader), wants, folder)
     return site_on_bus(Rig(Link(setup.bus)), leader, wants, folder)
@@ -191,8 +217,12 @@ def led(setup: Setup, leader: Leader, begin: Mapping[str, Any]) -> tuple[bool, s
     ended."""
     try:
         leader.start()
-        end = next_step(setup.folder, begin["step"]) if begin["is_one"] else None
-        order = Order(setup.folder, setup.given, begin["step"], end, False)
+        require_its_kind(setup)
+        step = begin.get("step")
+        if step is not None and step not in NAMES:
+            raise UsageError(f"step {step!r}: there are {', '.join(NAMES)}")
+        end = next_step(setup.folder, step) if begin.get("is_one") else None
+        order = Order(setup.folder, setup.given, step, end, False)
         commission(
             order,
             leader.says,
@@ -204,8 +234,22 @@ def led(setup: Setup, leader: Leader, begin: Mapping[str, Any]) -> tuple[bool, s
         return False, LEFT
     except (UsageError, BenchFailure) as error:
         return False, str(error)
+    except BrokenPipeError:
+        raise  # nobody leads any more
+    except OSError as error:
+        return False, f"{error.filename or setup.folder}: {error.strerror or error}"
     finally:
         leader.is_at_work = False
+
+
+def require_its_kind(setup: Setup) -> None:
+    """UsageError where the folder was begun with another kind of rig: nothing of it is given up
+    for this one."""
+    before = Folder(setup.folder).wants
+    was_simulated = before.get("plant") is not None
+    if before and was_simulated != setup.is_simulated:
+        which = "a rig in the computer" if was_simulated else "a controller on a bus"
+        raise UsageError(f"this folder was begun with {which}; name another one")
 
 
 def next_step(folder: Path, begin: str | None) -> str:
@@ -227,17 +271,22 @@ def tell_steps(folder: Path, leader: Leader) -> None:
     leader.tell(steps=steps, trouble="")
 
 
+def bus_of(said: Mapping[str, Any]) -> Bus:
+    if "lent_fd" in said:
+        return lent_bus(said["lent_fd"])
+    options = tuple((key, value) for key, value in said["options"])
+    return Bus(said["interface"], said["channel"], said["bitrate"], options)
+
+
 def setup_of(line: str) -> Setup:
     said = json.loads(line)
-    bus = said["bus"]
-    options = tuple((key, value) for key, value in bus["options"])
     given = {
         key: tuple(one) if isinstance(one, list) else one for key, one in said["given"].items()
     }
     return Setup(
         Path(said["folder"]),
         given,
-        Bus(bus["interface"], bus["channel"], bus["bitrate"], options),
+        bus_of(said["bus"]),
         said["is_simulated"],
     )
 

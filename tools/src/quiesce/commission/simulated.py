@@ -70,8 +70,8 @@ class SimulatedSite:
 
     @contextmanager
     def armed(self, why: str) -> Iterator[None]:
-        self.rig.write("rig/control", True)
         try:
+            self.rig.write("rig/control", True)
             with running(self.rig):
                 yield
         finally:

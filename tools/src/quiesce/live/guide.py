@@ -6,11 +6,14 @@ A person is the hand on the enable: on a bus the session is left, and the coil g
 current, when the viewer who holds control is gone or lets go of it.
 """
 
+import asyncio
 import json
+import math
 import os
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -18,6 +21,7 @@ from typing import Any
 
 from quiesce.base.errors import BenchFailure, UsageError, one_line
 from quiesce.can.buses import Bus
+from quiesce.live.relay import Relay
 from quiesce.rig.access import Surroundings
 
 MODULE = "quiesce.commission.led"
@@ -27,24 +31,31 @@ KEYS = ({"begin", "is_one"}, {"answer", "of"}, {"leave"})
 PAGES = ("report.html", "before_after.html", "tuned/report.html")
 GONE = "the session's process is gone; start the server anew"
 END_S = 20.0  # to make the rig safe
+STUCK_S = 15.0  # to leave: the controller's own stop is pressed after that
+LOOK_S = 0.05
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What it is begun with. bus: where it finds the controller; rig: the one in the computer that
-    is on that bus, or None."""
+    """What it is begun with. bus: where it finds the controller, relay: through which where only
+    one program can have it; rig: the one in the computer that is on that bus, or None."""
 
     folder: Path
     given: Mapping[str, Any]
     bus: Bus
+    relay: Relay | None = None
     rig: Surroundings | None = None
+
+    @property
+    def fds(self) -> tuple[int, ...]:
+        return () if self.relay is None else (self.relay.theirs.fileno(),)
 
     def line(self) -> str:
         return json.dumps(
             {
                 "folder": str(self.folder),
                 "given": dict(self.given),
-                "bus": asdict(self.bus),
+                "bus": {"lent_fd": self.fds[0]} if self.fds else asdict(self.bus),
                 "is_simulated": self.rig is not None,
             }
         )
@@ -62,7 +73,8 @@ class Guide:
         self._asked = 0
         self._ended: dict[str, Any] | None = None  # how it did the last time
         self._begun = 0  # how often
-        self._is_leaving = False
+        self._left_s: float | None = None  # since when it is to leave
+        self._is_lost = False  # its process is, while it was at work
         self._writing = threading.Lock()
         self.is_at_work = False
 
@@ -79,6 +91,7 @@ class Guide:
             bufsize=1,
             env={**os.environ, "PYTHONPATH": paths},
             start_new_session=True,
+            pass_fds=self._plan.fds,
         )
         self._write(self._plan.line())
         self._readers = [
@@ -89,7 +102,7 @@ class Guide:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """It makes the rig safe before it ends."""
+        """It makes the rig safe before it ends; over a bus that is lent it needs end() for that."""
         assert self._process.stdin is not None
         try:
             self._process.stdin.close()
@@ -124,26 +137,40 @@ class Guide:
         names = [one["name"] for one in self._steps]
         if not (step is None or step in names) or not isinstance(is_one, bool):
             raise UsageError(f"'begin' is null or of {', '.join(names)}, 'is_one' true or false")
-        self._says, self._ended, self._is_leaving = "", None, False
+        self._says, self._ended, self._left_s = "", None, None
         self._begun += 1
         self.is_at_work = True
         self._write(json.dumps({"begin": {"step": step, "is_one": is_one}}))
 
     def _answer(self, is_yes: Any, number: Any) -> None:
         asks = self._asks
-        if asks is None or asks["number"] != number or not isinstance(is_yes, bool):
+        is_asked = asks is not None and asks["number"] == number and self._left_s is None
+        if not is_asked or not isinstance(is_yes, bool):
             raise UsageError("that is not what is asked")
         self._asks = None
         self._write(json.dumps({"answer": is_yes}))
 
     def leave(self) -> None:
-        if not self.is_at_work or self._is_leaving:
+        if not self.is_at_work or self._left_s is not None:
             return
-        self._is_leaving = True
-        if self._asks is not None:
-            self._answer(False, self._asks["number"])
-        else:
-            self._write(json.dumps({"leave": True}))
+        self._left_s = time.monotonic()
+        self._asks = None
+        self._write(json.dumps({"leave": True}))
+
+    async def end(self) -> None:
+        """Left, and over."""
+        self.leave()
+        end_s = time.monotonic() + END_S
+        while self.is_at_work and time.monotonic() < end_s:
+            await asyncio.sleep(LOOK_S)
+
+    def needs_stop(self) -> bool:
+        """Once: its process is gone, or stuck, and may have left current behind on a bus."""
+        is_stuck = self._left_s is not None and time.monotonic() > self._left_s + STUCK_S
+        needs = self._is_lost or (self.is_at_work and is_stuck)
+        if needs:
+            self._is_lost, self._left_s = False, math.inf
+        return needs and self._plan.rig is None
 
     def let_go(self) -> None:
         """Nobody holds control any more."""
@@ -157,7 +184,7 @@ class Guide:
             "trouble": self._trouble,
             "begun": self._begun,
             "is_at_work": self.is_at_work,
-            "is_leaving": self._is_leaving,
+            "is_leaving": self.is_at_work and self._left_s is not None,
             "says": self._says,
             "asks": self._asks,
             "ended": self._ended,
@@ -184,6 +211,7 @@ class Guide:
         for line in self._process.stdout:
             self._take(json.loads(line))
         self._process.wait()
+        self._is_lost = self.is_at_work
         if self.is_at_work or self._process.returncode:
             why = self._says or f"code {self._process.returncode}"
             self._ended = {"is_ok": False, "text": f"{GONE} ({why})"}

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from quiesce import __version__
+from quiesce.base.errors import UsageError
 from quiesce.engine.params import parameters
 from quiesce.live.control import Control
 from quiesce.live.desk import Desk
@@ -75,20 +76,21 @@ class Room:
             self.guide.leave()
         self.tell_now()
 
-    def lead(self, order: dict[str, Any]) -> tuple[bool, str]:
-        """The guided session: whether it came about, and a line. UsageError where it cannot."""
+    def lead(self, order: dict[str, Any]) -> None:
+        """An order to the guided session. UsageError where it cannot be."""
         if self.guide is None:
-            return False, "there is no guided session: start the server with --commission FOLDER"
+            raise UsageError("there is none: start the server with --commission FOLDER")
         jobs = self.desk.jobs
         if "begin" in order and jobs.name:
-            return False, f"wait: {jobs.name} is under way"
+            raise UsageError(f"wait: {jobs.name} is under way")
         self.guide.obey(order)
         if "begin" in order:
             jobs.hold(NAME)
-        return True, ""
 
     def _end_guide(self) -> None:
-        """Its process asks the controller for nothing any more."""
+        """Its process asks for nothing any more, or is no longer there to stop the controller."""
+        if self.guide is not None and self.guide.needs_stop():
+            self.desk.stop.press()
         if self.guide is not None and self.desk.jobs.is_held and not self.guide.is_at_work:
             self._giving_back = asyncio.create_task(self.desk.jobs.give_back())
 

@@ -148,6 +148,8 @@ async def serve(
             if room.rig is not None and room.rig.failure:
                 raise BenchFailure(f"the rig in the computer is gone: {room.rig.failure}")
     finally:
+        if room.guide is not None:
+            await room.guide.end()  # while the bus is still heard
         server.should_exit = True
         await asyncio.wait(working[1:])
         working[0].cancel()

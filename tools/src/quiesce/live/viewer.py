@@ -89,9 +89,18 @@ class Viewer:
             self._start(command)
         elif room.control.holder != self._number:
             self._note(False, "take control first", command.do)
+        elif command.do == "guide":
+            self._lead(command.order)
         else:
             self._start(command)
         room.tell_now()
+
+    def _lead(self, order: dict[str, Any]) -> None:
+        """At once: what he does next finds it done."""
+        try:
+            self._room.lead(order)
+        except UsageError as error:
+            self._note(False, str(error), "guide")
 
     def _start(self, command: Command) -> None:
         """A change takes a while; meanwhile he may ask for other things, and stop."""
@@ -114,8 +123,6 @@ class Viewer:
         """Whether it came about, and a line about it. UsageError for values not allowed."""
         if command.do == "rig":
             return await self._order(command.order)
-        if command.do == "guide":
-            return self._room.lead(command.order)
         desk, jobs = self._desk, self._desk.jobs
         if command.do in ("record", "end_record", "mark"):
             return True, self._record(command)

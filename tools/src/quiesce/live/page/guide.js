@@ -1,6 +1,7 @@
 // The guided session: its steps, what it says, what it asks. Who holds control leads it.
 import { $, make, setText } from "./dom.js";
 
+const READ_ms = 1000;
 const PAGES = {
   "report.html": "Report",
   "before_after.html": "Before and after",
@@ -12,6 +13,7 @@ export class Guide {
     this.send = send;
     this.isThere = false;
     this.refused = "";
+    this.asked_ms = -Infinity;
     this.number = null; // of the question that is shown
     this.shown = ""; // steps and pages
     $("guide-go").addEventListener("click", () => this.begin());
@@ -33,6 +35,7 @@ export class Guide {
 
   begin() {
     const from = $("guide-from").value;
+    $("guide-from").value = ""; // once: what is done after it is not done again
     this.order({ begin: from || null, is_one: $("guide-one").checked });
   }
 
@@ -52,7 +55,7 @@ export class Guide {
     const guide = state.guide;
     const next = guide.steps.find((one) => one.line === "");
     this.showSteps(guide, next);
-    setText($("guide-says"), guide.is_at_work ? guide.says : "");
+    setText($("guide-says"), guide.says);
     this.ask(guide.asks);
     this.showEnd(guide);
     setText($("guide-go"), guide.steps.some((one) => one.line !== "") ? "Go on" : "Begin");
@@ -80,6 +83,7 @@ export class Guide {
     const number = asks ? asks.number : null;
     if (number === this.number) return;
     this.number = number;
+    this.asked_ms = performance.now();
     $("guide-question").hidden = asks === null;
     if (asks === null) return;
     $("guide-question").classList.toggle("hazard", asks.is_hazard);
@@ -102,6 +106,8 @@ export class Guide {
     $("guide-go").disabled = !mayBegin || (!next && !$("guide-from").value);
     $("guide-from").disabled = $("guide-one").disabled = !mayBegin;
     $("guide-leave").disabled = !(isMine && isAtWork && !guide.is_leaving);
-    $("guide-yes").disabled = $("guide-no").disabled = !(isMine && isAtWork);
+    // A second click, or a key that is held, answers nothing that nobody has read.
+    const isRead = performance.now() - this.asked_ms > READ_ms;
+    $("guide-yes").disabled = $("guide-no").disabled = !(isMine && isAtWork && isRead);
   }
 }
