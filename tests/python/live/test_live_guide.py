@@ -186,6 +186,15 @@ def answered(viewer: Viewer, person: Person, until: str = "") -> dict[str, Any]:
         order(viewer, answer=True, of=last)
 
 
+def arm(viewer: Viewer, person: Person) -> None:
+    """Until current flows in step wiring, by an enable at hand."""
+    begin(viewer)
+    asks = answered(viewer, person, until="give the enable")
+    person.does(asks["text"])
+    order(viewer, answer=True, of=asks["number"])
+    viewer.until("state", lambda state: state["controller"]["state"] == "RUN")
+
+
 @pytest.mark.slow
 def test_a_person_at_a_rig_is_asked_and_nothing_is_driven_without_a_yes(tmp_path: Path) -> None:
     with real_rig(tmp_path) as (page, person), leading(page) as viewer:
@@ -210,11 +219,7 @@ def test_a_person_at_a_rig_is_asked_and_nothing_is_driven_without_a_yes(tmp_path
 def test_who_lets_go_of_control_or_stops_leaves_it_safe(tmp_path: Path, way: str) -> None:
     with real_rig(tmp_path) as (page, person), ExitStack() as stack:
         with leading(page) as viewer:
-            begin(viewer)
-            asks = answered(viewer, person, until="give the enable")
-            person.does(asks["text"])
-            order(viewer, answer=True, of=asks["number"])
-            viewer.until("state", lambda state: state["controller"]["state"] == "RUN")
+            arm(viewer, person)
             other = stack.enter_context(page.viewer())
             if way != "gone":
                 viewer.ask(way)
@@ -329,11 +334,7 @@ def test_a_session_that_dies_while_it_is_armed_is_stopped(tmp_path: Path, way: s
     """Its enable stays: a contact that nobody opens."""
     with real_rig(tmp_path) as (page, person):
         with leading(page) as viewer:
-            begin(viewer)
-            asks = answered(viewer, person, until="give the enable")
-            person.does(asks["text"])
-            order(viewer, answer=True, of=asks["number"])
-            viewer.until("state", lambda state: state["controller"]["state"] == "RUN")
+            arm(viewer, person)
             if way == "killed":
                 os.kill(process_of(page), signal.SIGKILL)
                 assert "process is gone" in ended(viewer)["text"]
