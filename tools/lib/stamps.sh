@@ -85,7 +85,7 @@ inputs_hash() {
     {
         uname -m
         gcc --version | head -n 1
-        cat "$ROOT/.venv/.complete"
+        sed '/^\//d' "$ROOT/.venv/.complete" # but for the folder, which is no input
         files_hash "${paths[@]}" tools/lib tools/test tools/setup tools/packages.txt
     } 2>&1 | sha256sum | cut -c1-64
 }

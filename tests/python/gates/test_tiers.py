@@ -192,6 +192,8 @@ def test_another_machine_goes_on_with_what_the_summary_says(clone: Clone) -> Non
     clone.function("common steps", "step ctest-host false")
     assert "ok    ctest-host" in clone.function("common steps", RESUME.format("true")).stdout
     elsewhere()
+    (clone.root / ".venv/.complete").write_text("complete\n/in/another/folder\n")
+    assert "kept  ctest-m32" in clone.function("common steps", m32).stdout
     (clone.root / "firmware/a.c").write_text("2\n")
     assert "ok    ctest-host" in clone.function("common steps", RESUME.format("true")).stdout
 
