@@ -209,7 +209,10 @@ class Guide:
     def _hear(self) -> None:
         assert self._process.stdout is not None
         for line in self._process.stdout:
-            self._take(json.loads(line))
+            try:
+                self._take(json.loads(line))
+            except ValueError:  # not its own any more: without it nobody could be asked
+                self._process.kill()
         self._process.wait()
         self._is_lost = self.is_at_work
         if self.is_at_work or self._process.returncode:
