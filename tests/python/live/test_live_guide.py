@@ -27,7 +27,7 @@ from quiesce.can.link import Link, Lost
 from quiesce.can.python_can import can
 from quiesce.commission.folder import Folder
 from quiesce.commission.hand import Left
-from quiesce.commission.led import Leader, Setup, led
+from quiesce.commission.led import Leader, Setup, led, setup_of
 from quiesce.commission.wants import Wants
 from quiesce.live.guide import MODULE
 from quiesce.live.relay import Relay
@@ -428,6 +428,26 @@ def test_lines_that_are_none_cost_nothing_and_refusals_change_nothing(tmp_path: 
     ends = Led(folder, {"plant": str(PLANT)}, *wrong, begin_line("nothing")).ends
     # Its input ends before it can begin: it is left, or says that there is no such step.
     assert len(ends) == 1 and not ends[0]["is_ok"] and not folder.exists()
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["", "7", "[]", "{}", '{"folder": "rig", "given": {"nothing": 1}, "bus": {}}',
+     '{"folder": "rig", "given": {"drive_V": "much"}, "bus": {}, "is_simulated": true}',
+     '{"folder": "rig", "given": {}, "bus": {}, "is_simulated": true}'],
+)  # fmt: skip
+def test_a_first_line_that_is_none_is_one_clear_line(line: str) -> None:
+    with pytest.raises(UsageError, match="not whole"):
+        setup_of(line)
+
+
+def test_what_is_given_is_what_is_wanted() -> None:
+    given = {"band_Hz": [2.0, 40.0], "max_current_A": 1.5, "start": []}
+    bus = {"interface": "virtual", "channel": "a", "bitrate": None, "options": [["port", 7]]}
+    said = {"folder": "rig", "given": given, "bus": bus, "is_simulated": False}
+    setup = setup_of(json.dumps(said))
+    assert setup.given == {"band_Hz": (2.0, 40.0), "max_current_A": 1.5, "start": ()}
+    assert setup.bus == Bus("virtual", "a", None, (("port", 7),)) and not setup.is_simulated
 
 
 def test_a_folder_of_a_real_rig_is_not_given_up_for_one_in_the_computer(tmp_path: Path) -> None:

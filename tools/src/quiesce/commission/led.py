@@ -28,7 +28,7 @@ from quiesce.commission.run import Order, commission, listed
 from quiesce.commission.simulated import TABLE, SimulatedSite
 from quiesce.commission.site import Site, give, until_idle
 from quiesce.commission.steps import NAMES, STEPS
-from quiesce.commission.wants import Wants
+from quiesce.commission.wants import Wants, wants_of
 from quiesce.loading.load import put
 from quiesce.loading.sources import table_of
 from quiesce.rig import Rig
@@ -279,16 +279,14 @@ def bus_of(said: Mapping[str, Any]) -> Bus:
 
 
 def setup_of(line: str) -> Setup:
-    said = json.loads(line)
-    given = {
-        key: tuple(one) if isinstance(one, list) else one for key, one in said["given"].items()
-    }
-    return Setup(
-        Path(said["folder"]),
-        given,
-        bus_of(said["bus"]),
-        said["is_simulated"],
-    )
+    """UsageError where it is none."""
+    try:
+        said = json.loads(line)
+        wants = vars(wants_of(Wants().data() | said["given"]))
+        given = {name: wants[name] for name in said["given"]}
+        return Setup(Path(said["folder"]), given, bus_of(said["bus"]), bool(said["is_simulated"]))
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise UsageError(f"the first line is not whole: {type(error).__name__}: {one_line(error)}")
 
 
 def main() -> None:
@@ -297,7 +295,11 @@ def main() -> None:
     given = os.fdopen(STDIN, encoding="utf-8")
     leader = Leader(out)
     signal.signal(signal.SIGINT, leader.interrupted)
-    setup = setup_of(given.readline())
+    try:
+        setup = setup_of(given.readline())
+    except UsageError as error:
+        leader.tell(ended={"is_ok": False, "text": str(error)})
+        return
     threading.Thread(target=leader.hear, args=(given,), daemon=True).start()
     try:
         serve(setup, leader)
