@@ -40,9 +40,10 @@ needs_of() {
     esac
 }
 
-# needs_of_live OPTION...: a rig in the computer is the bench.
+# needs_of_live OPTION...: a rig in the computer is the bench; a guided session needs what commission does.
 needs_of_live() {
     case "$*" in
+    *--commission*) echo "$(needs_of commission) page" ;;
     *--sim*) echo bench page ;;
     *) echo page ;;
     esac

@@ -149,7 +149,7 @@ benchmark_step() {
 
 # drop_unjudged STEP: a figure that could not be judged here is no reason to keep it.
 drop_unjudged() {
-    ! grep -q '^not judged: ' "$LOG_DIR/test-$1.log" || stamp_drop "$1" unjudged
+    ! grep -q '^not judged: ' "$LOG_DIR/test-$1.log" || stamp_write "$1" unjudged
 }
 
 section_coverage() {

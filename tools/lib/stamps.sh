@@ -90,15 +90,10 @@ inputs_hash() {
     } 2>&1 | sha256sum | cut -c1-64
 }
 
-# stamp_write STEP HASH SECONDS CPU_S LINE
+# stamp_write STEP HASH SECONDS CPU_S LINE; a word in place of a hash: whatever another machine says of it, it is run.
 stamp_write() {
     mkdir -p "$ROOT/build/tested"
     printf '%s\n' "${@:2}" >"$ROOT/build/tested/$1"
-}
-
-# stamp_drop STEP WHY: what any machine says of it is no reason to keep it.
-stamp_drop() {
-    stamp_write "$1" "$2"
 }
 
 # stamp_field STEP NUMBER: 1 hash, 2 seconds, 3 CPU seconds, 4 closing line.

@@ -86,7 +86,7 @@ step_done() {
         [ -z "$3" ] || ((STAMPED == 0)) || has_changed || stamp_write "$1" "${@:3:4}"
     else
         FAILED+=("$1")
-        stamp_drop "$1" failed
+        stamp_write "$1" failed
         word=FAIL result=FAILED where="  (build/logs/$7.log)"
     fi
     record "$1" "$result" "$4" "$5" "$6"

@@ -116,6 +116,10 @@ def busy(clone: Clone) -> Iterator[Clone]:
         ("tune x.toml", "bench plant dampers"),
         ("can stop --yes", ""),
         ("can get", ""),
+        ("live --bus socketcan:can0", "page"),
+        ("live --sim", "bench page"),
+        ("live --bus socketcan:can0 --commission press", "bench plant dampers page"),
+        ("live --sim --commission first", "bench plant dampers page"),
     ],
 )
 def test_needs(clone: Clone, words: str, needs: str) -> None:
