@@ -1,5 +1,6 @@
 """The papers' searches, binary genetic algorithm and differential evolution, on a small problem."""
 
+import itertools
 import threading
 from collections.abc import Callable
 
@@ -11,13 +12,14 @@ from quiesce.damper import library
 from quiesce.damper.data.split import whole
 from quiesce.damper.fit import binary_ga, population, thesis_de
 from quiesce.damper.fit.binary_ga import (
+    Elite,
     decoded,
     fit_binary_ga,
     fit_plain_ga,
     whole_range,
-    window_about,
+    window_of,
 )
-from quiesce.damper.fit.population import errors_of, ranges_of
+from quiesce.damper.fit.population import errors_of, ranges_of, values_of
 from quiesce.damper.fit.problem import Problem
 from quiesce.damper.fit.search import Effort, Fit, from_starts
 from quiesce.damper.fit.setting import Setting
@@ -128,21 +130,49 @@ def test_codes_go_evenly_from_end_to_end_of_the_range() -> None:
     bits, variables = 3, len(problem.variables)
     gray = [[bool(code >> 2 & 1), bool((code ^ code >> 1) >> 1 & 1), bool((code ^ code >> 1) & 1)]
             for code in range(8)]  # fmt: skip
-    values = decoded(problem, np.tile(np.array(gray), (1, variables)), bits, whole_range(problem))
+    shares = decoded(np.tile(np.array(gray), (1, variables)), bits)
+    values = values_of(problem, whole_range(problem).parts(shares))
     for one, found in zip(problem.variables, values.T, strict=True):
         steps = np.geomspace if one.is_log else np.linspace
         np.testing.assert_allclose(found, steps(*one.search, 8))
     assert {one.is_log for one in problem.variables} == {False, True}
 
 
-def test_epochs_narrow_about_the_best_within_the_search_range() -> None:
-    problem = small_problem()
-    low, high = ranges_of(problem)
-    about = window_about(problem, low, 0.3)
-    np.testing.assert_allclose(about.low, 0.0, atol=1e-12)
-    np.testing.assert_allclose(about.high, 0.15)
-    middle = problem.variables[0].to_value(np.array(0.5))
-    assert window_about(problem, np.array([middle, *high[1:]]), 0.2).low[0] == pytest.approx(0.4)
+def corners(variables: int) -> np.ndarray:
+    """Shares of all corners of the ranges."""
+    return np.array(list(itertools.product((0.0, 1.0), repeat=variables)))
+
+
+def test_epochs_narrow_about_the_best_along_what_the_best_differ_in() -> None:
+    along = np.array([0.6, 0.8])
+    across = np.array([-0.8, 0.6])
+    best = np.array([0.5, 0.4])
+    others = [best + 0.1 * along, best - 0.1 * along, best + 0.05 * across, best - 0.05 * across]
+    found = window_of(np.array([best, *others]), 0.2, 0.3)
+    apart = found.parts(corners(2)) - best
+    np.testing.assert_allclose(np.sort(apart @ along), [-0.1, -0.1, 0.1, 0.1])
+    np.testing.assert_allclose(np.sort(apart @ across), [-0.05, -0.05, 0.05, 0.05])
+    found = window_of(np.array([best, *others[:2]]), 0.2, 0.3)  # a line: as slender as may be
+    apart = found.parts(corners(2)) - best
+    np.testing.assert_allclose(np.sort(apart @ across), [-0.03, -0.03, 0.03, 0.03])
+    found = window_of(np.array([best]), 0.2, 0.3)  # nothing but the best: no direction
+    np.testing.assert_allclose(np.abs(found.parts(corners(2)) - best), 0.1)
+
+
+def test_epochs_stay_within_the_search_range() -> None:
+    best = np.array([0.0, 0.95])
+    found = window_of(np.array([best, best + [0.1, 0.0]]), 0.3, 1.0).parts(corners(2))
+    np.testing.assert_allclose(found.min(axis=0), [0.0, 0.8])
+    np.testing.assert_allclose(found.max(axis=0), [0.15, 1.0])
+
+
+def test_elite_is_the_best_of_all_trials_each_once_and_no_diverged_one() -> None:
+    elite = Elite(3, 1)
+    elite.offer(np.array([[0.4], [0.1], [0.9]]), np.array([4.0, 1.0, np.inf]))
+    np.testing.assert_array_equal(elite.parts, [[0.1], [0.4]])
+    elite.offer(np.array([[0.3], [0.1], [0.2]]), np.array([3.0, 1.0, 2.0]))
+    np.testing.assert_array_equal(elite.parts, [[0.1], [0.2], [0.3]])
+    np.testing.assert_array_equal(elite.errors, [1.0, 2.0, 3.0])
 
 
 def test_parents_are_the_best_of_all_that_were_tried(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,8 +7,10 @@ Not published, and chosen here: the Settings, Gray codes, tournaments of two, on
 one bit flipped a chromosome on average, the logarithm. The algorithm is pymoo's.
 
 Ours, too: epochs. A code changes one variable at a time, so that where two can stand in for each
-other a population settles beside the optimum. So each epoch begins anew in ranges that are narrower
-and lie about the best so far. PLAIN leaves that out. No least squares: both end at a code.
+other a population settles beside the optimum, where depends on the seed and on the last bit of the
+processor's arithmetic. So each epoch begins anew in ranges that are narrower, lie about the best so
+far and along the directions in which the best differ most and least. PLAIN leaves that out. No
+least squares: both end at a code.
 """
 
 from dataclasses import dataclass
@@ -28,7 +30,8 @@ class Settings:
     generations: int = 200  # of all epochs
     crossover: float = 0.8  # probability of a pair
     epochs: int = 10
-    narrowing: float = 0.7  # of the ranges, from epoch to epoch
+    narrowing: float = 0.7  # of the longest range, from epoch to epoch
+    slenderness: float = 0.3  # of the shortest range, of the longest, at least
 
 
 NARROWING = Settings()
@@ -37,10 +40,34 @@ PLAIN = Settings(epochs=1)
 
 @dataclass(frozen=True)
 class Window:
-    """What codes count through, in search coordinates 0 .. 1, [variables] each."""
+    """What codes count through, in search coordinates 0 .. 1: about `centre` [variables], along the
+    columns of `axes` [variables, variables], each as long as its range."""
 
-    low: np.ndarray
-    high: np.ndarray
+    centre: np.ndarray
+    axes: np.ndarray
+
+    def parts(self, shares: np.ndarray) -> np.ndarray:
+        """Search coordinates from shares 0 .. 1 of the ranges, [candidates, variables] each."""
+        return np.clip(self.centre + (shares - 0.5) @ self.axes.T, 0.0, 1.0)
+
+
+class Elite:
+    """The best of all that were tried, all different, the best of them first: `parts` [at most
+    `size`, variables]."""
+
+    def __init__(self, size: int, variables: int) -> None:
+        self.size = size
+        self.parts = np.empty((0, variables))
+        self.errors = np.empty(0)
+
+    def offer(self, parts: np.ndarray, errors: np.ndarray) -> None:
+        finite = np.isfinite(errors)
+        every, first = np.unique(
+            np.concatenate([self.parts, parts[finite]]), axis=0, return_index=True
+        )
+        errors = np.concatenate([self.errors, errors[finite]])[first]
+        order = np.argsort(errors, kind="stable")[: self.size]
+        self.parts, self.errors = every[order], errors[order]
 
 
 def fit_binary_ga(
@@ -55,12 +82,14 @@ def fit_binary_ga(
     clock = Clock(problem, effort, progress)
     rng = np.random.default_rng(seed)
     window = whole_range(problem)
+    elite = Elite(settings.population, len(problem.variables))
     try:
         for epoch in range(settings.epochs):
-            evolve(problem, window, settings, rng, clock)
+            evolve(problem, window, settings, rng, clock, elite)
             if clock.is_over() or clock.best is None:
                 break
-            window = window_about(problem, clock.best, settings.narrowing ** (epoch + 1))
+            length = settings.narrowing ** (epoch + 1)
+            window = window_of(elite.parts, length, settings.slenderness)
     except KeyboardInterrupt:
         clock.was_stopped = True
     return clock.result([])
@@ -74,7 +103,12 @@ def fit_plain_ga(
 
 
 def evolve(
-    problem: Problem, window: Window, settings: Settings, rng: np.random.Generator, clock: Clock
+    problem: Problem,
+    window: Window,
+    settings: Settings,
+    rng: np.random.Generator,
+    clock: Clock,
+    elite: Elite,
 ) -> None:
     """One epoch, from a random population."""
     from quiesce.base.searches import by_pymoo  # slow to load
@@ -84,8 +118,10 @@ def evolve(
     genes = next(search)
     generations = settings.generations // settings.epochs
     for generation in range(generations + 1):
-        values = decoded(problem, genes, settings.bits, window)
+        parts = window.parts(decoded(genes, settings.bits))
+        values = values_of(problem, parts)
         errors = errors_of(problem, values)
+        elite.offer(parts, errors)
         clock.offer(values, errors, f"generation {generation}")
         if generation == generations or clock.is_over():
             break
@@ -94,21 +130,21 @@ def evolve(
 
 def whole_range(problem: Problem) -> Window:
     count = len(problem.variables)
-    return Window(np.zeros(count), np.ones(count))
+    return Window(np.full(count, 0.5), np.eye(count))
 
 
-def window_about(problem: Problem, values: np.ndarray, width: float) -> Window:
-    """Of this width about the values, as far as the search ranges go."""
-    parts = [
-        float(one.to_part(value)) for one, value in zip(problem.variables, values, strict=True)
-    ]
-    low = np.clip(np.array(parts) - 0.5 * width, 0.0, 1.0)
-    high = np.clip(np.array(parts) + 0.5 * width, 0.0, 1.0)
-    return Window(low, high)
+def window_of(parts: np.ndarray, length: float, slenderness: float) -> Window:
+    """About the first of the best [several, variables], along the principal axes of how the others
+    differ from it: `length` where they differ most, down to `slenderness` of that where least."""
+    apart = parts - parts[0]
+    squares, directions = np.linalg.eigh(apart.T @ apart)
+    spreads = np.sqrt(np.maximum(squares, 0.0))
+    most = spreads.max()
+    ratios = np.maximum(spreads / most, slenderness) if most > 0.0 else np.ones(len(spreads))
+    return Window(parts[0], directions * (length * ratios))
 
 
-def decoded(problem: Problem, genes: np.ndarray, bits: int, window: Window) -> np.ndarray:
-    """Values [candidates, variables] from genes [candidates, variables * bits]."""
-    codes = numbers_of(genes.reshape(len(genes), -1, bits))
-    parts = window.low + (window.high - window.low) * codes / ((1 << bits) - 1)
-    return values_of(problem, parts)
+def decoded(genes: np.ndarray, bits: int) -> np.ndarray:
+    """Shares 0 .. 1 of the ranges [candidates, variables] from genes [candidates, variables *
+    bits]."""
+    return numbers_of(genes.reshape(len(genes), -1, bits)) / ((1 << bits) - 1)
