@@ -31,6 +31,7 @@ void estimator_fit_init(estimator_fit_t *self, const estimator_cfg_t *cfg) {
     self->slice_powers = POWERS_A_SAMPLE >> stages;
     self->hop_ticks = cfg->hop_ms * cfg->tick_rate_Hz / 1000u;
     self->spread_hop_ticks = SPREAD_HOP_ms * cfg->tick_rate_Hz / 1000u;
+    self->spread_ticks = self->spread_hop_ticks - self->job_ticks; // the first one is due
     self->clean_samples = -estimate_filter_memory(&self->known);
     self->most_level = self->longest_level;
     self->suspend_most_ticks = SUSPEND_ms * cfg->tick_rate_Hz / 1000u;
@@ -131,6 +132,7 @@ static void start_job(estimator_fit_t *self) {
                                        ? self->fit.constant_um_s2
                                        : spectrum_mean_um_s2(&self->spectrum, self->level);
     spectrum_want_powers(&self->spectrum, self->level, constant_um_s2);
+    self->spread_ticks += self->job_ticks;
     self->job_ticks = 0;
     self->stage = ESTIMATOR_FIT_SEARCH;
 }
@@ -186,7 +188,7 @@ static void end_job(estimator_fit_t *self) {
     if (!spread_is_wanted(&known->spread) || points_log2 != SPREAD_POINTS_LOG2) {
         return;
     }
-    if (!known->is_valid && self->spread_ticks >= self->spread_hop_ticks) {
+    if (!known->is_valid && self->spread_ticks + self->job_ticks >= self->spread_hop_ticks) {
         self->stage = ESTIMATOR_FIT_SPREAD;
     } else if (known->is_valid && known->valid_ticks >= STEADY_WINDOWS * known->trust_ticks) {
         spread_forget(&known->spread);
@@ -198,7 +200,7 @@ static void end_job(estimator_fit_t *self) {
 static void spread(estimator_fit_t *self) {
     const velocity_t *band = &self->known.velocity;
     spread_take(&self->known.spread, self->spectrum.power, band->first_bin, band->end_bin);
-    self->spread_ticks = 0;
+    self->spread_ticks = 0u - self->job_ticks;
     self->stage = ESTIMATOR_FIT_WAIT;
     start_job(self);
 }
@@ -395,7 +397,6 @@ static void age(estimator_fit_t *self) {
     self->sample_age_ticks++;
     self->job_age_ticks++;
     self->job_ticks = increment_sat_u32(self->job_ticks);
-    self->spread_ticks = increment_sat_u32(self->spread_ticks);
     estimate_age(&self->known);
 }
 

@@ -37,7 +37,7 @@ typedef struct {
     uint32_t sample_age_ticks; ///< of the newest sample
     uint32_t job_age_ticks;    ///< of the newest sample in the job's window
     uint32_t job_ticks;        ///< since the job began, saturating
-    uint32_t spread_ticks;     ///< since a window's spread was read, saturating
+    uint32_t spread_ticks;     ///< from a reading of a window's spread to the job's begin, modulo
     uint32_t spread_hop_ticks; ///< least time between two of them
     uint32_t level;            ///< the job's window
     uint32_t published_level;  ///< window of the last published fit

@@ -107,7 +107,7 @@ typedef struct {
 
 /// Controller state, owned by the caller; contents are private. Copying it copies the controller.
 #define QUIESCE_STATE_BYTES                                                                        \
-    (12416 + 512 * (QUIESCE_SENSORS - 1) + 64 * (QUIESCE_BODIES - 1) + 256 * (QUIESCE_DAMPERS - 1))
+    (12288 + 512 * (QUIESCE_SENSORS - 1) + 64 * (QUIESCE_BODIES - 1) + 256 * (QUIESCE_DAMPERS - 1))
 typedef struct {
     uint64_t opaque[QUIESCE_STATE_BYTES / 8];
 } quiesce_t;

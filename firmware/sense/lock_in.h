@@ -39,9 +39,9 @@ typedef struct {
     harmonic_parts_t expected; ///< of the next samples: what the last half cycle held
     uint32_t amp_um_s2;        ///< of its fundamental
     uint32_t shift;            ///< for squares: so many bits are dropped
-    int64_t power;             ///< mean square of the fundamental, shifted
     int32_t slow_q8;           ///< low-passed difference, shifted
-    int64_t unexplained;       ///< running mean square of that
+    int64_t power;             ///< mean square of the fundamental, shifted
+    int64_t unexplained;       ///< running mean square of the difference
 } lock_in_t;
 
 /// Unlocked.

@@ -28,9 +28,9 @@ static uint32_t block_shift(const predictor_t *self, uint32_t scale) {
     return self->stages - 1u + SCALE_SHIFT * scale;
 }
 
-// Blocks of the scale below (of the first one: ticks) that make one of this scale.
-static uint32_t block_parts(const predictor_t *self, uint32_t scale) {
-    return scale == 0 ? 1u << block_shift(self, 0) : 1u << SCALE_SHIFT;
+// Blocks of the scale below (of the first one: ticks) that make one of this scale; at most 8.
+static uint8_t block_parts(const predictor_t *self, uint32_t scale) {
+    return (uint8_t)(1u << (scale == 0 ? block_shift(self, 0) : SCALE_SHIFT));
 }
 
 static void arm(predictor_t *self) {

@@ -28,12 +28,12 @@ typedef struct {
 /// Page's test on blocks of one length.
 typedef struct {
     int64_t open;    ///< sum of the unfinished block's differences
-    uint32_t left;   ///< blocks of the scale below that it still lacks
     int64_t average; ///< of the last finished block
-    bool is_due;     ///< it has not been judged yet
     int64_t noise;   ///< mean square of a block's average
     int64_t sum;
     uint32_t suspect_blocks; ///< since the sum was zero
+    uint8_t left;            ///< blocks of the scale below that it still lacks
+    bool is_due;             ///< the last finished block has not been judged yet
 } predictor_watch_t;
 
 typedef enum {
@@ -45,16 +45,16 @@ typedef enum {
 typedef struct {
     predictor_tone_t tone[PREDICTOR_TONES];
     uint32_t tones;
-    bool is_armed; ///< watching
     uint32_t stages;
+    bool is_armed;          ///< watching
+    bool is_suspicious;     ///< since CHANGED; only BACK or disarming ends it
+    int32_t drift_um_s2_q8; ///< of the offset, a tick
     int64_t offset_q12;     ///< constant and slow part of the samples
-    int32_t drift_um_s2_q8; ///< its change a tick
     int64_t noise_alarm;    ///< of the noise, see judge
     int64_t tolerance;      ///< mean square that the components may be off
     predictor_watch_t watch[PREDICTOR_SCALES];
-    bool is_suspicious;       ///< since CHANGED; only BACK or disarming ends it
-    uint32_t calm_blocks;     ///< that fitted again, in a row
     int64_t burst;            ///< mean square since it began, over as many blocks as it may last
+    uint32_t calm_blocks;     ///< that fitted again, in a row
     uint32_t suspect_ticks;   ///< at an alarm: how long ago the change began
     int32_t prediction_um_s2; ///< of this tick's sample
 } predictor_t;

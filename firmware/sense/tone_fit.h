@@ -71,14 +71,15 @@ typedef struct {
     int32_t odd[TONE_FIT_MAX_PAIRS];  ///< x(m) - x(-m)
     tone_fit_window_t window;
     tone_fit_stage_t stage;
-    uint32_t done;    ///< pairs, of the stage and component at work
-    uint32_t slot;    ///< component at work
-    uint32_t other;   ///< its partner, while coupling
-    uint32_t slots;   ///< components, a drift included
-    uint32_t bits;    ///< of all magnitudes, ored
-    int32_t up_shift; ///< data = samples << up_shift
-    uint64_t energy;  ///< sum of squares of the data, times two
-    int64_t constant; ///< sum of the data
+    uint32_t done;          ///< pairs, of the stage and component at work
+    uint32_t slot;          ///< component at work
+    uint32_t other;         ///< its partner, while coupling
+    uint32_t slots;         ///< components, a drift included
+    uint32_t bits;          ///< of all magnitudes, ored
+    int32_t up_shift;       ///< data = samples << up_shift
+    int32_t residual_um_s2; ///< standard deviation of what the fit leaves
+    uint64_t energy;        ///< sum of squares of the data, times two
+    int64_t constant;       ///< sum of the data
     int32_t turn_cos_q30;
     int32_t turn_sin_q30;
     int32_t step_cos_q30;
@@ -94,7 +95,6 @@ typedef struct {
     int32_t bend_um_s2;     ///< how far off its line it may be an eighth of half a window later
     uint32_t explained_q16; ///< share of the energy about the mean that the fit explains
     uint64_t residual_q16;  ///< variance of what it leaves, data units
-    int32_t residual_um_s2; ///< standard deviation of what it leaves
 } tone_fit_t;
 
 void tone_fit_init(tone_fit_t *self);

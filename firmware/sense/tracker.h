@@ -64,18 +64,18 @@ typedef struct {
     uint32_t log2_sum_q8[2];                ///< of the powers read so far, lower and upper half
     uint32_t candidate[TRACKER_CANDIDATES]; ///< bins of local maxima, strongest first
     uint32_t candidates;
-    uint64_t height; ///< of the newest power, rising weight
-    bool is_rising;
-    uint32_t next;                             ///< candidate to be looked at
+    uint32_t next;                             ///< of them, to be looked at
+    uint64_t height;                           ///< of the newest power, rising weight
     tracker_start_t start[TRACKER_CANDIDATES]; ///< dominant one first in the longest window
     uint32_t starts;                           ///< at most TRACKER_TONES in the end
     uint32_t strongest_um_s2;                  ///< amplitude of the strongest of them
-    bool has_drift;                     ///< something slower than the window can resolve is there
     tracker_tone_t tone[TRACKER_TONES]; ///< of the last fit; in the band first, dominant one first
     uint32_t tones;
     uint32_t in_band; ///< of them
     uint32_t hints;   ///< tones that are still there as hints after a reset
     uint32_t misses;  ///< fits in a row that do not
+    bool is_rising;   ///< towards the newest power
+    bool has_drift;   ///< something slower than the window can resolve is there
     bool is_valid;    ///< the last fits qualify
     bool is_clear;    ///< and leave so little unexplained that a change would be seen soon
 } tracker_t;

@@ -16,8 +16,8 @@ typedef struct {
     uint32_t points_log2;
     uint32_t first_bin; ///< of the band
     uint32_t end_bin;
-    uint64_t sum;     ///< of power / bin^2
     int32_t rms_um_s; ///< of the last finished spectrum
+    uint64_t sum;     ///< of power / bin^2
 } velocity_t;
 
 void velocity_init(velocity_t *self, int32_t band_low_mHz, int32_t band_high_mHz);
