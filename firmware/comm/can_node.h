@@ -67,7 +67,7 @@ can_node_task_t can_node_task(const can_node_t *self);
 /// Parameters as staged; only for CAN_NODE_APPLY.
 const quiesce_params_t *can_node_staged(const can_node_t *self);
 
-/// The request that CAN_NODE_TABLE is about.
+/// The request that CAN_NODE_TABLE or CAN_NODE_IMAGE is about.
 const can_service_request_t *can_node_request(const can_node_t *self);
 
 /// Answers the task. param_index: of the parameter that was refused, else 0.

@@ -107,6 +107,14 @@ static can_node_result_t act(can_service_t *self, int32_t value, const can_servi
         self->task = CAN_NODE_TABLE;
         self->save_ms = CAN_SERVICE_SAVE_MS;
         return CAN_NODE_DONE;
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_IMAGE_INFO_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_IMAGE_PREPARE_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_IMAGE_PIECE_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_IMAGE_FINISH_CHOICE:
+    case QUIESCE_CAN_SERVICE_REQUEST_OPERATION_IMAGE_START_CHOICE:
+        self->task = CAN_NODE_IMAGE;
+        self->save_ms = CAN_SERVICE_IMAGE_MS;
+        return CAN_NODE_DONE;
     default:
         return CAN_NODE_NO_SUCH_OPERATION;
     }
@@ -160,7 +168,8 @@ void can_service_elapse(can_service_t *self, uint32_t passed_ms) {
     self->quiet_ms = minus(self->quiet_ms, passed_ms);
     self->raw_ms = minus(self->raw_ms, passed_ms);
     self->save_ms = minus(self->save_ms, passed_ms);
-    const bool can_wait = self->task == CAN_NODE_SAVE || self->task == CAN_NODE_TABLE;
+    const bool can_wait =
+        self->task == CAN_NODE_SAVE || self->task == CAN_NODE_TABLE || self->task == CAN_NODE_IMAGE;
     if (can_wait && self->save_ms == 0u) {
         can_service_answer(self, CAN_NODE_STORE_FAILED, 0);
     }

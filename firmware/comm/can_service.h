@@ -15,6 +15,8 @@ extern "C" {
 #define CAN_SERVICE_MAX_RAW_S 3600
 /// A task that is not answered by then has failed.
 #define CAN_SERVICE_SAVE_MS 2000u
+/// Of an image: four sectors of flash are erased, each of which may take 2 s.
+#define CAN_SERVICE_IMAGE_MS 20000u
 
 /// What the node cannot do by itself; the application does it and answers with can_node_answer.
 typedef enum {
@@ -22,6 +24,7 @@ typedef enum {
     CAN_NODE_APPLY = 1, ///< put can_node_staged to use: check, restart from rest
     CAN_NODE_SAVE = 2,  ///< store the parameters in effect
     CAN_NODE_TABLE = 3, ///< a request about tables: can_node_request says which
+    CAN_NODE_IMAGE = 4, ///< likewise about the program itself
 } can_node_task_t;
 
 /// ServiceReply's result.
@@ -39,6 +42,7 @@ typedef enum {
     CAN_NODE_TABLE_REFUSED = 10,    ///< param_value: quiesce_table_verdict_t
     CAN_NODE_NOTHING_RECEIVED = 11, ///< no whole transfer, or of another CRC
     CAN_NODE_NO_SUCH_TABLE = 12,    ///< no such road, or nothing of that number to tell
+    CAN_NODE_IMAGE_REFUSED = 13,    ///< not whole, not for this board or this place
 } can_node_result_t;
 
 typedef struct {
@@ -92,8 +96,8 @@ void can_service_answer(can_service_t *self, can_node_result_t result, uint32_t 
 /// The same with the reply's value.
 void can_service_answer_value(can_service_t *self, can_node_result_t result, int32_t value);
 
-/// Time passes. A SAVE, or a task about tables, that takes too long is answered STORE_FAILED; the
-/// service is free again.
+/// Time passes. A SAVE, or a task about tables or the program, that takes too long is answered
+/// STORE_FAILED; the service is free again.
 void can_service_elapse(can_service_t *self, uint32_t passed_ms);
 
 /// The next reply, packed but not protected, and its alive counter. Returns false iff none is due.

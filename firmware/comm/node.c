@@ -28,6 +28,7 @@ bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_
     node->retunes = 0;
     can_node_init(&node->can, board, params);
     table_service_init(&node->tables, board);
+    node->images = (image_service_t){0};
     const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
                                            : quiesce_init_board(&node->controller, board, params);
     if (board != NULL) { // a restart reads it again
@@ -36,6 +37,11 @@ bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_
     }
     rest(node);
     return is_accepted;
+}
+
+bool node_has_latched_fault(const node_t *node) {
+    const quiesce_telemetry_t *t = &node->out.telemetry;
+    return t->state == QUIESCE_STATE_FAULT && t->fault != QUIESCE_FAULT_PARAMETER;
 }
 
 uint32_t node_dampers(const node_t *node) {
@@ -55,6 +61,10 @@ void node_restart(node_t *node, const quiesce_params_t *params) {
 void node_use_store(node_t *node, keeper_store_t store, void *context) {
     node->tables.keeper.store = store;
     node->tables.keeper.context = context;
+}
+
+void node_use_images(node_t *node, const image_store_t *store) {
+    image_service_use(&node->images, store);
 }
 
 quiesce_table_verdict_t node_found(node_t *node, const table_found_t *found) {
@@ -86,7 +96,11 @@ void node_receive(node_t *node, const can_frame_t *frame) {
     }
 }
 
+// Nothing is driven by a program that is being replaced, or has not shown that it works.
 static bool is_enabled(const node_t *node, const node_inputs_t *board) {
+    if (image_service_holds(&node->images)) {
+        return false;
+    }
     switch (node->from.enable) {
     case NODE_ENABLE_BOARD:
         return board->enable;
@@ -166,12 +180,6 @@ void node_step(node_t *node, const node_inputs_t *inputs) {
     quiesce_step(&node->controller, &node->in, &node->out);
 }
 
-// A restart would forget a latched fault; only refused parameters are mended by others.
-static bool has_latched_fault(const node_t *node) {
-    const quiesce_telemetry_t *t = &node->out.telemetry;
-    return t->state == QUIESCE_STATE_FAULT && t->fault != QUIESCE_FAULT_PARAMETER;
-}
-
 // No sensor of the board provides what the law or its tracker needs.
 static bool misses_signal(const node_t *node, const quiesce_params_t *params) {
     quiesce_signal_t missing;
@@ -213,7 +221,7 @@ static void accept_live(node_t *node, const quiesce_params_t *staged) {
 
 static const quiesce_params_t *accept_staged(node_t *node) {
     const quiesce_params_t *const staged = can_node_staged(&node->can);
-    if (has_latched_fault(node)) {
+    if (node_has_latched_fault(node)) {
         can_node_answer(&node->can, CAN_NODE_FAULT_IS_LATCHED, 0);
         return NULL;
     }
@@ -259,6 +267,23 @@ static void work_on_table(node_t *node) {
     }
 }
 
+static void work_on_image(node_t *node) {
+    can_node_result_t result = CAN_NODE_DONE;
+    int32_t value = 0;
+    const image_work_t work = {
+        .request = can_node_request(&node->can),
+        .link = &node->tables.link,
+        .tables = &node->tables.tables,
+        .is_armed = quiesce_is_armed(&node->controller),
+        .has_latched_fault = node_has_latched_fault(node),
+    };
+    if (node->images.work == NULL) {
+        can_node_answer(&node->can, CAN_NODE_NO_SUCH_OPERATION, 0);
+    } else if (node->images.work(&node->images, &work, &result, &value)) {
+        can_node_answer_value(&node->can, result, value);
+    }
+}
+
 const quiesce_params_t *node_task(node_t *node) {
     switch (can_node_task(&node->can)) {
     case CAN_NODE_APPLY:
@@ -268,6 +293,9 @@ const quiesce_params_t *node_task(node_t *node) {
         return NULL;
     case CAN_NODE_TABLE:
         work_on_table(node);
+        return NULL;
+    case CAN_NODE_IMAGE:
+        work_on_image(node);
         return NULL;
     case CAN_NODE_NOTHING:
     default:
@@ -287,6 +315,7 @@ static bool table_frame(node_t *node, can_frame_t *frame) {
 
 uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
     uint32_t count = can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
+    image_service_pass(&node->images, node->can.schedule.passed_ms);
     if (table_service_pass(&node->tables, node->can.schedule.passed_ms) &&
         table_frame(node, &frames[count])) {
         count++;

@@ -8,6 +8,7 @@
 #define NODE_H
 
 #include "can_node.h"
+#include "image_service.h"
 #include "safe_current.h"
 #include "table_service.h"
 
@@ -67,6 +68,7 @@ typedef struct {
     uint32_t retunes;     ///< live parameters changed, likewise
     node_sources_t from;
     table_service_t tables; ///< what is loaded; its keeper has the target's store
+    image_service_t images; ///< an update of the program
 } node_t;
 
 /// Starts from rest, without a store (node_use_store afterwards): commands are the safe currents.
@@ -79,6 +81,10 @@ bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_
 
 /// Gives it the target's memory, without which whatever is to be stored is refused.
 void node_use_store(node_t *node, keeper_store_t store, void *context);
+
+/// Gives it the target's places for images (IMAGE_.. requests), without which there is no update
+/// over the bus.
+void node_use_images(node_t *node, const image_store_t *store);
 
 /// What that memory or the configuration has of tables and of what was learnt, after node_init and
 /// before the first tick. What is refused is not used; TABLE_INFO tells of it.
@@ -96,6 +102,9 @@ bool node_offer(node_t *node, const table_found_t *found, quiesce_table_verdict_
 
 /// The store says how what it has begun went.
 void node_stored(node_t *node, bool is_stored);
+
+/// A fault that a restart would forget; only refused parameters are mended by others.
+bool node_has_latched_fault(const node_t *node);
 
 /// Dampers in use: 0 .. node_dampers - 1.
 uint32_t node_dampers(const node_t *node);

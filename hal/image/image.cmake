@@ -7,9 +7,10 @@ set(QUIESCE_STACK_BYTES 16384 CACHE STRING "Stack of an image, bytes; a multiple
 
 add_library(hal_image STATIC ${CMAKE_CURRENT_LIST_DIR}/semihost.c ${CMAKE_CURRENT_LIST_DIR}/stack.c
                              ${CMAKE_CURRENT_LIST_DIR}/start.c
-                             ${CMAKE_CURRENT_LIST_DIR}/image_info.c ${CMAKE_CURRENT_LIST_DIR}/sha256.c)
+                             ${CMAKE_CURRENT_LIST_DIR}/image_info.c ${CMAKE_CURRENT_LIST_DIR}/image_place.c
+                             ${CMAKE_CURRENT_LIST_DIR}/sha256.c)
 target_include_directories(hal_image PUBLIC ${CMAKE_CURRENT_LIST_DIR})
-set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/image_info.c ${CMAKE_CURRENT_LIST_DIR}/sha256.c
+set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/image_info.c ${CMAKE_CURRENT_LIST_DIR}/image_place.c ${CMAKE_CURRENT_LIST_DIR}/sha256.c
                             PROPERTIES COMPILE_OPTIONS -Os) # once, at the start
 target_compile_definitions(hal_image PUBLIC QUIESCE_TARGET_IMAGE)
 target_link_libraries(hal_image PRIVATE quiesce_warnings)

@@ -18,31 +18,45 @@
 #define ERRORS                                                                                     \
     (FLASH_SR_OPERR | FLASH_SR_WRPERR | FLASH_SR_PGAERR | FLASH_SR_PGPERR | FLASH_SR_PGSERR)
 
+const nvm_stm32f4_area_t nvm_stm32f4_records = {
+    .block_words = 0x8000u,
+    .block = {{0x08040000u, 6, 1}, {0x08060000u, 7, 1}},
+};
+
+// The second block is as large as the first; the rest of its sector stays empty.
+const nvm_stm32f4_area_t nvm_stm32f4_images = {
+    .block_words = 0x7000u,
+    .block = {{0x08004000u, 1, 4}, {0x08020000u, 5, 1}},
+};
+
+const uint8_t *nvm_stm32f4_bytes(const nvm_stm32f4_area_t *area, uint32_t block) {
+    return reg_bytes(area->block[block].begin);
+}
+
 uint32_t hal_nvm_memory_words(const hal_nvm_memory_t *memory) {
-    (void)memory;
-    return NVM_STM32F4_WORDS;
+    return NVM_STM32F4_BLOCKS * memory->area->block_words;
 }
 
 uint32_t hal_nvm_memory_block_words(const hal_nvm_memory_t *memory) {
-    (void)memory;
-    return NVM_STM32F4_BLOCK_WORDS;
+    return memory->area->block_words;
 }
 
-static bool is_inside(uint32_t at, uint32_t count) {
-    return at <= NVM_STM32F4_WORDS && count <= NVM_STM32F4_WORDS - at;
+static bool is_inside(const hal_nvm_memory_t *memory, uint32_t at, uint32_t count) {
+    const uint32_t words = hal_nvm_memory_words(memory);
+    return at <= words && count <= words - at;
 }
 
-static uint32_t address_of(uint32_t at) {
-    return NVM_STM32F4_BASE + 4u * at;
+static uint32_t address_of(const hal_nvm_memory_t *memory, uint32_t at) {
+    const uint32_t block_words = memory->area->block_words;
+    return memory->area->block[at / block_words].begin + 4u * (at % block_words);
 }
 
 bool hal_nvm_memory_read(hal_nvm_memory_t *memory, uint32_t at, uint32_t *words, uint32_t count) {
-    (void)memory;
-    if (!is_inside(at, count)) {
+    if (!is_inside(memory, at, count)) {
         return false;
     }
     for (uint32_t i = 0; i < count; i++) {
-        words[i] = reg_read(address_of(at + i));
+        words[i] = reg_read(address_of(memory, at + i));
     }
     return true;
 }
@@ -64,8 +78,11 @@ static bool has_failed(void) {
     return (reg_read(SR) & ERRORS) != 0u;
 }
 
-static bool begin_erasing(uint32_t at) {
-    const uint32_t sector = NVM_STM32F4_SECTOR + at / NVM_STM32F4_BLOCK_WORDS;
+// The next sector of the block.
+static bool begin_erasing(hal_nvm_memory_t *memory, uint32_t at) {
+    const uint32_t block = at / memory->area->block_words;
+    const uint32_t sector = memory->area->block[block].sector + memory->erased_sectors;
+    memory->polls = 0;
     if (!unlock()) {
         return false;
     }
@@ -89,47 +106,55 @@ static hal_nvm_progress_t end(hal_nvm_memory_t *memory, hal_nvm_progress_t progr
     return progress;
 }
 
-static hal_nvm_progress_t wait_for_end(hal_nvm_memory_t *memory) {
+static hal_nvm_progress_t begin_sector(hal_nvm_memory_t *memory, uint32_t at) {
+    memory->phase = NVM_STM32F4_ERASES;
+    return begin_erasing(memory, at) ? HAL_NVM_BUSY : end(memory, HAL_NVM_FAILED);
+}
+
+// Each sector waits for leave of its own: the image has fed its watchdog in between.
+static hal_nvm_progress_t wait_for_end(hal_nvm_memory_t *memory, uint32_t at) {
+    const uint32_t sectors = memory->area->block[at / memory->area->block_words].sectors;
     if ((reg_read(SR) & FLASH_SR_BSY) != 0u) {
         memory->polls++;
         return memory->polls < ERASE_POLLS ? HAL_NVM_BUSY : end(memory, HAL_NVM_FAILED);
     }
     forget_cached();
-    memory->phase = NVM_STM32F4_LOOKS;
+    if (has_failed()) {
+        return end(memory, HAL_NVM_FAILED);
+    }
+    memory->erased_sectors++;
+    memory->phase = memory->erased_sectors < sectors ? NVM_STM32F4_WAITS : NVM_STM32F4_LOOKS;
     memory->looked_words = 0;
-    return has_failed() ? end(memory, HAL_NVM_FAILED) : HAL_NVM_BUSY;
+    return HAL_NVM_BUSY;
 }
 
 static hal_nvm_progress_t look(hal_nvm_memory_t *memory, uint32_t at) {
     for (uint32_t i = 0; i < NVM_STM32F4_LOOK_WORDS; i++) {
-        if (reg_read(address_of(at + memory->looked_words + i)) != ERASED) {
+        if (reg_read(address_of(memory, at + memory->looked_words + i)) != ERASED) {
             return end(memory, HAL_NVM_FAILED);
         }
     }
     memory->looked_words += NVM_STM32F4_LOOK_WORDS;
-    return memory->looked_words < NVM_STM32F4_BLOCK_WORDS ? HAL_NVM_BUSY
-                                                          : end(memory, HAL_NVM_DONE);
+    return memory->looked_words < memory->area->block_words ? HAL_NVM_BUSY
+                                                            : end(memory, HAL_NVM_DONE);
 }
 
 hal_nvm_progress_t hal_nvm_memory_erase(hal_nvm_memory_t *memory, uint32_t at) {
-    if (at % NVM_STM32F4_BLOCK_WORDS != 0u || !is_inside(at, NVM_STM32F4_BLOCK_WORDS)) {
+    if (at % memory->area->block_words != 0u || !is_inside(memory, at, memory->area->block_words)) {
         return HAL_NVM_FAILED;
     }
     switch (memory->phase) {
     case NVM_STM32F4_ERASES:
-        return wait_for_end(memory);
+        return wait_for_end(memory, at);
     case NVM_STM32F4_LOOKS:
         return look(memory, at);
     case NVM_STM32F4_IDLE:
+        memory->erased_sectors = 0;
+        memory->phase = NVM_STM32F4_WAITS;
+        return memory->may_erase ? begin_sector(memory, at) : HAL_NVM_BUSY;
     case NVM_STM32F4_WAITS:
     default:
-        memory->phase = NVM_STM32F4_WAITS;
-        if (!memory->may_erase) {
-            return HAL_NVM_BUSY;
-        }
-        memory->phase = NVM_STM32F4_ERASES;
-        memory->polls = 0;
-        return begin_erasing(at) ? HAL_NVM_BUSY : end(memory, HAL_NVM_FAILED);
+        return memory->may_erase ? begin_sector(memory, at) : HAL_NVM_BUSY;
     }
 }
 
@@ -140,12 +165,11 @@ static bool program_word(uint32_t address, uint32_t word) {
 
 hal_nvm_progress_t hal_nvm_memory_program(hal_nvm_memory_t *memory, uint32_t at,
                                           const uint32_t *words, uint32_t count) {
-    (void)memory;
-    if (count > HAL_NVM_SLICE_WORDS || !is_inside(at, count)) {
+    if (count > HAL_NVM_SLICE_WORDS || !is_inside(memory, at, count)) {
         return HAL_NVM_FAILED;
     }
     for (uint32_t i = 0; i < count; i++) {
-        if ((reg_read(address_of(at + i)) & words[i]) != words[i]) {
+        if ((reg_read(address_of(memory, at + i)) & words[i]) != words[i]) {
             return HAL_NVM_FAILED;
         }
     }
@@ -154,7 +178,7 @@ hal_nvm_progress_t hal_nvm_memory_program(hal_nvm_memory_t *memory, uint32_t at,
         reg_write(CR, BY_WORDS << FLASH_CR_PSIZE_AT | FLASH_CR_PG);
     }
     for (uint32_t i = 0; is_programmed && i < count; i++) {
-        is_programmed = program_word(address_of(at + i), words[i]);
+        is_programmed = program_word(address_of(memory, at + i), words[i]);
     }
     lock();
     return is_programmed ? HAL_NVM_DONE : HAL_NVM_FAILED;

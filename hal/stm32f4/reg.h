@@ -14,9 +14,14 @@ static inline uint32_t reg_read(uint32_t address) {
 static inline void reg_write(uint32_t address, uint32_t value) {
     *(volatile uint32_t *)(uintptr_t)address = value;
 }
+/// Flash from there on, to be read only.
+static inline const uint8_t *reg_bytes(uint32_t address) {
+    return (const uint8_t *)(uintptr_t)address;
+}
 #else
 uint32_t reg_read(uint32_t address);
 void reg_write(uint32_t address, uint32_t value);
+const uint8_t *reg_bytes(uint32_t address);
 #endif
 
 /// Writes the bits of mask, keeps the others. Not for flags that a write clears.

@@ -8,9 +8,11 @@
 #include "free_node.h"
 #include "idle.h"
 #include "image_info.h"
+#include "images.h"
 #include "nvic.h"
 #include "nvm_stm32f4.h"
 #include "output.h"
+#include "processor.h"
 #include "reset_cause.h"
 #include "safe.h"
 #include "stack.h"
@@ -36,6 +38,7 @@ typedef struct {
     hal_tick_t tick;
     hal_accel_t accel;
     bus_t bus;
+    images_t images;
     bool acknowledge_was_up;
 } board_t;
 
@@ -152,21 +155,62 @@ static void run_tick(board_t *board, uint32_t ticks) {
     supervise();
 }
 
+static bool wants_to_erase(const board_t *board) {
+    return board->memory.phase != NVM_STM32F4_IDLE ||
+           board->images.memory.phase != NVM_STM32F4_IDLE;
+}
+
+static void let_erase(board_t *board, bool may_erase) {
+    board->memory.may_erase = may_erase;
+    board->images.memory.may_erase = may_erase;
+}
+
 // The processor stands still while flash is erased: only where nothing is driven, and once the
 // watchdog has the time for it. The hardware takes another time within 48 ms, so that every pass
 // asks for what is due.
 static void store_waiting(board_t *board) {
-    hal_nvm_memory_t *const memory = &board->memory;
-    const bool erases =
-        memory->phase != NVM_STM32F4_IDLE && (memory->may_erase || !is_driven(board));
+    const bool may_erase = board->memory.may_erase;
+    const bool erases = wants_to_erase(board) && (may_erase || !is_driven(board));
     const bool has_time = watchdog_set(erases ? ERASE_WATCHDOG_MS : WATCHDOG_MS);
     const bool has_none = board->clocks.source == CLOCK_ABSENT;
-    if (erases && !memory->may_erase && (has_time || has_none)) {
+    if (erases && !may_erase && (has_time || has_none)) {
         watchdog_feed();
-        memory->may_erase = true;
+        let_erase(board, true);
     }
     free_node_store(&board->common);
-    memory->may_erase = memory->may_erase && memory->phase != NVM_STM32F4_IDLE;
+    let_erase(board, board->memory.may_erase && wants_to_erase(board));
+}
+
+// ---- an update ----------------------------------------------------------------------------------
+
+static uint32_t first_word(const uint8_t *bytes) {
+    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+           (uint32_t)bytes[3] << 24;
+}
+
+static void open_images(board_t *board) {
+    static images_self_t self;
+    self = (images_self_t){
+        .begin = (uint32_t)(uintptr_t)image_info.begin,
+        .version = image_info.version,
+        .mark = first_word(image_info.seal),
+        .board = stm32f4_board.name,
+    };
+    images_open(&board->images, &self);
+    node_use_images(&board->common.node, images_store(&board->images));
+    board->common.node.images.is_held = board->images.is_trial;
+}
+
+static void tick_images(board_t *board) {
+    free_node_t *const common = &board->common;
+    const uint32_t passed_ms = common->node.can.schedule.passed_ms;
+    const images_wish_t wish = images_tick(&board->images, passed_ms, !common->is_after_fault);
+    if (wish == IMAGES_RESTART && !node_has_latched_fault(&common->node)) { // which it would forget
+        output_write(0, false);
+        safe_outputs();
+        processor_reset();
+    }
+    common->node.images.is_held = board->images.is_trial;
 }
 
 // In an emulator, which has neither, samples and currents are the bus's.
@@ -183,6 +227,7 @@ static bool open_sensor(board_t *board) {
 }
 
 static void start_common(board_t *board) {
+    board->memory.area = &nvm_stm32f4_records;
     const uint32_t every_sensor = (1u << QUIESCE_SENSORS) - 1u;
     const free_node_start_t how = {
         .wiring = NULL,
@@ -208,6 +253,7 @@ static void start(board_t *board) {
     open_console(&board->clocks);
     bus_open(&board->bus, &board->clocks);
     start_common(board);
+    open_images(board);
     output_open(&board->clocks);
     use_rate(board);
 }
@@ -243,6 +289,7 @@ int main(void) {
         const uint32_t ticks = hal_tick_elapsed(&board.tick);
         if (ticks > 0u) {
             run_tick(&board, ticks);
+            tick_images(&board);
         }
         free_node_receive(&board.common, &console);
         send_waiting(&board);

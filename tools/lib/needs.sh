@@ -113,7 +113,7 @@ needs_build() {
         budget) build_preset budget quiesce_mps2_node quiesce_mps2_shm node_cost current_cost ;;
         compilers) ;;
         boards) build_preset stm32f4 ;;
-        coil) host+=(coil_steps test_nvm_cuts) ;;
+        coil) host+=(coil_steps test_nvm_cuts test_slots) ;;
         esac
     done
     ((${#host[@]} == 0)) || build_preset host "${host[@]}"

@@ -214,16 +214,19 @@ def test_coils_beyond_the_supply_are_counted_and_have_no_step() -> None:
 
 def test_cuts_are_read_from_what_the_test_prints() -> None:
     printed = "a:1:b:PASS\nflash_cuts 120\nflash_lost 3\n\nOK\n"
-    assert flash.figures_of(printed) == {"flash_cuts": 120, "flash_lost": 3}
-    with pytest.raises(BenchFailure, match="did not tell"):
-        flash.figures_of("a:1:b:FAIL\n")
+    assert flash.figures_of("test", printed) == {"flash_cuts": 120, "flash_lost": 3}
+    with pytest.raises(BenchFailure, match="test did not tell"):
+        flash.figures_of("test", "a:1:b:FAIL\n")
 
 
 def test_lost_records_are_a_figure_but_another_failure_is_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    program = tmp_path / "host/tests/unit/hal/test_nvm_cuts"
+    program = tmp_path / "host/tests/unit/hal/test_slots"
     program.parent.mkdir(parents=True)
+    good = program.with_name("test_nvm_cuts")
+    good.write_text("#!/bin/sh\necho flash_cuts 5\necho flash_lost 0\n")
+    good.chmod(good.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setattr(flash, "build_folder", lambda: tmp_path)
     for lost in (2, 0):
         program.write_text(f"#!/bin/sh\necho flash_cuts 9\necho flash_lost {lost}\nexit 1\n")
@@ -231,5 +234,5 @@ def test_lost_records_are_a_figure_but_another_failure_is_told(
         if lost:
             assert flash.measure(QUICK).values["flash_lost"] == 2
         else:
-            with pytest.raises(BenchFailure, match="test_nvm_cuts ended with"):
+            with pytest.raises(BenchFailure, match="test_slots ended with"):
                 flash.measure(QUICK)

@@ -13,10 +13,18 @@ from conftest import ROOT
 
 
 def build_peer(folder: Path) -> Path:
-    """Compiles can_peer.c with the whole firmware."""
-    firmware = ROOT / "firmware"
-    files = [*sorted(firmware.rglob("*.c")), Path(__file__).with_name("can_peer.c")]
-    folders = sorted({file.parent for file in firmware.rglob("*.h")})
+    """Compiles can_peer.c with the whole firmware, and what a board has for updates."""
+    firmware, own = ROOT / "firmware", Path(__file__).parent
+    of_boards = ["slots/slots.c", "image/image_place.c", "image/sha256.c"]
+    files = [
+        *sorted(firmware.rglob("*.c")), *(ROOT / "hal" / name for name in of_boards),
+        ROOT / "targets/stm32f4/images.c", own / "image_peer.c", own / "can_peer.c",
+    ]  # fmt: skip
+    boards = ("include", "image", "slots", "stm32f4")
+    folders = [
+        *sorted({file.parent for file in firmware.rglob("*.h")}),
+        *(ROOT / "hal" / name for name in boards), ROOT / "targets/stm32f4", own,
+    ]  # fmt: skip
     exe = folder / "can_peer"
     options = ["-std=gnu11", "-O1", *(f"-I{one}" for one in folders), "-o", str(exe)]
     subprocess.run(["gcc", *options, *map(str, files), "-lm"], check=True)

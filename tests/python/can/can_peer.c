@@ -3,7 +3,7 @@
 // slow it waits, so that a busy machine loses no frames; the ticks that it missed do not come.
 //
 // can_peer FD [--drop N] [--corrupt N] [--no-store] [--store FOLDER] [--silent] [--idle]
-//          [--operator] [--interface N]
+//          [--operator] [--interface N] [--images FILE --board NAME [--bad VERSION]]
 //   --drop N       the bus loses every Nth frame
 //   --corrupt N    every Nth frame has a bit flipped
 //   --store DIR    records are files in it, which the next start finds
@@ -12,6 +12,8 @@
 //   --operator     the enable is that of OperatorCommand, and so is the clock: between two of its
 //                  frames are the ticks of its cycle, however busy the machine
 //   --interface N  says that its messages are of this version
+//   --images FILE  its flash, with boot code's two places for an image (image_peer.h)
+//   --bad VERSION  an image of that version ends as soon as it is started
 #include <errno.h>
 #include <math.h>
 #include <poll.h>
@@ -22,6 +24,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "image_peer.h"
 #include "node.h"
 #include "quiesce_can.h"
 #include "slcan.h"
@@ -43,6 +46,7 @@ typedef struct {
     bool is_idle;      // the operator lets go
     bool is_silent;
     bool has_operator;
+    bool has_images;
     unsigned operated; // ticks that its frames have brought
     unsigned sent;
     can_unsent_t unsent;
@@ -175,6 +179,23 @@ static bool is_long_past(const struct timespec *due) {
     return (now.tv_sec - due->tv_sec) * NS_PER_S + (now.tv_nsec - due->tv_nsec) > MAX_LATE_NS;
 }
 
+static bool start(peer_t *peer) {
+    quiesce_params_t params;
+    quiesce_params_default(&params);
+    const node_sources_t sources = {
+        .enable = peer->has_operator ? NODE_ENABLE_CAN : NODE_ENABLE_BOARD,
+    };
+    slcan_decoder_init(&peer->decoder);
+    if (!node_init(&peer->node, NULL, &params, sources)) {
+        return false;
+    }
+    node_use_store(&peer->node, keep, peer);
+    find(peer, KEEPER_LAW_TABLE);
+    find(peer, KEEPER_TRACKER_TABLE);
+    find(peer, KEEPER_LEARNT);
+    return !peer->has_images || image_peer_start(&peer->node);
+}
+
 static void run_operated(peer_t *peer) {
     for (unsigned number = 0; !stop;) {
         struct pollfd input = {.fd = peer->fd, .events = POLLIN};
@@ -192,6 +213,9 @@ static void run(peer_t *peer) {
     for (unsigned number = 0; !stop; number++) {
         receive(peer);
         tick(peer, number);
+        if (peer->has_images && image_peer_tick(&peer->node) && !start(peer)) {
+            return;
+        }
         add_tick(&due);
         if (is_long_past(&due)) {
             (void)clock_gettime(CLOCK_MONOTONIC, &due);
@@ -238,20 +262,16 @@ int main(int argc, char **argv) {
     peer.is_silent = flag(argc, argv, "--silent");
     (void)signal(SIGTERM, end);
     (void)signal(SIGUSR1, turn);
-    slcan_decoder_init(&peer.decoder);
-    quiesce_params_t params;
-    quiesce_params_default(&params);
     peer.has_operator = flag(argc, argv, "--operator");
-    const node_sources_t sources = {
-        .enable = peer.has_operator ? NODE_ENABLE_CAN : NODE_ENABLE_BOARD,
-    };
-    if (!node_init(&peer.node, NULL, &params, sources)) {
+    peer.has_images = word(argc, argv, "--images") != NULL;
+    if (peer.has_images &&
+        !image_peer_open(word(argc, argv, "--images"), word(argc, argv, "--board"),
+                         option(argc, argv, "--bad"))) {
+        return 2;
+    }
+    if (!start(&peer)) {
         return 1;
     }
-    node_use_store(&peer.node, keep, &peer);
-    find(&peer, KEEPER_LAW_TABLE);
-    find(&peer, KEEPER_TRACKER_TABLE);
-    find(&peer, KEEPER_LEARNT);
     (peer.has_operator ? run_operated : run)(&peer);
     return 0;
 }

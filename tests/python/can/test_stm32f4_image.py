@@ -19,7 +19,13 @@ import serial
 from can_protection import encode, load_database
 from conftest import ROOT, require
 from node_rig import FAULT_ID, MOST_RESTARTS
-from quiesce.firmware.image import read_image, sealed
+from quiesce.firmware.image import (
+    SLOT_BEGINS,
+    SLOT_BYTES,
+    SLOT_MARK_BYTES,
+    read_image,
+    sealed,
+)
 from quiesce.firmware.release import sealed_elf
 
 DATABASE = load_database()
@@ -59,10 +65,13 @@ class Console:
         self.port.write(f"t{frame_id:03X}{len(data)}{data.hex().upper()}\r".encode())
 
     def ask(self, operation: str, value: int = 0) -> str:
-        """The result; asked again until there is one, since the first bytes come before the USART
-        listens."""
+        """The result."""
+        return str(self.reply(operation, 0, value)["result"])
+
+    def reply(self, operation: str, index: int, value: int) -> dict:
+        """Asked again until there is one, since the first bytes come before the USART listens."""
         request = DATABASE.get_message_by_name("ServiceRequest")
-        values = {"operation": operation, "param_index": 0, "param_value": value}
+        values = {"operation": operation, "param_index": index, "param_value": value}
         start = f"t{DATABASE.get_message_by_name('ServiceReply').frame_id:03X}".encode()
         begin, asked = time.monotonic(), -ASK_AGAIN_S
         while time.monotonic() < begin + DEADLINE_S:
@@ -74,7 +83,7 @@ class Console:
             if line.startswith(start):
                 reply = DATABASE.decode_message("ServiceReply", bytes.fromhex(line[5:-1].decode()))
                 if reply["alive"] == self.alive % 16 and reply["result"] != "BUSY":
-                    return str(reply["result"])
+                    return reply
         pytest.fail(f"no reply to {operation}")
 
     def reset(self) -> None:
@@ -197,3 +206,82 @@ def test_image_restarts_latched_after_faults_and_is_silent_after_too_many() -> N
         assert_silent(console)
         console.reset()  # as the watchdog does: the silence is not to end with it
         assert_silent(console)
+
+
+# ---- boot code, and two places for an image -----------------------------------------------------
+
+INCOMING, READY, TRIED, SUPERSEDED, CONFIRMED, REJECTED = range(6)  # marks of hal/slots/slots.c
+MARK_BYTES = 16
+RUNS = (INCOMING, READY, TRIED, CONFIRMED)
+
+
+def place(slot: int, marks: tuple[int, ...] = ()) -> bytearray:
+    """What is in flash from a place's begin on: the image, sealed, and marks."""
+    image = sealed(read_image(compiled(f"olimex_h405_slot{slot}")).payload)
+    content = bytearray(image.ljust(SLOT_BYTES, b"\xff"))
+    for mark in marks:
+        at = SLOT_BYTES - SLOT_MARK_BYTES + MARK_BYTES * mark
+        content[at : at + 4] = bytes(4)
+    return content
+
+
+def damaged(content: bytearray) -> bytearray:
+    content[40_000] ^= 1
+    return content
+
+
+@contextmanager
+def booting(folder: Path, *places: bytearray) -> Iterator[Console]:
+    """The boot code, with these contents of the two places."""
+    options = []
+    for slot, content in enumerate(places):
+        file = folder / f"place{slot}.bin"
+        file.write_bytes(content)
+        loaded = f"loader,file={file},addr=0x{SLOT_BEGINS[slot]:08X},force-raw=on"
+        options += ["-device", loaded]
+    with running("olimex_h405_boot", *options) as console:
+        yield console
+
+
+EMPTY = bytearray(b"\xff" * SLOT_BYTES)
+BOOTS = {
+    "by a debugger": (lambda: (place(0), EMPTY), 0),
+    "the second alone": (lambda: (EMPTY, place(1)), 1),
+    "both by a debugger": (lambda: (place(0), place(1)), 0),
+    "an update": (lambda: (place(0, (SUPERSEDED,)), place(1, RUNS)), 1),
+    "an update that broke": (
+        lambda: (place(0, (SUPERSEDED,)), damaged(place(1, RUNS))),
+        0,
+    ),
+    "one that failed": (lambda: (place(0), place(1, (INCOMING, READY, TRIED))), 0),
+    "one that is not whole": (lambda: (place(0), place(1, (INCOMING,))), 0),
+    # The machine's flash takes no mark, and without it there is no trial.
+    "one to be tried": (lambda: (place(0), place(1, (INCOMING, READY))), 0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", BOOTS)
+def test_boot_code_starts_the_image_that_is_wanted(tmp_path: Path, what: str) -> None:
+    places, slot = BOOTS[what]
+    with booting(tmp_path, *places()) as console:
+        assert console.reply("IMAGE_INFO", 1, 0)["param_value"] == slot
+        assert console.reply("IMAGE_INFO", 3, 0)["param_value"] == 0  # no trial
+
+
+def test_boot_code_stays_silent_where_no_image_may_run(tmp_path: Path) -> None:
+    with booting(tmp_path, damaged(place(0)), place(1, (INCOMING, READY, TRIED))) as console:
+        assert_silent(console)
+
+
+def test_an_image_behind_boot_code_restarts_and_hangs_on_no_flash(tmp_path: Path) -> None:
+    with booting(tmp_path, place(0), EMPTY) as console:
+        assert console.ask("IMAGE_PREPARE") == "STORE_FAILED"  # the machine has no flash controller
+        start_streaming(console)
+        assert console.ask("IMAGE_START") == "DONE"
+        console.until("Status", lambda status: status["raw_is_streaming"] == 0)
+        assert console.reply("IMAGE_INFO", 1, 0)["param_value"] == 0
+
+
+def test_an_image_without_boot_code_has_no_other_place() -> None:
+    with running("olimex_h405") as console:
+        assert console.ask("IMAGE_INFO") == "NO_SUCH_OPERATION"

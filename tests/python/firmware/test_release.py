@@ -1,6 +1,7 @@
 """Images of boards as files: written, read, verified; what must not be flashed is refused."""
 
 import json
+import shutil
 import struct
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,7 +12,15 @@ from quiesce.base.errors import UsageError
 from quiesce.cli.main import main
 from quiesce.firmware import container, making
 from quiesce.firmware.image import SEAL_BYTES, digest_of, image_of, read_image, sealed
-from quiesce.firmware.release import refusal, signed_file, write_release, write_sums
+from quiesce.firmware.making import Made
+from quiesce.firmware.release import (
+    UPDATABLE,
+    refusal,
+    signed_file,
+    update_ending,
+    write_release,
+    write_sums,
+)
 
 BOARD = "nucleo_f446re"
 NAME = f"quiesce_{BOARD}-0.1.0"
@@ -37,7 +46,7 @@ def keys(tmp_path_factory) -> SimpleNamespace:
 def release(tmp_path: Path, elf: Path, keys) -> Path:
     folder = tmp_path / "release"
     folder.mkdir()
-    write_release(elf, keys.maker.private, "12.2.1", folder)
+    write_release(Made.of(elf), keys.maker.private, "12.2.1", folder)
     return folder
 
 
@@ -48,6 +57,17 @@ def test_all_forms_hold_the_same_sealed_image(release: Path, elf: Path) -> None:
     assert image.is_whole and not read_image(elf).is_sealed
     assert (image.board, image.version_text, image.begin) == (BOARD, "0.1.0", 0x08000000)
     assert image.payload[: -len(image.seal)] == read_image(elf).payload[: -len(image.seal)]
+
+
+def test_updates_are_the_same_image_for_each_place(release: Path, keys) -> None:
+    for slot, begin in enumerate((0x08004000, 0x08020000)):
+        file = release / f"{NAME}{update_ending(slot)}"
+        image = read_image(file)
+        assert image.is_whole and image.begin == begin
+        assert (image.board, image.version_text) == (BOARD, "0.1.0")
+        assert refusal(release, keys.maker.public, BOARD, None, update_ending(slot)) == ""
+    first = read_image(release / f"{NAME}{UPDATABLE}")
+    assert first.payload == read_image(release / f"{NAME}{update_ending(0)}").payload
 
 
 def test_what_goes_with_it(release: Path) -> None:
@@ -67,7 +87,7 @@ def test_what_goes_with_it(release: Path) -> None:
 def test_the_same_image_twice_is_the_same_folder(release: Path, elf: Path, keys) -> None:
     again = release.parent / "again"
     again.mkdir()
-    write_release(elf, keys.maker.private, "12.2.1", again)
+    write_release(Made.of(elf), keys.maker.private, "12.2.1", again)
     assert (again / "SHA256SUMS").read_text() == (release / "SHA256SUMS").read_text()
 
 
@@ -184,7 +204,7 @@ FAULTS = [
     (lambda data: b"", "do not say what it is"),
     (lambda data: data.replace(b"QIMG", b"QIMH"), "do not say what it is"),
     (lambda data: edited(data, 1, 2), "do not say what it is"),
-    (lambda data: edited(data, 4, 0x08004000), "was linked for 0x08004000"),
+    (lambda data: edited(data, 4, 0x08008000), "was linked for 0x08008000"),
     (lambda data: edited(data, 5, 0x08F00000), "is cut off"),
     (lambda data: edited(data, 5, 0x07F00000), "is cut off"),
     (lambda data: edited(data, 6, 0x20000000), "lies at 0x20000000, outside of itself"),
@@ -252,7 +272,8 @@ def test_a_build_leaves_other_files_alone(capsys, monkeypatch, tmp_path: Path, e
     monkeypatch.setattr(making, "build_folder", lambda: tmp_path / "build")
     made = tmp_path / f"build/firmware/cmake/targets/stm32f4/quiesce_stm32f4_{BOARD}.elf"
     made.parent.mkdir(parents=True)
-    made.write_bytes(elf.read_bytes())
+    for name in Made.of(elf).targets():
+        shutil.copy(elf.with_stem(name), made.with_stem(name))
     made.with_name(made.name + ".map").write_text("map")
     out = tmp_path / "out"
     assert main(["firmware", "build", BOARD, "--out", str(out)]) == 0

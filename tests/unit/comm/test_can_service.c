@@ -193,7 +193,7 @@ static void test_stream_takes_a_bounded_time(void) {
 
 static void test_unknown_operations_are_refused(void) {
     for (uint32_t operation = 0; operation < 256; operation++) {
-        if (operation < OP(READ) || operation > OP(LEARNT_FORGET)) {
+        if (operation < OP(READ) || operation > OP(IMAGE_START)) {
             TEST_ASSERT_EQUAL(CAN_NODE_NO_SUCH_OPERATION, ask(operation, 0, 0).result);
         }
     }

@@ -156,3 +156,7 @@ void reg_write(uint32_t address, uint32_t value) {
     }
     call_hook(address, true, value);
 }
+
+const uint8_t *reg_bytes(uint32_t address) {
+    return (const uint8_t *)fake_flash + (address - FAKE_FLASH_BASE);
+}

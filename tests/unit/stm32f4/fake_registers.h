@@ -54,9 +54,9 @@ uint32_t fake_writes(uint32_t address);
 uint32_t fake_all_writes(void);
 uint32_t fake_written_address(uint32_t n);
 
-/// The flash that records are kept in, as nvm_stm32f4.h has it; a write turns ones into zeros.
-#define FAKE_FLASH_BASE 0x08040000u
-#define FAKE_FLASH_WORDS 0x10000u
+/// All of the flash that parts of 512 KiB have; a write turns ones into zeros.
+#define FAKE_FLASH_BASE 0x08000000u
+#define FAKE_FLASH_WORDS 0x20000u
 extern uint32_t fake_flash[FAKE_FLASH_WORDS];
 
 #endif

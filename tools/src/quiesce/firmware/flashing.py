@@ -49,6 +49,9 @@ def flash_page(name: str, image: Image) -> str:
             *ways,
             "or `quiesce firmware flash . --with TOOL`, which verifies first.",
             "",
+            f"For updates over the bus flash `{name}.updatable.bin` instead, once, in the same",
+            "ways (`--updatable`); later ones come by `quiesce can update FOLDER`.",
+            "",
         ]
     )
 

@@ -1,8 +1,8 @@
 """An image as it is loaded: its bytes, where they go, and what it says of itself
 (hal/image/image_info.h).
 
-Files: ELF, Intel HEX, bare bytes (`.bin`, from FLASH_BEGIN on), and bytes in a signed container
-(`.signed.bin`, container.py).
+Files: ELF, Intel HEX, bare bytes (`.bin`), and bytes in a signed container (`.signed.bin`,
+`.update`; container.py). Boot code before the image (`.updatable.bin`) is left out.
 """
 
 import hashlib
@@ -21,9 +21,14 @@ from quiesce.table.kinds import kind_name
 from quiesce.table.words import WORD_BYTES, crc_of, unpacked
 
 FLASH_BEGIN = 0x08000000
+# With boot code before them, which has the first sector (hal/stm32f4/nvm_stm32f4.c).
+SLOT_BEGINS = (0x08004000, 0x08020000)
+BOOT_BYTES = SLOT_BEGINS[0] - FLASH_BEGIN
+SLOT_BYTES = 0x1C000
+SLOT_MARK_BYTES = 128  # hal/slots/slots.h
 MOST_BYTES = 1 << 24  # of a file
 INFO_MAGIC, INFO_LAYOUT = 0x474D4951, 1
-INFO_WORDS = 8
+INFO_WORDS, INFO_BEGIN = 8, 4
 INFO_WITHIN = 4096  # of the image's beginning
 SEAL_BYTES = 32
 UNSEALED = b"\xff" * SEAL_BYTES
@@ -110,8 +115,25 @@ def loaded(data: bytes) -> tuple[int, bytes]:
     if data[:1] == b":":
         return loaded_of_hex(data)
     if data[:4] == struct.pack("<I", CONTAINER_MAGIC):
-        return FLASH_BEGIN, payload_of(data)
+        return placed(payload_of(data))
+    return placed(data)
+
+
+def placed(data: bytes) -> tuple[int, bytes]:
+    """Bare bytes, where they say that they go, one of the places there are. Without boot code."""
+    behind = data[BOOT_BYTES:]
+    if info_at(data) < 0 and info_at(behind) >= 0:
+        data = behind
+    if (at := info_at(data)) >= 0 and len(words := unpacked(data[at:])[:INFO_WORDS]) == INFO_WORDS:
+        if (begin := words[INFO_BEGIN]) in SLOT_BEGINS:
+            return begin, data
     return FLASH_BEGIN, data
+
+
+def info_at(payload: bytes) -> int:
+    """Where it says what it is; negative where it does not."""
+    at = payload[:INFO_WITHIN].find(struct.pack("<2I", INFO_MAGIC, INFO_LAYOUT))
+    return at if at % WORD_BYTES == 0 else -1
 
 
 def loaded_of_elf(data: bytes) -> tuple[int, bytes]:
@@ -155,8 +177,8 @@ def joined(segments: list[tuple[int, bytes]]) -> tuple[int, bytes]:
 
 def described(begin: int, payload: bytes) -> Image:
     """ValueError where the bytes do not say what they are, or end before their seal does."""
-    at = payload[:INFO_WITHIN].find(struct.pack("<2I", INFO_MAGIC, INFO_LAYOUT))
-    if at < 0 or at % WORD_BYTES:
+    at = info_at(payload)
+    if at < 0:
         raise ValueError("no image of this project: its first 4 KiB do not say what it is")
     words = unpacked(payload[at : at + INFO_WORDS * WORD_BYTES])
     if len(words) < INFO_WORDS:

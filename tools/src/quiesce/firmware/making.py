@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from quiesce.base.errors import UsageError, one_line
@@ -13,6 +14,7 @@ from quiesce.base.paths import build_folder, is_installed, root, shown
 from quiesce.table.file import SUFFIX, read_file
 
 PRESET = "stm32f4"
+SLOTS = 2
 BOARDS_FILE = "targets/stm32f4/boards.cmake"
 Say = Callable[[str], None]
 STEP = re.compile(r"\[(\d+)/(\d+)\]")
@@ -36,9 +38,30 @@ def require_board(name: str) -> None:
         raise UsageError(f"no board '{name}'; there are {', '.join(known)}{near}")
 
 
-def make(board: str, tables: Sequence[Path], say: Say) -> Path:
-    """The image's ELF file. tables: linked in, in the place of those that ship. say: is told how
-    far it is. UsageError where something is missing, with what the compiler said last."""
+@dataclass(frozen=True)
+class Made:
+    """ELF files: the image by itself, boot code, and the image for each of two places."""
+
+    whole: Path
+    boot: Path
+    slots: tuple[Path, ...]
+
+    @classmethod
+    def of(cls, whole: Path) -> "Made":
+        """As CMake names them."""
+        boot, *slots = (
+            whole.with_stem(whole.stem + part)
+            for part in ("_boot", *(f"_slot{i}" for i in range(SLOTS)))
+        )
+        return cls(whole, boot, tuple(slots))
+
+    def targets(self) -> list[str]:
+        return [file.stem for file in (self.whole, self.boot, *self.slots)]
+
+
+def make(board: str, tables: Sequence[Path], say: Say) -> Made:
+    """tables: linked in, in the place of those that ship. say: is told how far it is. UsageError
+    where something is missing, with what the compiler said last."""
     require_board(board)
     for table in tables:
         if table.suffix != SUFFIX:
@@ -51,9 +74,10 @@ def make(board: str, tables: Sequence[Path], say: Say) -> Path:
     linked = ";".join(str(table.resolve()) for table in tables)
     configure = ["cmake", "--preset", PRESET, "-B", str(folder), f"-DQUIESCE_TABLES={linked}"]
     run(configure, "configuring", say)
-    target = f"quiesce_stm32f4_{board}"
-    run(["cmake", "--build", str(folder), "--target", target], f"compiling {board}", say)
-    return folder / "targets/stm32f4" / f"{target}.elf"
+    made = Made.of(folder / "targets/stm32f4" / f"quiesce_stm32f4_{board}.elf")
+    build = ["cmake", "--build", str(folder), "--target", *made.targets()]
+    run(build, f"compiling {board}", say)
+    return made
 
 
 def run(command: Sequence[str], what: str, say: Say) -> None:

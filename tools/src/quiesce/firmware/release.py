@@ -3,6 +3,8 @@ what it takes, sums of all files.
 
     NAME.elf NAME.hex NAME.bin     sealed; NAME is quiesce_BOARD-VERSION
     NAME.signed.bin                in the container of MCUboot's imgtool
+    NAME.updatable.bin             boot code and the image in its first place
+    NAME.slot0.update, slot1       signed likewise, for each of the two places
     NAME.map sizes.txt             where everything is; what is how large
     sbom.cdx.json                  parts, as CycloneDX 1.6
     FLASH.md SHA256SUMS            how it gets onto the board; sums
@@ -17,24 +19,37 @@ from quiesce.base.extras import extra
 from quiesce.base.paths import root, shown
 from quiesce.firmware.container import check, payload_of, sign, version_of
 from quiesce.firmware.flashing import flash_page
-from quiesce.firmware.image import Image, image_of, read_bytes, read_image, sealed
+from quiesce.firmware.image import (
+    BOOT_BYTES,
+    SLOT_BYTES,
+    Image,
+    image_of,
+    loaded,
+    read_bytes,
+    read_image,
+    sealed,
+)
+from quiesce.firmware.making import Made
 from quiesce.firmware.parts_list import parts_list
 from quiesce.firmware.sizes import sizes_of
 
 SIGNED = ".signed.bin"
+UPDATABLE = ".updatable.bin"
+ERASED = b"\xff"
 SUMS = "SHA256SUMS"
 
 
-def write_release(elf: Path, key: Path | None, compiler: str, folder: Path) -> Image:
-    """elf: as compiled; folder: there, and empty. The sealed image."""
-    made = read_image(elf)
-    payload = sealed(made.payload)
+def write_release(made: Made, key: Path | None, compiler: str, folder: Path) -> Image:
+    """made: as compiled; folder: there, and empty. The sealed image."""
+    elf = made.whole
+    payload = sealed(read_image(elf).payload)
     image = image_of(payload, elf)
     name = f"quiesce_{image.board}-{image.version_text}"
     (folder / f"{name}.bin").write_bytes(payload)
     (folder / f"{name}.elf").write_bytes(sealed_elf(read_bytes(elf), payload))
     write_hex(image.begin, payload, folder / f"{name}.hex")
     sign(payload, image.version_text, key, folder / f"{name}{SIGNED}")
+    write_updates(made, image.version_text, key, folder / name)
     places = read_bytes(elf.with_name(elf.name + ".map"))
     (folder / f"{name}.map").write_bytes(without_place(places))
     sizes = sizes_of(elf).text()
@@ -45,6 +60,20 @@ def write_release(elf: Path, key: Path | None, compiler: str, folder: Path) -> I
     (folder / "FLASH.md").write_text(flash_page(name, image), encoding="utf-8")
     write_sums(folder)
     return image
+
+
+def write_updates(made: Made, version: str, key: Path | None, start: Path) -> None:
+    """start: of the files' names."""
+    payloads = [sealed(read_image(elf).payload) for elf in made.slots]
+    for number, payload in enumerate(payloads):
+        sign(payload, version, key, start.with_name(start.name + update_ending(number)))
+    boot = loaded(read_bytes(made.boot))[1]
+    first = start.with_name(start.name + UPDATABLE)
+    first.write_bytes(boot.ljust(BOOT_BYTES, ERASED) + payloads[0].ljust(SLOT_BYTES, ERASED))
+
+
+def update_ending(slot: int) -> str:
+    return f".slot{slot}.update"
 
 
 def without_place(text: bytes) -> bytes:
@@ -83,25 +112,29 @@ def write_sums(folder: Path) -> None:
 # ---- verification -------------------------------------------------------------------------------
 
 
-def signed_file(place: Path) -> Path:
+def signed_file(place: Path, ending: str = SIGNED) -> Path:
     """place: a signed image, or a folder with one. UsageError where there is none."""
     if not place.is_dir():
         return place
-    found = sorted(place.glob(f"*{SIGNED}"))
+    found = sorted(place.glob(f"*{ending}"))
     if len(found) != 1:
         what = "no image" if not found else f"{len(found)} images"
-        raise UsageError(f"{shown(place)}: {what} *{SIGNED}; name the folder of one build")
+        raise UsageError(f"{shown(place)}: {what} *{ending}; name the folder of one build")
     return found[0]
 
 
 def refusal(
-    place: Path, key: Path | None, board: str | None, least: tuple[int, int, int] | None
+    place: Path,
+    key: Path | None,
+    board: str | None,
+    least: tuple[int, int, int] | None,
+    ending: str = SIGNED,
 ) -> str:
     """Why it must not be flashed, in one line; empty where nothing speaks against it. key: the
-    maker's public one. least: the oldest version allowed."""
+    maker's public one. least: the oldest version allowed. ending: of the file, in a folder."""
     if place.is_dir() and (wrong := wrong_sum(place)):
         return wrong
-    file = signed_file(place)
+    file = signed_file(place, ending)
     data = read_bytes(file)
     if wrong := check(file, key):
         return f"{file.name}: {wrong}"

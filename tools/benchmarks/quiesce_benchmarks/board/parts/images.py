@@ -9,6 +9,7 @@ from quiesce.base.paths import build_folder
 from quiesce.engine.bench import require_file
 from quiesce.firmware.container import make_keys, sign
 from quiesce.firmware.image import sealed
+from quiesce.firmware.making import Made
 from quiesce.firmware.release import refusal, signed_file, write_release, write_sums
 
 from quiesce_benchmarks.part import Effort, Measured
@@ -53,7 +54,7 @@ def measure(effort: Effort) -> Measured:
         keys = [Path(place) / one for one in ("a.pem", "a_public.pem", "b.pem", "b_public.pem")]
         make_keys(*keys[:2])
         make_keys(*keys[2:])
-        image = write_release(elf, keys[0], "", folder)
+        image = write_release(Made.of(elf), keys[0], "", folder)
         major, minor, patch = image.version
         good = refusal(folder, keys[1], BOARD, image.version) == ""
         refused = bool(refusal(folder, keys[1], OTHER_BOARD, None))

@@ -23,6 +23,7 @@ from quiesce.cli.can import (
     set,
     stop,
     tables,
+    update,
 )
 
 # Import name and package.
@@ -54,6 +55,7 @@ ACTIONS = (
     save_learnt,
     restore_learnt,
     forget_learnt,
+    update,
     bus_load,
 )
 

@@ -16,8 +16,10 @@ EPILOG = """examples:
   quiesce firmware build nucleo_f446re --table my_rules.table --key maker.pem --out release
 
 Written: ELF, Intel HEX and bare bytes, sealed with their SHA-256, which the board checks at its
-start; the same in the signed container of MCUboot's imgtool; map, sizes, parts (CycloneDX), how to
-flash it, SHA256SUMS. The same sources and compiler give the same bytes in any folder.
+start; the same in the signed container of MCUboot's imgtool; boot code with the image, for boards
+that are updated over the bus (.updatable.bin, flashed once), and what `quiesce can update` brings
+them (.update); map, sizes, parts (CycloneDX), how to flash it, SHA256SUMS. The same sources and
+compiler give the same bytes in any folder.
 
 --table links tables in, in the place of those that ship (`quiesce rules compile --controller`, law,
 tune). Without --key the container holds a hash and no signature: damage is found, a maker is not
@@ -46,14 +48,14 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    elf = make(args.board, args.table, say)
+    made = make(args.board, args.table, say)
     if sys.stderr.isatty():
         print(file=sys.stderr)
     out = args.out or results_folder() / "firmware" / args.board
     empty(out)
     with output_files(out) as folder:
-        image = write_release(elf, args.key, compiler_version(), folder)
-    sizes = sizes_of(elf)
+        image = write_release(made, args.key, compiler_version(), folder)
+    sizes = sizes_of(made.whole)
     print(f"image      {image.board} {image.version_text}, {len(image.payload):,} bytes")
     print(f"memory     flash {sizes.flash:,}, RAM {sizes.ram:,} bytes")
     for one in image.tables:

@@ -10,8 +10,8 @@ from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.cli.firmware.verify import add_options, refused
 from quiesce.firmware.container import payload_of
 from quiesce.firmware.flashing import WAYS, line
-from quiesce.firmware.image import image_of, read_bytes
-from quiesce.firmware.release import SIGNED, signed_file
+from quiesce.firmware.image import FLASH_BEGIN, Image, image_of, read_bytes
+from quiesce.firmware.release import UPDATABLE, signed_file
 
 EPILOG = """examples:
   quiesce firmware flash build/firmware/nucleo_f446re --with openocd --dry-run
@@ -19,6 +19,7 @@ EPILOG = """examples:
 
 Verified first, as `quiesce firmware verify` does; what is refused is not flashed. The coil's supply
 off, until the board has started. What is kept on the board (parameters, tables) stays.
+--updatable flashes boot code with the image, after which `quiesce can update` brings others.
 Untested on hardware.
 """
 
@@ -33,6 +34,7 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
     )
     add_options(parser)
     parser.add_argument("--with", dest="tool", choices=tuple(WAYS), required=True)
+    parser.add_argument("--updatable", action="store_true", help="with boot code; of a folder")
     parser.add_argument("--dry-run", action="store_true", help="verify, print the command")
     parser.set_defaults(run=run)
 
@@ -42,14 +44,14 @@ def run(args: argparse.Namespace) -> int:
     if why:
         print(f"refused    {why}")
         return EXIT_FAILED
-    file = signed_file(args.place)
-    image = image_of(payload_of(read_bytes(file)), file)
+    image, data = what_to_flash(args)
     with tempfile.TemporaryDirectory() as name:
-        bare = Path(name) / file.name.replace(SIGNED, ".bin")
-        bare.write_bytes(image.payload)
-        command = WAYS[args.tool].command(bare, image.begin)
+        ending = UPDATABLE if args.updatable else ".bin"
+        bare = Path(name) / f"quiesce_{image.board}-{image.version_text}{ending}"
+        bare.write_bytes(data)
+        command = WAYS[args.tool].command(bare, FLASH_BEGIN)
         if args.dry_run:
-            print(line(WAYS[args.tool].command(Path(bare.name), image.begin)))
+            print(line(WAYS[args.tool].command(Path(bare.name), FLASH_BEGIN)))
             return 0
         if shutil.which(command[0]) is None:
             raise UsageError(f"{args.tool} is not installed; install it, or name another --with")
@@ -59,3 +61,16 @@ def run(args: argparse.Namespace) -> int:
         print(f"failed     {args.tool} ended with {done.returncode}; the board may have half of it")
         return EXIT_FAILED
     return 0
+
+
+def what_to_flash(args: argparse.Namespace) -> tuple[Image, bytes]:
+    """The image, and all that goes from FLASH_BEGIN on."""
+    if not args.updatable:
+        file = signed_file(args.place)
+        image = image_of(payload_of(read_bytes(file)), file)
+        return image, image.payload
+    if not args.place.is_dir():
+        raise UsageError(f"--updatable: {args.place} is a file; name the folder of a build")
+    file = signed_file(args.place, UPDATABLE)
+    data = read_bytes(file)
+    return image_of(data, file), data

@@ -18,6 +18,10 @@ seal, its board, its version. Exit code 1 where one of them is wrong, with what.
 """
 
 
+KEY = {"type": Path, "metavar": "FILE", "help": "the maker's public key, PEM"}
+AT_LEAST = {"metavar": "X.Y.Z", "help": "the oldest version allowed"}
+
+
 def add_parser(actions: argparse._SubParsersAction) -> None:
     parser = actions.add_parser(
         "verify",
@@ -33,9 +37,9 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Of what is verified."""
     parser.add_argument("place", metavar="PLACE", type=Path, help="signed image, or its folder")
-    parser.add_argument("--key", type=Path, metavar="FILE", help="the maker's public key, PEM")
+    parser.add_argument("--key", **KEY)
     parser.add_argument("--board", metavar="NAME", help="the board that it has to be for")
-    parser.add_argument("--at-least", metavar="X.Y.Z", help="the oldest version allowed")
+    parser.add_argument("--at-least", **AT_LEAST)
 
 
 def run(args: argparse.Namespace) -> int:
