@@ -32,33 +32,50 @@ static void start(control_t *self) {
     }
 }
 
-typedef enum { OF_BODIES, OF_DAMPERS, OF_BOARD } owner_t;
+enum { OF_BODIES, OF_DAMPERS, OF_BOARD };
 
+// In the order of signal_name.
 static const struct {
-    uint64_t quantity;
-    const char *name;
-    owner_t owner;
+    uint8_t first_bit; ///< of a view's valid
+    uint8_t owner;
 } signals[] = {
-    {VIEW_ACCEL, "acceleration", OF_BODIES},
-    {VIEW_VELOCITY, "velocity", OF_BODIES},
-    {VIEW_DISPLACEMENT, "displacement", OF_BODIES},
-    {VIEW_STROKE, "stroke", OF_DAMPERS},
-    {VIEW_STROKE_VELOCITY, "stroke velocity", OF_DAMPERS},
-    {VIEW_FORCE, "force", OF_DAMPERS},
-    {VIEW_CURRENT, "current", OF_DAMPERS},
-    {VIEW_VOLTAGE, "coil voltage", OF_DAMPERS},
-    {VIEW_TEMPERATURE, "temperature", OF_DAMPERS},
-    {VIEW_SUPPLY, "supply voltage", OF_BOARD},
+    {QUIESCE_VALID_ACCEL, OF_BODIES},
+    {QUIESCE_VALID_VELOCITY, OF_BODIES},
+    {QUIESCE_VALID_DISPLACEMENT, OF_BODIES},
+    {QUIESCE_VALID_STROKE, OF_DAMPERS},
+    {QUIESCE_VALID_STROKE_VELOCITY, OF_DAMPERS},
+    {QUIESCE_VALID_FORCE, OF_DAMPERS},
+    {QUIESCE_VALID_CURRENT, OF_DAMPERS},
+    {QUIESCE_VALID_VOLTAGE, OF_DAMPERS},
+    {QUIESCE_VALID_TEMPERATURE, OF_DAMPERS},
+    {QUIESCE_VALID_SUPPLY, OF_BOARD},
 };
 
 #define SIGNALS (sizeof signals / sizeof signals[0])
 
+// By themselves: a program that asks for no name does without them.
+static const char *const signal_name[SIGNALS] = {
+    "acceleration", "velocity", "displacement", "stroke",      "stroke velocity",
+    "force",        "current",  "coil voltage", "temperature", "supply voltage",
+};
+
+static uint64_t quantity_of(uint32_t i) {
+    return UINT64_C(1) << signals[i].first_bit;
+}
+
+// A bit for each of those that there are.
+static uint64_t bits_of(uint32_t owner, uint32_t bodies, uint32_t dampers) {
+    if (QUIESCE_BODIES == 1 && QUIESCE_DAMPERS == 1) {
+        return 1;
+    }
+    return (UINT64_C(1) << (owner == OF_BODIES ? bodies : dampers)) - 1u;
+}
+
 // What a law needs where these bodies and dampers are: VIEW_EACH is each of them.
 static uint64_t needs_there(uint64_t needs, uint32_t bodies, uint32_t dampers) {
     for (uint32_t i = 0; i < SIGNALS; i++) {
-        const uint64_t each = VIEW_EACH(signals[i].quantity);
-        const uint32_t count = signals[i].owner == OF_BODIES ? bodies : dampers;
-        const uint64_t present = signals[i].quantity * ((UINT64_C(1) << count) - 1u);
+        const uint64_t each = VIEW_EACH(quantity_of(i));
+        const uint64_t present = quantity_of(i) * bits_of(signals[i].owner, bodies, dampers);
         if (signals[i].owner != OF_BOARD && (needs & each) == each) {
             needs &= ~each | present;
         }
@@ -71,8 +88,8 @@ static bool find_signal(uint64_t bits, uint32_t index, quiesce_signal_t *found) 
     for (uint32_t i = 0; i < SIGNALS; i++) {
         const bool is_one = signals[i].owner == OF_BOARD;
         for (int32_t at = 0; at < (is_one ? 1 : 4); at++) {
-            if ((bits & signals[i].quantity << at) != 0 && index-- == 0) {
-                *found = (quiesce_signal_t){signals[i].name, is_one ? -1 : at};
+            if ((bits & quantity_of(i) << at) != 0 && index-- == 0) {
+                *found = (quiesce_signal_t){signal_name[i], is_one ? -1 : at};
                 return true;
             }
         }

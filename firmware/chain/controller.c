@@ -42,11 +42,10 @@ static uint32_t dampers_of(const controller_t *self) {
 }
 
 // What the parameters say of one accelerometer and one damper.
-static quiesce_board_t board_of(const quiesce_params_t *p) {
+static void describe_board(const quiesce_params_t *p, quiesce_board_t *board) {
     const int32_t tick_us = 1000000 / p->tick_rate_Hz;
-    quiesce_board_t board;
-    quiesce_board_default(&board);
-    quiesce_board_sensor_t *sensor = &board.sensor[0];
+    quiesce_board_default(board);
+    quiesce_board_sensor_t *sensor = &board->sensor[0];
     sensor->axis = p->accel_axis;
     sensor->polarity = p->accel_polarity;
     sensor->scale = p->accel_scale_nm_s2;
@@ -55,12 +54,11 @@ static quiesce_board_t board_of(const quiesce_params_t *p) {
     sensor->max_age_us = p->sensor_max_age_ticks * tick_us;
     sensor->stuck_us = p->sensor_stuck_ticks * tick_us;
     sensor->min_noise_counts = p->sensor_min_noise_counts;
-    quiesce_board_damper_t *damper = &board.damper[0];
+    quiesce_board_damper_t *damper = &board->damper[0];
     damper->ceiling_mA = QUIESCE_HIGHEST_CURRENT_mA;
     damper->continuous_mA = QUIESCE_HIGHEST_CURRENT_mA; // what a coil carries only a board says
     damper->measures_current = p->current_check;
     damper->coil_lag_us = p->current_lag_ms * 1000;
-    return board;
 }
 
 static const uint32_t *own_words(const controller_t *self) {
@@ -109,7 +107,8 @@ bool quiesce_init(quiesce_t *self, const quiesce_params_t *params) {
     if (!is_accepted) {
         quiesce_params_default(&used);
     }
-    quiesce_board_t board = board_of(&used);
+    quiesce_board_t board;
+    describe_board(&used, &board);
     board.damper[0].safe_mA = quiesce_params_safe_current_mA(params);
     start_all((controller_t *)(void *)self->opaque, &board, params, &used, is_accepted);
     return is_accepted;
@@ -211,12 +210,13 @@ static quiesce_fault_t watch_drives(controller_t *self, const quiesce_in_t *in) 
     uint64_t valid = self->view.valid; // of damper i where the bits of the first one are
     for (uint32_t i = 0; i < dampers_of(self); i++, valid >>= 1) {
         current_verdict_t verdict;
-        const bool has_voltage = (valid & VIEW_VOLTAGE) != 0;
+        const bool has_voltage = DRIVE_SEES_COIL && (valid & VIEW_VOLTAGE) != 0;
         const int32_t *voltage_mV = has_voltage ? &self->view.damper[i].voltage_mV : NULL;
         self->view.damper[i].current_mA =
             drive_watch(&self->drive[i], &in->driver[i], voltage_mV, &verdict);
         found = found == QUIESCE_FAULT_NONE ? (quiesce_fault_t)fault_of[verdict] : found;
-        if (is_reversed(self, i, (valid & motion) == motion) && found == QUIESCE_FAULT_NONE) {
+        if (DRIVE_SEES_COIL && is_reversed(self, i, (valid & motion) == motion) &&
+            found == QUIESCE_FAULT_NONE) {
             found = QUIESCE_FAULT_SENSOR_POLARITY;
         }
     }
@@ -407,6 +407,13 @@ void quiesce_step(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
     t->rms_um_s2 = signal.rms_um_s2;
     t->current_law_mA = c->request.value[0];
     t->current_cmd_mA = out->damper[0].current_cmd_mA;
+}
+
+void quiesce_hold_drivers(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out) {
+    controller_t *c = (controller_t *)(void *)self->opaque;
+    for (uint32_t i = 0; i < dampers_of(c); i++) {
+        drive_hold(&c->drive[i], &in->driver[i], &out->damper[i]);
+    }
 }
 
 static control_t *control_of(quiesce_t *self) {

@@ -66,8 +66,11 @@ void drive_init(drive_t *self, uint32_t number, const quiesce_board_damper_t *da
     start_guard(&self->limits.guard, damper, p, rate_Hz);
     start_monitor(self, damper, p, rate_Hz,
                   is_accepted ? (current_check_t)damper->measures_current : CURRENT_CHECK_NEVER);
-    coil_init(&self->coil, damper->coil_mohm, self->monitor.error_mA, self->monitor.fault_ticks);
-    energy_init(&self->energy, rate_Hz);
+    if (DRIVE_SEES_COIL) {
+        coil_init(&self->coil, damper->coil_mohm, self->monitor.error_mA,
+                  self->monitor.fault_ticks);
+        energy_init(&self->energy, rate_Hz);
+    }
     start_heat(self, number, damper, p, rate_Hz);
     self->last_command_mA = 0; // the driver is off until the first tick
     twin_make(&self->limits, WORDS_OF(drive_limits_t), self->twin);
@@ -88,7 +91,7 @@ int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, const int32_t
                     current_verdict_t *verdict) {
     *verdict = current_monitor_step(&self->monitor, self->last_command_mA, driver->current_mA,
                                     driver->is_measured);
-    if (voltage_mV != NULL && driver->is_measured) {
+    if (DRIVE_SEES_COIL && voltage_mV != NULL && driver->is_measured) {
         *verdict = judge_coil(self, driver->current_mA, *voltage_mV, *verdict);
     }
     const int32_t current_mA = driver->is_measured
@@ -103,8 +106,10 @@ int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, const int32_t
 
 void drive_forget(drive_t *self) {
     current_monitor_reset(&self->monitor);
-    self->coil.bad = 0;
-    energy_forget(&self->energy);
+    if (DRIVE_SEES_COIL) {
+        self->coil.bad = 0;
+        energy_forget(&self->energy);
+    }
 }
 
 static void take(drive_t *self, int32_t command_mA, bool driver_enable, quiesce_command_t *out) {
@@ -122,6 +127,15 @@ void drive_command(drive_t *self, int32_t request_mA, bool is_allowed, bool driv
     take(self, clamp_i32(guarded_mA, 0, self->limits.ceiling_mA), driver_enable, out);
     twin_replace(self->twin, WORDS_OF(drive_limits_t), LAST_WORD, before_uA,
                  (uint32_t)self->limits.guard.last_uA);
+}
+
+void drive_hold(drive_t *self, const quiesce_driver_t *driver, quiesce_command_t *out) {
+    out->driver_enable = false;
+    self->last_command_mA = 0;
+    self->coil.bad = 0;
+    current_monitor_follow(
+        &self->monitor,
+        driver->is_measured ? clamp_i32(driver->current_mA, -VIEW_LIMIT, VIEW_LIMIT) : 0);
 }
 
 void drive_shut(drive_t *self, quiesce_command_t *out) {

@@ -12,6 +12,9 @@
 #include "twin.h"
 #include "view.h"
 
+/// Voltage and force may be measured: one sensor alone is the accelerometer.
+#define DRIVE_SEES_COIL (QUIESCE_SENSORS > 1)
+
 /// What no flipped bit may change unseen. Words only.
 typedef struct {
     guard_t guard;
@@ -56,6 +59,9 @@ static inline bool drive_is_limited(const drive_t *self) {
 /// current. Whatever the guard's own state, it is between 0 and the board's ceiling.
 void drive_command(drive_t *self, int32_t request_mA, bool is_allowed, bool driver_enable,
                    quiesce_command_t *out);
+
+/// The driver is kept off, whatever is commanded; driver: what was measured in this tick.
+void drive_hold(drive_t *self, const quiesce_driver_t *driver, quiesce_command_t *out);
 
 /// Nothing that the limits say is believed any more: no current, driver off.
 void drive_shut(drive_t *self, quiesce_command_t *out);

@@ -132,7 +132,7 @@ static void start_job(estimator_fit_t *self) {
                                        ? self->fit.constant_um_s2
                                        : spectrum_mean_um_s2(&self->spectrum, self->level);
     spectrum_want_powers(&self->spectrum, self->level, constant_um_s2);
-    self->spread_ticks += self->job_ticks;
+    self->spread_ticks += self->job_ticks; // after 49 days one reading is a hop late
     self->job_ticks = 0;
     self->stage = ESTIMATOR_FIT_SEARCH;
 }

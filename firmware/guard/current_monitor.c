@@ -26,6 +26,12 @@ void current_monitor_reset(current_monitor_t *self) {
     self->over = 0;
 }
 
+void current_monitor_follow(current_monitor_t *self, int32_t measured_mA) {
+    self->expected_mA_q16 = (int64_t)measured_mA * 65536;
+    self->wrong = 0;
+    self->missing_ticks = 0;
+}
+
 // At the most a tick beyond the limit: what was bad for hours is not held against it for hours.
 static uint32_t leak(uint32_t count, bool is_bad, uint32_t adds, uint32_t limit) {
     if (!is_bad) {

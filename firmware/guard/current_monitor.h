@@ -74,4 +74,8 @@ static inline int32_t current_monitor_expected_mA(const current_monitor_t *self)
 /// Forgets runs of deviations (a latched fault has been acknowledged).
 void current_monitor_reset(current_monitor_t *self);
 
+/// Of a driver that is kept off: what is measured is what is expected from here on, and nothing was
+/// wrong with it. Within 1,000,000,000 mA.
+void current_monitor_follow(current_monitor_t *self, int32_t measured_mA);
+
 #endif

@@ -21,7 +21,7 @@ enum {
 };
 
 void predictor_init(predictor_t *self, uint32_t stages) {
-    *self = (predictor_t){.stages = stages};
+    *self = (predictor_t){.stages = (uint8_t)stages};
 }
 
 static uint32_t block_shift(const predictor_t *self, uint32_t scale) {
@@ -29,8 +29,8 @@ static uint32_t block_shift(const predictor_t *self, uint32_t scale) {
 }
 
 // Blocks of the scale below (of the first one: ticks) that make one of this scale; at most 8.
-static uint8_t block_parts(const predictor_t *self, uint32_t scale) {
-    return (uint8_t)(1u << (scale == 0 ? block_shift(self, 0) : SCALE_SHIFT));
+static uint32_t block_parts(const predictor_t *self, uint32_t scale) {
+    return 1u << (scale == 0 ? block_shift(self, 0) : SCALE_SHIFT);
 }
 
 static void arm(predictor_t *self) {

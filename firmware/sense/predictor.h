@@ -32,7 +32,7 @@ typedef struct {
     int64_t noise;   ///< mean square of a block's average
     int64_t sum;
     uint32_t suspect_blocks; ///< since the sum was zero
-    uint8_t left;            ///< blocks of the scale below that it still lacks
+    uint32_t left;           ///< blocks of the scale below that it still lacks
     bool is_due;             ///< the last finished block has not been judged yet
 } predictor_watch_t;
 
@@ -45,7 +45,7 @@ typedef enum {
 typedef struct {
     predictor_tone_t tone[PREDICTOR_TONES];
     uint32_t tones;
-    uint32_t stages;
+    uint8_t stages;
     bool is_armed;          ///< watching
     bool is_suspicious;     ///< since CHANGED; only BACK or disarming ends it
     int32_t drift_um_s2_q8; ///< of the offset, a tick

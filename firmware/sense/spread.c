@@ -77,16 +77,13 @@ static bool is_narrow_now(const spread_t *self) {
 
 void spread_take(spread_t *self, const uint64_t *power, uint32_t first_bin, uint32_t end_bin) {
     uint64_t sum[3] = {0};
-    uint32_t k = first_bin > FIRST_BIN ? first_bin : FIRST_BIN;
-    for (; k < end_bin && k < self->far_bin; k++) {
-        const uint64_t of_accel = power[k] >> HEAD_ROOM;
-        const uint64_t of_velocity = over_square(of_accel, k);
-        sum[0] += of_accel;
-        sum[1] += of_velocity;
-        sum[2] += over_square(of_velocity, k);
-    }
-    for (; k < end_bin; k++) {
-        sum[0] += power[k] >> HEAD_ROOM;
+    for (uint32_t k = first_bin > FIRST_BIN ? first_bin : FIRST_BIN; k < end_bin; k++) {
+        uint64_t part = power[k] >> HEAD_ROOM;
+        const uint32_t sums = k < self->far_bin ? 3u : 1u;
+        for (uint32_t i = 0; i < sums; i++) {
+            sum[i] += part;
+            part = over_square(part, k);
+        }
     }
     take_in(self, sum);
     self->is_narrow = is_narrow_now(self);

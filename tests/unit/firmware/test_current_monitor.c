@@ -47,6 +47,24 @@ static void test_the_expectation_starts_at_the_initial_current_and_lags(void) {
     TEST_ASSERT_EQUAL_INT32(16250, current_monitor_expected_mA(&monitor));
 }
 
+static void test_what_is_followed_is_expected_and_forgives(void) {
+    start(CURRENT_CHECK_ALWAYS, 1500, 0);
+    for (uint32_t i = 0; i < 9; i++) {
+        TEST_ASSERT_EQUAL(CURRENT_OK, step(0));
+    }
+    current_monitor_follow(&monitor, 700);
+    TEST_ASSERT_EQUAL_INT32(700, current_monitor_expected_mA(&monitor));
+    TEST_ASSERT_EQUAL(CURRENT_OK, step(775)); // a quarter of the way
+    TEST_ASSERT_EQUAL_INT32(775, current_monitor_expected_mA(&monitor));
+    TEST_ASSERT_EQUAL(10, ticks_until(CURRENT_NOT_FOLLOWING, -1000));
+    current_monitor_follow(&monitor, 0);
+    for (uint32_t i = 0; i < 4; i++) {
+        (void)step(1600); // a trip goes on
+        current_monitor_follow(&monitor, 1600);
+    }
+    TEST_ASSERT_EQUAL(CURRENT_OVER, step(1600));
+}
+
 static void test_no_lag_is_the_command(void) {
     const current_monitor_cfg_t cfg = {
         .check = CURRENT_CHECK_ALWAYS, .tick_rate_Hz = 4000, .error_mA = 1, .fault_ticks = 1};
@@ -134,6 +152,7 @@ static void test_a_coil_is_open_from_twice_the_error_on(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_the_expectation_starts_at_the_initial_current_and_lags);
+    RUN_TEST(test_what_is_followed_is_expected_and_forgives);
     RUN_TEST(test_no_lag_is_the_command);
     RUN_TEST(test_the_error_itself_is_allowed_on_either_side);
     RUN_TEST(test_a_trip_at_the_level_is_none_and_comes_in_its_time_beyond);
