@@ -28,14 +28,19 @@ static bool told(image_store_answer_t answer, can_node_result_t *result) {
 }
 
 static bool prepare_place(image_service_t *self, can_node_result_t *result) {
-    self->is_open = true; // nothing is armed while it is erased
-    self->quiet_ms = IMAGE_SERVICE_QUIET_MS;
-    self->written = 0;
-    if (!told(self->store->prepare(self->store->context), result)) {
+    if (!self->is_awaited && !self->is_erasing) {
+        self->is_erasing = true;
+        self->is_open = false;
+        self->is_finished = false;
+        self->written = 0;
+        self->quiet_ms = IMAGE_SERVICE_QUIET_MS;
+    }
+    self->is_awaited = true;
+    if (self->is_erasing) {
         return false;
     }
-    self->is_open = *result == CAN_NODE_DONE;
-    return true;
+    self->is_awaited = false;
+    return told(self->erased, result);
 }
 
 // What has arrived is the piece that the request means.
@@ -81,21 +86,29 @@ static bool take_piece(image_service_t *self, const image_work_t *work, can_node
     return true;
 }
 
+// Asked again, its reply was lost.
 static bool finish_image(image_service_t *self, can_node_result_t *result) {
     if (!self->is_open) {
-        *result = CAN_NODE_NOTHING_RECEIVED;
+        *result = self->is_finished ? CAN_NODE_DONE : CAN_NODE_NOTHING_RECEIVED;
         return true;
     }
     if (!told(self->store->finish(self->store->context), result)) {
         return false;
     }
     self->is_open = false;
+    self->is_finished = *result == CAN_NODE_DONE;
     return true;
 }
 
+// Not of an image on trial, whose last start it would be.
 static can_node_result_t start_again(image_service_t *self) {
+    if (self->is_held) {
+        return CAN_NODE_IMAGE_REFUSED;
+    }
+    if (!self->is_starting) {
+        self->store->start(self->store->context);
+    }
     self->is_starting = true;
-    self->store->start(self->store->context);
     return CAN_NODE_DONE;
 }
 
@@ -144,7 +157,27 @@ bool image_service_work(image_service_t *self, const image_work_t *work, can_nod
     }
 }
 
+// A store that does not come to an end has failed: nothing is held for ever.
+static void erase(image_service_t *self) {
+    const image_store_answer_t answer = self->store->prepare(self->store->context);
+    const bool is_late = answer == IMAGE_STORE_BUSY && self->quiet_ms == 0u;
+    self->is_erasing = answer == IMAGE_STORE_BUSY && !is_late;
+    self->is_open = answer == IMAGE_STORE_DONE;
+    self->erased = is_late ? IMAGE_STORE_FAILED : answer;
+}
+
+void image_service_go_on(image_service_t *self, uint32_t passed_ms) {
+    self->quiet_ms -= passed_ms < self->quiet_ms ? passed_ms : self->quiet_ms;
+    if (self->is_erasing) {
+        erase(self);
+        self->quiet_ms = self->is_open ? IMAGE_SERVICE_QUIET_MS : self->quiet_ms;
+    } else {
+        self->is_open = self->quiet_ms > 0u;
+    }
+}
+
 void image_service_use(image_service_t *self, const image_store_t *store) {
     self->store = store;
     self->work = store != NULL ? image_service_work : NULL;
+    self->go_on = store != NULL ? image_service_go_on : NULL;
 }

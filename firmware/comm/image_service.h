@@ -1,7 +1,7 @@
 /// Requests about the program itself (operations IMAGE_.. of ServiceRequest): another image comes
 /// in pieces over TableData, into a place of the target's that does not run, and is tried at the
 /// next start. Refused while armed, and while a fault is latched, which the restart would forget;
-/// from its first piece to its end nothing can be armed, nor while an image is on trial.
+/// from its first piece to its end nothing can be armed or driven, nor while an image is on trial.
 #ifndef IMAGE_SERVICE_H
 #define IMAGE_SERVICE_H
 
@@ -18,7 +18,8 @@ extern "C" {
 #define IMAGE_PIECE_HEAD_WORDS 4u
 #define IMAGE_PIECE_WORDS 1024u ///< of the image, at the most; places are multiples of 4
 
-/// An update from which nothing comes for so long is given up.
+/// An update from which nothing comes for so long is given up, and a store that has not erased by
+/// then.
 #define IMAGE_SERVICE_QUIET_MS 30000u
 
 /// IMAGE_INFO's param_index.
@@ -63,12 +64,17 @@ typedef struct image_service image_service_t;
 
 struct image_service {
     const image_store_t *store; ///< NULL: there is no other place
-    /// image_service_work, which a program without places need not hold.
+    /// image_service_work and image_service_go_on, which a program without places need not hold.
     bool (*work)(image_service_t *self, const struct image_work *work, can_node_result_t *result,
                  int32_t *value);
-    bool is_open; ///< prepared, not finished
+    void (*go_on)(image_service_t *self, uint32_t passed_ms);
+    bool is_erasing;  ///< begun, and goes on to its end whoever waits for it
+    bool is_awaited;  ///< by a request
+    bool is_open;     ///< erased: pieces may come
+    bool is_finished; ///< and nothing has come since
     bool is_starting;
-    bool is_held;      ///< by the target: on trial
+    bool is_held; ///< by the target: on trial
+    image_store_answer_t erased;
     uint32_t written;  ///< words
     uint32_t quiet_ms; ///< left
 };
@@ -89,17 +95,24 @@ typedef struct image_work {
 bool image_service_work(image_service_t *self, const image_work_t *work, can_node_result_t *result,
                         int32_t *value);
 
-/// Time passes.
+/// There is no request any more.
+static inline void image_service_rest(image_service_t *self) {
+    self->is_awaited = false;
+}
+
+/// Once a tick, of one that erases or is open.
+void image_service_go_on(image_service_t *self, uint32_t passed_ms);
+
+/// Once a tick: what was begun goes on, and time passes.
 static inline void image_service_pass(image_service_t *self, uint32_t passed_ms) {
-    if (self->is_open) {
-        self->quiet_ms -= passed_ms < self->quiet_ms ? passed_ms : self->quiet_ms;
-        self->is_open = self->quiet_ms > 0u;
+    if (self->is_erasing || self->is_open) {
+        self->go_on(self, passed_ms);
     }
 }
 
-/// Nothing may be armed.
+/// Nothing may be armed or driven.
 static inline bool image_service_holds(const image_service_t *self) {
-    return self->is_open || self->is_starting || self->is_held;
+    return self->is_erasing || self->is_open || self->is_starting || self->is_held;
 }
 
 #ifdef __cplusplus

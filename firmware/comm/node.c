@@ -29,6 +29,8 @@ bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_
     can_node_init(&node->can, board, params);
     table_service_init(&node->tables, board);
     node->images = (image_service_t){0};
+    node->drivers_are_held = false;
+    node->waits_for_release = false;
     const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
                                            : quiesce_init_board(&node->controller, board, params);
     if (board != NULL) { // a restart reads it again
@@ -96,11 +98,7 @@ void node_receive(node_t *node, const can_frame_t *frame) {
     }
 }
 
-// Nothing is driven by a program that is being replaced, or has not shown that it works.
-static bool is_enabled(const node_t *node, const node_inputs_t *board) {
-    if (image_service_holds(&node->images)) {
-        return false;
-    }
+static bool is_given(const node_t *node, const node_inputs_t *board) {
     switch (node->from.enable) {
     case NODE_ENABLE_BOARD:
         return board->enable;
@@ -111,6 +109,18 @@ static bool is_enabled(const node_t *node, const node_inputs_t *board) {
     default:
         return false;
     }
+}
+
+// While flash is erased, and for a program that is being replaced or has not shown that it works.
+static bool is_held(const node_t *node) {
+    return node->drivers_are_held || image_service_holds(&node->images);
+}
+
+// Nothing is armed then, nor by an enable that was there before it could be.
+static bool is_enabled(node_t *node, const node_inputs_t *board) {
+    const bool is_on = is_given(node, board);
+    node->waits_for_release = is_on && (node->waits_for_release || is_held(node));
+    return is_on && !node->waits_for_release;
 }
 
 // What was had last stays where nothing new has come.
@@ -143,6 +153,7 @@ static void take_inputs(node_t *node, const node_inputs_t *board) {
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         take_driver(&in->driver[i], &board->driver[i], &node->bus.driver[i]);
+        in->driver[i].has_failed = in->driver[i].has_failed && !is_held(node);
     }
 }
 
@@ -178,6 +189,9 @@ void node_step(node_t *node, const node_inputs_t *inputs) {
     take_inputs(node, inputs);
     note(node, inputs);
     quiesce_step(&node->controller, &node->in, &node->out);
+    if (is_held(node)) {
+        quiesce_hold_drivers(&node->controller, &node->in, &node->out);
+    }
 }
 
 // No sensor of the board provides what the law or its tracker needs.
@@ -299,6 +313,7 @@ const quiesce_params_t *node_task(node_t *node) {
         return NULL;
     case CAN_NODE_NOTHING:
     default:
+        image_service_rest(&node->images);
         table_service_rest(&node->tables);
         return NULL;
     }

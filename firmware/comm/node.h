@@ -69,6 +69,8 @@ typedef struct {
     node_sources_t from;
     table_service_t tables; ///< what is loaded; its keeper has the target's store
     image_service_t images; ///< an update of the program
+    bool drivers_are_held;  ///< the target's, between ticks: they are to be off, and stay so
+    bool waits_for_release; ///< an enable that was given while they were held does not count
 } node_t;
 
 /// Starts from rest, without a store (node_use_store afterwards): commands are the safe currents.

@@ -26,7 +26,7 @@ typedef struct {
 
 typedef enum { IMAGE_WHOLE, IMAGE_UNSEALED, IMAGE_BROKEN } image_state_t;
 
-/// Takes some 40 cycles a byte.
+/// Takes some 70 instructions a byte.
 image_state_t image_state(const image_info_t *info);
 
 #endif

@@ -1,7 +1,8 @@
 #include "image_place.h"
 
+#include <stddef.h>
+
 #include "image_info.h"
-#include "sha256.h"
 
 #define WORD_BYTES 4u
 #define INFO_WITHIN 4096u ///< bytes from the image's beginning
@@ -50,24 +51,46 @@ static bool is_for(const image_place_t *place, uint32_t pointer, const char *boa
     return name < place->count && place->bytes[name] == 0u && *board == '\0';
 }
 
-static bool is_whole(const image_place_t *place, uint32_t seal) {
-    uint8_t digest[SHA256_BYTES];
-    uint32_t differences = 0;
-    sha256(place->bytes, seal, digest);
-    for (uint32_t i = 0; i < SHA256_BYTES; i++) {
-        differences |= (uint32_t)(digest[i] ^ place->bytes[seal + i]);
-    }
-    return differences == 0u;
-}
-
-bool image_is_in(const image_place_t *place, const char *board) {
+// Where its seal is; NULL where the bytes are no image of that board for that place.
+static const uint8_t *seal_of(const image_place_t *place, const char *board) {
     const uint32_t info = find_info(place);
     if (info == NOWHERE || word_at(place, info + WORD_BYTES * INFO_BEGIN) != place->address) {
-        return false;
+        return NULL;
     }
     const uint32_t seal =
         offset_of(place, word_at(place, info + WORD_BYTES * INFO_SEAL), SHA256_BYTES);
-    return seal != NOWHERE && seal > info &&
-           is_for(place, word_at(place, info + WORD_BYTES * INFO_BOARD), board) &&
-           is_whole(place, seal);
+    if (seal == NOWHERE || seal <= info ||
+        !is_for(place, word_at(place, info + WORD_BYTES * INFO_BOARD), board)) {
+        return NULL;
+    }
+    return &place->bytes[seal];
+}
+
+void image_check_begin(image_check_t *self, const image_place_t *place, const char *board) {
+    self->seal = seal_of(place, board);
+    if (self->seal != NULL) {
+        sha256_begin(&self->hash, place->bytes, (uint32_t)(self->seal - place->bytes));
+    }
+}
+
+image_check_result_t image_check_work(image_check_t *self, uint32_t blocks) {
+    uint8_t digest[SHA256_BYTES];
+    uint32_t differences = 0;
+    if (self->seal == NULL) {
+        return IMAGE_CHECK_BAD;
+    }
+    if (!sha256_work(&self->hash, blocks)) {
+        return IMAGE_CHECK_BUSY;
+    }
+    sha256_end(&self->hash, digest);
+    for (uint32_t i = 0; i < SHA256_BYTES; i++) {
+        differences |= (uint32_t)(digest[i] ^ self->seal[i]);
+    }
+    return differences == 0u ? IMAGE_CHECK_GOOD : IMAGE_CHECK_BAD;
+}
+
+bool image_is_in(const image_place_t *place, const char *board) {
+    image_check_t check;
+    image_check_begin(&check, place, board);
+    return image_check_work(&check, UINT32_MAX) == IMAGE_CHECK_GOOD;
 }

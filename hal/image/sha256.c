@@ -31,37 +31,38 @@ static uint32_t extended(uint32_t w[16], uint32_t round) {
     return w[round % 16u];
 }
 
-static void take_block(uint32_t hash[8], const uint8_t *block) {
+static void take_block(uint32_t hash[SHA256_WORDS], const uint8_t *block) {
     uint32_t w[16];
-    uint32_t s[8];
+    uint32_t a = hash[0], b = hash[1], c = hash[2], d = hash[3];
+    uint32_t e = hash[4], f = hash[5], g = hash[6], h = hash[7];
     for (uint32_t i = 0; i < 16u; i++) {
         w[i] = (uint32_t)block[4u * i] << 24 | (uint32_t)block[4u * i + 1u] << 16 |
                (uint32_t)block[4u * i + 2u] << 8 | (uint32_t)block[4u * i + 3u];
     }
-    for (uint32_t i = 0; i < 8u; i++) {
-        s[i] = hash[i];
-    }
     for (uint32_t round = 0; round < ROUNDS; round++) {
         const uint32_t word = round < 16u ? w[round] : extended(w, round);
-        const uint32_t e = s[4];
-        const uint32_t a = s[0];
-        const uint32_t one = s[7] + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) +
-                             ((e & s[5]) ^ (~e & s[6])) + constants[round] + word;
-        const uint32_t two = (turned(a, 2) ^ turned(a, 13) ^ turned(a, 22)) +
-                             ((a & s[1]) ^ (a & s[2]) ^ (s[1] & s[2]));
-        for (uint32_t i = 7; i > 0u; i--) {
-            s[i] = s[i - 1u];
-        }
-        s[4] += one;
-        s[0] = one + two;
+        const uint32_t one = h + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) +
+                             ((e & f) ^ (~e & g)) + constants[round] + word;
+        const uint32_t two =
+            (turned(a, 2) ^ turned(a, 13) ^ turned(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
+        h = g;
+        g = f;
+        f = e;
+        e = d + one;
+        d = c;
+        c = b;
+        b = a;
+        a = one + two;
     }
-    for (uint32_t i = 0; i < 8u; i++) {
-        hash[i] += s[i];
+    const uint32_t added[SHA256_WORDS] = {a, b, c, d, e, f, g, h};
+    for (uint32_t i = 0; i < SHA256_WORDS; i++) {
+        hash[i] += added[i];
     }
 }
 
 // What is left, a one bit, zeros, the length in bits: a block, or two.
-static void take_end(uint32_t hash[8], const uint8_t *rest, uint32_t count, uint32_t size) {
+static void take_end(uint32_t hash[SHA256_WORDS], const uint8_t *rest, uint32_t count,
+                     uint32_t size) {
     uint8_t last[2u * BLOCK_BYTES] = {0};
     const uint32_t bytes = count < LENGTH_AT ? BLOCK_BYTES : 2u * BLOCK_BYTES;
     for (uint32_t i = 0; i < count; i++) {
@@ -76,16 +77,35 @@ static void take_end(uint32_t hash[8], const uint8_t *rest, uint32_t count, uint
     }
 }
 
-void sha256(const uint8_t *bytes, uint32_t size, uint8_t digest[SHA256_BYTES]) {
+void sha256_begin(sha256_t *self, const uint8_t *bytes, uint32_t size) {
     // FIPS 180-4, 5.3.3: likewise of the square roots of the first eight.
-    uint32_t hash[8] = {0x6a09e667u, 0xbb67ae85u, 0x3c6ef372u, 0xa54ff53au,
-                        0x510e527fu, 0x9b05688cu, 0x1f83d9abu, 0x5be0cd19u};
-    const uint32_t whole = size - size % BLOCK_BYTES;
-    for (uint32_t at = 0; at < whole; at += BLOCK_BYTES) {
-        take_block(hash, &bytes[at]);
+    *self = (sha256_t){
+        .hash = {0x6a09e667u, 0xbb67ae85u, 0x3c6ef372u, 0xa54ff53au, 0x510e527fu, 0x9b05688cu,
+                 0x1f83d9abu, 0x5be0cd19u},
+        .bytes = bytes,
+        .size = size,
+    };
+}
+
+bool sha256_work(sha256_t *self, uint32_t blocks) {
+    const uint32_t whole = self->size - self->size % BLOCK_BYTES;
+    for (uint32_t i = 0; i < blocks && self->at < whole; i++) {
+        take_block(self->hash, &self->bytes[self->at]);
+        self->at += BLOCK_BYTES;
     }
-    take_end(hash, &bytes[whole], size - whole, size);
+    return self->at == whole;
+}
+
+void sha256_end(sha256_t *self, uint8_t digest[SHA256_BYTES]) {
+    take_end(self->hash, &self->bytes[self->at], self->size - self->at, self->size);
     for (uint32_t i = 0; i < SHA256_BYTES; i++) {
-        digest[i] = (uint8_t)(hash[i / 4u] >> (24u - 8u * (i % 4u)));
+        digest[i] = (uint8_t)(self->hash[i / 4u] >> (24u - 8u * (i % 4u)));
     }
+}
+
+void sha256(const uint8_t *bytes, uint32_t size, uint8_t digest[SHA256_BYTES]) {
+    sha256_t state;
+    sha256_begin(&state, bytes, size);
+    (void)sha256_work(&state, UINT32_MAX);
+    sha256_end(&state, digest);
 }

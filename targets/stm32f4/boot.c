@@ -7,6 +7,9 @@
 #include "processor.h"
 #include "safe.h"
 #include "vectors.h"
+#include "watchdog.h"
+
+#define TRIAL_WATCHDOG_MS 8000u
 
 // It enables none.
 void interrupt_console(void) {
@@ -21,6 +24,9 @@ int main(void) {
     slots_open(&slots, &memory);
     images_look(is_whole, stm32f4_board.name);
     const uint32_t slot = slots_start(&slots, is_whole);
+    if (slot < SLOTS && slots_is_trial(&slots, slot)) {
+        (void)watchdog_start(TRIAL_WATCHDOG_MS); // one that hangs before its own
+    }
     if (slot < SLOTS) {
         processor_run(nvm_stm32f4_images.block[slot].begin);
     }

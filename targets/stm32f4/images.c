@@ -3,10 +3,10 @@
 #include <stddef.h>
 
 #include "crc32.h"
-#include "image_place.h"
 
 #define WORD_BYTES 4u
-#define NAME_WORDS 8u ///< of a board's name that its CRC is of
+#define NAME_WORDS 8u    ///< of a board's name that its CRC is of
+#define BLOCKS_A_TICK 2u ///< some 9,000 instructions
 
 static const images_self_t *own;
 
@@ -14,15 +14,15 @@ static uint32_t room_bytes(void) {
     return WORD_BYTES * (nvm_stm32f4_images.block_words - SLOT_MARK_WORDS);
 }
 
-static bool is_image(uint32_t slot, const char *board) {
-    const image_place_t place = {nvm_stm32f4_bytes(&nvm_stm32f4_images, slot), room_bytes(),
-                                 nvm_stm32f4_images.block[slot].begin};
-    return image_is_in(&place, board);
+static image_place_t place_of(uint32_t slot) {
+    return (image_place_t){nvm_stm32f4_bytes(&nvm_stm32f4_images, slot), room_bytes(),
+                           nvm_stm32f4_images.block[slot].begin};
 }
 
 void images_look(bool is_whole[SLOTS], const char *board) {
     for (uint32_t i = 0; i < SLOTS; i++) {
-        is_whole[i] = is_image(i, board);
+        const image_place_t place = place_of(i);
+        is_whole[i] = image_is_in(&place, board);
     }
 }
 
@@ -55,10 +55,12 @@ static image_store_answer_t answer_of(hal_nvm_progress_t progress) {
 
 static image_store_answer_t prepare(void *context) {
     images_t *const images = context;
-    images->written = 0;
     if (images->is_trial) {
         return IMAGE_STORE_REFUSED; // the other one has to be there
     }
+    images->written = 0;
+    images->is_other_whole = false;
+    images->is_checking = false;
     return answer_of(slots_prepare(&images->slots, other(images)));
 }
 
@@ -78,9 +80,21 @@ static image_store_answer_t write(void *context, uint32_t at, const uint32_t *wo
     return answer_of(progress);
 }
 
+// A slice of its sum a tick.
 static image_store_answer_t finish(void *context) {
     images_t *const images = context;
-    if (!is_image(other(images), own->board)) {
+    if (!images->is_checking) {
+        const image_place_t place = place_of(other(images));
+        image_check_begin(&images->check, &place, own->board);
+        images->is_checking = true;
+    }
+    const image_check_result_t result = image_check_work(&images->check, BLOCKS_A_TICK);
+    if (result == IMAGE_CHECK_BUSY) {
+        return IMAGE_STORE_BUSY;
+    }
+    images->is_checking = false;
+    images->is_other_whole = result == IMAGE_CHECK_GOOD;
+    if (!images->is_other_whole) {
         return IMAGE_STORE_REFUSED;
     }
     return slots_finish(&images->slots, other(images)) ? IMAGE_STORE_DONE : IMAGE_STORE_FAILED;
@@ -107,8 +121,7 @@ static uint32_t tell(void *context, image_info_number_t what) {
     case IMAGE_INFO_IS_TRIAL:
         return images->is_trial ? 1u : 0u;
     case IMAGE_INFO_OTHER:
-        return (uint32_t)slots_state(&images->slots, other(images),
-                                     is_image(other(images), own->board));
+        return (uint32_t)slots_state(&images->slots, other(images), images->is_other_whole);
     case IMAGE_INFO_BEGIN:
         return nvm_stm32f4_images.block[other(images)].begin;
     case IMAGE_INFO_ROOM:
@@ -139,6 +152,7 @@ void images_open(images_t *images, const images_self_t *self) {
         return;
     }
     images_look(is_whole, self->board);
+    images->is_other_whole = is_whole[other(images)];
     (void)slots_settle(&images->slots, images->running, is_whole);
     images->is_trial = slots_is_trial(&images->slots, images->running);
     images->store = (image_store_t){images, prepare, write, finish, tell, start};
@@ -152,9 +166,7 @@ static void try_to_confirm(images_t *images, bool is_well) {
     if (is_well && images->was_asked && images->run_ms >= TRIAL_RUN_MS) {
         images->is_trial = !slots_confirm(&images->slots, images->running);
     }
-    if (images->is_trial && images->run_ms >= TRIAL_MOST_MS) {
-        images->restarts = true;
-    }
+    images->restarts = images->is_trial && images->run_ms >= TRIAL_MOST_MS;
 }
 
 images_wish_t images_tick(images_t *images, uint32_t passed_ms, bool is_well) {

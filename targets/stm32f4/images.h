@@ -7,6 +7,7 @@
 #ifndef IMAGES_H
 #define IMAGES_H
 
+#include "image_place.h"
 #include "image_service.h"
 #include "nvm_stm32f4.h"
 #include "slots.h"
@@ -19,8 +20,11 @@ typedef struct {
     slots_t slots;
     hal_nvm_memory_t memory;
     image_store_t store;
-    uint32_t running; ///< slot; SLOT_NONE: this image has no boot code
-    uint32_t written; ///< words of the piece under way
+    uint32_t running;    ///< slot; SLOT_NONE: this image has no boot code
+    uint32_t written;    ///< words of the piece under way
+    bool is_other_whole; ///< has an image for this board
+    bool is_checking;    ///< the other one
+    image_check_t check; ///< of it
     bool is_trial;
     bool was_asked; ///< for something, by a host
     bool restarts;
@@ -36,7 +40,7 @@ typedef struct {
     const char *board;
 } images_self_t;
 
-/// self: kept by the caller. Takes some 30 ms where there are two places: both are looked at.
+/// self: kept by the caller. Looks at both places: some 0.1 s at 168 MHz where they are full.
 void images_open(images_t *images, const images_self_t *self);
 
 /// NULL where there is no other place.

@@ -39,6 +39,8 @@ typedef struct {
     hal_accel_t accel;
     bus_t bus;
     images_t images;
+    bool is_off;    ///< the stage, as it was written last
+    bool may_erase; ///< in the last pass
     bool acknowledge_was_up;
 } board_t;
 
@@ -107,13 +109,20 @@ static void read_inputs(board_t *board) {
     output_measure(&common->inputs.driver[0]);
 }
 
-static bool is_driven(const board_t *board) {
-    return board->common.node.out.damper[0].driver_enable;
+static bool wants_to_erase(const board_t *board) {
+    return board->memory.phase != NVM_STM32F4_IDLE ||
+           board->images.memory.phase != NVM_STM32F4_IDLE;
 }
 
-static void write_outputs(const board_t *board) {
+// Flash waits to be erased, which the processor stands still for: the stage is off for that.
+static bool is_to_be_off(const board_t *board) {
+    return wants_to_erase(board) && !quiesce_is_armed(&board->common.node.controller);
+}
+
+static void write_outputs(board_t *board) {
     const quiesce_out_t *const out = &board->common.node.out;
-    output_write(out->damper[0].current_cmd_mA, is_driven(board));
+    output_write(out->damper[0].current_cmd_mA, out->damper[0].driver_enable);
+    board->is_off = !out->damper[0].driver_enable;
     pin_write(stm32f4_board.fault_lamp, out->telemetry.state == QUIESCE_STATE_FAULT);
 }
 
@@ -138,6 +147,7 @@ static void run_tick(board_t *board, uint32_t ticks) {
     common->inputs.lateness_us = us_since(board, board->tick.last_count);
     read_inputs(board);
     free_node_begin(common, ticks);
+    common->node.drivers_are_held = is_to_be_off(board);
     node_step(&common->node, &common->inputs);
     write_outputs(board);
     const quiesce_params_t *const params = node_task(&common->node);
@@ -155,30 +165,20 @@ static void run_tick(board_t *board, uint32_t ticks) {
     supervise();
 }
 
-static bool wants_to_erase(const board_t *board) {
-    return board->memory.phase != NVM_STM32F4_IDLE ||
-           board->images.memory.phase != NVM_STM32F4_IDLE;
-}
-
-static void let_erase(board_t *board, bool may_erase) {
-    board->memory.may_erase = may_erase;
-    board->images.memory.may_erase = may_erase;
-}
-
-// The processor stands still while flash is erased: only where nothing is driven, and once the
+// The processor stands still while flash is erased: only once the stage is off, and the
 // watchdog has the time for it. The hardware takes another time within 48 ms, so that every pass
-// asks for what is due.
+// asks for what is due. Leave is given for the pass, to who asks for it.
 static void store_waiting(board_t *board) {
-    const bool may_erase = board->memory.may_erase;
-    const bool erases = wants_to_erase(board) && (may_erase || !is_driven(board));
+    const bool erases = wants_to_erase(board) && board->is_off;
     const bool has_time = watchdog_set(erases ? ERASE_WATCHDOG_MS : WATCHDOG_MS);
-    const bool has_none = board->clocks.source == CLOCK_ABSENT;
-    if (erases && !may_erase && (has_time || has_none)) {
+    const bool may_erase = erases && (has_time || board->clocks.source == CLOCK_ABSENT);
+    if (may_erase && !board->may_erase) {
         watchdog_feed();
-        let_erase(board, true);
     }
+    board->may_erase = may_erase;
+    board->memory.may_erase = may_erase && board->memory.phase != NVM_STM32F4_IDLE;
+    board->images.memory.may_erase = may_erase && board->images.memory.phase != NVM_STM32F4_IDLE;
     free_node_store(&board->common);
-    let_erase(board, board->memory.may_erase && wants_to_erase(board));
 }
 
 // ---- an update ----------------------------------------------------------------------------------

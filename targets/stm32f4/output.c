@@ -13,7 +13,9 @@ static struct {
     bridge_t bridge;
     current_loop_t loop;
     volatile uint32_t steps; ///< of the current loop
-    uint32_t steps_seen;
+    uint32_t steps_alive;    ///< at the last output_is_alive
+    uint32_t steps_measured; ///< at the last output_measure
+    bool has_missed;         ///< a step, between the last two of those
     volatile bridge_measured_t measured;
 } output;
 
@@ -56,8 +58,14 @@ void output_measure(quiesce_driver_t *driver) {
         return;
     }
     const bool coil_fails = coil_has_failed();
-    driver->is_measured = output.steps != output.steps_seen;
-    driver->has_failed = !driver->is_measured || bridge_is_cut(&output.bridge) || coil_fails;
+    const uint32_t steps = output.steps;
+    const bool is_missing = steps == output.steps_measured;
+    // A tick that follows upon a late one can come between two steps of a loop that runs.
+    const bool has_stopped = is_missing && output.has_missed;
+    output.steps_measured = steps;
+    output.has_missed = is_missing;
+    driver->is_measured = !is_missing;
+    driver->has_failed = has_stopped || bridge_is_cut(&output.bridge) || coil_fails;
     driver->current_mA = output.measured.current_mA;
 }
 
@@ -95,7 +103,7 @@ void output_cut(void) {
 }
 
 bool output_is_alive(void) {
-    const uint32_t steps = output.steps - output.steps_seen;
-    output.steps_seen = output.steps;
+    const uint32_t steps = output.steps - output.steps_alive;
+    output.steps_alive = output.steps;
     return output.kind != OUTPUT_BRIDGE || steps > 0u;
 }

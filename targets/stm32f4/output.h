@@ -9,9 +9,9 @@
 /// Off. An emulator (CLOCK_ABSENT) has no output stage. Call with interrupts held.
 void output_open(const clocks_t *clocks);
 
-/// What the bridge has measured, for the tick's step; where its interrupt has stopped, something
-/// has cut it off, or a coil is found open or short (told once), the driver has failed. Without a
-/// bridge nothing is measured.
+/// What the bridge has measured, for the tick's step; where its interrupt has stopped for two
+/// calls, something has cut it off, or a coil is found open or short (told once), the driver has
+/// failed. Without a bridge nothing is measured.
 void output_measure(quiesce_driver_t *driver);
 
 /// The command of this tick. An output stage that has been cut off stays so until the controller

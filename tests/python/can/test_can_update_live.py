@@ -172,11 +172,21 @@ def test_what_is_cut_off_leaves_what_runs(rig: Rig, newer: Path) -> None:
     assert rig.update(newer).returncode == 0
 
 
-def test_the_image_that_runs_is_not_brought_again(rig: Rig, release: Path, newer: Path) -> None:
+def test_an_older_one_is_brought_where_that_is_allowed(
+    rig: Rig, release: Path, newer: Path
+) -> None:
     assert rig.update(newer).returncode == 0
     back = rig.update(release, "--at-least", "0.1.0", "--json")
     assert back.returncode == 0, back.stderr
     assert rig.runs(newer) == "0.1.0"
+
+
+def test_the_image_that_runs_is_not_brought_again(rig: Rig, release: Path) -> None:
+    before = rig.flash.read_bytes()
+    result = rig.update(release)
+    assert result.returncode == 0, result.stderr
+    assert "0.1.0 already; nothing was changed" in result.stdout
+    assert rig.flash.read_bytes() == before
 
 
 @pytest.mark.parametrize(
@@ -225,8 +235,9 @@ def test_folders_that_are_none_are_refused(rig: Rig, newer: Path, tmp_path: Path
 
 
 def test_it_is_refused_while_armed(rig: Rig, newer: Path) -> None:
+    assert rig.tool("get", "law").returncode == 0  # it runs, and takes signals
     rig.controller.turn_enable()
-    assert rig.tool("get", "law").returncode == 0  # it runs
+    assert rig.tool("get", "law").returncode == 0
     result = rig.update(newer)
     assert result.returncode == 1
     assert "the controller is armed; disable it first" in result.stderr

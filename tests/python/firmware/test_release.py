@@ -11,10 +11,11 @@ from conftest import ROOT, require
 from quiesce.base.errors import UsageError
 from quiesce.cli.main import main
 from quiesce.firmware import container, making
-from quiesce.firmware.image import SEAL_BYTES, digest_of, image_of, read_image, sealed
+from quiesce.firmware.image import BOOT_BYTES, SEAL_BYTES, digest_of, image_of, read_image, sealed
 from quiesce.firmware.making import Made
 from quiesce.firmware.release import (
     UPDATABLE,
+    UPDATABLE_SIGNED,
     refusal,
     signed_file,
     update_ending,
@@ -98,6 +99,34 @@ def test_verify_and_a_dry_flash(capsys, release: Path, keys) -> None:
     assert main(["firmware", "flash", *words, "--with", "openocd", "--dry-run"]) == 0
     said = capsys.readouterr().out
     assert f"program {{{NAME}.bin}} verify reset exit 0x08000000" in said
+
+
+def test_what_is_flashed_with_boot_code_is_what_was_signed(capsys, release: Path, keys) -> None:
+    words = [str(release), "--updatable", "--with", "openocd", "--dry-run"]
+    words += ["--key", str(keys.maker.public)]
+    assert main(["firmware", "flash", *words]) == 0
+    assert f"program {{{NAME}{UPDATABLE}}}" in capsys.readouterr().out
+    file = release / f"{NAME}{UPDATABLE_SIGNED}"
+    data = file.read_bytes()
+    assert container.payload_of(data) == (release / f"{NAME}{UPDATABLE}").read_bytes()
+    for at in (100, BOOT_BYTES + 5000):  # of the boot code, and of the image
+        broken = bytearray(data)
+        broken[at] ^= 1
+        file.write_bytes(broken)
+        write_sums(release)
+        assert main(["firmware", "flash", *words]) == 1
+        assert file.name in capsys.readouterr().out
+    container.sign(container.payload_of(data), "0.1.0", keys.other.private, file)
+    write_sums(release)
+    assert main(["firmware", "flash", *words]) == 1
+    assert "not signed by this key" in capsys.readouterr().out
+
+
+def test_an_update_is_not_flashed_where_boot_code_is(capsys, release: Path) -> None:
+    file = release / f"{NAME}{update_ending(1)}"
+    assert main(["firmware", "flash", str(file), "--with", "openocd", "--dry-run"]) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and "linked for 0x08020000, behind boot code" in told.err
 
 
 def put(release: Path, data: bytes) -> None:

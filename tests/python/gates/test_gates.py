@@ -146,7 +146,7 @@ def test_what_tidy_finds_is_found_again(tree: Clone) -> None:
     command = [".venv/bin/python", "tools/check/tidy_file.py", "build/host", "firmware/bad.c"]
     for _ in range(2):
         assert tree.run(*command, PATH=os.environ["PATH"]).returncode != 0
-    (tree.root / "firmware/bad.c").write_text("#include \"none.h\"\n")
+    (tree.root / "firmware/bad.c").write_text('#include "none.h"\n')
     assert tree.run(*command, PATH=os.environ["PATH"]).returncode != 0
     assert not (tree.root / "build/tidied").exists()
 

@@ -388,12 +388,92 @@ static void test_a_store_that_fails_or_refuses_is_told(void) {
     TEST_ASSERT_EQUAL_UINT32(0, store.finished);
 }
 
+// Its reply was lost, or its sender went away: what erases goes on to its end.
+static void test_a_request_that_is_left_alone_is_brought_to_its_end(void) {
+    store.slow = store.left = CAN_SERVICE_IMAGE_MS + 7000u;
+    assert_result(CAN_NODE_STORE_FAILED, OP(PREPARE), 0);
+    arm();
+    TEST_ASSERT_TRUE(image_service_holds(&node.images));
+    TEST_ASSERT_FALSE(is_armed());
+    run(2000);
+    TEST_ASSERT_EQUAL_UINT32(1, store.prepared);
+    store.slow = store.left = 0;
+    assert_result(CAN_NODE_DONE, OP(PIECE), send_piece(0, 16));
+    assert_result(CAN_NODE_DONE, OP(FINISH), 0);
+    assert_result(CAN_NODE_DONE, OP(FINISH), 0);
+    TEST_ASSERT_EQUAL_UINT32(1, store.finished);
+    assert_result(CAN_NODE_DONE, OP(PREPARE), 0);
+    assert_result(CAN_NODE_DONE, OP(PIECE), send_piece(0, 16));
+    assert_result(CAN_NODE_DONE, OP(FINISH), 0);
+    TEST_ASSERT_EQUAL_UINT32(2, store.finished);
+    assert_result(CAN_NODE_DONE, OP(START), 0);
+    assert_result(CAN_NODE_DONE, OP(START), 0);
+    TEST_ASSERT_EQUAL_UINT32(1, store.starts);
+}
+
+static bool is_driven(void) {
+    return node.out.damper[0].driver_enable;
+}
+
+// Flash is erased in this time, and the processor stands still for it.
+static void test_drivers_are_off_while_nothing_may_be_armed(void) {
+    run(ARM_TICKS);
+    TEST_ASSERT_TRUE(is_driven());
+    assert_result(CAN_NODE_DONE, OP(PREPARE), 0);
+    run(1);
+    TEST_ASSERT_FALSE(is_driven());
+    run(IMAGE_SERVICE_QUIET_MS);
+    TEST_ASSERT_TRUE(is_driven());
+    TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, node.out.telemetry.state);
+}
+
+// The switch was left on when the update began, or when the board was started on trial.
+static void test_nothing_is_armed_by_itself_once_it_may_be(void) {
+    arm();
+    estop = true;
+    run(10);
+    estop = false;
+    reset = true;
+    run(10);
+    reset = false;
+    assert_result(CAN_NODE_DONE, OP(PREPARE), 0);
+    run(IMAGE_SERVICE_QUIET_MS + ARM_TICKS);
+    TEST_ASSERT_FALSE(image_service_holds(&node.images));
+    TEST_ASSERT_FALSE(is_armed());
+    enable = false;
+    run(10);
+    enable = true;
+    run(ARM_TICKS);
+    TEST_ASSERT_TRUE(is_armed());
+}
+
+static void test_a_trial_that_ends_well_arms_nothing_by_itself(void) {
+    enable = true;
+    node.images.is_held = true;
+    run(ARM_TICKS);
+    node.images.is_held = false;
+    run(ARM_TICKS);
+    TEST_ASSERT_FALSE(is_armed());
+    arm();
+    TEST_ASSERT_TRUE(is_armed());
+}
+
+// It would be its last start.
+static void test_an_image_on_trial_is_not_started_again(void) {
+    node.images.is_held = true;
+    assert_result(CAN_NODE_IMAGE_REFUSED, OP(START), 0);
+    TEST_ASSERT_EQUAL_UINT32(0, store.starts);
+}
+
 static void test_a_store_that_never_answers_costs_nothing_else(void) {
     store.slow = store.left = UINT32_MAX;
     assert_result(CAN_NODE_STORE_FAILED, OP(PREPARE), 0);
     TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(INFO), 0, 0).result);
+    TEST_ASSERT_TRUE(image_service_holds(&node.images));
     run(IMAGE_SERVICE_QUIET_MS);
     TEST_ASSERT_FALSE(image_service_holds(&node.images));
+    arm();
+    TEST_ASSERT_TRUE(is_armed());
 }
 
 int main(void) {
@@ -411,6 +491,11 @@ int main(void) {
     RUN_TEST(test_what_is_damaged_or_another_thing_is_not_written);
     RUN_TEST(test_a_piece_is_no_table);
     RUN_TEST(test_a_store_that_fails_or_refuses_is_told);
+    RUN_TEST(test_a_request_that_is_left_alone_is_brought_to_its_end);
+    RUN_TEST(test_drivers_are_off_while_nothing_may_be_armed);
+    RUN_TEST(test_nothing_is_armed_by_itself_once_it_may_be);
+    RUN_TEST(test_a_trial_that_ends_well_arms_nothing_by_itself);
+    RUN_TEST(test_an_image_on_trial_is_not_started_again);
     RUN_TEST(test_a_store_that_never_answers_costs_nothing_else);
     return UNITY_END();
 }

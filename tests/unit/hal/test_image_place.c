@@ -62,6 +62,24 @@ static void test_a_sealed_image_is_one(void) {
     TEST_ASSERT_TRUE(image_is_in(&place, BOARD));
 }
 
+static void test_a_check_in_parts_comes_to_the_same(void) {
+    image_check_t check;
+    image_check_begin(&check, &place, BOARD);
+    for (uint32_t i = 0; i < SEAL_AT / 64u - 1u; i++) {
+        TEST_ASSERT_EQUAL(IMAGE_CHECK_BUSY, image_check_work(&check, 1));
+    }
+    TEST_ASSERT_EQUAL(IMAGE_CHECK_GOOD, image_check_work(&check, 1));
+    bytes[500] ^= 1u;
+    image_check_begin(&check, &place, BOARD);
+    image_check_result_t result = IMAGE_CHECK_BUSY;
+    while (result == IMAGE_CHECK_BUSY) {
+        result = image_check_work(&check, 3);
+    }
+    TEST_ASSERT_EQUAL(IMAGE_CHECK_BAD, result);
+    image_check_begin(&check, &place, "other");
+    TEST_ASSERT_EQUAL(IMAGE_CHECK_BAD, image_check_work(&check, 1));
+}
+
 static void test_any_bit_that_changes_makes_it_none(void) {
     for (uint32_t i = 0; i < SEAL_AT + SHA256_BYTES; i++) {
         bytes[i] ^= (uint8_t)(1u << i % 8u);
@@ -133,6 +151,7 @@ static void test_what_it_says_has_to_be_in_its_beginning(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_sealed_image_is_one);
+    RUN_TEST(test_a_check_in_parts_comes_to_the_same);
     RUN_TEST(test_any_bit_that_changes_makes_it_none);
     RUN_TEST(test_one_for_another_board_is_none);
     RUN_TEST(test_one_that_was_linked_for_another_place_is_none);

@@ -98,7 +98,15 @@ class Images:
         self._done(self._ask("IMAGE_FINISH", reply_s=SLOW_S, tries=2))
 
     def restart(self) -> None:
-        self._done(self._ask("IMAGE_START"))
+        """It may have begun though no reply has come."""
+        for _ in range(TRIES):
+            reply = self._services.ask_once("IMAGE_START")
+            if reply is None and not self._asked(WORDS):
+                return
+            if reply is not None and reply.result != BUSY:
+                self._done(reply)
+                return
+        raise BenchFailure(no_answer(self._link))
 
     def comes_back_as(self, mark: int, before: int) -> bool:
         """After a restart: whether the image of that mark has confirmed itself, rather than that of

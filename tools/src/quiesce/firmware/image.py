@@ -2,7 +2,8 @@
 (hal/image/image_info.h).
 
 Files: ELF, Intel HEX, bare bytes (`.bin`), and bytes in a signed container (`.signed.bin`,
-`.update`; container.py). Boot code before the image (`.updatable.bin`) is left out.
+`.update`; container.py). Boot code before the image (`.updatable.bin`, `.updatable.signed`) is left
+out.
 """
 
 import hashlib

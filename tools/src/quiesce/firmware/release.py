@@ -4,6 +4,7 @@ what it takes, sums of all files.
     NAME.elf NAME.hex NAME.bin     sealed; NAME is quiesce_BOARD-VERSION
     NAME.signed.bin                in the container of MCUboot's imgtool
     NAME.updatable.bin             boot code and the image in its first place
+    NAME.updatable.signed          the same in the container
     NAME.slot0.update, slot1       signed likewise, for each of the two places
     NAME.map sizes.txt             where everything is; what is how large
     sbom.cdx.json                  parts, as CycloneDX 1.6
@@ -35,6 +36,7 @@ from quiesce.firmware.sizes import sizes_of
 
 SIGNED = ".signed.bin"
 UPDATABLE = ".updatable.bin"
+UPDATABLE_SIGNED = ".updatable.signed"
 ERASED = b"\xff"
 SUMS = "SHA256SUMS"
 
@@ -68,8 +70,9 @@ def write_updates(made: Made, version: str, key: Path | None, start: Path) -> No
     for number, payload in enumerate(payloads):
         sign(payload, version, key, start.with_name(start.name + update_ending(number)))
     boot = loaded(read_bytes(made.boot))[1]
-    first = start.with_name(start.name + UPDATABLE)
-    first.write_bytes(boot.ljust(BOOT_BYTES, ERASED) + payloads[0].ljust(SLOT_BYTES, ERASED))
+    first = boot.ljust(BOOT_BYTES, ERASED) + payloads[0].ljust(SLOT_BYTES, ERASED)
+    start.with_name(start.name + UPDATABLE).write_bytes(first)
+    sign(first, version, key, start.with_name(start.name + UPDATABLE_SIGNED))
 
 
 def update_ending(slot: int) -> str:

@@ -34,8 +34,7 @@ def image_for(running: Running, wanted: Wanted) -> Image:
     if why := refusal(wanted.folder, wanted.key, None, least, ending):
         allows = "; --at-least allows it" if "is older than" in why else ""
         raise UsageError(f"{shown(wanted.folder)}: refused: {why}{allows}")
-    file = signed_file(wanted.folder, ending)
-    image = image_of(payload_of(read_bytes(file)), file)
+    image, file = image_in(wanted.folder, ending)
     if crc_of_board(image.board) != running.board:
         raise UsageError(f"{file.name}: for {image.board}, which the controller is not")
     if image.begin != running.begin:
@@ -48,6 +47,16 @@ def image_for(running: Running, wanted: Wanted) -> Image:
             f"{file.name}: {len(image.payload):,} bytes; there is room for {running.room:,}"
         )
     return image
+
+
+def image_in(folder: Path, ending: str) -> tuple[Image, Path]:
+    file = signed_file(folder, ending)
+    return image_of(payload_of(read_bytes(file)), file), file
+
+
+def runs_already(running: Running, folder: Path) -> bool:
+    """What runs is the same build's image for its place."""
+    return mark_of(image_in(folder, update_ending(running.slot))[0]) == running.mark
 
 
 def mark_of(image: Image) -> int:

@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     from quiesce.can.images import Images
     from quiesce.can.link import Link
     from quiesce.cli.firmware.verify import version_of
-    from quiesce.loading.updating import Wanted, image_for, mark_of, update
+    from quiesce.loading.updating import Wanted, image_for, runs_already, update
 
     least = None if args.at_least is None else version_of(args.at_least)
     wanted = Wanted(args.folder, args.key, least)
@@ -59,8 +59,8 @@ def run(args: argparse.Namespace) -> int:
         images = Images(link, load())
         before = images.running()
         image = image_for(before, wanted)
-        runs_already = mark_of(image) == before.mark
-        if not (args.dry_run or runs_already):
+        is_there = runs_already(before, args.folder)
+        if not (args.dry_run or is_there):
             update(images, before, image, step, Telling().tell)
     report: dict[str, Any] = {
         "folder": shown(args.folder),
@@ -70,13 +70,16 @@ def run(args: argparse.Namespace) -> int:
         "place": 1 - before.slot,
         "bytes": len(image.payload),
         "took_s": round(time.monotonic() - begin_s, 1),
-        "is_updated": not (args.dry_run or runs_already),
+        "is_there": is_there,
+        "is_updated": not (args.dry_run or is_there),
     }
     print(json.dumps(report, indent=1) if args.json else text(report, args.dry_run))
     return 0
 
 
 def text(report: dict[str, Any], is_dry: bool) -> str:
+    if report["is_there"]:
+        return f"runs    {report['board']} {report['to']} already; nothing was changed"
     what = f"{report['board']} {report['from']} -> {report['to']}, {report['bytes']:,} bytes"
     if is_dry:
         return f"would   {what}; nothing was changed"

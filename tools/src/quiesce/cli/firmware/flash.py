@@ -11,7 +11,7 @@ from quiesce.cli.firmware.verify import add_options, refused
 from quiesce.firmware.container import payload_of
 from quiesce.firmware.flashing import WAYS, line
 from quiesce.firmware.image import FLASH_BEGIN, Image, image_of, read_bytes
-from quiesce.firmware.release import UPDATABLE, signed_file
+from quiesce.firmware.release import SIGNED, UPDATABLE, UPDATABLE_SIGNED, signed_file
 
 EPILOG = """examples:
   quiesce firmware flash build/firmware/nucleo_f446re --with openocd --dry-run
@@ -40,14 +40,22 @@ def add_parser(actions: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    why = refused(args)
+    ending = UPDATABLE_SIGNED if args.updatable else SIGNED
+    if args.updatable and not args.place.is_dir():
+        raise UsageError(f"--updatable: {args.place} is a file; name the folder of a build")
+    why = refused(args, ending)
     if why:
         print(f"refused    {why}")
         return EXIT_FAILED
-    image, data = what_to_flash(args)
+    image, data = what_to_flash(args.place, ending)
+    if data == image.payload and image.begin != FLASH_BEGIN:
+        raise UsageError(
+            f"{args.place.name}: linked for 0x{image.begin:08X}, behind boot code; bring it by "
+            "`quiesce can update`, or flash the folder with --updatable"
+        )
     with tempfile.TemporaryDirectory() as name:
-        ending = UPDATABLE if args.updatable else ".bin"
-        bare = Path(name) / f"quiesce_{image.board}-{image.version_text}{ending}"
+        bare_ending = UPDATABLE if args.updatable else ".bin"
+        bare = Path(name) / f"quiesce_{image.board}-{image.version_text}{bare_ending}"
         bare.write_bytes(data)
         command = WAYS[args.tool].command(bare, FLASH_BEGIN)
         if args.dry_run:
@@ -63,14 +71,8 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def what_to_flash(args: argparse.Namespace) -> tuple[Image, bytes]:
-    """The image, and all that goes from FLASH_BEGIN on."""
-    if not args.updatable:
-        file = signed_file(args.place)
-        image = image_of(payload_of(read_bytes(file)), file)
-        return image, image.payload
-    if not args.place.is_dir():
-        raise UsageError(f"--updatable: {args.place} is a file; name the folder of a build")
-    file = signed_file(args.place, UPDATABLE)
-    data = read_bytes(file)
+def what_to_flash(place: Path, ending: str) -> tuple[Image, bytes]:
+    """The image, and all that goes from FLASH_BEGIN on: what the container has."""
+    file = signed_file(place, ending)
+    data = payload_of(read_bytes(file))
     return image_of(data, file), data

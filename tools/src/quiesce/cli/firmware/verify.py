@@ -6,7 +6,7 @@ from pathlib import Path
 
 from quiesce.base.errors import EXIT_FAILED, UsageError
 from quiesce.base.paths import shown
-from quiesce.firmware.release import refusal
+from quiesce.firmware.release import SIGNED, refusal
 
 EPILOG = """examples:
   quiesce firmware verify build/firmware/nucleo_f446re
@@ -53,9 +53,10 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def refused(args: argparse.Namespace) -> str:
+def refused(args: argparse.Namespace, ending: str = SIGNED) -> str:
+    """ending: of what is meant, in a folder."""
     least = None if args.at_least is None else version_of(args.at_least)
-    return refusal(args.place, args.key, args.board, least)
+    return refusal(args.place, args.key, args.board, least, ending)
 
 
 def version_of(text: str) -> tuple[int, int, int]:
