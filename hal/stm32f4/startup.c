@@ -1,5 +1,6 @@
 // Start-up of an STM32F4 image: vectors, then what all images have in common (start.h). What is no
-// interrupt of the image is a fault (fault.h), the clock security system's among them.
+// interrupt of the image is a fault (fault.h), the clock security system's among them, and a supply
+// that falls.
 #include "fault.h"
 #include "start.h"
 #include "stm32f4_interrupts.h"
@@ -27,6 +28,7 @@ __attribute__((section(".vectors"), used)) static const struct {
      fault_handler, fault_handler, fault_handler, fault_handler, fault_handler, fault_handler,
      fault_handler, fault_handler},
     {
+        [PVD_INTERRUPT] = fault_handler,
         [ADC_INTERRUPT] = interrupt_current,
         [USART1_INTERRUPT] = interrupt_console,
         [USART2_INTERRUPT] = interrupt_console,

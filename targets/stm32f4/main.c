@@ -16,7 +16,9 @@
 #include "reset_cause.h"
 #include "safe.h"
 #include "stack.h"
+#include "stm32f4_interrupts.h"
 #include "stm32f4_spi.h"
+#include "supply.h"
 #include "tick_stm32f4.h"
 #include "uart_stm32f4.h"
 #include "vectors.h"
@@ -25,6 +27,7 @@
 #include <stddef.h>
 
 #define CONSOLE_PRIORITY 0x40u
+#define SUPPLY_PRIORITY 0x00u
 /// Fifty lost ticks at 1 kHz; the oscillator may be half as fast again, or half as slow.
 #define WATCHDOG_MS 50u
 #define START_WATCHDOG_MS 2000u ///< records are read
@@ -239,12 +242,21 @@ static void start_common(board_t *board) {
     free_node_start(&board->common, &how);
 }
 
+// Where the supply stays low it begins anew, with the outputs off: until it is back.
+static void watch_supply(void) {
+    if (!supply_watch()) {
+        processor_reset();
+    }
+    nvic_enable(PVD_INTERRUPT, SUPPLY_PRIORITY);
+}
+
 static void start(board_t *board) {
     clocks_start(&board->clocks, stm32f4_board.crystal_Hz, stm32f4_board.crystal_is_external);
     if (image_state(&image_info) == IMAGE_BROKEN) {
         fault_stay_silent();
     }
     if (board->clocks.source != CLOCK_ABSENT) {
+        watch_supply();
         (void)watchdog_start(
             START_WATCHDOG_MS); // it runs in any case, by half a second at the least
     }
