@@ -273,10 +273,12 @@ const char *quiesce_lacks_table(const quiesce_t *self);
 /// CRC-32 that the table in use carries: the law's, else its tracker's; 0 where there is none.
 uint32_t quiesce_table_hash(const quiesce_t *self);
 
-/// Room for tables that arrive in parts, beside those in use: law's and tracker's, each with the
-/// one before it, and the one that arrives. A table is put to use whole and checked, or not at all.
-/// Contents are private.
-#define QUIESCE_TABLE_ROOMS 5u
+/// Room for tables that arrive in parts, beside those in use: the law's and, where a tracker of the
+/// build has tables, the tracker's, each with the one before it, and the one that arrives. A table
+/// is put to use whole and checked, or not at all. Contents are private.
+#define QUIESCE_TRACKERS_HAVE_TABLES                                                               \
+    (QUIESCE_WITH_TRACKER_INVERSE || QUIESCE_WITH_TRACKER_NETWORK || QUIESCE_WITH_TRACKER_BANK)
+#define QUIESCE_TABLE_ROOMS (QUIESCE_TRACKERS_HAVE_TABLES ? 5u : 3u)
 typedef struct {
     uint32_t words[QUIESCE_TABLE_ROOMS][QUIESCE_TABLE_WORDS];
     uint32_t filled;  ///< words that have arrived

@@ -63,6 +63,27 @@ static void test_few_knows_the_tables_of_its_own_laws_alone(void) {
     TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_MAGIC, quiesce_table_check(words, 3));
 }
 
+static uint32_t arrived_room(quiesce_tables_t *tables) {
+    const uint32_t word = SIGNS_MAGIC;
+    uint32_t count;
+    TEST_ASSERT_TRUE(quiesce_tables_write(tables, 0, &word, 1));
+    const uint32_t *const words = quiesce_tables_arrival(tables, &count);
+    return (uint32_t)(words - tables->words[0]) / QUIESCE_TABLE_WORDS;
+}
+
+// Its tracker has no tables: what is in use, the one before it, and what arrives.
+static void test_few_has_rooms_for_the_law_s_tables_alone(void) {
+    static quiesce_tables_t tables;
+    quiesce_tables_init(&tables);
+    TEST_ASSERT_EQUAL_UINT32(3, sizeof tables.words / sizeof tables.words[0]);
+    TEST_ASSERT_EQUAL_UINT32(0, arrived_room(&tables));
+    tables.of[QUIESCE_OF_LAW].now = 0;
+    TEST_ASSERT_EQUAL_UINT32(1, arrived_room(&tables));
+    tables.of[QUIESCE_OF_LAW].before = 0;
+    tables.of[QUIESCE_OF_LAW].now = 1;
+    TEST_ASSERT_EQUAL_UINT32(2, arrived_room(&tables));
+}
+
 static void test_few_runs_the_law_that_it_holds(void) {
     params.law = QUIESCE_LAW_CONSTANT;
     params.constant_current_mA = 1500;
@@ -82,6 +103,7 @@ int main(void) {
     RUN_TEST(test_few_refuses_every_law_that_it_lacks);
     RUN_TEST(test_few_refuses_every_tracker_that_it_lacks);
     RUN_TEST(test_few_knows_the_tables_of_its_own_laws_alone);
+    RUN_TEST(test_few_has_rooms_for_the_law_s_tables_alone);
     RUN_TEST(test_few_runs_the_law_that_it_holds);
     return UNITY_END();
 }

@@ -40,6 +40,16 @@ static void test_every_kind_is_found_by_its_first_word(void) {
     TEST_ASSERT_EQUAL_UINT32(12, kinds); // rules are two laws'
 }
 
+// The room for tables counts on it: QUIESCE_TRACKERS_HAVE_TABLES.
+static void test_trackers_with_tables_are_these(void) {
+    for (int32_t i = 0; i < QUIESCE_TRACKER_COUNT; i++) {
+        const bool has_tables = i == QUIESCE_TRACKER_INVERSE || i == QUIESCE_TRACKER_NETWORK ||
+                                i == QUIESCE_TRACKER_BANK;
+        TEST_ASSERT_EQUAL(has_tables, track_find(i)->kind != NULL);
+    }
+    TEST_ASSERT_EQUAL_UINT32(5, QUIESCE_TABLE_ROOMS);
+}
+
 static void test_kinds_have_the_names_that_people_know(void) {
     static const struct {
         uint32_t magic;
@@ -100,6 +110,7 @@ static void test_tables_are_checked_by_their_kind(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_every_kind_is_found_by_its_first_word);
+    RUN_TEST(test_trackers_with_tables_are_these);
     RUN_TEST(test_kinds_have_the_names_that_people_know);
     RUN_TEST(test_a_word_that_begins_no_table_is_of_no_kind);
     RUN_TEST(test_tables_are_checked_by_their_kind);
