@@ -157,7 +157,7 @@ bool image_service_work(image_service_t *self, const image_work_t *work, can_nod
     }
 }
 
-// A store that does not come to an end has failed: nothing is held for ever.
+// A store that does not come to an end is told as failed.
 static void erase(image_service_t *self) {
     const image_store_answer_t answer = self->store->prepare(self->store->context);
     const bool is_late = answer == IMAGE_STORE_BUSY && self->quiet_ms == 0u;

@@ -30,6 +30,7 @@ bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_
     table_service_init(&node->tables, board);
     node->images = (image_service_t){0};
     node->drivers_are_held = false;
+    node->held_ticks = 0;
     node->waits_for_release = false;
     const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
                                            : quiesce_init_board(&node->controller, board, params);
@@ -111,9 +112,17 @@ static bool is_given(const node_t *node, const node_inputs_t *board) {
     }
 }
 
-// While flash is erased, and for a program that is being replaced or has not shown that it works.
 static bool is_held(const node_t *node) {
-    return node->drivers_are_held || image_service_holds(&node->images);
+    return node->held_ticks > 0u;
+}
+
+// While flash is erased, and for a program that is being replaced or has not shown that it works.
+static void pass_hold(node_t *node) {
+    if (node->drivers_are_held || image_service_holds(&node->images)) {
+        node->held_ticks = NODE_HELD_MS * (uint32_t)node->params.tick_rate_Hz / 1000u;
+    } else if (node->held_ticks > 0u) {
+        node->held_ticks--;
+    }
 }
 
 // Nothing is armed then, nor by an enable that was there before it could be.
@@ -132,9 +141,11 @@ static void take_sample(quiesce_sample_t *sample, const quiesce_sample_t *from) 
     }
 }
 
+// The board's own stage that is off cannot show that it works; one on the bus tells of failures
+// only.
 static void take_driver(quiesce_driver_t *driver, const quiesce_driver_t *board,
-                        const quiesce_driver_t *bus) {
-    driver->has_failed = board->has_failed || bus->has_failed;
+                        const quiesce_driver_t *bus, bool is_off) {
+    driver->has_failed = (board->has_failed && !is_off) || bus->has_failed;
     driver->is_measured = board->is_measured || bus->is_measured;
     if (driver->is_measured) {
         driver->current_mA = board->is_measured ? board->current_mA : bus->current_mA;
@@ -152,8 +163,7 @@ static void take_inputs(node_t *node, const node_inputs_t *board) {
         take_sample(&in->sensor[i], is_on_bus ? &node->bus.sensor[i] : &board->sensor[i]);
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
-        take_driver(&in->driver[i], &board->driver[i], &node->bus.driver[i]);
-        in->driver[i].has_failed = in->driver[i].has_failed && !is_held(node);
+        take_driver(&in->driver[i], &board->driver[i], &node->bus.driver[i], is_held(node));
     }
 }
 
@@ -186,6 +196,7 @@ static void note(node_t *node, const node_inputs_t *board) {
 
 void node_step(node_t *node, const node_inputs_t *inputs) {
     can_node_inputs(&node->can, inputs->ticks_elapsed, &node->bus);
+    pass_hold(node);
     take_inputs(node, inputs);
     note(node, inputs);
     quiesce_step(&node->controller, &node->in, &node->out);

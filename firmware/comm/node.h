@@ -23,6 +23,10 @@ extern "C" {
 /// are the target's.
 #define NODE_WATCHES 1u
 
+/// Drivers that were held stay so for as long: who sends their measurements on the bus is trusted
+/// again.
+#define NODE_HELD_MS 100u
+
 /// Where the operator's enable comes from.
 typedef enum {
     NODE_ENABLE_BOARD = 0, ///< node_inputs_t.enable: a line, or always
@@ -70,6 +74,7 @@ typedef struct {
     table_service_t tables; ///< what is loaded; its keeper has the target's store
     image_service_t images; ///< an update of the program
     bool drivers_are_held;  ///< the target's, between ticks: they are to be off, and stay so
+    uint32_t held_ticks;    ///< left, that a hold lasts beyond its cause
     bool waits_for_release; ///< an enable that was given while they were held does not count
 } node_t;
 

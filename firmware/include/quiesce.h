@@ -195,9 +195,10 @@ bool quiesce_params_use(quiesce_t *self, const quiesce_params_t *params);
 void quiesce_watch(quiesce_t *self, uint32_t which, const uint32_t *words, uint32_t count);
 
 /// The target keeps its drivers off, whatever the state: called after each step for as long as it
-/// does, as while flash is erased. in, out: the step's, whose driver_enable falls. What is measured
-/// meanwhile is what is expected, and counts from there when it ends; a trip and heat go on.
-/// Whoever holds them gives no enable.
+/// does, as while flash is erased. in, out: the step's, whose driver_enable falls. Where they would
+/// be on, what is measured is what is expected, and counts from there when it ends; where they are
+/// off (self-test, a fault) nothing changes. A trip and heat go on. Whoever holds them gives no
+/// enable.
 void quiesce_hold_drivers(quiesce_t *self, const quiesce_in_t *in, quiesce_out_t *out);
 
 /// Whether the operator has armed it: it runs, or will as soon as all that it needs is there.

@@ -422,7 +422,7 @@ static void test_drivers_are_off_while_nothing_may_be_armed(void) {
     assert_result(CAN_NODE_DONE, OP(PREPARE), 0);
     run(1);
     TEST_ASSERT_FALSE(is_driven());
-    run(IMAGE_SERVICE_QUIET_MS);
+    run(IMAGE_SERVICE_QUIET_MS + NODE_HELD_MS);
     TEST_ASSERT_TRUE(is_driven());
     TEST_ASSERT_EQUAL(QUIESCE_STATE_IDLE, node.out.telemetry.state);
 }

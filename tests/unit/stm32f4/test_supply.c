@@ -43,7 +43,9 @@ static void start(fake_chip_t chip, uint32_t from, uint32_t until) {
     low_until = until;
 }
 
-void setUp(void) {}
+void setUp(void) {
+    start(FAKE_F405, UINT32_MAX, UINT32_MAX);
+}
 
 void tearDown(void) {
     TEST_ASSERT_NULL_MESSAGE(fake_mistake(), fake_mistake());
@@ -83,7 +85,6 @@ static void test_one_that_stays_low_is_told_after_a_bounded_wait(void) {
 
 // Wherever it falls in those few reads, it is seen: by the line, or by the last look.
 static void test_a_fall_at_the_end_of_the_start_is_not_missed(void) {
-    start(FAKE_F405, UINT32_MAX, UINT32_MAX);
     TEST_ASSERT_TRUE(supply_watch());
     const uint32_t all = reads;
     for (uint32_t from = all - 3u; from <= all + 1u; from++) {

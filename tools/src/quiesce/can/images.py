@@ -99,14 +99,18 @@ class Images:
 
     def restart(self) -> None:
         """It may have begun though no reply has come."""
-        for _ in range(TRIES):
+        end_s = time.monotonic() + BUSY_S
+        while True:
             reply = self._services.ask_once("IMAGE_START")
             if reply is None and not self._asked(WORDS):
                 return
-            if reply is not None and reply.result != BUSY:
+            is_late = time.monotonic() > end_s
+            if reply is not None and (reply.result != BUSY or is_late):
                 self._done(reply)
                 return
-        raise BenchFailure(no_answer(self._link))
+            if is_late:
+                raise BenchFailure(no_answer(self._link))
+            self._services.wait(0.1)
 
     def comes_back_as(self, mark: int, before: int) -> bool:
         """After a restart: whether the image of that mark has confirmed itself, rather than that of
