@@ -28,15 +28,13 @@ static bool told(image_store_answer_t answer, can_node_result_t *result) {
 }
 
 static bool prepare_place(image_service_t *self, can_node_result_t *result) {
-    if (!self->is_awaited && !self->is_erasing) {
-        self->is_erasing = true;
-        self->is_open = false;
-        self->is_finished = false;
+    if (!self->is_awaited && self->stage != IMAGE_STAGE_ERASES) {
+        self->stage = IMAGE_STAGE_ERASES;
         self->written = 0;
         self->quiet_ms = IMAGE_SERVICE_QUIET_MS;
     }
     self->is_awaited = true;
-    if (self->is_erasing) {
+    if (self->stage == IMAGE_STAGE_ERASES) {
         return false;
     }
     self->is_awaited = false;
@@ -59,7 +57,7 @@ static bool is_in_place(const image_service_t *self, uint32_t at, uint32_t count
 static bool take_piece(image_service_t *self, const image_work_t *work, can_node_result_t *result) {
     uint32_t count;
     const uint32_t *words = quiesce_tables_arrival(work->tables, &count);
-    if (!self->is_open || !has_arrived(work, words, count)) {
+    if (self->stage != IMAGE_STAGE_OPEN || !has_arrived(work, words, count)) {
         *result = CAN_NODE_NOTHING_RECEIVED;
         return true;
     }
@@ -88,15 +86,14 @@ static bool take_piece(image_service_t *self, const image_work_t *work, can_node
 
 // Asked again, its reply was lost.
 static bool finish_image(image_service_t *self, can_node_result_t *result) {
-    if (!self->is_open) {
-        *result = self->is_finished ? CAN_NODE_DONE : CAN_NODE_NOTHING_RECEIVED;
+    if (self->stage != IMAGE_STAGE_OPEN) {
+        *result = self->stage == IMAGE_STAGE_FINISHED ? CAN_NODE_DONE : CAN_NODE_NOTHING_RECEIVED;
         return true;
     }
     if (!told(self->store->finish(self->store->context), result)) {
         return false;
     }
-    self->is_open = false;
-    self->is_finished = *result == CAN_NODE_DONE;
+    self->stage = *result == CAN_NODE_DONE ? IMAGE_STAGE_FINISHED : IMAGE_STAGE_NONE;
     return true;
 }
 
@@ -160,19 +157,20 @@ bool image_service_work(image_service_t *self, const image_work_t *work, can_nod
 // A store that does not come to an end is told as failed.
 static void erase(image_service_t *self) {
     const image_store_answer_t answer = self->store->prepare(self->store->context);
-    const bool is_late = answer == IMAGE_STORE_BUSY && self->quiet_ms == 0u;
-    self->is_erasing = answer == IMAGE_STORE_BUSY && !is_late;
-    self->is_open = answer == IMAGE_STORE_DONE;
-    self->erased = is_late ? IMAGE_STORE_FAILED : answer;
+    if (answer == IMAGE_STORE_BUSY && self->quiet_ms > 0u) {
+        return;
+    }
+    self->erased = answer == IMAGE_STORE_BUSY ? IMAGE_STORE_FAILED : answer;
+    self->stage = answer == IMAGE_STORE_DONE ? IMAGE_STAGE_OPEN : IMAGE_STAGE_NONE;
+    self->quiet_ms = IMAGE_SERVICE_QUIET_MS;
 }
 
 void image_service_go_on(image_service_t *self, uint32_t passed_ms) {
     self->quiet_ms -= passed_ms < self->quiet_ms ? passed_ms : self->quiet_ms;
-    if (self->is_erasing) {
+    if (self->stage == IMAGE_STAGE_ERASES) {
         erase(self);
-        self->quiet_ms = self->is_open ? IMAGE_SERVICE_QUIET_MS : self->quiet_ms;
-    } else {
-        self->is_open = self->quiet_ms > 0u;
+    } else if (self->quiet_ms == 0u) {
+        self->stage = IMAGE_STAGE_NONE;
     }
 }
 

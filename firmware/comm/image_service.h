@@ -59,6 +59,13 @@ typedef struct {
     void (*start)(void *context);
 } image_store_t;
 
+typedef enum {
+    IMAGE_STAGE_NONE = 0,
+    IMAGE_STAGE_ERASES, ///< to its end, whoever waits for it
+    IMAGE_STAGE_OPEN,   ///< pieces may come
+    IMAGE_STAGE_FINISHED,
+} image_stage_t;
+
 struct image_work;
 typedef struct image_service image_service_t;
 
@@ -68,10 +75,8 @@ struct image_service {
     bool (*work)(image_service_t *self, const struct image_work *work, can_node_result_t *result,
                  int32_t *value);
     void (*go_on)(image_service_t *self, uint32_t passed_ms);
-    bool is_erasing;  ///< begun, and goes on to its end whoever waits for it
-    bool is_awaited;  ///< by a request
-    bool is_open;     ///< erased: pieces may come
-    bool is_finished; ///< and nothing has come since
+    image_stage_t stage;
+    bool is_awaited; ///< an erasure, by a request
     bool is_starting;
     bool is_held; ///< by the target: on trial
     image_store_answer_t erased;
@@ -103,16 +108,21 @@ static inline void image_service_rest(image_service_t *self) {
 /// Once a tick, of one that erases or is open.
 void image_service_go_on(image_service_t *self, uint32_t passed_ms);
 
+/// An update has begun, and has neither ended nor been given up.
+static inline bool image_service_is_under_way(const image_service_t *self) {
+    return self->stage == IMAGE_STAGE_ERASES || self->stage == IMAGE_STAGE_OPEN;
+}
+
 /// Once a tick: what was begun goes on, and time passes.
 static inline void image_service_pass(image_service_t *self, uint32_t passed_ms) {
-    if (self->is_erasing || self->is_open) {
+    if (image_service_is_under_way(self)) {
         self->go_on(self, passed_ms);
     }
 }
 
 /// Nothing may be armed or driven.
 static inline bool image_service_holds(const image_service_t *self) {
-    return self->is_erasing || self->is_open || self->is_starting || self->is_held;
+    return image_service_is_under_way(self) || self->is_starting || self->is_held;
 }
 
 #ifdef __cplusplus
