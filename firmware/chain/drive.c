@@ -89,8 +89,11 @@ static current_verdict_t judge_coil(drive_t *self, int32_t current_mA, int32_t v
 
 int32_t drive_watch(drive_t *self, const quiesce_driver_t *driver, const int32_t *voltage_mV,
                     current_verdict_t *verdict) {
-    *verdict = current_monitor_step(&self->monitor, self->last_command_mA, driver->current_mA,
-                                    driver->is_measured);
+    const current_measured_t measured = !driver->is_measured ? CURRENT_NONE
+                                        : driver->is_old     ? CURRENT_OLD
+                                                             : CURRENT_NEW;
+    *verdict =
+        current_monitor_step(&self->monitor, self->last_command_mA, driver->current_mA, measured);
     if (DRIVE_SEES_COIL && voltage_mV != NULL && driver->is_measured) {
         *verdict = judge_coil(self, driver->current_mA, *voltage_mV, *verdict);
     }
@@ -115,7 +118,7 @@ void drive_forget(drive_t *self) {
 static void take(drive_t *self, int32_t command_mA, bool driver_enable, quiesce_command_t *out) {
     *out = (quiesce_command_t){.current_cmd_mA = command_mA, .driver_enable = driver_enable};
     // A driver that is switched off is expected to carry nothing.
-    self->last_command_mA = driver_enable ? command_mA : 0;
+    self->last_command_mA = driver_enable ? (uint16_t)command_mA : 0u; // at most its ceiling
 }
 
 void drive_command(drive_t *self, int32_t request_mA, bool is_allowed, bool driver_enable,

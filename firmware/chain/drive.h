@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
     drive_limits_t limits;
     uint32_t twin[TWIN_WORDS(WORDS_OF(drive_limits_t))];
-    int32_t last_command_mA; ///< that the driver is expected to make
+    uint16_t last_command_mA; ///< that the driver is expected to make
     current_monitor_t monitor;
     coil_t coil;
     energy_t energy;

@@ -146,6 +146,7 @@ static void take_current(can_receive_t *self, uint32_t number, const can_frame_t
     if (judge(self, &driver->from, message, frame) == FRESHNESS_COUNTS) {
         driver->current_mA = current.current_meas_mA;
         driver->has_failed = has_failed;
+        driver->is_new = true;
     }
 }
 
@@ -259,10 +260,13 @@ static quiesce_driver_t hand_over_driver(can_driver_t *self, int32_t passed_us) 
     freshness_pass(&self->from, passed_us);
     const bool is_measured = freshness_is_known(&self->from);
     const bool has_failed = self->failure_is_seen || (is_measured && self->has_failed);
+    const bool is_old = is_measured && !self->is_new;
     self->failure_is_seen = false;
+    self->is_new = false;
     return (quiesce_driver_t){
         .current_mA = is_measured ? self->current_mA : 0,
         .is_measured = is_measured,
+        .is_old = is_old,
         .has_failed = has_failed,
     };
 }

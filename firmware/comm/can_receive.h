@@ -19,7 +19,7 @@ typedef struct {
     bool fault_reset;                         ///< its rising edge: true for one tick
     bool estop;                               ///< EmergencyStop, not older than its timeout
     quiesce_sample_t sensor[QUIESCE_SENSORS]; ///< counts are 0 unless it is fresh
-    /// current_mA is 0 unless it is measured; has_failed: CurrentMeasured says open load, short,
+    /// current_mA is 0 unless it is measured, and is_old between two frames; has_failed: CurrentMeasured says open load, short,
     /// heat or supply.
     quiesce_driver_t driver[QUIESCE_DAMPERS];
 } can_node_inputs_t;
@@ -53,6 +53,7 @@ typedef struct {
     freshness_t from;
     int32_t current_mA;
     bool has_failed;
+    bool is_new;          ///< current_mA, since the last tick
     bool failure_is_seen; ///< since the last tick, whatever the frame's counter and time
 } can_driver_t;
 

@@ -149,6 +149,7 @@ static void take_driver(quiesce_driver_t *driver, const quiesce_driver_t *board,
     driver->is_measured = board->is_measured || bus->is_measured;
     if (driver->is_measured) {
         driver->current_mA = board->is_measured ? board->current_mA : bus->current_mA;
+        driver->is_old = board->is_measured ? board->is_old : bus->is_old;
     }
 }
 

@@ -4,31 +4,54 @@
 #define WRONG_ADDS 4u
 #define OVER_ADDS 8u
 
+// Backward Euler of the lag: 1 / (1 + lag in ticks).
+static current_lag_t lag_of(uint32_t milliticks) {
+    return (current_lag_t){.gain_q30 = (int32_t)((65536000u / (1000u + milliticks)) << 14)};
+}
+
+// In ticks, rounded up.
+static uint32_t dead_ticks(uint32_t tick_rate_Hz) {
+    const uint32_t ticks = (CURRENT_DEAD_MS * tick_rate_Hz + 999u) / 1000u;
+    return ticks < 1u ? 1u : ticks < CURRENT_DEAD_TICKS ? ticks : CURRENT_DEAD_TICKS;
+}
+
+static void settle(current_monitor_t *self, int32_t current_mA) {
+    const int32_t settled_mA = clamp_i32(current_mA, -CURRENT_MOST_mA, CURRENT_MOST_mA);
+    self->early.mA_q14 = settled_mA * 16384;
+    self->late.mA_q14 = settled_mA * 16384;
+    for (uint32_t i = 0; i < CURRENT_DEAD_TICKS; i++) {
+        self->before_mA[i] = (uint16_t)clamp_i32(settled_mA, 0, CURRENT_MOST_mA);
+    }
+}
+
 void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,
                           int32_t initial_mA) {
-    // Backward Euler of the lag: 1 / (1 + lag in ticks).
-    const uint32_t lag_milliticks = (uint32_t)cfg->lag_us * cfg->tick_rate_Hz / 1000u;
+    const uint32_t milliticks = (uint32_t)cfg->lag_us * cfg->tick_rate_Hz / 1000u;
     *self = (current_monitor_t){
         .error_mA = cfg->error_mA,
         .fault_ticks = cfg->fault_ticks,
-        .trip_mA = cfg->trip_mA,
-        .trip_ticks = cfg->trip_ticks,
-        .lag_gain_q16 = (int32_t)(65536000u / (1000u + lag_milliticks)),
-        .expected_mA_q16 = (int64_t)initial_mA * 65536,
-        .is_on = cfg->check == CURRENT_CHECK_ALWAYS,
-        .is_on_once_seen = cfg->check == CURRENT_CHECK_ONCE_SEEN,
+        .trip_mA = cfg->trip_mA > 0 ? cfg->trip_mA : INT32_MAX,
+        .over_limit = cfg->trip_mA > 0 ? cfg->trip_ticks * OVER_ADDS : UINT32_MAX,
+        .early = lag_of(milliticks / 2u),
+        .late = lag_of(milliticks * 2u),
+        .last = dead_ticks(cfg->tick_rate_Hz) - 1u,
+        .is_checked = cfg->check != CURRENT_CHECK_NEVER,
+        .is_missed = cfg->check == CURRENT_CHECK_ALWAYS,
     };
+    settle(self, initial_mA);
 }
 
 void current_monitor_reset(current_monitor_t *self) {
     self->wrong = 0;
+    self->was_wrong = false;
     self->missing_ticks = 0;
     self->over = 0;
 }
 
 void current_monitor_follow(current_monitor_t *self, int32_t measured_mA) {
-    self->expected_mA_q16 = (int64_t)measured_mA * 65536;
+    settle(self, measured_mA);
     self->wrong = 0;
+    self->was_wrong = false;
     self->missing_ticks = 0;
 }
 
@@ -40,45 +63,64 @@ static uint32_t leak(uint32_t count, bool is_bad, uint32_t adds, uint32_t limit)
     return count < limit ? count + adds : count;
 }
 
-static current_verdict_t judge(const current_monitor_t *self, int32_t expected_mA,
-                               int32_t measured_mA) {
-    const uint32_t most = self->fault_ticks * WRONG_ADDS;
-    if (self->trip_mA > 0 && self->over >= self->trip_ticks * OVER_ADDS) {
+static current_verdict_t judge(const current_monitor_t *self, int32_t measured_mA) {
+    if (self->over >= self->over_limit) {
         return CURRENT_OVER;
     }
     if (self->missing_ticks >= self->fault_ticks) {
         return CURRENT_MISSING;
     }
-    if (self->wrong < most) {
+    if (self->wrong < self->fault_ticks * WRONG_ADDS) {
         return CURRENT_OK;
     }
-    const bool is_open =
-        expected_mA >= 2 * self->error_mA && abs_i32(measured_mA) < self->error_mA / 2;
+    const bool is_open = current_monitor_expected_mA(self) >= 2 * self->error_mA &&
+                         abs_i32(measured_mA) < self->error_mA / 2;
     return is_open ? CURRENT_OPEN_COIL : CURRENT_NOT_FOLLOWING;
 }
 
-static bool is_off_by_more(int32_t a_mA, int32_t b_mA, int32_t error_mA) {
-    const int64_t difference_mA = (int64_t)a_mA - b_mA;
-    return difference_mA > error_mA || -difference_mA > error_mA;
+static void follow(current_lag_t *lag, int32_t command_mA) {
+    const int32_t step_q14 = command_mA * 16384 - lag->mA_q14;
+    lag->mA_q14 += (int32_t)((int64_t)step_q14 * lag->gain_q30 >> 32) * 4;
 }
 
-current_verdict_t current_monitor_step(current_monitor_t *self, int32_t command_mA,
-                                       int32_t measured_mA, bool is_measured) {
-    const int64_t step_q16 = (int64_t)command_mA * 65536 - self->expected_mA_q16;
-    self->expected_mA_q16 += step_q16 * self->lag_gain_q16 >> 16;
-    const int32_t expected_mA = (int32_t)(self->expected_mA_q16 >> 16);
-    const uint32_t most = self->fault_ticks * WRONG_ADDS;
-    if (is_measured) {
-        self->is_on = self->is_on || self->is_on_once_seen;
-        self->over = leak(self->over, is_off_by_more(measured_mA, 0, self->trip_mA), OVER_ADDS,
-                          self->trip_ticks * OVER_ADDS);
+static void expect(current_monitor_t *self, uint16_t command_mA) {
+    follow(&self->late, self->before_mA[self->oldest]);
+    follow(&self->early, command_mA);
+    self->before_mA[self->oldest] = command_mA;
+    self->oldest = self->oldest > 0u ? self->oldest - 1u : self->last;
+}
+
+// By more than the error above the highest, or below the lowest of what may flow.
+static bool is_wrong(const current_monitor_t *self, int32_t measured_mA) {
+    const int32_t early = self->early.mA_q14;
+    const int32_t late = self->late.mA_q14;
+    const int32_t highest_mA = (early > late ? early : late) >> 14;
+    const int32_t lowest_mA = (early > late ? late : early) >> 14;
+    return measured_mA > highest_mA + self->error_mA || measured_mA < lowest_mA - self->error_mA;
+}
+
+static bool is_over(const current_monitor_t *self, int32_t measured_mA) {
+    return measured_mA > self->trip_mA || measured_mA < -self->trip_mA;
+}
+
+static void weigh(current_monitor_t *self, int32_t measured_mA, bool is_new) {
+    self->is_missed = self->is_checked;
+    self->missing_ticks = 0;
+    self->over = leak(self->over, is_over(self, measured_mA), OVER_ADDS, self->over_limit);
+    if (self->is_checked) {
+        const bool is_bad = is_new ? is_wrong(self, measured_mA) : self->was_wrong;
+        self->was_wrong = is_bad;
+        self->wrong = leak(self->wrong, is_bad, WRONG_ADDS, self->fault_ticks * WRONG_ADDS);
     }
-    if (self->is_on) {
-        self->missing_ticks = is_measured ? 0u : increment_sat_u32(self->missing_ticks);
+}
+
+current_verdict_t current_monitor_step(current_monitor_t *self, uint16_t command_mA,
+                                       int32_t measured_mA, current_measured_t measured) {
+    expect(self, command_mA);
+    if (measured != CURRENT_NONE) {
+        weigh(self, measured_mA, measured == CURRENT_NEW);
+    } else if (self->is_missed) {
+        self->missing_ticks = increment_sat_u32(self->missing_ticks);
     }
-    if (self->is_on && is_measured) {
-        self->wrong = leak(self->wrong, is_off_by_more(measured_mA, expected_mA, self->error_mA),
-                           WRONG_ADDS, most);
-    }
-    return judge(self, expected_mA, measured_mA);
+    return judge(self, measured_mA);
 }

@@ -46,7 +46,8 @@ typedef struct {
 /// What a damper's current driver said in a tick.
 typedef struct {
     int32_t current_mA; ///< measured coil current; ignored unless is_measured
-    bool is_measured;   ///< a measurement arrived
+    bool is_measured;   ///< there is a measurement
+    bool is_old;        ///< it is that of an earlier tick, once more; ignored unless is_measured
     bool has_failed;    ///< it reports a fault, or cannot be told its current
 } quiesce_driver_t;
 
@@ -107,7 +108,7 @@ typedef struct {
 
 /// Controller state, owned by the caller; contents are private. Copying it copies the controller.
 #define QUIESCE_STATE_BYTES                                                                        \
-    (12288 + 512 * (QUIESCE_SENSORS - 1) + 64 * (QUIESCE_BODIES - 1) + 256 * (QUIESCE_DAMPERS - 1))
+    (12320 + 512 * (QUIESCE_SENSORS - 1) + 64 * (QUIESCE_BODIES - 1) + 256 * (QUIESCE_DAMPERS - 1))
 typedef struct {
     uint64_t opaque[QUIESCE_STATE_BYTES / 8];
 } quiesce_t;

@@ -67,6 +67,11 @@ static int32_t draw_measured(part_t *part, int32_t expected_mA, int32_t error_mA
     }
 }
 
+static uint16_t as_command(int32_t current_mA) {
+    const int32_t least_mA = current_mA > 0 ? current_mA : 0;
+    return (uint16_t)(least_mA < CURRENT_MOST_mA ? least_mA : CURRENT_MOST_mA);
+}
+
 static void monitor_case(uint32_t number) {
     part_t part;
     current_monitor_t monitor;
@@ -93,8 +98,11 @@ static void monitor_case(uint32_t number) {
                     ? draw_measured(&part, expected_mA, cfg.error_mA, cfg.trip_mA)
                     : expected_mA;
             missing_in = part_one_in(&part, 40) ? 1u + draw_below(&part.seed, 20) : missing_in;
-            const bool is_measured = !part_one_in(&part, missing_in);
-            part_word(&part, current_monitor_step(&monitor, command_mA, measured_mA, is_measured));
+            const current_measured_t measured = part_one_in(&part, missing_in) ? CURRENT_NONE
+                                                : part_one_in(&part, 3)        ? CURRENT_OLD
+                                                                               : CURRENT_NEW;
+            part_word(&part, current_monitor_step(&monitor, as_command(command_mA), measured_mA,
+                                                  measured));
             part_word(&part, current_monitor_expected_mA(&monitor));
             part_word(&part, current_monitor_is_quiet(&monitor));
             if (part_one_in(&part, 50)) {
@@ -295,7 +303,7 @@ static void drive_case(uint32_t number) {
         }
         drive_init(&drive, restart % QUIESCE_DAMPERS, &board.damper[0], &params, is_accepted);
         part_word(&part, (int64_t)drive.heat.line << drive.heat.shift);
-        part_word(&part, drive.monitor.trip_ticks);
+        part_word(&part, drive.monitor.over_limit);
         for (uint32_t i = 0; i < STEPS / RESTARTS; i++) {
             wrong_in = part_one_in(&part, 80) ? 1u + draw_below(&part.seed, 100) : wrong_in;
             drive_tick(&part, &drive, board.damper[0].coil_mohm, wrong_in);

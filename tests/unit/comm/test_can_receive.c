@@ -101,6 +101,22 @@ static void test_nothing_counts_before_the_third_frame(void) {
     TEST_ASSERT_EQUAL_UINT32(0, bus.counters.rejected_alive);
 }
 
+// One frame is one measurement: until the next it is told as an old one.
+static void test_a_measurement_is_new_for_a_tick(void) {
+    introduce_driver(0);
+    for (uint8_t frame = 0; frame < 3; frame++) {
+        take(make_current(100 + frame, frame));
+        for (uint32_t tick = 0; tick < 10; tick++) {
+            pass(1);
+            TEST_ASSERT_TRUE(inputs.driver[0].is_measured);
+            TEST_ASSERT_EQUAL(tick > 0, inputs.driver[0].is_old);
+            TEST_ASSERT_EQUAL_INT32(100 + frame, inputs.driver[0].current_mA);
+        }
+    }
+    pass(50);
+    TEST_ASSERT_FALSE(inputs.driver[0].is_measured || inputs.driver[0].is_old);
+}
+
 // From the moment that it was due.
 static void test_each_is_gone_after_its_timeout(void) {
     static const uint32_t rates_Hz[] = {500, 1000, 2000, 4000};
@@ -688,6 +704,7 @@ int main(void) {
     RUN_TEST(test_nothing_is_there_at_first);
     RUN_TEST(test_values_arrive_in_the_next_tick);
     RUN_TEST(test_nothing_counts_before_the_third_frame);
+    RUN_TEST(test_a_measurement_is_new_for_a_tick);
     RUN_TEST(test_each_is_gone_after_its_timeout);
     RUN_TEST(test_lost_ticks_count);
     RUN_TEST(test_times_follow_another_rate);

@@ -55,17 +55,19 @@ static void test_guard_with_senseless_limits_stays_defined(void) {
 static void test_monitor_accepts_a_lagging_coil(void) {
     int32_t coil_mA = 0;
     for (uint32_t i = 0; i < 400; i++) {
-        const int32_t command_mA = i / 50 % 2 ? 0 : 5000;
-        TEST_ASSERT_EQUAL(CURRENT_OK, current_monitor_step(&monitor, command_mA, coil_mA, true));
+        const uint16_t command_mA = i / 50 % 2 ? 0u : 5000u;
+        TEST_ASSERT_EQUAL(CURRENT_OK,
+                          current_monitor_step(&monitor, command_mA, coil_mA, CURRENT_NEW));
         coil_mA += (command_mA - coil_mA) / 6;
     }
 }
 
-static current_verdict_t run_monitor(int32_t command_mA, int32_t measured_mA, bool is_measured,
+static current_verdict_t run_monitor(uint16_t command_mA, int32_t measured_mA, bool is_measured,
                                      uint32_t ticks) {
     current_verdict_t verdict = CURRENT_OK;
     for (uint32_t i = 0; i < ticks; i++) {
-        verdict = current_monitor_step(&monitor, command_mA, measured_mA, is_measured);
+        verdict = current_monitor_step(&monitor, command_mA, measured_mA,
+                                       is_measured ? CURRENT_NEW : CURRENT_NONE);
     }
     return verdict;
 }
@@ -100,7 +102,7 @@ static void test_monitor_does_not_forgive_for_a_good_sample(void) {
         current_monitor_init(&monitor, &monitor_cfg, 1000);
         for (uint32_t i = 0; i < 1500 && !is_seen; i++) {
             const int32_t measured_mA = i % of < good ? 1000 : 20000;
-            is_seen = current_monitor_step(&monitor, 1000, measured_mA, true) != CURRENT_OK;
+            is_seen = current_monitor_step(&monitor, 1000, measured_mA, CURRENT_NEW) != CURRENT_OK;
         }
         TEST_ASSERT_TRUE(is_seen);
     }
@@ -109,7 +111,8 @@ static void test_monitor_does_not_forgive_for_a_good_sample(void) {
 static void test_monitor_forgets_what_is_rare(void) {
     for (uint32_t i = 0; i < 100000; i++) {
         const int32_t measured_mA = i % 10 == 0 ? 20000 : 1000;
-        TEST_ASSERT_EQUAL(CURRENT_OK, current_monitor_step(&monitor, 1000, measured_mA, true));
+        TEST_ASSERT_EQUAL(CURRENT_OK,
+                          current_monitor_step(&monitor, 1000, measured_mA, CURRENT_NEW));
     }
 }
 
