@@ -19,8 +19,8 @@ typedef struct {
     bool fault_reset;                         ///< its rising edge: true for one tick
     bool estop;                               ///< EmergencyStop, not older than its timeout
     quiesce_sample_t sensor[QUIESCE_SENSORS]; ///< counts are 0 unless it is fresh
-    /// current_mA is 0 unless it is measured, and is_old between two frames; has_failed: CurrentMeasured says open load, short,
-    /// heat or supply.
+    /// current_mA is 0 unless it is measured, and is_old between two frames; has_failed:
+    /// CurrentMeasured says open load, short, heat or supply.
     quiesce_driver_t driver[QUIESCE_DAMPERS];
 } can_node_inputs_t;
 

@@ -11,9 +11,12 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include "bus_link.h"
+#include "channel_factory.h"
 #include "commands.h"
 #include "input_error.h"
 #include "live_session.h"
+#include "node_link.h"
 #include "run_options.h"
 
 namespace quiesce {
@@ -143,23 +146,62 @@ RunSetup setup_for_live(const Arguments &arguments) {
     return setup;
 }
 
+/// A controller that runs by itself gets its tables over its bus.
+void refuse_tables(const Arguments &arguments) {
+    for (const std::string &name : table_option_names()) {
+        if (arguments.text(name)) {
+            throw InputError("--" + name +
+                             ": a controller of --can gets its tables over its bus: "
+                             "quiesce can load");
+        }
+    }
+}
+
+std::unique_ptr<LiveLink> live_link(const Arguments &arguments) {
+    const auto image = arguments.text("image");
+    const auto channel = arguments.text("can");
+    if (image && channel) {
+        throw InputError("--image or --can: one controller");
+    }
+    const auto bus = arguments.text("bus");
+    std::unique_ptr<MulticastBus> tools = bus ? std::make_unique<MulticastBus>(*bus) : nullptr;
+    if (channel) {
+        refuse_tables(arguments);
+        return std::make_unique<BusLink>(open_channel(*channel), std::move(tools));
+    }
+    return std::make_unique<NodeLink>(image ? make_node_image(*image) : make_node_here(),
+                                      std::move(tools));
+}
+
+bool is_enabled_at_first(const Arguments &arguments) {
+    const std::string text = arguments.text("control").value_or("on");
+    if (text != "on" && text != "off") {
+        throw InputError("--control " + text + ": expected on or off");
+    }
+    return text == "on";
+}
+
 } // namespace
 
 int cmd_live(const std::vector<std::string> &words) {
-    const Arguments arguments(
-        "live", words, options({run_option_names(), table_option_names(), {"bus", "ticks"}}));
+    const Arguments arguments("live", words,
+                              options({run_option_names(),
+                                       table_option_names(),
+                                       {"bus", "ticks", "image", "can", "control"}}));
     arguments.require_no_positional();
+    const bool is_enabled = is_enabled_at_first(arguments);
     RunSetup setup = setup_for_live(arguments);
-    setup.tables = tables_from(arguments, setup.board(), setup.params);
     const auto most = std::numeric_limits<std::int64_t>::max();
     const std::int64_t ticks = arguments.integer("ticks", 1, most).value_or(most);
-    const auto bus = arguments.text("bus");
     prctl(PR_SET_TIMERSLACK, kTimerSlack_ns);
-    NodeLink link(bus ? std::make_unique<MulticastBus>(*bus) : nullptr);
-    LiveSession session(std::move(setup), link, now_ns());
+    const std::unique_ptr<LiveLink> link = live_link(arguments);
+    if (link->is_complete()) {
+        setup.tables = tables_from(arguments, setup.board(), setup.params);
+    }
+    LiveSession session(std::move(setup), *link, is_enabled, now_ns());
     say({{"ready", session.introduction()}});
     run_paced(session, ticks);
-    link.leave();
+    link->leave();
     say({{"end", session.summary()}});
     return 0;
 }

@@ -22,6 +22,19 @@ Json rms_json(const std::optional<VibrationRms> &rms) {
                : Json();
 }
 
+/// Those that are not at their defaults.
+Json changed_json(const quiesce_params_t &params) {
+    Json out = Json::object();
+    for (std::uint32_t index = 0; index < QUIESCE_PARAM_COUNT; ++index) {
+        const quiesce_param_info_t &info = *quiesce_param_info(index);
+        std::int32_t value = 0;
+        if (quiesce_param_get(&params, index, &value) && value != info.default_value) {
+            out.set(info.name, value);
+        }
+    }
+    return out;
+}
+
 /// A segment by itself, as a scenario has it.
 Scenario only(const Scenario &like, const SegmentSpec &segment) {
     Scenario out = like;
@@ -42,11 +55,13 @@ struct LiveSession::Order {
     bool clears_faults = false;
 };
 
-LiveSession::LiveSession(RunSetup setup, NodeLink &link, std::int64_t now_ns)
+LiveSession::LiveSession(RunSetup setup, LiveLink &link, bool is_enabled, std::int64_t now_ns)
     : setup_(std::move(setup)), link_(link), pace_(setup_.params.tick_rate_Hz, now_ns),
       vibration_(setup_.params.tick_rate_Hz) {
     start_controller(link_, setup_.board(), setup_.params, setup_.tables);
     loop_ = std::make_unique<Loop>(setup_, link_);
+    loop_->enable(is_enabled);
+    vibration_.control(is_enabled);
 }
 
 void LiveSession::tick(std::int64_t now_ns) {
@@ -55,11 +70,13 @@ void LiveSession::tick(std::int64_t now_ns) {
     link_.pace().overruns = pace_.overruns();
     try {
         loop_->tick({&digest_, &vibration_});
+    } catch (const TargetGone &) {
+        throw;
     } catch (const InputError &error) {
         stand_still(error.what());
     }
-    if (link_.params().tick_rate_Hz != setup_.params.tick_rate_Hz) { // somebody on the bus has
-        setup_.params.tick_rate_Hz = link_.params().tick_rate_Hz;
+    if (link_.tick_rate_Hz() != setup_.params.tick_rate_Hz) { // somebody on the bus has
+        setup_.params.tick_rate_Hz = link_.tick_rate_Hz();
         pace_.change_rate(setup_.params.tick_rate_Hz, now_ns);
         begin_anew();
     }
@@ -153,7 +170,9 @@ void LiveSession::obey(const std::string &line) {
 Json LiveSession::introduction() const {
     const ShakerParams &shaker = setup_.plant.shaker;
     return {{"plant", setup_.plant.name},
+            {"target", link_.target()},
             {"law", law_label(setup_.params)},
+            {"params", changed_json(setup_.params)},
             {"tick_rate_Hz", setup_.params.tick_rate_Hz},
             {"faults", fault_names()},
             {"sensors", setup_.rig ? setup_.rig->file.sensors : std::vector<std::string>()},
@@ -199,8 +218,9 @@ Json LiveSession::state() const {
 }
 
 Json LiveSession::summary() const {
+    const bool is_all_told = link_.is_complete();
     return {{"ticks", pace_.ticks()},
-            {"telemetry_crc32", digest_.telemetry_crc32()},
+            {"telemetry_crc32", is_all_told ? Json(digest_.telemetry_crc32()) : Json()},
             {"faults_seen", digest_.faults_seen()},
             {"pace", pace_json()}};
 }

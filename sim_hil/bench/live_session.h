@@ -9,8 +9,8 @@
 
 #include "digest.h"
 #include "json.h"
+#include "live_link.h"
 #include "loop.h"
-#include "node_link.h"
 #include "pace.h"
 #include "vibration.h"
 
@@ -18,13 +18,15 @@ namespace quiesce {
 
 class LiveSession {
   public:
-    /// link: must outlive it; it is started here. now_ns: when the first tick is due. Throws
-    /// InputError where the controller refuses what it is started with.
-    LiveSession(RunSetup setup, NodeLink &link, std::int64_t now_ns);
+    /// link: must outlive it; it is started here. is_enabled: the operator's enable, from tick 1
+    /// on. now_ns: when the first tick is due. Throws InputError where the controller refuses what
+    /// it is started with.
+    LiveSession(RunSetup setup, LiveLink &link, bool is_enabled, std::int64_t now_ns);
 
     const Pace &pace() const { return pace_; }
 
-    /// Runs the tick that is due, which begins at now_ns, and has the controller told so.
+    /// Runs the tick that is due, which begins at now_ns, and has the controller told so. Throws
+    /// TargetGone where the controller is.
     void tick(std::int64_t now_ns);
 
     /// The tick has taken so long.
@@ -56,7 +58,7 @@ class LiveSession {
     Json pace_json() const;
 
     RunSetup setup_;
-    NodeLink &link_;
+    LiveLink &link_;
     std::unique_ptr<Loop> loop_;
     Pace pace_;
     Vibration vibration_;

@@ -18,6 +18,7 @@ Loop::Loop(const RunSetup &setup, ControllerLink &link)
 void Loop::tick(const std::vector<TickObserver *> &observers) {
     const std::int64_t tick = next_tick_;
     const double time_s = time_of(tick);
+    link_.look(reply_);
     command(time_s);
     sense(tick, time_s);
     link_.exchange(stimulus_, reply_);

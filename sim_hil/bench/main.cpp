@@ -26,6 +26,7 @@ const Entry kCommands[] = {
     {"fuzzy-surface", "[--rules FILE]", quiesce::cmd_fuzzy_surface},
     {"live",
      "--plant FILE|--scenario FILE --law NAME [--board FILE] [--bus GROUP:PORT] [--ticks N] "
+     "[--image ELF|--can CHANNEL] [--control on|off] "
      "[--set NAME=VALUE]... [--rules FILE] [--pulses FILE] [--force-map FILE] [--law-table FILE] "
      "[--seed N] [--noise-mg X] [--dt-us N]",
      quiesce::cmd_live},

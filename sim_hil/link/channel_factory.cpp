@@ -2,8 +2,10 @@
 
 #include <charconv>
 #include <cstring>
+#include <fcntl.h>
 #include <optional>
 
+#include "descriptor_stream.h"
 #include "input_error.h"
 #include "slcan_channel.h"
 #include "socketcan_channel.h"
@@ -39,6 +41,18 @@ std::unique_ptr<FrameChannel> open_tcp(const std::string &address, const std::st
     }
     return make_slcan_channel(
         open_tcp_socket(address.substr(0, colon), address.substr(colon + 1), channel), 0);
+}
+
+std::unique_ptr<FrameChannel> open_inherited(const std::string &number,
+                                             const std::string &channel) {
+    int descriptor = 0;
+    const char *end = number.data() + number.size();
+    const auto [stop, error] = std::from_chars(number.data(), end, descriptor);
+    if (error != std::errc() || stop != end || fcntl(descriptor, F_GETFD) < 0) {
+        fail(channel, "is no descriptor that this program was given");
+    }
+    return make_slcan_channel(
+        std::make_unique<DescriptorStream>(FileDescriptor(descriptor), channel), 0);
 }
 
 struct LineSettings {
@@ -99,6 +113,7 @@ struct Kind {
 /// The first that fits.
 const Kind kKinds[] = {{"slcan:unix:", open_unix},
                        {"slcan:tcp:", open_tcp},
+                       {"slcan:fd:", open_inherited},
                        {"slcan:", open_line},
                        {"socketcan:", open_interface}};
 

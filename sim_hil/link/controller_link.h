@@ -54,6 +54,10 @@ class ControllerLink {
     /// One control tick. Writes all of reply, 0 where nothing was asked for. Only after start.
     virtual void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) = 0;
 
+    /// What has come since the last exchange from a target that does not wait for one: changes
+    /// reply. Once before each exchange, or never.
+    virtual void look(lockstep_reply_t &reply) { (void)reply; }
+
     /// False iff a reply may hold words that are older than its tick.
     virtual bool is_complete() const { return true; }
 

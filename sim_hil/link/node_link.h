@@ -1,47 +1,44 @@
-/// Target "host" with its CAN interface: the node that boards run, in this process, with a bus that
-/// tools join as they join a real one.
+/// A controller with its CAN interface beside the plant: sensors, drivers and enable are wired to
+/// it, and tools join its bus as they join a real one.
 #ifndef QUIESCE_NODE_LINK_H
 #define QUIESCE_NODE_LINK_H
 
 #include <memory>
 
-#include "controller_link.h"
-#include "firmware_node.h"
+#include "controller_node.h"
+#include "live_link.h"
 #include "multicast_bus.h"
 
 namespace quiesce {
 
-class NodeLink final : public ControllerLink {
+class NodeLink final : public LiveLink {
   public:
     /// bus: none: what it sends nobody hears.
-    explicit NodeLink(std::unique_ptr<MulticastBus> bus) : bus_(std::move(bus)) {}
+    NodeLink(std::unique_ptr<ControllerNode> node, std::unique_ptr<MulticastBus> bus)
+        : node_(std::move(node)), bus_(std::move(bus)) {}
 
-    std::string target() const override { return "host"; }
+    std::string target() const override { return node_->target(); }
     StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
-                      const Tables &tables) override;
+                      const Tables &tables) override {
+        return node_->start(board, params, tables);
+    }
 
     /// What the bus has by now, the tick, its frames. A frame that the bus does not take at once is
-    /// dropped and counted, as a board's are.
+    /// dropped and counted, as a board's are. Throws TargetGone where the controller is.
     void exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) override;
     std::optional<InstructionCounts> finish() override { return std::nullopt; }
 
-    /// The last frames before it leaves the bus: safe currents, drivers off.
-    void leave();
+    /// Safe currents, drivers off.
+    void leave() override { send(node_->farewell()); }
 
-    /// How the next ticks come: lateness, work and overruns.
-    lockstep_pace_t &pace() { return pace_; }
-
-    /// In effect: tools on the bus may change them. Of another tick rate the next tick is one.
-    const quiesce_params_t &params() const { return server_.node.params; }
+    std::int32_t tick_rate_Hz() const override { return node_->tick_rate_Hz(); }
 
   private:
-    void receive_waiting();
-    void send(const can_frame_t *frames, std::size_t count);
+    std::vector<can_frame_t> heard();
+    void send(const std::vector<can_frame_t> &frames);
 
+    std::unique_ptr<ControllerNode> node_;
     std::unique_ptr<MulticastBus> bus_;
-    Tables tables_; ///< of the last start: the node keeps no copy before it has them
-    lockstep_node_t server_{};
-    lockstep_pace_t pace_{};
 };
 
 } // namespace quiesce

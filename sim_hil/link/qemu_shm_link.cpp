@@ -1,144 +1,18 @@
 #include "qemu_shm_link.h"
 
-#include <algorithm>
-#include <cerrno>
-#include <sys/mman.h>
-#include <system_error>
-#include <thread>
-
-#include "input_error.h"
-
 namespace quiesce {
-
-namespace {
-
-/// Spins before the processor is given away: longer than an answer takes on an idle machine.
-constexpr int kSpinsBeforeNap = 2048;
-constexpr std::chrono::microseconds kNap(50);
-
-std::vector<std::string> qemu_arguments(const SharedMailbox &mailbox,
-                                        const InstructionCounter &counter) {
-    std::vector<std::string> arguments = {
-        "-object",
-        "memory-backend-file,id=psram,share=on,size=" + std::to_string(MAILBOX_BYTES) +
-            ",mem-path=/proc/self/fd/" + std::to_string(mailbox.descriptor()),
-        "-M",
-        "mps2-an386,memory-backend=psram",
-        "-serial",
-        "none"};
-    for (const std::string &word : counter.qemu_arguments()) {
-        arguments.push_back(word);
-    }
-    return arguments;
-}
-
-std::vector<int> inherited(const SharedMailbox &mailbox, const InstructionCounter &counter) {
-    std::vector<int> numbers = counter.inherited();
-    numbers.push_back(mailbox.descriptor());
-    return numbers;
-}
-
-void relax() {
-#if defined(__x86_64__)
-    __builtin_ia32_pause();
-#elif defined(__aarch64__)
-    __asm__ volatile("yield");
-#endif
-}
-
-} // namespace
-
-SharedMailbox::SharedMailbox() : file_(make_memory_file("quiesce-mailbox", MAILBOX_BYTES)) {
-    void *memory =
-        mmap(nullptr, MAILBOX_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED, file_.number(), 0);
-    if (memory == MAP_FAILED) {
-        throw std::system_error(errno, std::generic_category(), "quiesce-mailbox");
-    }
-    mailbox_ = static_cast<mailbox_t *>(memory);
-}
-
-SharedMailbox::~SharedMailbox() {
-    munmap(mailbox_, MAILBOX_BYTES);
-}
-
-QemuShmLink::QemuShmLink(const QemuOptions &options)
-    : options_(options), counter_(options),
-      process_(options.image_path, qemu_arguments(mailbox_, counter_),
-               inherited(mailbox_, counter_)) {}
 
 StartAnswer QemuShmLink::start(const quiesce_board_t *board, const quiesce_params_t &params,
                                const Tables &tables) {
-    mailbox_->params = params;
-    mailbox_->has_board = board != nullptr ? 1u : 0u;
-    mailbox_->board = board != nullptr ? *board : quiesce_board_t{};
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        const std::size_t count = std::min<std::size_t>(tables[i].size(), QUIESCE_TABLE_WORDS);
-        mailbox_->table_words[i] = static_cast<std::uint32_t>(tables[i].size());
-        std::copy_n(tables[i].begin(), count, mailbox_->table[i]);
-    }
-    mailbox_->reply = lockstep_reply_t{};
-    request(MAILBOX_START);
-    check_layout();
-    return {mailbox_->status == 1u, mailbox_->refused};
+    return image_.start(board, params, tables);
 }
 
 void QemuShmLink::exchange(const lockstep_stimulus_t &stimulus, lockstep_reply_t &reply) {
-    mailbox_->stimulus = stimulus;
-    request(MAILBOX_STEP);
-    reply = mailbox_->reply;
+    image_.plain().stimulus = stimulus;
+    image_.request(MAILBOX_STEP);
+    reply = image_.plain().reply;
     if ((stimulus.flags & LOCKSTEP_PICTURE) == 0) {
         reply.picture = quiesce_picture_t{};
-    }
-}
-
-std::optional<InstructionCounts> QemuShmLink::finish() {
-    request(MAILBOX_STOP);
-    if (!process_.wait_for_end(options_.answer_time) || !process_.has_succeeded()) {
-        throw InputError("image " + options_.image_path + ": did not end when told to");
-    }
-    return counter_.read();
-}
-
-void QemuShmLink::request(std::uint32_t operation) {
-    mailbox_->operation = operation;
-    const std::uint32_t sequence = mailbox_->request_seq + 1u;
-    __atomic_store_n(&mailbox_->request_seq, sequence, __ATOMIC_RELEASE);
-    wait_for_reply(sequence);
-}
-
-bool QemuShmLink::has_replied(std::uint32_t sequence) const {
-    return __atomic_load_n(&mailbox_->reply_seq, __ATOMIC_ACQUIRE) == sequence;
-}
-
-void QemuShmLink::wait_for_reply(std::uint32_t sequence) {
-    for (int spin = 0; spin < kSpinsBeforeNap; ++spin) {
-        if (has_replied(sequence)) {
-            return;
-        }
-        relax();
-    }
-    const auto deadline = std::chrono::steady_clock::now() + options_.answer_time;
-    while (!has_replied(sequence)) {
-        const bool is_running = process_.is_running();
-        if (has_replied(sequence)) {
-            return; // the last thing that the image did
-        }
-        if (!is_running) {
-            throw InputError("image " + options_.image_path + ": " + process_.describe_end());
-        }
-        if (std::chrono::steady_clock::now() > deadline) {
-            throw InputError("image " + options_.image_path + ": no answer within " +
-                             std::to_string(options_.answer_time.count()) +
-                             " ms; is it the shared-RAM image (quiesce_mps2_shm)?");
-        }
-        std::this_thread::sleep_for(kNap);
-    }
-}
-
-void QemuShmLink::check_layout() const {
-    if (mailbox_->layout_bytes != sizeof(mailbox_t)) {
-        throw InputError("image " + options_.image_path +
-                         ": was built from other sources than this bench; rebuild it");
     }
 }
 

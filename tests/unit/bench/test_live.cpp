@@ -4,6 +4,7 @@
 #include "in_process_link.h"
 #include "input_error.h"
 #include "live_session.h"
+#include "node_link.h"
 #include "plant_file.h"
 
 namespace quiesce {
@@ -24,7 +25,7 @@ RunSetup setup_of_file(const std::string &scenario) {
 /// A session whose clock the test advances, exactly on time.
 struct LiveRig {
     explicit LiveRig(RunSetup setup = setup_of_file(kSine10))
-        : session(std::move(setup), link, 0) {}
+        : session(std::move(setup), link, true, 0) {}
 
     void run(std::int64_t ticks) {
         for (std::int64_t i = 0; i < ticks; ++i) {
@@ -35,7 +36,7 @@ struct LiveRig {
     Json state(const std::string &key) const { return session.state().at(key); }
     std::string crc() const { return session.summary().at("telemetry_crc32").dump(); }
 
-    NodeLink link{nullptr};
+    NodeLink link{make_node_here(), nullptr};
     LiveSession session;
 };
 

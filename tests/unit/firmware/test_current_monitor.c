@@ -247,7 +247,7 @@ static void test_faults_are_found_between_two_measurements_too(void) {
                                 .cycle_ms = 10};
             const uint32_t ticks = ticks_of_pulses(&p, faults[i]);
             TEST_ASSERT_TRUE(ticks > 0u);
-            TEST_ASSERT_LESS_OR_EQUAL_UINT32(2000, ticks);
+            TEST_ASSERT_LESS_OR_EQUAL_UINT32(260, ticks);
         }
     }
 }

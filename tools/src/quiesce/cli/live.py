@@ -31,6 +31,8 @@ EPILOG = """examples:
   quiesce live --host 0.0.0.0 --bus socketcan:can0    from a phone; asks for the token it prints
   quiesce live --sim                                  no hardware: a rig in the computer
   quiesce live --sim my_plant.toml --law fuzzy --record quake.csv
+  quiesce live --sim --target linux                   its controller is quiesced, started here
+  quiesce live --sim --can slcan:/dev/ttyACM0,bitrate=1000000    a board of yours, a plant in here
   quiesce live --bus socketcan:can0 --commission press --max-current 2 --drive 0.1
 
 Open the address that it prints. Any number of browsers may look, up to 16; one at a time holds
@@ -98,8 +100,15 @@ def add_rig_options(parser: argparse.ArgumentParser) -> None:
         "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter; repeatable"
     )
     rig.add_argument(
-        "--target", choices=("host",), default="host", help="where its controller runs (host)"
-    )
+        "--target", choices=("host", "mps2", "linux"),
+        help="where its controller runs: in the rig's own program (host, the default), as the "
+        "image in the emulator, or as quiesced, started here, which runs by itself",
+    )  # fmt: skip
+    rig.add_argument(
+        "--can", metavar="CHANNEL",
+        help="in place of --target: what leads to a controller that runs already, such as a board "
+        "(slcan:/dev/ttyACM0,bitrate=1000000, socketcan:can0); the plant is on its bus",
+    )  # fmt: skip
     rig.add_argument(
         "--record", type=Path, action="append", default=[], metavar="FILE",
         help="CSV of a ground motion to choose on the page; repeatable (all that lie beside the "
@@ -181,9 +190,10 @@ def watched(args: argparse.Namespace) -> "Iterator[tuple[Bus, RigDesk | None]]":
     if args.bus != os.environ.get(VARIABLE) or args.bitrate is not None or args.bus_option:
         raise UsageError("--sim makes a bus of its own; leave --bus and its options out")
     from quiesce.live.rig import RigDesk
-    from quiesce.rig.options import LAW, RigSetup
+    from quiesce.rig.opening import simulation_of
+    from quiesce.rig.options import HOST, LAW, RigSetup
     from quiesce.rig.records import motions
-    from quiesce.rig.simulation import Simulation, bus_words, own_bus
+    from quiesce.rig.simulation import bus_words, own_bus
 
     plant = Path(args.sim) if args.sim else None
     found, bus = motions(args.record), own_bus()
@@ -192,15 +202,21 @@ def watched(args: argparse.Namespace) -> "Iterator[tuple[Bus, RigDesk | None]]":
     with tempfile.TemporaryDirectory() as folder:
         tables, settings = table_files(args, Path(folder))
         setup = RigSetup(
-            plant, args.board, args.law or LAW, (*settings, *args.set), [*tables.items()]
+            plant,
+            args.board,
+            args.law or LAW,
+            (*settings, *args.set),
+            [*tables.items()],
+            args.target or HOST,
+            args.can,
         )
-        with Simulation(setup.words(), bus) as simulation:
+        with simulation_of(setup, bus) as simulation:
             print(f"other commands join it with {bus_words(bus)}", file=sys.stderr)
             yield bus, RigDesk(simulation, found)
 
 
 def refuse_rig_options(args: argparse.Namespace) -> None:
-    for option in ("board", "law", *OPTIONS, "set", "record"):
+    for option in ("board", "law", *OPTIONS, "set", "record", "target", "can"):
         if getattr(args, option):
             raise UsageError(
                 f"--{option.replace('_', '-')} is of the rig in the computer; give --sim, too"

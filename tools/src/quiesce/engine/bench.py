@@ -19,6 +19,7 @@ IMAGES = {"mps2": "quiesce_mps2_shm.elf", "mps2-uart": "quiesce_mps2_uart.elf"}
 # With a board, which may have more than one sensor and damper.
 BOARD_IMAGES = {"mps2": "quiesce_mps2_shm_8x4.elf", "mps2-uart": "quiesce_mps2_uart_8x4.elf"}
 ECHO_IMAGE = "uart_echo.elf"
+LIVE_IMAGE = "quiesce_mps2_live.elf"
 
 
 def require_file(path: Path, what: str) -> Path:
@@ -35,6 +36,12 @@ def image(target: str, has_board: bool = False) -> Path:
 
 def echo_image() -> Path:
     return require_file(build_folder() / "mps2/targets/mps2" / ECHO_IMAGE, "the image")
+
+
+def live_image() -> Path:
+    """The image behind a rig in the computer. UsageError where it cannot run here."""
+    require_emulator()
+    return require_file(build_folder() / "mps2/targets/mps2" / LIVE_IMAGE, "the image")
 
 
 def require_emulator() -> None:

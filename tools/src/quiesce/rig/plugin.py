@@ -11,13 +11,14 @@ import pytest
 
 from quiesce.base.errors import UsageError
 from quiesce.rig.access import Rig
-from quiesce.rig.opening import HOST, open_rig
+from quiesce.rig.opening import open_rig
+from quiesce.rig.options import HOST
 
 VARIABLE = "QUIESCE_RIG"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    text = "rig of the fixture `rig`: host, INTERFACE:CHANNEL or a file .toml"
+    text = "rig of the fixture `rig`: host, mps2, linux, INTERFACE:CHANNEL or a file .toml"
     parser.getgroup("quiesce").addoption("--rig", metavar="WHERE", help=text)
     parser.addini("quiesce_rig", text, default="")
 

@@ -49,6 +49,7 @@ class Simulation:
         self.state: dict[str, Any] = {}  # the newest
         self.summary: dict[str, Any] = {}  # once it has ended in order
         self._options = list(options)
+        self._descriptors: tuple[int, ...] = ()  # that the bench is given
         self._answers: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
         self._asking = threading.Lock()
         self._owed = 0  # answers; those of orders that were given up come late
@@ -63,8 +64,15 @@ class Simulation:
         pipes = {name: subprocess.PIPE for name in ("stdin", "stdout", "stderr")}
         # A session of its own: Ctrl-C is for who started it, and he ends it.
         self._process = subprocess.Popen(
-            command, encoding="utf-8", errors="replace", bufsize=1, start_new_session=True, **pipes
+            command,
+            encoding="utf-8",
+            errors="replace",
+            bufsize=1,
+            start_new_session=True,
+            pass_fds=self._descriptors,
+            **pipes,
         )
+        self._started(self._process.pid)
         self._readers = [
             threading.Thread(target=one, daemon=True) for one in (self._hear, self._hear_errors)
         ]
@@ -99,6 +107,9 @@ class Simulation:
             raise BenchFailure(self.failure or "the rig does not answer")
         if "refused" in answer:
             raise UsageError(answer["refused"])
+
+    def _started(self, process_id: int) -> None:
+        """The bench runs; it has said nothing yet."""
 
     def _last_answer(self) -> dict[str, Any] | None:
         """To what was ordered last; None where it does not come."""

@@ -76,7 +76,7 @@ export class Rig {
     this.about = hello.rig;
     this.law = hello.parameters.find((one) => one.name === "law");
     this.lawIndex = hello.parameters.indexOf(this.law);
-    $("rig-what").textContent = `${this.about.plant}, ${this.about.tick_rate_Hz} ticks a second. Other programs join its bus with ${this.about.bus}`;
+    $("rig-what").textContent = `${this.about.plant}, ${this.about.tick_rate_Hz} ticks a second, controller: ${this.about.target}. Other programs join its bus with ${this.about.bus}`;
     $("rig-panel").replaceChildren(this.comparison(), this.excitation(), this.disturbances());
     this.enable(false);
   }

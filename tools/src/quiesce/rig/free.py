@@ -1,0 +1,107 @@
+"""A rig in the computer whose controller runs by itself, on a bus on which the plant is, too.
+
+It gets its parameters and tables as any controller does, over its bus, before it is enabled.
+"""
+
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+from quiesce.base.errors import BenchFailure, UsageError
+from quiesce.can.buses import Bus
+from quiesce.can.changes import apply
+from quiesce.can.database import load
+from quiesce.can.link import Link
+from quiesce.can.parameters import parameters
+from quiesce.can.services import Services
+from quiesce.can.tables import Tables
+from quiesce.loading.load import put
+from quiesce.loading.sources import table_of
+from quiesce.rig.programs import Elsewhere, Quiesced, hurry
+from quiesce.rig.simulation import Simulation
+
+# Of the bench's options: what `quiesce can load` calls them.
+ROADS = {"rules": "rules", "pulses": "pulses", "law-table": "law", "force-map": "tracker"}
+# What a simulated sensor settles, whatever a controller had before.
+OF_SENSOR = "accel_"
+ANSWER_S = 20.0
+BETWEEN_S = 0.2
+TRIES = 100  # of a request: this computer may have no time for its controller for a while
+
+
+class FreeSimulation(Simulation):
+    def __init__(
+        self,
+        options: Sequence[str],
+        tables: Sequence[tuple[str, Path]],
+        bus: Bus,
+        controller: Elsewhere | Quiesced,
+    ) -> None:
+        """options: of `quiesce_bench live`, without tables. tables: as RigSetup has them."""
+        super().__init__(options, bus)
+        self._tables = tables
+        self._controller = controller
+        self._running = ExitStack()
+
+    def __enter__(self) -> "FreeSimulation":
+        with ExitStack() as starting:
+            controller = starting.enter_context(self._controller)
+            self._options += ["--can", controller.channel, "--control", "off"]
+            self._descriptors = tuple(controller.descriptors)
+            super().__enter__()
+            starting.push(super().__exit__)
+            if isinstance(controller, Quiesced):
+                controller.hand_over()
+            self.introduction["target"] = controller.name
+            self._set_up()
+            self.order(control=True)
+            self._running = starting.pop_all()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._running.close()
+
+    @property
+    def failure(self) -> str:
+        return self._controller.failure or super().failure
+
+    def _started(self, process_id: int) -> None:
+        if self._controller.is_ours:
+            hurry(process_id)
+
+    def _set_up(self) -> None:
+        with Link(self.bus) as link:
+            database = load()
+            services = Services(link, database, tries=TRIES)
+            self._await(services)
+            settings = changes(services.read_all(), self.introduction["params"])
+            if settings:
+                apply(services, settings)
+            for option, file in self._tables:
+                put(Tables(link, database), table_of(ROADS[option], file), lambda _: None)
+
+    def _await(self, services: Services) -> None:
+        """Until it tells who it is. UsageError where it never does."""
+        end_s = time.monotonic() + ANSWER_S
+        while True:
+            try:
+                services.understand()
+                return
+            except BenchFailure as error:
+                if self.failure or time.monotonic() > end_s:
+                    raise UsageError(self.failure or f"{self._controller.channel}: {error}")
+            services.wait(BETWEEN_S)
+
+
+def changes(has: Sequence[int], wanted: Mapping[str, int]) -> dict[int, int]:
+    """By index: what a controller is to change that has these values, so that it has those that are
+    wanted, and those of the sensor, which are at their defaults where they are not named."""
+    out = {}
+    for one in parameters():
+        name, index = one["name"], one["index"]
+        value = wanted.get(name, one["default"])
+        is_meant = name in wanted or name.startswith(OF_SENSOR)
+        if is_meant and index < len(has) and has[index] != value:
+            out[index] = value
+    return out
