@@ -8,6 +8,7 @@ extern "C" {
 }
 
 #include "quiesce_can.h"
+#include "quiesce_can_tables.h"
 #include "slcan.h"
 
 #endif

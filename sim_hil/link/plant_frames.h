@@ -11,7 +11,6 @@
 
 #include "firmware.h"
 #include "firmware_comm.h"
-#include "quiesce_can_tables.h"
 
 namespace quiesce {
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.can.buses import Bus
 from quiesce.can.changes import apply
-from quiesce.can.database import load
+from quiesce.can.database import Database, load
 from quiesce.can.link import Link
 from quiesce.can.parameters import parameters
 from quiesce.can.services import Services
@@ -26,6 +26,8 @@ ROADS = {"rules": "rules", "pulses": "pulses", "law-table": "law", "force-map": 
 # What a simulated sensor settles, whatever a controller had before.
 OF_SENSOR = "accel_"
 ANSWER_S = 20.0
+STATUS, ARMED = "Status", ("ARMED", "RUN")
+ARMED_S, LET_GO_S, ENABLE_TRIES = 1.0, 0.5, 6
 BETWEEN_S = 0.2
 TRIES = 100  # of a request: this computer may have no time for its controller for a while
 
@@ -55,7 +57,6 @@ class FreeSimulation(Simulation):
                 controller.hand_over()
             self.introduction["target"] = controller.name
             self._set_up()
-            self.order(control=True)
             self._running = starting.pop_all()
         return self
 
@@ -67,8 +68,7 @@ class FreeSimulation(Simulation):
         return self._controller.failure or super().failure
 
     def _started(self, process_id: int) -> None:
-        if self._controller.is_ours:
-            hurry(process_id)
+        hurry(process_id)
 
     def _set_up(self) -> None:
         with Link(self.bus) as link:
@@ -80,6 +80,18 @@ class FreeSimulation(Simulation):
                 apply(services, settings)
             for option, file in self._tables:
                 put(Tables(link, database), table_of(ROADS[option], file), lambda _: None)
+            self._enable(link, database)
+
+    def _enable(self, link: Link, database: Database) -> None:
+        """Gives the enable, again where the controller was not ready to take it: its rise has to
+        come in IDLE. A fault that is there is for the user to see."""
+        for _ in range(ENABLE_TRIES):
+            self.order(control=True)
+            if is_armed(link, database, ARMED_S):
+                return
+            self.order(control=False)
+            is_armed(link, database, LET_GO_S)
+        self.order(control=True)
 
     def _await(self, services: Services) -> None:
         """Until it tells who it is. UsageError where it never does."""
@@ -92,6 +104,18 @@ class FreeSimulation(Simulation):
                 if self.failure or time.monotonic() > end_s:
                     raise UsageError(self.failure or f"{self._controller.channel}: {error}")
             services.wait(BETWEEN_S)
+
+
+def is_armed(link: Link, database: Database, wait_s: float) -> bool:
+    """Whether a Status that comes within this time says so."""
+    status = database.by_name[STATUS].frame_id
+    end_s = time.monotonic() + wait_s
+    while (left_s := end_s - time.monotonic()) > 0.0:
+        event = link.receive(left_s)
+        if getattr(event, "arbitration_id", None) == status:
+            if str(database.decode(status, bytes(event.data))["state"]) in ARMED:
+                return True
+    return False
 
 
 def changes(has: Sequence[int], wanted: Mapping[str, int]) -> dict[int, int]:

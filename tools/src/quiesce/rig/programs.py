@@ -24,7 +24,6 @@ CONTROLLER_PRIORITY, PLANT_PRIORITY = 80, 70
 class Elsewhere:
     """A controller that somebody else has started. channel: of the bench's --can."""
 
-    is_ours = False
     descriptors: Sequence[int] = ()
 
     def __init__(self, channel: str) -> None:
@@ -45,7 +44,6 @@ class Quiesced:
     """`quiesced` on a pty that stands for its bus; sensors, drivers and panel are on that, too.
     Entered, it runs, and keeps what it stores until it is left."""
 
-    is_ours = True
     name = "quiesced"
 
     def __init__(self, board: Path | None) -> None:
