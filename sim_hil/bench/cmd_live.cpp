@@ -116,8 +116,11 @@ bool take_orders(Orders &orders, LiveSession &session) {
 /// Until stdin ends, or for so many ticks.
 void run_paced(LiveSession &session, std::int64_t ticks) {
     Orders orders;
+    const bool waits_half_way = session.has_other_clock();
+    bool is_past_half = !waits_half_way;
     while (session.pace().ticks() < ticks) {
-        const std::int64_t due_ns = session.pace().due_ns();
+        const std::int64_t due_ns =
+            is_past_half ? session.pace().due_ns() : session.pace().half_way_ns();
         if (Orders::wait(due_ns)) {
             if (!take_orders(orders, session)) {
                 return;
@@ -126,6 +129,12 @@ void run_paced(LiveSession &session, std::int64_t ticks) {
                 continue;
             }
         }
+        if (!is_past_half) {
+            session.half_way();
+            is_past_half = true;
+            continue;
+        }
+        is_past_half = !waits_half_way;
         const std::int64_t begin_ns = now_ns();
         session.tick(begin_ns);
         session.worked(now_ns() - begin_ns);

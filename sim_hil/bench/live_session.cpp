@@ -75,6 +75,7 @@ void LiveSession::tick(std::int64_t now_ns) {
     } catch (const InputError &error) {
         stand_still(error.what());
     }
+    pace_.shift(link_.shift_ns());
     if (link_.tick_rate_Hz() != setup_.params.tick_rate_Hz) { // somebody on the bus has
         setup_.params.tick_rate_Hz = link_.tick_rate_Hz();
         pace_.change_rate(setup_.params.tick_rate_Hz, now_ns);

@@ -29,6 +29,12 @@ class LiveSession {
     /// TargetGone where the controller is.
     void tick(std::int64_t now_ns);
 
+    /// Whether the controller has a clock of its own: then half_way is called, too.
+    bool has_other_clock() const { return !link_.is_complete(); }
+
+    /// Half-way between two ticks. Throws likewise.
+    void half_way() { link_.half_way(); }
+
     /// The tick has taken so long.
     void worked(std::int64_t work_ns) {
         link_.pace().work_us = static_cast<std::uint32_t>(work_ns / 1000);

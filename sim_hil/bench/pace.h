@@ -24,6 +24,12 @@ class Pace {
     /// It begins now.
     void begin(std::int64_t now_ns);
 
+    /// Half a tick before that.
+    std::int64_t half_way_ns() const { return due_ns() - 500'000'000 / rate_Hz_; }
+
+    /// What is due from now on is due so much later.
+    void shift(std::int64_t by_ns) { start_ns_ += by_ns; }
+
     /// From the next tick on at another rate; one has begun now.
     void change_rate(std::int64_t rate_Hz, std::int64_t now_ns);
 

@@ -5,7 +5,8 @@ namespace quiesce {
 namespace {
 
 constexpr std::chrono::milliseconds kMostWait(500);
-constexpr std::size_t kMostFrames = 256; // taken in a tick, each way
+constexpr std::int64_t kShift_ns = 5'000; // a tick: half a one is made up for in 0.1 s
+constexpr std::size_t kMostFrames = 256;  // taken in a tick, each way
 
 } // namespace
 
@@ -38,23 +39,39 @@ void BusLink::pass_on_from_tools() {
     send(frames);
 }
 
-void BusLink::take_from_controller() {
+bool BusLink::take_from_controller() {
+    const std::uint32_t demand = quiesce_can_messages[QUIESCE_CAN_AT_CURRENT_DEMAND].e2e.id;
+    bool has_come = false;
     can_frame_t frame{};
     const auto now = LinkClock::now();
-    for (std::size_t i = 0; i < kMostFrames && controller_->receive(frame, now); ++i) {
+    for (std::size_t i = 0; i < kMostFrames && receive(frame, now); ++i) {
+        has_come = has_come || frame.id == demand;
         plant_.take(frame);
         if (tools_ && !tools_->send(frame)) {
             can_unsent_count(&pace().unsent, frame.id);
         }
     }
+    return has_come;
 }
 
-void BusLink::look(lockstep_reply_t &reply) {
+bool BusLink::receive(can_frame_t &frame, LinkClock::time_point deadline) {
     try {
-        take_from_controller();
+        return controller_->receive(frame, deadline);
     } catch (const InputError &error) {
         throw TargetGone(error.what());
     }
+}
+
+void BusLink::half_way() {
+    came_early_ = take_from_controller();
+}
+
+std::int64_t BusLink::shift_ns() {
+    return came_early_ == came_late_ ? 0 : came_early_ ? -kShift_ns : kShift_ns;
+}
+
+void BusLink::look(lockstep_reply_t &reply) {
+    came_late_ = take_from_controller();
     plant_.answer(reply);
 }
 

@@ -29,6 +29,12 @@ class BusLink final : public LiveLink {
     /// TargetGone where the line has ended.
     void look(lockstep_reply_t &reply) override;
 
+    /// Samples that come close to the controller's tick are in some ticks twice and in others not
+    /// at all: the plant keeps half a tick away. Its demands leave with its ticks, and come in the
+    /// first half of the plant's or in the second.
+    void half_way() override;
+    std::int64_t shift_ns() override;
+
     /// The tick's frames of the plant, and what tools have sent, but for frames of nodes that are
     /// played here. Does not wait for the controller: the reply is what look has found. Throws
     /// TargetGone, too, where the line does not take them.
@@ -42,12 +48,16 @@ class BusLink final : public LiveLink {
 
   private:
     void pass_on_from_tools();
-    void take_from_controller();
+    /// Returns whether a demand was there.
+    bool take_from_controller();
+    bool receive(can_frame_t &frame, LinkClock::time_point deadline);
     void send(const std::vector<can_frame_t> &frames);
 
     std::unique_ptr<FrameChannel> controller_;
     std::unique_ptr<MulticastBus> tools_;
     std::int32_t tick_rate_Hz_ = 1000;
+    bool came_early_ = false; ///< in the first half of the tick
+    bool came_late_ = false;
     PlantFrames plant_{tick_rate_Hz_};
 };
 

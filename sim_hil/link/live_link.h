@@ -22,6 +22,14 @@ class LiveLink : public ControllerLink {
     /// Of the plant's next ticks: whoever is on the bus may change that of a controller.
     virtual std::int32_t tick_rate_Hz() const = 0;
 
+    /// Once between two ticks, half-way: whoever has a clock of his own is looked at. Throws
+    /// TargetGone.
+    virtual void half_way() {}
+
+    /// By how much the plant's clock is to come later from now on, so that its ticks lie between
+    /// those of the controller; once after each tick.
+    virtual std::int64_t shift_ns() { return 0; }
+
     /// The last frames before it ends: no current is asked for any more.
     virtual void leave() = 0;
 

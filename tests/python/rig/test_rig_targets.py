@@ -3,6 +3,7 @@ already."""
 
 import os
 import signal
+import tty
 from pathlib import Path
 
 import pytest
@@ -90,16 +91,20 @@ def test_a_controller_that_runs_already_is_set_up_and_left_alone(
     """With a sensor's scale that is another one's."""
     (tmp_path / "state").mkdir()
     config = tmp_path / "quiesced.toml"
-    with PtyBus() as bus:
-        text = configuration(bus.paths[0], tmp_path, None)
-        config.write_text(text + "\n[parameters]\naccel_scale_nm_s2 = 50000\n")
+    near, far = os.openpty()
+    tty.setraw(far)
+    text = configuration(os.ttyname(far), tmp_path, None)
+    config.write_text(text + "\n[parameters]\naccel_scale_nm_s2 = 50000\n")
+    try:
         with running([str(quiesced()), "--config", str(config)]) as process:
-            setup = set_up(rules, can=f"slcan:{bus.paths[1]}")
-            with quiesce.rig.open("host", setup) as rig:
+            with quiesce.rig.open("host", set_up(rules, can=f"slcan:fd:{near}")) as rig:
                 expect_it_has(rig, rules)
                 scale = next(one for one in parameters() if one["name"] == "accel_scale_nm_s2")
                 assert rig.read("parameters/accel_scale_nm_s2") == scale["default"]
             assert process.poll() is None
+    finally:
+        os.close(near)
+        os.close(far)
 
 
 def test_the_end_of_quiesced_is_told_in_one_line() -> None:
@@ -130,6 +135,7 @@ def test_nobody_at_the_other_end_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
         ({"can": "slcan:tcp:127.0.0.1:1"}, "127.0.0.1:1"),
         ({"can": "nonsense"}, "is no CAN channel"),
         ({"can": "slcan:fd:77"}, "is no descriptor"),
+        ({"can": "slcan:fd:x"}, "is no descriptor"),
     ],
 )
 def test_channels_that_are_none_are_told(setup: dict[str, str], why: str) -> None:

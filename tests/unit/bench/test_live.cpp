@@ -76,6 +76,18 @@ TEST(Pace, late_ticks_are_counted_by_how_late_and_made_up_for) {
     EXPECT_EQ(pace.lost_s(), 0.0);
 }
 
+TEST(Pace, what_is_due_can_be_shifted) {
+    Pace pace(1000, 0);
+    pace.begin(0);
+    EXPECT_EQ(pace.half_way_ns(), kTick_ns / 2);
+    pace.shift(-5'000);
+    EXPECT_EQ(pace.due_ns(), kTick_ns - 5'000);
+    pace.begin(pace.due_ns());
+    pace.shift(7'000);
+    EXPECT_EQ(pace.due_ns(), 2 * kTick_ns + 2'000);
+    EXPECT_EQ(pace.overruns(), 0u);
+}
+
 TEST(Pace, what_is_far_too_late_is_given_up) {
     Pace pace(1000, 0);
     pace.begin(3'000'000'000);

@@ -239,6 +239,28 @@ TEST(bus_link, a_controller_on_the_bus_runs_stops_and_is_acknowledged) {
     EXPECT_NE(bus.line->telemetry().state, std::uint32_t{QUIESCE_STATE_RUN});
 }
 
+TEST(bus_link, the_plant_keeps_its_ticks_between_those_of_the_controller) {
+    Bus bus;
+    bus.link.start(nullptr, default_params(), {});
+    bus.run(10, 0);
+    lockstep_reply_t reply{};
+    bus.link.half_way(); // its last demand came in the first half
+    bus.link.look(reply);
+    EXPECT_LT(bus.link.shift_ns(), 0);
+    bus.link.half_way();
+    bus.line->tick(); // in the second
+    bus.link.look(reply);
+    EXPECT_GT(bus.link.shift_ns(), 0);
+    bus.link.half_way(); // none
+    bus.link.look(reply);
+    EXPECT_EQ(bus.link.shift_ns(), 0);
+    bus.line->tick(); // in both
+    bus.link.half_way();
+    bus.line->tick();
+    bus.link.look(reply);
+    EXPECT_EQ(bus.link.shift_ns(), 0);
+}
+
 TEST(bus_link, a_line_that_ends_is_a_target_that_is_gone) {
     Bus bus;
     bus.link.start(nullptr, default_params(), {});

@@ -18,16 +18,29 @@ from quiesce.engine.bench import ending
 from quiesce.engine.linux_target import end, quiesced
 
 BITRATE = 1_000_000  # of the bus that a pty stands for: its load is counted by it
+INHERITED = "slcan:fd:"
 CONTROLLER_PRIORITY, PLANT_PRIORITY = 80, 70
+
+
+def is_open(number: str) -> bool:
+    try:
+        os.fstat(int(number))
+    except (ValueError, OSError):
+        return False
+    return True
 
 
 class Elsewhere:
     """A controller that somebody else has started. channel: of the bench's --can."""
 
-    descriptors: Sequence[int] = ()
-
     def __init__(self, channel: str) -> None:
         self.channel = self.name = channel
+
+    @property
+    def descriptors(self) -> Sequence[int]:
+        """That the channel names: who started this program has opened it."""
+        number = self.channel.removeprefix(INHERITED)
+        return [int(number)] if number != self.channel and is_open(number) else []
 
     def __enter__(self) -> "Elsewhere":
         return self
@@ -74,7 +87,7 @@ class Quiesced:
 
     @property
     def channel(self) -> str:
-        return f"slcan:fd:{self._master}"
+        return f"{INHERITED}{self._master}"
 
     @property
     def descriptors(self) -> Sequence[int]:
