@@ -3,7 +3,7 @@
 
 # What the bench drives in the emulator.
 # shellcheck disable=SC2034 # for those who source this
-DRIVEN_IMAGES=(quiesce_mps2_shm quiesce_mps2_shm_8x4 quiesce_mps2_uart quiesce_mps2_uart_8x4
+DRIVEN_IMAGES=(quiesce_mps2_shm quiesce_mps2_shm_8x4 quiesce_mps2_live quiesce_mps2_uart quiesce_mps2_uart_8x4
   uart_echo)
 
 # Where ccache is installed, what another preset, another clone or an earlier state of this one has

@@ -69,6 +69,7 @@ def test_parameters_and_tables_reach_it_and_it_quiets_the_plant(target: str, rul
         expect_less_vibration(rig)
         rig.write("parameters/law", "constant")
         assert rig.read("parameters/law") == "constant"
+    assert rig._simulation.failure == ""
 
 
 @pytest.mark.parametrize("target", [IMAGE, LINUX])

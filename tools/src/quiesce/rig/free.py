@@ -65,7 +65,8 @@ class FreeSimulation(Simulation):
 
     @property
     def failure(self) -> str:
-        return self._controller.failure or super().failure
+        of_plant = super().failure
+        return "" if self.summary else self._controller.failure or of_plant
 
     def _started(self, process_id: int) -> None:
         hurry(process_id)

@@ -132,7 +132,7 @@ def may_be_real_time() -> bool:
 def hurry(process_id: int) -> None:
     """Real-time priority for the plant where that is allowed: a controller that runs by itself
     does not wait for it."""
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(OSError, AttributeError):  # where that is not allowed, or unknown
         os.sched_setscheduler(process_id, os.SCHED_FIFO, os.sched_param(PLANT_PRIORITY))
 
 
