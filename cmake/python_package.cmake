@@ -34,6 +34,7 @@ endif()
 # machine can.
 set(QUIESCE_IMAGES "" CACHE PATH "Folder with the images of the preset mps2")
 if(QUIESCE_IMAGES)
-  file(GLOB images ${QUIESCE_IMAGES}/*_shm*.elf ${QUIESCE_IMAGES}/*_uart*.elf ${QUIESCE_IMAGES}/uart_echo.elf)
+  file(GLOB images ${QUIESCE_IMAGES}/*_shm*.elf ${QUIESCE_IMAGES}/*_uart*.elf ${QUIESCE_IMAGES}/*_live.elf
+       ${QUIESCE_IMAGES}/uart_echo.elf)
   install(FILES ${images} COMPONENT python DESTINATION ${tree}/build/mps2/targets/mps2)
 endif()

@@ -40,11 +40,17 @@ needs_of() {
     esac
 }
 
-# needs_of_live OPTION...: a rig in the computer is the bench; a guided session needs what commission does.
+# needs_of_live OPTION...: a rig in the computer is the bench, and its controller's target; a guided session needs
+# what commission does.
 needs_of_live() {
+    local target=
     case "$*" in
-    *--commission*) echo "$(needs_of commission) page" ;;
-    *--sim*) echo bench page ;;
+    *--target[\ =]mps2*) target=" images" ;;
+    *--target[\ =]linux*) target=" linux" ;;
+    esac
+    case "$*" in
+    *--commission*) echo "$(needs_of commission) page$target" ;;
+    *--sim*) echo "bench page$target" ;;
     *) echo page ;;
     esac
 }

@@ -118,6 +118,8 @@ def busy(clone: Clone) -> Iterator[Clone]:
         ("can get", ""),
         ("live --bus socketcan:can0", "page"),
         ("live --sim", "bench page"),
+        ("live --sim --target mps2", "bench page images"),
+        ("live --sim plant.toml --target=linux", "bench page linux"),
         ("live --bus socketcan:can0 --commission press", "bench plant dampers page"),
         ("live --sim --commission first", "bench plant dampers page"),
     ],

@@ -81,6 +81,18 @@ def test_a_viewer_in_control_moves_the_rig(shared: Page) -> None:
         viewer.ask("release")
 
 
+@pytest.mark.parametrize(("target", "name"), [("mps2", "mps2"), ("linux", "quiesced")])
+def test_its_controller_may_run_elsewhere(tmp_path: Path, target: str, name: str) -> None:
+    page = Page(tmp_path, "--sim", "--target", target)
+    with page.viewer() as viewer:
+        assert viewer.hello["rig"]["target"] == name
+        viewer.until("state", lambda state: state["controller"]["state"] == "RUN")
+        viewer.ask("take")
+        viewer.ask("stop")
+        viewer.until("state", lambda state: state["stop"]["state"] == "confirmed")
+    assert page.end() == 0
+
+
 def test_faults_reach_the_controller_and_are_acknowledged(shared: Page) -> None:
     with shared.viewer() as viewer:
         viewer.ask("take")
