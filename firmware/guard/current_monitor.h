@@ -14,8 +14,8 @@
 
 #include "fixq.h"
 
-/// From a command to the measurement that shows it, at the most: a tick each way, and a cycle of
-/// the driver's.
+/// From a command to the measurement that shows it, at the most: a tick each way, and what the
+/// driver itself takes.
 #define CURRENT_DEAD_MS 3u
 #define CURRENT_DEAD_TICKS 12u ///< room for as long at the highest rate
 

@@ -6,7 +6,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kMostWait(500);
 constexpr std::int64_t kShift_ns = 5'000; // a tick: half a one is made up for in 0.1 s
-constexpr std::size_t kMostFrames = 256;  // taken in a tick, each way
 
 } // namespace
 

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "controller_link.h"
-#include "firmware_node.h"
+#include "live_link.h"
 
 namespace quiesce {
-
-/// Frames that it takes before a tick: a storm of them does not keep the tick from running.
-constexpr std::size_t kMostHeard = 256;
 
 class ControllerNode {
   public:
@@ -24,7 +20,7 @@ class ControllerNode {
     virtual StartAnswer start(const quiesce_board_t *board, const quiesce_params_t &params,
                               const Tables &tables) = 0;
 
-    /// A tick. heard: frames that have come before it, kMostHeard at the most. Returns those that
+    /// A tick. heard: frames that have come before it, kMostFrames at the most. Returns those that
     /// it sends. Throws InputError where the controller cannot be reached.
     virtual std::vector<can_frame_t> tick(const std::vector<can_frame_t> &heard,
                                           const lockstep_stimulus_t &stimulus,

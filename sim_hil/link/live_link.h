@@ -8,6 +8,9 @@
 
 namespace quiesce {
 
+/// Frames taken in a tick, each way: a storm of them does not keep it from running.
+constexpr std::size_t kMostFrames = 256;
+
 /// The controller is gone, which nothing about the plant mends.
 class TargetGone : public InputError {
   public:

@@ -8,6 +8,8 @@ namespace quiesce {
 
 namespace {
 
+static_assert(kMostFrames <= MAILBOX_MAX_FRAMES, "what has come has room in the mailbox");
+
 QemuOptions uncounted(const std::string &image_path) {
     QemuOptions out;
     out.image_path = image_path;
@@ -31,9 +33,8 @@ class NodeImage final : public ControllerNode {
                                   const lockstep_stimulus_t &stimulus, const lockstep_pace_t &pace,
                                   lockstep_reply_t &reply) override {
         mailbox_live_t &box = image_.live();
-        const std::size_t count = std::min<std::size_t>(heard.size(), MAILBOX_MAX_FRAMES);
-        std::copy_n(heard.begin(), count, box.heard_frame);
-        box.heard = static_cast<std::uint32_t>(count);
+        std::copy(heard.begin(), heard.end(), box.heard_frame);
+        box.heard = static_cast<std::uint32_t>(heard.size());
         box.pace = pace;
         box.plain.stimulus = stimulus;
         image_.request(MAILBOX_STEP);

@@ -5,7 +5,7 @@ namespace quiesce {
 std::vector<can_frame_t> NodeLink::heard() {
     std::vector<can_frame_t> frames;
     can_frame_t frame{};
-    while (bus_ && frames.size() < kMostHeard && bus_->receive(frame)) {
+    while (bus_ && frames.size() < kMostFrames && bus_->receive(frame)) {
         frames.push_back(frame);
     }
     return frames;

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "controller_node.h"
-#include "live_link.h"
 #include "multicast_bus.h"
 
 namespace quiesce {

@@ -14,13 +14,6 @@ const quiesce_can_message_t &row(std::size_t message) {
     return quiesce_can_messages[message];
 }
 
-can_frame_t empty_frame(std::size_t message) {
-    can_frame_t frame{};
-    frame.id = row(message).e2e.id;
-    frame.length = row(message).e2e.length;
-    return frame;
-}
-
 bool has(const lockstep_stimulus_t &stimulus, std::uint32_t flag) {
     return (stimulus.flags & flag) != 0;
 }
@@ -32,6 +25,13 @@ bool is_between(const can_frame_t &frame, std::size_t first, std::size_t count) 
 }
 
 } // namespace
+
+can_frame_t empty_frame(std::size_t message) {
+    can_frame_t frame{};
+    frame.id = row(message).e2e.id;
+    frame.length = row(message).e2e.length;
+    return frame;
+}
 
 PlantFrames::PlantFrames(std::int32_t tick_rate_Hz) : tick_rate_Hz_(tick_rate_Hz) {}
 

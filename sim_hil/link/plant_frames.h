@@ -14,6 +14,9 @@
 
 namespace quiesce {
 
+/// A row's message (QUIESCE_CAN_AT_..) without data yet.
+can_frame_t empty_frame(std::size_t message);
+
 class PlantFrames {
   public:
     /// tick_rate_Hz: of the plant. Messages keep their own cycle where that is slower.

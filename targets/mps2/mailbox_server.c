@@ -34,6 +34,11 @@ const quiesce_board_t *mailbox_board(const mailbox_t *box) {
     return box->has_board != 0 ? &box->board : NULL;
 }
 
+void mailbox_started(mailbox_t *box, bool is_accepted, lockstep_refusal_t refused) {
+    box->status = is_accepted ? 1u : 0u;
+    box->refused = refused;
+}
+
 void mailbox_run(mailbox_t *box, uint32_t layout_bytes, mailbox_serve_t serve) {
     uint32_t operation;
     box->layout_bytes = layout_bytes;

@@ -16,4 +16,7 @@ void mailbox_tables(const mailbox_t *box, lockstep_table_t tables[LOCKSTEP_TABLE
 /// Its board; NULL: the parameters say what is wired.
 const quiesce_board_t *mailbox_board(const mailbox_t *box);
 
+/// Its answer.
+void mailbox_started(mailbox_t *box, bool is_accepted, lockstep_refusal_t refused);
+
 #endif

@@ -11,8 +11,7 @@ static void start(mailbox_t *box) {
     lockstep_table_t tables[LOCKSTEP_TABLES];
     mailbox_tables(box, tables);
     const bool is_accepted = lockstep_node_start(&server, mailbox_board(box), &box->params, tables);
-    box->status = is_accepted ? 1u : 0u;
-    box->refused = server.refused;
+    mailbox_started(box, is_accepted, server.refused);
 }
 
 static void step(mailbox_live_t *live) {

@@ -7,8 +7,7 @@ static void start(mailbox_t *box) {
     lockstep_table_t tables[LOCKSTEP_TABLES];
     mailbox_tables(box, tables);
     const bool is_accepted = lockstep_start(&server, mailbox_board(box), &box->params, tables);
-    box->status = is_accepted ? 1u : 0u;
-    box->refused = server.refused;
+    mailbox_started(box, is_accepted, server.refused);
 }
 
 static void serve(mailbox_t *box) {

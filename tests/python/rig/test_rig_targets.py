@@ -13,13 +13,13 @@ from quiesce.base.errors import BenchFailure, UsageError
 from quiesce.base.paths import root
 from quiesce.can.roads import LAW
 from quiesce.can.tables import CRC
-from quiesce.engine.linux_target import PtyBus, quiesced
+from quiesce.engine.linux_target import PtyBus, quiesced, running
 from quiesce.engine.params import parameters
 from quiesce.loading.sources import table_of
 from quiesce.rig import Rig, RigSetup, Trigger
 from quiesce.rig.free import changes
 from quiesce.rig.options import IMAGE, LINUX
-from quiesce.rig.programs import Quiesced, board_sections, configuration, running
+from quiesce.rig.programs import Quiesced, board_sections, configuration
 from quiesce_benchmarks.live.rig import PATIENCE_S
 
 RULES = root() / "sim_hil/data/rules/squeeze_2012_published.fcl"
@@ -38,7 +38,6 @@ def set_up(rules: Path, **more: object) -> RigSetup:
 
 
 def expect_it_has(rig: Rig, rules: Path) -> None:
-    rig.wait(Trigger("status/state", equal="RUN"), PATIENCE_S)
     assert rig.read("parameters/law") == "fuzzy"
     assert rig.read("parameters/current_error_mA") == 600
     assert rig.tables().info(LAW, CRC) == table_of("rules", rules).crc
@@ -65,6 +64,7 @@ def settled(rig: Rig, which: str) -> float:
 @pytest.mark.parametrize("target", [IMAGE, LINUX])
 def test_parameters_and_tables_reach_it_and_it_quiets_the_plant(target: str, rules: Path) -> None:
     with quiesce.rig.open(target, set_up(rules)) as rig:
+        rig.wait(Trigger("status/state", equal="RUN"), PATIENCE_S)
         expect_it_has(rig, rules)
         expect_less_vibration(rig)
         rig.write("parameters/law", "constant")
@@ -86,7 +86,7 @@ def test_it_has_the_sensors_and_dampers_of_a_board(target: str) -> None:
         rig.wait(Trigger("current_demand1/current_cmd_mA", above=250.0), PATIENCE_S)
 
 
-def test_a_controller_that_runs_already_is_set_up_and_left_alone(
+def test_a_controller_that_runs_already_is_set_up_and_waits_for_its_user(
     rules: Path, tmp_path: Path
 ) -> None:
     """With a sensor's scale that is another one's."""
@@ -97,11 +97,14 @@ def test_a_controller_that_runs_already_is_set_up_and_left_alone(
     text = configuration(os.ttyname(far), tmp_path, None)
     config.write_text(text + "\n[parameters]\naccel_scale_nm_s2 = 50000\n")
     try:
-        with running([str(quiesced()), "--config", str(config)]) as process:
+        with running([str(quiesced()), "--config", str(config)], tmp_path / "log") as process:
             with quiesce.rig.open("host", set_up(rules, can=f"slcan:fd:{near}")) as rig:
                 expect_it_has(rig, rules)
                 scale = next(one for one in parameters() if one["name"] == "accel_scale_nm_s2")
                 assert rig.read("parameters/accel_scale_nm_s2") == scale["default"]
+                assert rig.read("status/is_enabled") == 0 and not rig.read("rig/control")
+                rig.write("rig/control", True)
+                rig.wait(Trigger("status/is_enabled", equal=1), PATIENCE_S)
             assert process.poll() is None
     finally:
         os.close(near)

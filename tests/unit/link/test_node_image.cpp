@@ -6,6 +6,7 @@
 
 #include "images.h"
 #include "multicast_bus.h"
+#include "plant_frames.h"
 
 namespace quiesce {
 namespace {
@@ -19,9 +20,7 @@ can_frame_t request(std::uint32_t tick) {
     ask.operation = QUIESCE_CAN_SERVICE_REQUEST_OPERATION_READ_CHOICE;
     ask.param_index = static_cast<std::uint8_t>(tick / 20 % QUIESCE_PARAM_COUNT);
     const e2e_layout_t &layout = quiesce_can_messages[QUIESCE_CAN_AT_SERVICE_REQUEST].e2e;
-    can_frame_t frame{};
-    frame.id = layout.id;
-    frame.length = layout.length;
+    can_frame_t frame = empty_frame(QUIESCE_CAN_AT_SERVICE_REQUEST);
     quiesce_can_service_request_pack(frame.data, &ask, sizeof frame.data);
     e2e_protect(&layout, &alive, &frame);
     return frame;

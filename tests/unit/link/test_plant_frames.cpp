@@ -35,9 +35,7 @@ can_frame_t demand_frame(std::size_t damper, std::uint16_t current_mA, std::uint
     demand.current_cmd_mA = current_mA;
     demand.driver_is_enabled = 1;
     const e2e_layout_t &layout = quiesce_can_messages[QUIESCE_CAN_AT_CURRENT_DEMAND + damper].e2e;
-    can_frame_t frame{};
-    frame.id = layout.id;
-    frame.length = layout.length;
+    can_frame_t frame = empty_frame(QUIESCE_CAN_AT_CURRENT_DEMAND + damper);
     quiesce_can_current_demand_pack(frame.data, &demand, sizeof frame.data);
     e2e_protect(&layout, &alive, &frame);
     return frame;

@@ -107,7 +107,8 @@ def add_rig_options(parser: argparse.ArgumentParser) -> None:
     rig.add_argument(
         "--can", metavar="CHANNEL",
         help="in place of --target: what leads to a controller that runs already, such as a board "
-        "(slcan:/dev/ttyACM0,bitrate=1000000, socketcan:can0); the plant is on its bus",
+        "(slcan:/dev/ttyACM0,bitrate=1000000, socketcan:can0); the plant is on its bus. It is not "
+        "enabled by itself: a real coil gets real current",
     )  # fmt: skip
     rig.add_argument(
         "--record", type=Path, action="append", default=[], metavar="FILE",

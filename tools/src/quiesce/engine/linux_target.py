@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 import threading
 import tty
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from quiesce.engine.bench import ending, require_file
 
 END_TIME_s = 10.0
 BLOCK = 4096
+MOST_SAID = 500
 
 
 class PtyBus:
@@ -100,24 +101,33 @@ def local_quiesced(program: Path) -> Iterator[str]:
     with PtyBus() as bus, tempfile.TemporaryDirectory(prefix="quiesce-") as folder:
         config, log = Path(folder) / "quiesced.toml", Path(folder) / "log"
         config.write_text(configuration(bus.paths[0]), encoding="utf-8")
-        with log.open("wb") as stderr:
-            process = subprocess.Popen(
-                [str(program), "--config", str(config), "--lockstep"],
-                stdin=subprocess.DEVNULL,
-                stdout=stderr,
-                stderr=stderr,
-            )
-        try:
-            yield f"slcan:{bus.paths[1]}"
-        except UsageError as error:
-            if process.poll() is not None:
-                said = one_line(log.read_text(errors="replace")) or "it said nothing"
-                raise BenchFailure(
-                    f"quiesced --lockstep ended with {ending(process.returncode)}: {said}"
-                ) from error
-            raise
-        finally:
-            end(process)
+        command = [str(program), "--config", str(config), "--lockstep"]
+        with running(command, log) as process:
+            try:
+                yield f"slcan:{bus.paths[1]}"
+            except UsageError as error:
+                if process.poll() is not None:
+                    raise BenchFailure(end_of("quiesced --lockstep", process, log)) from error
+                raise
+
+
+@contextmanager
+def running(command: Sequence[str], log: Path) -> "Iterator[subprocess.Popen[bytes]]":
+    """The program, ended with the block. log: what it says; Ctrl-C is for who started it."""
+    with log.open("ab") as said:
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True
+        )
+    try:
+        yield process
+    finally:
+        end(process)
+
+
+def end_of(name: str, process: "subprocess.Popen[bytes]", log: Path) -> str:
+    """A line about one that has ended."""
+    said = one_line(log.read_text(errors="replace")[-MOST_SAID:]) or "it said nothing"
+    return f"{name} ended with {ending(process.returncode)}: {said}"
 
 
 def end(process: subprocess.Popen[bytes]) -> None:

@@ -1,6 +1,7 @@
 """A rig in the computer whose controller runs by itself, on a bus on which the plant is, too.
 
-It gets its parameters and tables as any controller does, over its bus, before it is enabled.
+It gets its parameters and tables as any controller does, over its bus. One that was started here
+is enabled then; what somebody else has started may have a real coil, and waits for its user.
 """
 
 import time
@@ -44,6 +45,7 @@ class FreeSimulation(Simulation):
         super().__init__(options, bus)
         self._tables = tables
         self._controller = controller
+        self._database = load()
         self._running = ExitStack()
 
     def __enter__(self) -> "FreeSimulation":
@@ -53,10 +55,12 @@ class FreeSimulation(Simulation):
             self._descriptors = tuple(controller.descriptors)
             super().__enter__()
             starting.push(super().__exit__)
-            if isinstance(controller, Quiesced):
-                controller.hand_over()
             self.introduction["target"] = controller.name
-            self._set_up()
+            with Link(self.bus) as link:
+                self._set_up(link)
+                if isinstance(controller, Quiesced):
+                    controller.hand_over()
+                    self._enable(link)
             self._running = starting.pop_all()
         return self
 
@@ -71,27 +75,24 @@ class FreeSimulation(Simulation):
     def _started(self, process_id: int) -> None:
         hurry(process_id)
 
-    def _set_up(self) -> None:
-        with Link(self.bus) as link:
-            database = load()
-            services = Services(link, database, tries=TRIES)
-            self._await(services)
-            settings = changes(services.read_all(), self.introduction["params"])
-            if settings:
-                apply(services, settings)
-            for option, file in self._tables:
-                put(Tables(link, database), table_of(ROADS[option], file), lambda _: None)
-            self._enable(link, database)
+    def _set_up(self, link: Link) -> None:
+        services = Services(link, self._database, tries=TRIES)
+        self._await(services)
+        settings = changes(services.read_all(), self.introduction["params"])
+        if settings:
+            apply(services, settings)
+        for option, file in self._tables:
+            put(Tables(link, self._database), table_of(ROADS[option], file), lambda _: None)
 
-    def _enable(self, link: Link, database: Database) -> None:
+    def _enable(self, link: Link) -> None:
         """Gives the enable, again where the controller was not ready to take it: its rise has to
         come in IDLE. A fault that is there is for the user to see."""
         for _ in range(ENABLE_TRIES):
             self.order(control=True)
-            if is_armed(link, database, ARMED_S):
+            if is_armed(link, self._database, ARMED_S):
                 return
             self.order(control=False)
-            is_armed(link, database, LET_GO_S)
+            is_armed(link, self._database, LET_GO_S)
         self.order(control=True)
 
     def _await(self, services: Services) -> None:
@@ -109,13 +110,18 @@ class FreeSimulation(Simulation):
 
 def is_armed(link: Link, database: Database, wait_s: float) -> bool:
     """Whether a Status that comes within this time says so."""
-    status = database.by_name[STATUS].frame_id
+    status = database.by_name[STATUS]
     end_s = time.monotonic() + wait_s
     while (left_s := end_s - time.monotonic()) > 0.0:
         event = link.receive(left_s)
-        if getattr(event, "arbitration_id", None) == status:
-            if str(database.decode(status, bytes(event.data))["state"]) in ARMED:
-                return True
+        if getattr(event, "arbitration_id", None) != status.frame_id:
+            continue
+        data = bytes(event.data)
+        if (
+            len(data) == status.length
+            and str(database.decode(status.frame_id, data)["state"]) in ARMED
+        ):
+            return True
     return False
 
 

@@ -8,14 +8,13 @@ import subprocess
 import tempfile
 import tomllib
 import tty
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 from quiesce.base.errors import UsageError, one_line
-from quiesce.engine.bench import ending
-from quiesce.engine.linux_target import end, quiesced
+from quiesce.engine.linux_target import end_of, quiesced, running
 
 BITRATE = 1_000_000  # of the bus that a pty stands for: its load is counted by it
 INHERITED = "slcan:fd:"
@@ -78,7 +77,9 @@ class Quiesced:
             config, self._log = folder / "quiesced.toml", folder / "log"
             text = configuration(os.ttyname(slave), folder, self._board)
             config.write_text(text, encoding="utf-8")
-            self._process = opening.enter_context(running([str(program), "--config", str(config)]))
+            self._process = opening.enter_context(
+                running([str(program), "--config", str(config)], self._log)
+            )
             self._open = opening.pop_all()
         return self
 
@@ -104,23 +105,7 @@ class Quiesced:
         process = self._process
         if process is None or process.poll() is None:
             return ""
-        said = one_line(self._log.read_text(errors="replace")[-500:]) if self._log.exists() else ""
-        return f"quiesced ended with {ending(process.returncode)}: {said or 'it said nothing'}"
-
-
-@contextmanager
-def running(command: Sequence[str]) -> Iterator["subprocess.Popen[bytes]"]:
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    try:
-        yield process
-    finally:
-        end(process)
+        return end_of("quiesced", process, self._log)
 
 
 def may_be_real_time() -> bool:
@@ -158,7 +143,7 @@ enable = "can"
 folder = "{folder}/state"
 
 [log]
-to = "{folder}/log"
+to = "stderr"
 
 {wiring}"""
 
