@@ -47,6 +47,7 @@ static void use_sensor_cycle(const can_receive_t *self, can_sensor_t *sensor, ui
 void can_receive_use_rate(can_receive_t *self, uint32_t tick_rate_Hz) {
     const uint32_t stop_ms = quiesce_can_messages[QUIESCE_CAN_AT_EMERGENCY_STOP].timeout_ms;
     self->tick_us = (int32_t)(1000000u / tick_rate_Hz);
+    self->calm_ticks = CAN_SENSOR_CALM_MS * tick_rate_Hz / 1000u;
     self->stop.timeout_ticks = (stop_ms * tick_rate_Hz + 999u) / 1000u;
     use_cycle(self, &self->operator_command.from, QUIESCE_CAN_AT_OPERATOR_COMMAND);
     for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
@@ -110,6 +111,20 @@ static void take_stop(can_receive_t *self, const can_frame_t *frame) {
     self->stop.is_seen = true;
 }
 
+static void pass_over_oldest(can_sensor_t *self) {
+    self->waiting[0] = self->waiting[1];
+    self->count--;
+}
+
+// may_wait: the sensor has a sample a tick. Where there is no room the newest ones count.
+static void put_sample(can_sensor_t *self, bool may_wait, quiesce_sample_t sample) {
+    if (self->count == (may_wait ? 2u : 1u)) {
+        pass_over_oldest(self);
+    }
+    self->waiting[self->count++] = sample;
+    self->come = self->come == 0u ? 1u : 2u;
+}
+
 static void take_sample(can_receive_t *self, uint32_t number, const can_frame_t *frame) {
     struct quiesce_can_accel_sample_t sample;
     can_sensor_t *const sensor = &self->sensor[number];
@@ -120,9 +135,10 @@ static void take_sample(can_receive_t *self, uint32_t number, const can_frame_t 
     }
     (void)quiesce_can_accel_sample_unpack(&sample, frame->data, frame->length);
     if (sample.is_bad == 0u) {
-        sensor->counts = sample.accel_counts;
-        sensor->is_saturated = sample.is_saturated != 0u;
-        sensor->is_fresh = true;
+        put_sample(sensor, sensor->from.cycle_us == self->tick_us,
+                   (quiesce_sample_t){.counts = sample.accel_counts,
+                                      .is_fresh = true,
+                                      .is_saturated = sample.is_saturated != 0u});
     }
 }
 
@@ -245,15 +261,29 @@ static int32_t ticks_us(const can_receive_t *self, uint32_t ticks) {
     return (int32_t)(ticks < most_ticks ? ticks : most_ticks) * self->tick_us;
 }
 
-static quiesce_sample_t hand_over_sample(can_sensor_t *self, int32_t passed_us) {
-    freshness_pass(&self->from, passed_us);
-    const bool is_fresh = self->is_fresh && freshness_is_known(&self->from);
-    self->is_fresh = false;
-    return (quiesce_sample_t){
-        .counts = is_fresh ? self->counts : 0,
-        .is_fresh = is_fresh,
-        .is_saturated = is_fresh && self->is_saturated,
-    };
+// Of two that wait the older one is passed over where ticks were lost, and in a calm.
+static bool is_one_too_many(can_sensor_t *self, uint32_t ticks, uint32_t calm_ticks) {
+    self->calm_ticks =
+        self->come == 1u && self->calm_ticks < calm_ticks ? (uint16_t)(self->calm_ticks + 1u) : 0u;
+    self->come = 0;
+    return self->count == 2u && (ticks > 1u || self->calm_ticks == calm_ticks);
+}
+
+static quiesce_sample_t hand_over_sample(can_receive_t *self, uint32_t number, uint32_t ticks) {
+    can_sensor_t *const sensor = &self->sensor[number];
+    freshness_pass(&sensor->from, ticks_us(self, ticks));
+    if (is_one_too_many(sensor, ticks, self->calm_ticks)) {
+        pass_over_oldest(sensor);
+    }
+    if (!freshness_is_known(&sensor->from)) {
+        sensor->count = 0;
+    }
+    if (sensor->count == 0u) {
+        return (quiesce_sample_t){0};
+    }
+    const quiesce_sample_t sample = sensor->waiting[0];
+    pass_over_oldest(sensor);
+    return sample;
 }
 
 static quiesce_driver_t hand_over_driver(can_driver_t *self, int32_t passed_us) {
@@ -283,7 +313,7 @@ void can_receive_inputs(can_receive_t *self, uint32_t ticks, can_node_inputs_t *
         .estop = self->stop.is_present || self->stop.is_seen,
     };
     for (uint32_t i = 0; i < QUIESCE_SENSORS; i++) {
-        inputs->sensor[i] = hand_over_sample(&self->sensor[i], passed_us);
+        inputs->sensor[i] = hand_over_sample(self, i, ticks);
     }
     for (uint32_t i = 0; i < QUIESCE_DAMPERS; i++) {
         inputs->driver[i] = hand_over_driver(&self->driver[i], passed_us);

@@ -41,12 +41,19 @@ typedef struct {
     bool is_seen; ///< since the last tick: a stop counts however long that tick is late
 } can_stop_t;
 
+/// A sample that comes with another in one tick waits for the next tick, which may have none: while
+/// the sensor's clock and the controller's pass each other, samples come in none of some ticks and
+/// in two of others. Once CAN_SENSOR_CALM_MS have each brought one, what waits is passed over.
+#define CAN_SENSOR_CALM_MS 250u
+
 typedef struct {
     freshness_t from;
     uint32_t period_us; ///< between samples, as the board says; 0: as usual on the bus
-    int32_t counts;
-    bool is_saturated;
-    bool is_fresh; ///< since the last tick
+    quiesce_sample_t
+        waiting[2];      ///< the older one first; one at most where samples are rarer than ticks
+    uint8_t count;       ///< 0 .. 2 that wait
+    uint8_t come;        ///< since the last tick, saturating at 2
+    uint16_t calm_ticks; ///< in a row that brought one each
 } can_sensor_t;
 
 typedef struct {
@@ -84,6 +91,7 @@ typedef struct {
     can_driver_t driver[QUIESCE_DAMPERS];
     can_operator_t operator_command;
     int32_t tick_us;
+    uint32_t calm_ticks; ///< in CAN_SENSOR_CALM_MS
     can_node_counters_t counters;
 } can_receive_t;
 

@@ -238,14 +238,131 @@ static void test_any_byte_tells_two_senders_apart(void) {
     }
 }
 
-static void test_a_sample_is_fresh_once_and_the_newest_counts(void) {
+static uint32_t next_random(uint32_t *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return *seed >> 8;
+}
+
+static void check_tick(int32_t expected) {
+    pass(1);
+    TEST_ASSERT_TRUE(inputs.sensor[0].is_fresh);
+    TEST_ASSERT_EQUAL_INT32(expected, inputs.sensor[0].counts);
+}
+
+static void check_tick_without(void) {
+    pass(1);
+    TEST_ASSERT_FALSE(inputs.sensor[0].is_fresh);
+    TEST_ASSERT_EQUAL_INT32(0, inputs.sensor[0].counts);
+}
+
+static void test_a_sample_is_fresh_once_and_a_second_one_waits_for_the_next_tick(void) {
+    introduce_sensor(0);
+    take(make_accel(1, false, false, 0));
+    take(make_accel(2, true, false, 1));
+    check_tick(1);
+    TEST_ASSERT_FALSE(inputs.sensor[0].is_saturated);
+    check_tick(2);
+    TEST_ASSERT_TRUE(inputs.sensor[0].is_saturated);
+    check_tick_without();
+}
+
+static void test_of_three_samples_the_oldest_is_passed_over(void) {
+    introduce_sensor(0);
+    for (uint8_t i = 0; i < 3; i++) {
+        take(make_accel(i, false, false, i));
+    }
+    check_tick(1);
+    check_tick(2);
+    check_tick_without();
+}
+
+static void test_after_lost_ticks_the_newest_sample_counts(void) {
     introduce_sensor(0);
     take(make_accel(1, false, false, 0));
     take(make_accel(2, false, false, 1));
-    pass(1);
+    can_receive_inputs(&bus, 2, &inputs);
     TEST_ASSERT_EQUAL_INT32(2, inputs.sensor[0].counts);
-    pass(1);
+    check_tick_without();
+}
+
+static void test_no_sample_of_a_slow_sensor_waits(void) {
+    bus.sensor[0].period_us = 5000;
+    can_receive_use_rate(&bus, RATE_HZ);
+    for (uint8_t i = 0; i < 3; i++) {
+        take(make_accel(i, false, false, i));
+        pass(5);
+    }
+    pass(3); // one late and one early
+    take(make_accel(3, false, false, 3));
+    take(make_accel(4, false, false, 4));
+    check_tick(4);
+    check_tick_without();
+}
+
+static void test_what_waits_is_gone_with_its_sender(void) {
+    introduce_sensor(0);
+    take(make_accel(1, false, false, 0));
+    take(make_accel(2, false, false, 1));
+    check_tick(1);
+    can_receive_inputs(&bus, 100, &inputs);
     TEST_ASSERT_FALSE(inputs.sensor[0].is_fresh);
+    introduce_sensor(8);
+    take(make_accel(3, false, false, 8));
+    check_tick(3);
+    check_tick_without();
+}
+
+// Who is a tick behind is so no longer than samples need it.
+static void test_what_waits_is_passed_over_in_a_calm(void) {
+    introduce_sensor(0);
+    take(make_accel(0, false, false, 0));
+    for (int32_t i = 1; i <= (int32_t)CAN_SENSOR_CALM_MS; i++) {
+        take(make_accel(i, false, false, (uint8_t)(i % 16)));
+        check_tick(i - 1);
+    }
+    const int32_t next = (int32_t)CAN_SENSOR_CALM_MS + 1;
+    take(make_accel(next, false, false, (uint8_t)(next % 16)));
+    check_tick(next);
+    check_tick_without();
+}
+
+// A sensor whose clock is fast or slow, by ppm, and whose frames come up to 0.4 ticks early or
+// late, over a minute: a slow one has a sample less each time that its clock has passed the
+// controller's, and in no stretch of the calm is more than one missing.
+static void check_clocks_that_pass(int32_t ppm) {
+    uint32_t seed = 7;
+    int64_t sent = 0;
+    int64_t last = -1;
+    int64_t jitter_ns = 0;
+    uint32_t missing = 0;
+    uint32_t missed_at = 0;
+    can_receive_init(&bus, RATE_HZ);
+    for (uint32_t t = 1; t <= 60000; t++) {
+        while (sent * (1000000 - ppm) + jitter_ns < (int64_t)t * 1000000) {
+            take(make_accel((int32_t)sent, false, false, (uint8_t)(sent % 16)));
+            sent++;
+            jitter_ns = (int64_t)(next_random(&seed) % 800000u) - 400000;
+        }
+        pass(1);
+        if (inputs.sensor[0].is_fresh) {
+            TEST_ASSERT_GREATER_THAN_INT64(last, inputs.sensor[0].counts);
+            TEST_ASSERT_LESS_OR_EQUAL_INT64(2, sent - inputs.sensor[0].counts);
+            last = inputs.sensor[0].counts;
+        } else if (t > 10u) {
+            TEST_ASSERT_TRUE(missing == 0 || t - missed_at > CAN_SENSOR_CALM_MS);
+            missed_at = t;
+            missing++;
+        }
+    }
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(60u * (uint32_t)(ppm < 0 ? -ppm : 0) / 1000u + 2u, missing);
+    TEST_ASSERT_EQUAL_UINT32(0, bus.counters.rejected_alive);
+}
+
+static void test_clocks_that_pass_each_other_cost_a_sample_at_most(void) {
+    static const int32_t clocks_ppm[] = {-500, -100, -20, -1, 0, 1, 20, 100, 500};
+    for (uint32_t i = 0; i < sizeof clocks_ppm / sizeof clocks_ppm[0]; i++) {
+        check_clocks_that_pass(clocks_ppm[i]);
+    }
 }
 
 static void test_bad_sample_is_none_and_a_saturated_one_is_one(void) {
@@ -640,11 +757,6 @@ static void test_other_ids_are_none_of_our_business(void) {
                              bus.counters.unknown);
 }
 
-static uint32_t next_random(uint32_t *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed >> 8;
-}
-
 static can_frame_t make_hostile(uint32_t *seed) {
     can_frame_t frame = make_any(taken[next_random(seed) % 5u], (uint8_t)next_random(seed));
     frame.data[next_random(seed) % frame.length] ^= (uint8_t)(1u + next_random(seed) % 255u);
@@ -712,7 +824,13 @@ int main(void) {
     RUN_TEST(test_slow_sensor_has_its_period_and_four_of_them);
     RUN_TEST(test_sample_older_than_its_timeout_is_not_fresh);
     RUN_TEST(test_any_byte_tells_two_senders_apart);
-    RUN_TEST(test_a_sample_is_fresh_once_and_the_newest_counts);
+    RUN_TEST(test_a_sample_is_fresh_once_and_a_second_one_waits_for_the_next_tick);
+    RUN_TEST(test_of_three_samples_the_oldest_is_passed_over);
+    RUN_TEST(test_after_lost_ticks_the_newest_sample_counts);
+    RUN_TEST(test_no_sample_of_a_slow_sensor_waits);
+    RUN_TEST(test_what_waits_is_gone_with_its_sender);
+    RUN_TEST(test_what_waits_is_passed_over_in_a_calm);
+    RUN_TEST(test_clocks_that_pass_each_other_cost_a_sample_at_most);
     RUN_TEST(test_bad_sample_is_none_and_a_saturated_one_is_one);
     RUN_TEST(test_repeated_and_jumped_counters_are_refused);
     RUN_TEST(test_hanging_sender_is_not_taken_for_a_new_one);
