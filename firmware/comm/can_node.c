@@ -92,19 +92,31 @@ const can_node_counters_t *can_node_counters(const can_node_t *self) {
     return &self->receive.counters;
 }
 
+static void raise(uint32_t *most, uint32_t value) {
+    if (value > *most) {
+        *most = value;
+    }
+}
+
 static void watch_timing(can_node_t *self, const can_node_tick_t *tick) {
-    if (tick->lateness_us > self->lateness_max_us) {
-        self->lateness_max_us = tick->lateness_us;
-    }
-    if (tick->work_us > self->work_max_us) {
-        self->work_max_us = tick->work_us;
-    }
+    raise(&self->lateness_max_us, tick->lateness_us);
+    raise(&self->work_max_us, tick->work_us);
+    raise(&self->most_cycles.work, tick->cycles.work);
+    raise(&self->most_cycles.interrupt, tick->cycles.interrupt);
+    self->most_cycles.core_kHz = tick->cycles.core_kHz;
 }
 
 static void pack_timing(can_node_t *self, const can_node_tick_t *tick, can_frame_t *frame) {
     can_pack_timing(tick->overruns, self->lateness_max_us, self->work_max_us, frame);
     self->lateness_max_us = 0;
     self->work_max_us = 0;
+}
+
+static bool pack_cycles(can_node_t *self, can_frame_t *frame) {
+    can_pack_cycles(&self->most_cycles, frame);
+    self->most_cycles.work = 0;
+    self->most_cycles.interrupt = 0;
+    return self->most_cycles.core_kHz > 0u;
 }
 
 // Each word of the law's report in turn.
@@ -146,6 +158,8 @@ static bool pack(can_node_t *self, uint32_t message, const can_node_tick_t *tick
     case QUIESCE_CAN_AT_LOOP_TIMING:
         pack_timing(self, tick, frame);
         return true;
+    case QUIESCE_CAN_AT_LOOP_CYCLES:
+        return pack_cycles(self, frame);
     case QUIESCE_CAN_AT_CAN_HEALTH:
         can_pack_health(&self->receive.counters, tick, frame);
         return true;
@@ -197,8 +211,8 @@ static const uint8_t cyclic[] = {
     QUIESCE_CAN_AT_STATUS,         QUIESCE_CAN_AT_MOTION,         QUIESCE_CAN_AT_SPECTRUM_PEAK0,
     QUIESCE_CAN_AT_SPECTRUM_PEAK1, QUIESCE_CAN_AT_SPECTRUM_PEAK2, QUIESCE_CAN_AT_LAW_STATE,
     QUIESCE_CAN_AT_FAULT_FREEZE,   QUIESCE_CAN_AT_LOOP_TIMING,    QUIESCE_CAN_AT_CAN_HEALTH,
-    QUIESCE_CAN_AT_IDENTIFICATION, QUIESCE_CAN_AT_CAN_SHED,       QUIESCE_CAN_AT_RAW_SAMPLE,
-    QUIESCE_CAN_AT_FAULT_RECORD,
+    QUIESCE_CAN_AT_IDENTIFICATION, QUIESCE_CAN_AT_CAN_SHED,       QUIESCE_CAN_AT_LOOP_CYCLES,
+    QUIESCE_CAN_AT_RAW_SAMPLE,     QUIESCE_CAN_AT_FAULT_RECORD,
 };
 
 static uint32_t put_cyclic(can_node_t *self, const can_node_tick_t *tick, const quiesce_out_t *out,

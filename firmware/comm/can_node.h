@@ -38,7 +38,8 @@ typedef struct {
     uint32_t param_hash;
     uint32_t lateness_max_us; ///< since the last LoopTiming
     uint32_t work_max_us;
-    uint32_t report_number; ///< of the law's report, in the next LawState
+    can_cycles_t most_cycles; ///< since the last LoopCycles
+    uint32_t report_number;   ///< of the law's report, in the next LawState
 } can_node_t;
 
 /// Forgets everything; parameters in effect are params (their tick rate gives the cycle times;

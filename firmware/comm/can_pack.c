@@ -66,6 +66,15 @@ void can_pack_timing(uint32_t overruns, uint32_t lateness_max_us, uint32_t work_
     (void)quiesce_can_loop_timing_pack(frame->data, &wire, sizeof frame->data);
 }
 
+void can_pack_cycles(const can_cycles_t *most, can_frame_t *frame) {
+    const struct quiesce_can_loop_cycles_t wire = {
+        .work_max_cycles = quiesce_can_loop_cycles_work_max_cycles_sat(most->work),
+        .interrupt_max_cycles = quiesce_can_loop_cycles_interrupt_max_cycles_sat(most->interrupt),
+        .core_kHz = quiesce_can_loop_cycles_core_kHz_sat(most->core_kHz),
+    };
+    (void)quiesce_can_loop_cycles_pack(frame->data, &wire, sizeof frame->data);
+}
+
 void can_pack_health(const can_node_counters_t *counters, const can_node_tick_t *tick,
                      can_frame_t *frame) {
     const uint32_t shape = counters->rejected_shape;

@@ -21,6 +21,13 @@ typedef struct {
 /// Counts a frame of this id.
 void can_unsent_count(can_unsent_t *unsent, uint32_t id);
 
+/// Of the processor's cycle counter; all 0 where the target has none.
+typedef struct {
+    uint32_t work;      ///< of the last tick
+    uint32_t interrupt; ///< the longest since the tick before
+    uint32_t core_kHz;  ///< clock of the core
+} can_cycles_t;
+
 /// What the target tells the bus beyond the controller's output.
 typedef struct {
     bool enable;          ///< in force in this tick, from wherever it came
@@ -32,6 +39,7 @@ typedef struct {
     uint32_t overruns;    ///< ticks lost since the start
     uint32_t lateness_us; ///< of this tick's start; 0 where the target cannot tell
     uint32_t work_us;     ///< of the last tick
+    can_cycles_t cycles;
     can_unsent_t unsent;
     uint32_t bus_off_count;
     uint32_t rx_lost; ///< times that a line or an interface lost what had come, since the start
@@ -50,6 +58,8 @@ void can_pack_law(int32_t law, const quiesce_telemetry_t *t, uint32_t report_num
                   int32_t report_word, can_frame_t *frame);
 void can_pack_timing(uint32_t overruns, uint32_t lateness_max_us, uint32_t work_max_us,
                      can_frame_t *frame);
+/// most: of each the largest.
+void can_pack_cycles(const can_cycles_t *most, can_frame_t *frame);
 void can_pack_health(const can_node_counters_t *counters, const can_node_tick_t *tick,
                      can_frame_t *frame);
 void can_pack_shed(const can_unsent_t *unsent, can_frame_t *frame);

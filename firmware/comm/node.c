@@ -187,6 +187,7 @@ static void note(node_t *node, const node_inputs_t *board) {
         .overruns = board->overruns,
         .lateness_us = board->lateness_us,
         .work_us = board->work_us,
+        .cycles = board->cycles,
         .unsent = board->unsent,
         .bus_off_count = board->bus_off_count,
         .rx_lost = board->rx_lost,

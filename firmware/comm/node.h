@@ -52,6 +52,7 @@ typedef struct {
     uint32_t overruns;                        ///< these and the following: see can_node_tick_t
     uint32_t lateness_us;
     uint32_t work_us;
+    can_cycles_t cycles;
     can_unsent_t unsent;
     uint32_t bus_off_count;
     uint32_t rx_lost; ///< times that a line or an interface lost what had come

@@ -4,6 +4,7 @@
 #include "board.h"
 #include "bus.h"
 #include "clocks.h"
+#include "cycles.h"
 #include "fault.h"
 #include "free_node.h"
 #include "idle.h"
@@ -42,8 +43,9 @@ typedef struct {
     hal_accel_t accel;
     bus_t bus;
     images_t images;
-    bool is_off;    ///< the stage, as it was written last
-    bool may_erase; ///< in the last pass
+    uint32_t counted_kHz; ///< the core's clock, 0: its cycles are not counted
+    bool is_off;          ///< the stage, as it was written last
+    bool may_erase;       ///< in the last pass
     bool acknowledge_was_up;
 } board_t;
 
@@ -143,10 +145,18 @@ static void restart(board_t *board, const quiesce_params_t *params) {
     write_outputs(board);
 }
 
+static void note_cycles(board_t *board, uint32_t begin) {
+    can_cycles_t *const cycles = &board->common.inputs.cycles;
+    cycles->work = cycles_count() - begin;
+    cycles->interrupt = output_longest_cycles();
+    cycles->core_kHz = board->counted_kHz;
+}
+
 static void run_tick(board_t *board, uint32_t ticks) {
     free_node_t *const common = &board->common;
     can_frame_t frames[NODE_MAX_FRAMES];
     const uint32_t begin = tick_stm32f4_count();
+    const uint32_t begin_cycles = cycles_count();
     common->inputs.lateness_us = us_since(board, board->tick.last_count);
     read_inputs(board);
     free_node_begin(common, ticks);
@@ -165,6 +175,7 @@ static void run_tick(board_t *board, uint32_t ticks) {
         fault_forget();
     }
     common->inputs.work_us = us_since(board, begin);
+    note_cycles(board, begin_cycles);
     supervise();
 }
 
@@ -261,6 +272,7 @@ static void start(board_t *board) {
             START_WATCHDOG_MS); // it runs in any case, by half a second at the least
     }
     board->tick.clock_Hz = board->clocks.apb1_timer_Hz;
+    board->counted_kHz = cycles_start() ? board->clocks.core_Hz / 1000u : 0u;
     open_inputs();
     open_console(&board->clocks);
     bus_open(&board->bus, &board->clocks);

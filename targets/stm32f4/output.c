@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include "board.h"
+#include "cycles.h"
 #include "dac.h"
 #include "nvic.h"
 #include "stm32f4_interrupts.h"
@@ -12,14 +13,15 @@ static struct {
     board_output_t kind;
     bridge_t bridge;
     current_loop_t loop;
-    volatile uint32_t steps; ///< of the current loop
-    uint32_t steps_alive;    ///< at the last output_is_alive
-    uint32_t steps_measured; ///< at the last output_measure
-    bool has_missed;         ///< a step, between the last two of those
+    volatile uint32_t steps;          ///< of the current loop
+    uint32_t steps_alive;             ///< at the last output_is_alive
+    uint32_t steps_measured;          ///< at the last output_measure
+    bool has_missed;                  ///< a step, between the last two of those
+    volatile uint32_t longest_cycles; ///< of a step, since output_longest_cycles
     volatile bridge_measured_t measured;
 } output;
 
-void interrupt_current(void) {
+static void step_loop(void) {
     const bridge_measured_t measured = bridge_take(&output.bridge);
     output.measured.current_mA = measured.current_mA;
     output.measured.supply_mV = measured.supply_mV;
@@ -31,6 +33,23 @@ void interrupt_current(void) {
         bridge_duty(&output.bridge, 0);
         current_loop_rest(&output.loop);
     }
+}
+
+void interrupt_current(void) {
+    const uint32_t begin = cycles_count();
+    step_loop();
+    const uint32_t taken = cycles_count() - begin;
+    if (taken > output.longest_cycles) {
+        output.longest_cycles = taken;
+    }
+}
+
+uint32_t output_longest_cycles(void) {
+    nvic_hold();
+    const uint32_t longest = output.longest_cycles;
+    output.longest_cycles = 0;
+    nvic_release();
+    return longest;
 }
 
 void output_open(const clocks_t *clocks) {

@@ -21,6 +21,9 @@ void output_write(int32_t current_mA, bool is_enabled);
 /// Off, whatever else is the matter. For the start and for a fault of the processor.
 void output_cut(void);
 
+/// Cycles of the longest interrupt of the current loop since the last call (cycles.h).
+uint32_t output_longest_cycles(void);
+
 /// Whether all that must run by interrupt has run since the last call.
 bool output_is_alive(void);
 

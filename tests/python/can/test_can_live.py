@@ -478,6 +478,25 @@ def test_monitor_draws_a_table_on_a_terminal(controller: Controller, tmp_path: P
     assert b"\x1b[H\x1b[J" in seen and b"state      RUN, fault NONE" in seen
 
 
+def test_monitor_shows_how_the_ticks_come() -> None:
+    view = View(SimpleNamespace(bus=SimpleNamespace(name="a bus"), malformed=0), DATABASE)
+
+    def take(name: str, **signals: int) -> None:
+        number = DATABASE.by_name[name].frame_id
+        data = DATABASE.encode(name, **signals)
+        frame = can.Message(timestamp=1.0, arbitration_id=number, is_extended_id=False, data=data)
+        view.take(frame)
+
+    assert "ticks      - lost" in view.table(1.0) and "processor" not in view.table(1.0)
+    take("LoopTiming", overruns=3, lateness_max_us=41, work_max_us=310)
+    assert "3 lost, at most 41 us late and 310 us of work in the last second" in view.table(1.0)
+    take("LoopCycles", work_max_cycles=52000, interrupt_max_cycles=700, core_kHz=168000)
+    assert (
+        "processor  52000 cycles a tick and 700 an interrupt of the current loop at most, of 168 MHz"
+        in view.table(1.0)
+    )
+
+
 def test_monitor_shows_what_was_shed() -> None:
     view = View(SimpleNamespace(bus=SimpleNamespace(name="a bus"), malformed=0), DATABASE)
     assert "not sent   - demands, - answers, - telemetry" in view.table(1.0)

@@ -44,6 +44,7 @@ static void fill_all(const int32_t *value, uint32_t *seed) {
         .overruns = other[3],
         .lateness_us = other[4],
         .work_us = other[5],
+        .cycles = {other[3], other[4], other[5]},
         .unsent = {other[6], other[6], other[6]},
         .bus_off_count = other[7],
         .ticks = 1,

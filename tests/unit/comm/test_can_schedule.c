@@ -76,18 +76,22 @@ static uint32_t expected_count(uint32_t message, int32_t rate_Hz) {
     return SECONDS * 1000u / (cycle_ms > tick_ms ? cycle_ms : tick_ms);
 }
 
-static bool is_always_sent(uint32_t message) {
+// LoopCycles where the target counts cycles.
+static bool is_sent(uint32_t message) {
     return message == QUIESCE_CAN_AT_CURRENT_DEMAND ||
            (message >= QUIESCE_CAN_AT_STATUS && message <= QUIESCE_CAN_AT_CAN_SHED &&
-            message != QUIESCE_CAN_AT_FAULT_FREEZE);
+            message != QUIESCE_CAN_AT_FAULT_FREEZE) ||
+           (message == QUIESCE_CAN_AT_LOOP_CYCLES && tick.cycles.core_kHz > 0u);
 }
 
 static void test_every_message_comes_as_often_as_it_should(void) {
-    for (uint32_t r = 0; r < 4; r++) {
-        start(rates_Hz[r]);
-        const counts_t counts = run(rates_Hz[r]);
+    for (uint32_t r = 0; r < 8; r++) {
+        const int32_t rate_Hz = rates_Hz[r % 4u];
+        tick.cycles.core_kHz = r < 4u ? 0u : 168000u;
+        start(rate_Hz);
+        const counts_t counts = run(rate_Hz);
         for (uint32_t m = 0; m < QUIESCE_CAN_MESSAGES; m++) {
-            const uint32_t expected = is_always_sent(m) ? expected_count(m, rates_Hz[r]) : 0u;
+            const uint32_t expected = is_sent(m) ? expected_count(m, rate_Hz) : 0u;
             TEST_ASSERT_EQUAL_UINT32(expected, counts.of[m]);
         }
         TEST_ASSERT_EQUAL_UINT32(2, counts.worst);
@@ -171,6 +175,7 @@ static void fill(int32_t word) {
         .overruns = (uint32_t)word,
         .lateness_us = (uint32_t)word,
         .work_us = (uint32_t)word,
+        .cycles = {(uint32_t)word, (uint32_t)word, (uint32_t)word},
         .unsent = {(uint32_t)word, (uint32_t)word, (uint32_t)word},
         .bus_off_count = (uint32_t)word,
         .rx_lost = (uint32_t)word,
@@ -183,6 +188,7 @@ static void check_words(int32_t word, bool is_high) {
     struct quiesce_can_status_t status;
     struct quiesce_can_law_state_t law;
     struct quiesce_can_loop_timing_t timing;
+    struct quiesce_can_loop_cycles_t cycles;
     struct quiesce_can_can_health_t health;
     struct quiesce_can_raw_sample_t raw;
     struct quiesce_can_motion_t motion;
@@ -193,6 +199,7 @@ static void check_words(int32_t word, bool is_high) {
     (void)quiesce_can_status_unpack(&status, next(QUIESCE_CAN_AT_STATUS).data, 8);
     (void)quiesce_can_law_state_unpack(&law, next(QUIESCE_CAN_AT_LAW_STATE).data, 8);
     (void)quiesce_can_loop_timing_unpack(&timing, next(QUIESCE_CAN_AT_LOOP_TIMING).data, 8);
+    (void)quiesce_can_loop_cycles_unpack(&cycles, next(QUIESCE_CAN_AT_LOOP_CYCLES).data, 8);
     (void)quiesce_can_can_health_unpack(&health, next(QUIESCE_CAN_AT_CAN_HEALTH).data, 8);
     (void)quiesce_can_raw_sample_unpack(&raw, next(QUIESCE_CAN_AT_RAW_SAMPLE).data, 8);
     (void)quiesce_can_motion_unpack(&motion, next(QUIESCE_CAN_AT_MOTION).data, 8);
@@ -205,6 +212,9 @@ static void check_words(int32_t word, bool is_high) {
     TEST_ASSERT_EQUAL_UINT16(65535, timing.overruns);
     TEST_ASSERT_EQUAL_UINT32(16777215, timing.lateness_max_us);
     TEST_ASSERT_EQUAL_UINT32(16777215, timing.work_max_us);
+    TEST_ASSERT_EQUAL_UINT32(16777215, cycles.work_max_cycles);
+    TEST_ASSERT_EQUAL_UINT16(65535, cycles.interrupt_max_cycles);
+    TEST_ASSERT_EQUAL_UINT32(16777215, cycles.core_kHz);
     TEST_ASSERT_EQUAL_UINT8(255, health.bus_off_count);
     TEST_ASSERT_EQUAL_UINT16(65535, health.rejected_shape);
     TEST_ASSERT_EQUAL_INT32(is_high ? 8388607 : -8388608, raw.accel_counts);
@@ -261,6 +271,21 @@ static void test_timing_is_the_worst_since_the_last_report(void) {
     (void)quiesce_can_loop_timing_unpack(&timing, next(QUIESCE_CAN_AT_LOOP_TIMING).data, 8);
     TEST_ASSERT_EQUAL_UINT32(10, timing.lateness_max_us);
     TEST_ASSERT_EQUAL_UINT32(20, timing.work_max_us);
+}
+
+static void test_cycles_are_the_worst_since_the_last_report(void) {
+    struct quiesce_can_loop_cycles_t cycles;
+    start(1000);
+    tick.cycles = (can_cycles_t){52000, 700, 168000};
+    (void)can_node_tick(&node, &tick, &out, &controller, frames);
+    tick.cycles = (can_cycles_t){41000, 650, 168000};
+    (void)quiesce_can_loop_cycles_unpack(&cycles, next(QUIESCE_CAN_AT_LOOP_CYCLES).data, 8);
+    TEST_ASSERT_EQUAL_UINT32(52000, cycles.work_max_cycles);
+    TEST_ASSERT_EQUAL_UINT16(700, cycles.interrupt_max_cycles);
+    TEST_ASSERT_EQUAL_UINT32(168000, cycles.core_kHz);
+    (void)quiesce_can_loop_cycles_unpack(&cycles, next(QUIESCE_CAN_AT_LOOP_CYCLES).data, 8);
+    TEST_ASSERT_EQUAL_UINT32(41000, cycles.work_max_cycles);
+    TEST_ASSERT_EQUAL_UINT16(650, cycles.interrupt_max_cycles);
 }
 
 static void test_peaks_have_their_own_messages(void) {
@@ -325,6 +350,7 @@ int main(void) {
     RUN_TEST(test_health_counts_saturate);
     RUN_TEST(test_what_is_not_sent_is_counted_without_an_end);
     RUN_TEST(test_timing_is_the_worst_since_the_last_report);
+    RUN_TEST(test_cycles_are_the_worst_since_the_last_report);
     RUN_TEST(test_peaks_have_their_own_messages);
     RUN_TEST(test_farewell_is_a_demand_of_the_safe_current_with_the_output_off);
     RUN_TEST(test_farewell_says_the_state_that_is_true);

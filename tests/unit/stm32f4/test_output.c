@@ -1,5 +1,6 @@
 // The image's output stage on fakes: the current loop's interrupt, the tick, and what cuts it off.
 #include "board.h"
+#include "cycles.h"
 #include "fake_break.h"
 #include "fake_registers.h"
 #include "nvic.h"
@@ -36,7 +37,14 @@ const stm32f4_board_t stm32f4_board = {
 };
 uint32_t fake_nvic_enabled[8];
 int32_t fake_nvic_held;
+static uint32_t cycles_now;
+static uint32_t cycles_a_call;
 static quiesce_driver_t driver;
+
+uint32_t cycles_count(void) {
+    cycles_now += cycles_a_call;
+    return cycles_now;
+}
 
 static void watch(uint32_t address, bool is_write, uint32_t value) {
     (void)address;
@@ -161,9 +169,27 @@ static void test_only_the_current_interrupts(void) {
     TEST_ASSERT_EQUAL_HEX32(0, fake_nvic_enabled[1] | fake_nvic_enabled[2]);
 }
 
+static void test_the_longest_interrupt_is_told_once(void) {
+    static const struct {
+        uint32_t now, taken;
+    } rows[] = {{0, 70}, {1000, 90}, {UINT32_MAX - 100u, 60}, {0, 0}}; // one with a wrap
+    (void)output_longest_cycles();
+    for (uint32_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        cycles_now = rows[i].now;
+        cycles_a_call = rows[i].taken;
+        tick(1000, true);
+    }
+    TEST_ASSERT_EQUAL_UINT32(90, output_longest_cycles());
+    TEST_ASSERT_EQUAL_UINT32(0, output_longest_cycles());
+    cycles_a_call = 20;
+    tick(1000, true);
+    TEST_ASSERT_EQUAL_UINT32(20, output_longest_cycles());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_fault_line_that_stays_low_ends_it_and_holds_up_nothing);
+    RUN_TEST(test_the_longest_interrupt_is_told_once);
     RUN_TEST(test_an_interrupt_that_stays_away_is_a_failure);
     RUN_TEST(test_a_coil_that_is_open_or_short_is_a_failure);
     RUN_TEST(test_only_the_current_interrupts);

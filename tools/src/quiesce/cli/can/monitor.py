@@ -136,6 +136,8 @@ class View:
             f"vibration  {self.value('Status', 'rms_um_s2', 1e-6)} m/s2 RMS, displacement "
             f"{self.value('Motion', 'displacement_amp_nm', 1e-3)} um",
             *(self.current(number) for number in self.dampers()),
+            self.loop(),
+            *self.cycles(),
             self.unsent(),
             "",
             self.messages(now_s),
@@ -144,6 +146,25 @@ class View:
         if others or self._link.malformed:
             lines.append(f"{others} frames of unknown ids, {self._link.malformed} malformed lines")
         return "\n".join(lines)
+
+    def loop(self) -> str:
+        """How the ticks come; targets that cannot tell say 0."""
+        return (
+            f"ticks      {self.count('LoopTiming', 'overruns')} lost, at most "
+            f"{self.count('LoopTiming', 'lateness_max_us')} us late and "
+            f"{self.count('LoopTiming', 'work_max_us')} us of work in the last second"
+        )
+
+    def cycles(self) -> list[str]:
+        """What the loop takes of the processor, where that has a cycle counter."""
+        values = self._traffic.values("LoopCycles")
+        if not values:
+            return []
+        return [
+            f"processor  {values['work_max_cycles']} cycles a tick and "
+            f"{values['interrupt_max_cycles']} an interrupt of the current loop at most, of "
+            f"{values['core_kHz'] / 1000:g} MHz"
+        ]
 
     def unsent(self) -> str:
         """Frames that the controller could not send, since its start; counters wrap."""
