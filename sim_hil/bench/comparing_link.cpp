@@ -4,6 +4,7 @@
 
 #include "input_error.h"
 #include "reply_fields.h"
+#include "start.h"
 
 namespace quiesce {
 
@@ -25,6 +26,9 @@ StartAnswer ComparingLink::start(const quiesce_board_t *board, const quiesce_par
                                  const Tables &tables) {
     const StartAnswer answer = reference_.start(board, params, tables);
     const StartAnswer other = checked_.start(board, params, tables);
+    if (answer && other.param) {
+        refuse_start(checked_, other, board, params, tables);
+    }
     if (other.is_accepted != answer.is_accepted || other.table.verdict != answer.table.verdict ||
         other.table.table != answer.table.table) {
         throw InputError("targets " + reference_.target() + " and " + checked_.target() +

@@ -7,7 +7,22 @@ namespace quiesce {
 
 namespace {
 
-std::string refusal(const StartAnswer &answer, const quiesce_board_t *board, const Tables &tables) {
+/// Parameter number index, as the bench has it.
+std::string refused_param(std::uint32_t index, const quiesce_params_t &params) {
+    const quiesce_param_info_t *const info = quiesce_param_info(index);
+    std::int32_t value = 0;
+    if (info == nullptr || !quiesce_param_get(&params, index, &value)) {
+        return "a parameter that there is not; rebuild it";
+    }
+    return std::string(info->name) + " = " + std::to_string(value) +
+           ": what it asks for may be left out of its build, or another parameter contradicts it";
+}
+
+std::string refusal(const StartAnswer &answer, const quiesce_board_t *board,
+                    const quiesce_params_t &params, const Tables &tables) {
+    if (answer.param) {
+        return refused_param(*answer.param, params);
+    }
     if (answer.table.verdict != QUIESCE_TABLE_OK) {
         const char *whose =
             answer.table.table == LOCKSTEP_LAW_TABLE ? "the law's" : "the tracker's";
@@ -20,6 +35,13 @@ std::string refusal(const StartAnswer &answer, const quiesce_board_t *board, con
 }
 
 } // namespace
+
+void refuse_start(const ControllerLink &link, const StartAnswer &answer,
+                  const quiesce_board_t *board, const quiesce_params_t &params,
+                  const Tables &tables) {
+    throw InputError("the controller on target " + link.target() + " refuses " +
+                     refusal(answer, board, params, tables));
+}
 
 Tables tables_for(const quiesce_board_t *board, const quiesce_params_t &params,
                   const std::vector<TableWords> &given) {
@@ -40,8 +62,7 @@ void start_controller(ControllerLink &link, const quiesce_board_t *board,
                       const quiesce_params_t &params, const Tables &tables) {
     const StartAnswer answer = link.start(board, params, tables);
     if (!answer) {
-        throw InputError("the controller on target " + link.target() + " refuses " +
-                         refusal(answer, board, tables));
+        refuse_start(link, answer, board, params, tables);
     }
 }
 

@@ -14,6 +14,11 @@ namespace quiesce {
 Tables tables_for(const quiesce_board_t *board, const quiesce_params_t &params,
                   const std::vector<std::vector<std::uint32_t>> &given);
 
+/// Throws InputError with what the target refuses. answer: its own, a refusal.
+[[noreturn]] void refuse_start(const ControllerLink &link, const StartAnswer &answer,
+                               const quiesce_board_t *board, const quiesce_params_t &params,
+                               const Tables &tables);
+
 /// Throws InputError where the target refuses parameters, board or a table.
 void start_controller(ControllerLink &link, const quiesce_board_t *board,
                       const quiesce_params_t &params, const Tables &tables);

@@ -32,6 +32,7 @@ using Tables = std::array<std::vector<std::uint32_t>, LOCKSTEP_TABLES>;
 struct StartAnswer {
     bool is_accepted;
     lockstep_refusal_t table{}; ///< that it refuses; where none, parameters or board are refused
+    std::optional<std::uint32_t> param{}; ///< index of the one that it refuses, where it says so
 
     explicit operator bool() const { return is_accepted; }
 };

@@ -133,14 +133,16 @@ StartAnswer LockstepClient::start(const quiesce_board_t *board, const quiesce_pa
     }
     sequence_ = 0;
     reply_ = lockstep_reply_t{};
-    refused_index_ = status.refused_index;
     if (status.table_verdict != QUIESCE_TABLE_OK) {
         if (status.refused_index >= LOCKSTEP_TABLES) {
             fail("refuses a table that there is not; rebuild it");
         }
         return {false, {status.table_verdict, status.refused_index}};
     }
-    return {status.param_is_refused == 0 && status.board_is_refused == 0};
+    if (status.param_is_refused != 0) {
+        return {false, {}, status.refused_index};
+    }
+    return {status.board_is_refused == 0};
 }
 
 void LockstepClient::write_params(const quiesce_params_t &params) {

@@ -52,9 +52,6 @@ class LockstepClient {
     /// Tells the target to end.
     void stop();
 
-    /// Index of the parameter that the last start refused.
-    std::uint32_t refused_index() const { return refused_index_; }
-
     /// Words that the last exchange brought.
     const ReplyWords &received() const { return received_; }
 
@@ -85,7 +82,6 @@ class LockstepClient {
     lockstep_reply_t reply_{};
     ReplyWords received_;
     std::uint8_t sequence_ = 0;
-    std::uint32_t refused_index_ = 0;
 };
 
 } // namespace quiesce

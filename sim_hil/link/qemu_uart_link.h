@@ -22,7 +22,6 @@ class QemuUartLink final : public ControllerLink {
     ReplyWords received() const override { return client_.received(); }
     std::optional<InstructionCounts> finish() override;
 
-    std::uint32_t refused_index() const { return client_.refused_index(); }
     std::size_t sent_bytes() const { return channel_.sent_bytes(); }
     std::size_t received_bytes() const { return channel_.received_bytes(); }
     QemuUart &uart() { return uart_; }

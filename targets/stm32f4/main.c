@@ -4,6 +4,7 @@
 #include "board.h"
 #include "bus.h"
 #include "clocks.h"
+#include "console.h"
 #include "cycles.h"
 #include "fault.h"
 #include "free_node.h"
@@ -21,13 +22,10 @@
 #include "stm32f4_spi.h"
 #include "supply.h"
 #include "tick_stm32f4.h"
-#include "uart_stm32f4.h"
-#include "vectors.h"
 #include "watchdog.h"
 
 #include <stddef.h>
 
-#define CONSOLE_PRIORITY 0x40u
 #define SUPPLY_PRIORITY 0x00u
 /// Fifty lost ticks at 1 kHz; the oscillator may be half as fast again, or half as slow.
 #define WATCHDOG_MS 50u
@@ -49,25 +47,9 @@ typedef struct {
     bool acknowledge_was_up;
 } board_t;
 
-static hal_uart_t console;
-
 extern const image_info_t image_info; // info.c
 
 extern const uint32_t stack_limit[]; // image.ld
-
-void interrupt_console(void) {
-    uart_stm32f4_interrupt(&console);
-}
-
-static void open_console(const clocks_t *clocks) {
-    const stm32f4_board_t *const board = &stm32f4_board;
-    pin_function(board->console_tx.pin, board->console_tx.function, PIN_FLOATS);
-    pin_function(board->console_rx.pin, board->console_rx.function, PIN_UP);
-    uart_stm32f4_open(&console, board->console,
-                      board->console_is_apb2 ? clocks->apb2_Hz : clocks->apb1_Hz,
-                      board->console_baud);
-    nvic_enable(board->console_interrupt, CONSOLE_PRIORITY);
-}
 
 static void open_inputs(void) {
     pin_input(stm32f4_board.estop, PIN_UP);
@@ -274,7 +256,7 @@ static void start(board_t *board) {
     board->tick.clock_Hz = board->clocks.apb1_timer_Hz;
     board->counted_kHz = cycles_start() ? board->clocks.core_Hz / 1000u : 0u;
     open_inputs();
-    open_console(&board->clocks);
+    console_open(&board->clocks);
     bus_open(&board->bus, &board->clocks);
     start_common(board);
     open_images(board);

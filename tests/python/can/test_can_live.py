@@ -492,8 +492,8 @@ def test_monitor_shows_how_the_ticks_come() -> None:
     assert "3 lost, at most 41 us late and 310 us of work in the last second" in view.table(1.0)
     take("LoopCycles", work_max_cycles=52000, interrupt_max_cycles=700, core_kHz=168000)
     assert (
-        "processor  52000 cycles a tick and 700 an interrupt of the current loop at most, of 168 MHz"
-        in view.table(1.0)
+        "processor  52000 cycles a tick and 700 an interrupt of the current loop at most, "
+        "of 168 MHz" in view.table(1.0)
     )
 
 

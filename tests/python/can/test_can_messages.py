@@ -68,7 +68,9 @@ def test_every_message_and_signal_is_described():
 def test_units_match_the_names():
     for message in DATABASE.messages:
         for signal in message.signals:
-            suffix = re.search(r"_(uHz|um_s2|um_s|kHz|mA|mdeg|nm|ms|us|ticks|counts|cycles)$", signal.name)
+            suffix = re.search(
+                r"_(uHz|um_s2|um_s|kHz|mA|mdeg|nm|ms|us|ticks|counts|cycles)$", signal.name
+            )
             unit = {"um_s2": "um/s2", "um_s": "um/s"}
             unit |= {"ticks": "tick", "counts": "count", "cycles": "cycle"}
             expected = suffix and unit.get(suffix[1], suffix[1])

@@ -19,6 +19,8 @@ import serial
 from can_protection import encode, load_database
 from conftest import ROOT, require
 from node_rig import FAULT_ID, MOST_RESTARTS
+from quiesce.base.errors import UsageError
+from quiesce.engine.bench import Bench
 from quiesce.firmware.image import (
     SLOT_BEGINS,
     SLOT_BYTES,
@@ -184,6 +186,36 @@ def test_image_survives_resets_in_a_row(resets: int) -> None:
             console.reset()
             status = console.until("Status", lambda status: status["raw_is_streaming"] == 0)
             assert status["fault"] != "ESTOP"  # no fault of the processor
+
+
+SCENARIO = """
+schema = "quiesce-scenario"
+version = 1
+name = "short"
+plant = "{plant}"
+duration_s = 1.0
+noise_mg = 0.5
+
+[[segment]]
+kind = "sine"
+freq_Hz = 10
+"""
+
+
+def test_lockstep_image_answers_like_the_host(tmp_path: Path) -> None:
+    scenario = tmp_path / "short.toml"
+    scenario.write_text(SCENARIO.format(plant=ROOT / "sim_hil/data/plants/squeeze_2012.toml"))
+    with running("olimex_h405_lockstep") as console:
+        channel = f"slcan:{console.port.name}"
+        console.port.close()
+        bench = Bench()
+        words = ["--scenario", str(scenario), "--law", "fuzzy", "--seeds", "1"]
+        words += ["--target", "linux", "--can", channel, "--telemetry-every", "50"]
+        with pytest.raises(UsageError, match="refuses tracker = 0: "):
+            bench.json("compare", *words)
+        found = bench.json("compare", *words, "--set", "tracker=compare")  # the one that it has
+    assert found["mismatches"] == 0 and found["ticks"] == 1000
+    assert found["distinct_commands"] > 1
 
 
 def assert_silent(console: Console) -> None:

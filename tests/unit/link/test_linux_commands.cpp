@@ -80,6 +80,24 @@ TEST(linux_target, wrong_bit_is_reported) {
     EXPECT_NE(run["telemetry_crc32"], json_of("run " + kScenario)["telemetry_crc32"]);
 }
 
+/// A build of a board has not all that the bench's has.
+TEST(linux_target, parameter_that_it_refuses_is_named) {
+    const Target target([](const can_frame_t &request, std::vector<can_frame_t> &replies) {
+        if (request.id == QUIESCE_CAN_LOCKSTEP_CONTROL_FRAME_ID) {
+            quiesce_can_lockstep_status_t status{};
+            (void)quiesce_can_lockstep_status_unpack(&status, replies[0].data, replies[0].length);
+            status.param_is_refused = 1;
+            status.refused_index = offsetof(quiesce_params_t, tracker) / sizeof(std::int32_t);
+            (void)quiesce_can_lockstep_status_pack(replies[0].data, &status,
+                                                   sizeof replies[0].data);
+        }
+        return std::optional<std::string>("");
+    });
+    const Outcome outcome = bench("run " + kScenario + target.options);
+    EXPECT_EQ(outcome.exit_code, 2);
+    expect_contains(outcome.output, "on target linux refuses tracker = 0: what it asks for");
+}
+
 struct BadCall {
     const char *name;
     std::string words;

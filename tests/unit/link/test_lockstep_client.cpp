@@ -135,8 +135,9 @@ TEST(lockstep_client, refused_parameter_is_named_by_its_index) {
     const LockstepPeer peer(std::move(ends.second));
     const auto channel = channel_on(std::move(ends.first));
     LockstepClient client(*channel, {});
-    EXPECT_FALSE(client.start(nullptr, params, {}));
-    EXPECT_EQ(client.refused_index(), error.index);
+    const StartAnswer answer = client.start(nullptr, params, {});
+    EXPECT_FALSE(answer);
+    EXPECT_EQ(answer.param, error.index);
 }
 
 TEST(lockstep_client, target_that_starts_late_is_asked_until_it_answers) {

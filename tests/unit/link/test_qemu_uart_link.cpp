@@ -71,8 +71,9 @@ TEST(qemu_uart_link, refused_parameter_is_named_by_its_index) {
     InProcessLink host;
     QemuUartLink target(options_for(kUartImage), kFullTelemetry);
     EXPECT_FALSE(host.start(nullptr, params, {}));
-    EXPECT_FALSE(target.start(nullptr, params, {}));
-    EXPECT_EQ(target.refused_index(), error.index);
+    const StartAnswer answer = target.start(nullptr, params, {});
+    EXPECT_FALSE(answer);
+    EXPECT_EQ(answer.param, error.index);
     lockstep_reply_t expected, actual;
     host.exchange(varied_stimulus(1), expected);
     target.exchange(varied_stimulus(1), actual);

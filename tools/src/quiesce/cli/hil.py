@@ -83,7 +83,8 @@ Tables go to the laws that take them, on every target: --rules as 'quiesce rules
 compared of a law with a table.
 
 --target linux runs the same scenarios as the image and the host beside it, and drives quiesced
---lockstep, tick by tick, over CAN; mps2-uart the image by the same messages. Command, state and
+--lockstep, or a board with its lock-step image, tick by tick, over CAN; mps2-uart the image by the
+same messages. Command, state and
 fault of every tick are compared, all words of telemetry every 100 ticks or as --telemetry-every
 says. Channels: slcan:DEVICE[,baud=N]
 [,bitrate=N] (serial line, pty, adapter), slcan:unix:PATH, slcan:tcp:HOST:PORT, socketcan:INTERFACE.
@@ -114,7 +115,10 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "or all of the first two (%(default)s)",
     )  # fmt: skip
     parser.add_argument(
-        "--can", metavar="CHANNEL", help="what leads to quiesced --lockstep (one started here)"
+        "--can",
+        metavar="CHANNEL",
+        help="what leads to quiesced --lockstep or to a board's lock-step image (quiesced, started "
+        "here)",
     )
     parser.add_argument(
         "--telemetry-every", type=whole_number(1, 65535), metavar="N",
