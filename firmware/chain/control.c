@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "at_start.h"
 #include "table.h"
 
 // Of what a law needs that demands forces, or lacks its table: a bit that no view has. Such a law
@@ -140,7 +141,8 @@ static void find_needs(control_t *self) {
                   force_table_needs(self, self->forces.table) | (wants_more ? MORE : 0);
 }
 
-void control_init(control_t *self, const places_t *places, const quiesce_params_t *params) {
+AT_START void control_init(control_t *self, const places_t *places,
+                           const quiesce_params_t *params) {
     self->law = law_find(params->law);
     forces_init(&self->forces, self->law, params);
     self->bodies = places->bodies;
@@ -220,8 +222,8 @@ static bool is_of_this_rate(const control_t *self, const table_kind_t *kind,
            made_for_Hz == (uint32_t)self->setup.params.tick_rate_Hz;
 }
 
-quiesce_table_verdict_t control_check(const control_t *self, const uint32_t *words, uint32_t count,
-                                      bool is_summed) {
+AT_START quiesce_table_verdict_t control_check(const control_t *self, const uint32_t *words,
+                                               uint32_t count, bool is_summed) {
     const quiesce_owner_t owner = owner_of(self, words, count);
     const table_kind_t *kind = kind_of(self, owner);
     if (kind == NULL) {

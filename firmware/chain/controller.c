@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 
+#include "at_start.h"
 #include "control.h"
 #include "controller_tables.h"
 #include "drive.h"
@@ -82,9 +83,9 @@ static void sweep_tables(controller_t *self, const uint32_t *checked) {
     }
 }
 
-static void start_all(controller_t *self, const quiesce_board_t *board,
-                      const quiesce_params_t *params, const quiesce_params_t *used,
-                      bool is_accepted) {
+AT_START static void start_all(controller_t *self, const quiesce_board_t *board,
+                               const quiesce_params_t *params, const quiesce_params_t *used,
+                               bool is_accepted) {
     *self = (controller_t){.view.may_learn = true};
     signal_chain_init(&self->signal, board, used, control_serves(used), law_find(used->law)->lock);
     control_init(&self->control, &self->signal.sensing.places, used);
@@ -132,8 +133,8 @@ bool quiesce_init_board(quiesce_t *self, const quiesce_board_t *board,
     return is_accepted;
 }
 
-bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board,
-                     const quiesce_params_t *params) {
+AT_START bool quiesce_restart(quiesce_t *self, const quiesce_board_t *board,
+                              const quiesce_params_t *params) {
     controller_t *c = (controller_t *)(void *)self->opaque;
     const sweep_t sweep = c->sweep;
     int64_t heat_q20[QUIESCE_DAMPERS];

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "at_start.h"
+
 #define RATE_IF_REFUSED_Hz 1000u
 // What alone of the limits changes from tick to tick.
 #define LAST_WORD (offsetof(drive_limits_t, guard.last_uA) / sizeof(uint32_t))
@@ -59,8 +61,8 @@ static void start_heat(drive_t *self, uint32_t number, const quiesce_board_dampe
                            });
 }
 
-void drive_init(drive_t *self, uint32_t number, const quiesce_board_damper_t *damper,
-                const quiesce_params_t *p, bool is_accepted) {
+AT_START void drive_init(drive_t *self, uint32_t number, const quiesce_board_damper_t *damper,
+                         const quiesce_params_t *p, bool is_accepted) {
     const uint32_t rate_Hz = is_accepted ? (uint32_t)p->tick_rate_Hz : RATE_IF_REFUSED_Hz;
     self->limits.ceiling_mA = damper->ceiling_mA;
     start_guard(&self->limits.guard, damper, p, rate_Hz);

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "at_start.h"
+
 enum {
     PAIRS_A_SAMPLE = 92,  // work of a job between two samples, in pairs of samples
     POWERS_A_SAMPLE = 34, // and powers to read
@@ -16,7 +18,7 @@ enum {
     STEADY_WINDOWS = 3,   // a component that lasts so long is another motion than the one before
 };
 
-void estimator_fit_init(estimator_fit_t *self, const estimator_cfg_t *cfg) {
+AT_START void estimator_fit_init(estimator_fit_t *self, const estimator_cfg_t *cfg) {
     *self = (estimator_fit_t){.job_ticks = UINT32_MAX};
     while (self->longest_level < SPECTRUM_LONGEST &&
            SPECTRUM_POINTS(self->longest_level) * 1000u < cfg->longest_ms * SPECTRUM_RATE_Hz) {

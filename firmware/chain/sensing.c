@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "at_start.h"
 #include "view_signal.h"
 
 // Bits of a quantity of a body or damper.
@@ -126,8 +127,8 @@ void places_init(places_t *self, const quiesce_board_t *board) {
     }
 }
 
-void sensing_init(sensing_t *self, const quiesce_board_t *board, const quiesce_params_t *params,
-                  uint64_t needs) {
+AT_START void sensing_init(sensing_t *self, const quiesce_board_t *board,
+                           const quiesce_params_t *params, uint64_t needs) {
     const uint64_t strokes = VIEW_EACH(VIEW_STROKE) | VIEW_EACH(VIEW_STROKE_VELOCITY);
     places_init(&self->places, board);
     self->has_strokes = (needs & strokes) != 0;

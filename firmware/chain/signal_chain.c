@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "at_start.h"
+
 enum {
     HARMONIC_GAP_uHz = 250000, // a quarter of a bin of the longest window
 };
@@ -20,8 +22,9 @@ static void lock_init(dominant_lock_state_t *self, const dominant_lock_t *lock,
                      });
 }
 
-void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
-                       const quiesce_params_t *p, uint64_t needs, const dominant_lock_t *lock) {
+AT_START void signal_chain_init(signal_chain_t *self, const quiesce_board_t *board,
+                                const quiesce_params_t *p, uint64_t needs,
+                                const dominant_lock_t *lock) {
     const uint32_t rate_Hz = (uint32_t)p->tick_rate_Hz;
     sensing_init(&self->sensing, board, p, needs);
     self->tracked = (uint8_t)board->tracked;

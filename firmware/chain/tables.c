@@ -16,15 +16,45 @@ static bool is_taken(const quiesce_tables_t *tables, uint32_t room) {
     return is_one;
 }
 
-// What arrives next goes where nothing is kept: there is one room more than can be kept.
-static void free_arrival(quiesce_tables_t *tables) {
+static bool is_in_use(const quiesce_tables_t *tables, uint32_t room) {
+    bool is_one = false;
+    for (uint32_t i = 0; i < QUIESCE_TABLE_OWNERS; i++) {
+        is_one = is_one || tables->of[i].now == room;
+    }
+    return is_one;
+}
+
+// What arrives next goes where nothing is kept, else where the table before is. SHIPPED: nowhere.
+static uint32_t free_room(const quiesce_tables_t *tables) {
+    uint32_t free = SHIPPED;
+    for (uint32_t room = 0; room < QUIESCE_TABLE_ROOMS; room++) {
+        if (room != tables->held && !is_in_use(tables, room) &&
+            (free == SHIPPED || (is_taken(tables, free) && !is_taken(tables, room)))) {
+            free = room;
+        }
+    }
+    return free;
+}
+
+static void forget_arrival(quiesce_tables_t *tables) {
     tables->filled = 0;
     tables->summed = 0;
     tables->crc = 0;
-    tables->arrival = 0;
-    while (tables->arrival + 1u < QUIESCE_TABLE_ROOMS && is_taken(tables, tables->arrival)) {
-        tables->arrival++;
+}
+
+static bool begin_arrival(quiesce_tables_t *tables) {
+    const uint32_t room = free_room(tables);
+    if (room == SHIPPED) {
+        return false;
     }
+    for (uint32_t i = 0; i < QUIESCE_TABLE_OWNERS; i++) {
+        if (tables->of[i].before == room) {
+            tables->of[i].before = tables->of[i].now; // there is none to go back to
+        }
+    }
+    tables->arrival = room;
+    forget_arrival(tables);
+    return true;
 }
 
 void quiesce_tables_init(quiesce_tables_t *tables) {
@@ -33,7 +63,27 @@ void quiesce_tables_init(quiesce_tables_t *tables) {
         tables->of[i].before = SHIPPED;
         tables->of[i].shipped = NULL;
     }
-    free_arrival(tables);
+    tables->arrival = 0;
+    tables->held = SHIPPED;
+    forget_arrival(tables);
+}
+
+void quiesce_tables_hold(quiesce_tables_t *tables, const uint32_t *words) {
+    tables->held = SHIPPED;
+    for (uint32_t room = 0; room < QUIESCE_TABLE_ROOMS; room++) {
+        if (words == tables->words[room]) {
+            tables->held = room;
+        }
+    }
+}
+
+bool quiesce_tables_have_room(const quiesce_tables_t *tables) {
+    return free_room(tables) != SHIPPED;
+}
+
+uint32_t *quiesce_tables_room(quiesce_tables_t *tables) {
+    (void)begin_arrival(tables);
+    return tables->words[tables->arrival];
 }
 
 void quiesce_tables_ship(quiesce_tables_t *tables, const uint32_t *words) {
@@ -49,8 +99,8 @@ bool quiesce_tables_write(quiesce_tables_t *tables, uint32_t offset, const uint3
         offset > QUIESCE_TABLE_WORDS - count) {
         return false;
     }
-    if (offset == 0) {
-        free_arrival(tables);
+    if (offset == 0 && !begin_arrival(tables)) {
+        return false;
     }
     for (uint32_t i = 0; i < count; i++) {
         tables->words[tables->arrival][offset + i] = words[i];
@@ -108,7 +158,7 @@ quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_
         tables->of[owner].before = before[owner];
         tables->of[owner].now = tables->arrival;
     }
-    free_arrival(tables);
+    forget_arrival(tables);
     return verdict;
 }
 
@@ -121,7 +171,7 @@ bool quiesce_tables_keep(quiesce_tables_t *tables) {
         return false;
     }
     tables->of[owner].now = tables->arrival;
-    free_arrival(tables);
+    forget_arrival(tables);
     return true;
 }
 

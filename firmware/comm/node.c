@@ -83,7 +83,7 @@ bool node_offer(node_t *node, const table_found_t *found, quiesce_table_verdict_
 }
 
 void node_stored(node_t *node, bool is_stored) {
-    keeper_stored(&node->tables.keeper, is_stored);
+    table_service_stored(&node->tables, is_stored);
 }
 
 static bool is_table_data(const can_frame_t *frame) {

@@ -18,7 +18,8 @@ static void take_word(table_link_t *self, quiesce_tables_t *tables) {
 }
 
 void table_link_take(table_link_t *self, const can_frame_t *frame, quiesce_tables_t *tables) {
-    const isotp_part_t part = isotp_take(&self->isotp, frame->data, TABLE_FILE_MOST_BYTES);
+    const uint32_t room = quiesce_tables_have_room(tables) ? TABLE_FILE_MOST_BYTES : 0u;
+    const isotp_part_t part = isotp_take(&self->isotp, frame->data, room);
     if (part.count > 0u && part.at == 0u) {
         self->words = 0;
         self->word = 0;

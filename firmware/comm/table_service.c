@@ -272,12 +272,23 @@ static bool store_road(const work_t *work, can_node_result_t *result) {
         return true;
     }
     const uint32_t *words = words_to_store(work, &count);
-    if (!keeper_ask(&self->keeper, record_of[road], count > 0u ? words[CRC_WORD] : 0u, words, count,
-                    &is_stored)) {
+    const bool was_free = self->keeper.under_way == KEEPER_RECORDS;
+    const bool has_outcome =
+        keeper_ask(&self->keeper, record_of[road], count > 0u ? words[CRC_WORD] : 0u, words, count,
+                   &is_stored);
+    if (was_free && self->keeper.under_way == record_of[road]) { // it is read until it is stored
+        quiesce_tables_hold(&self->tables, words);
+    }
+    if (!has_outcome) {
         return false;
     }
     *result = is_stored ? CAN_NODE_DONE : CAN_NODE_STORE_FAILED;
     return true;
+}
+
+void table_service_stored(table_service_t *self, bool is_stored) {
+    keeper_stored(&self->keeper, is_stored);
+    quiesce_tables_hold(&self->tables, NULL);
 }
 
 static const uint32_t *in_use(const work_t *work, uint32_t road) {
@@ -285,7 +296,7 @@ static const uint32_t *in_use(const work_t *work, uint32_t road) {
     if (road != ROAD_LEARNT) {
         return quiesce_table_in_use(work->controller, (quiesce_owner_t)road);
     }
-    return learnt_take(&self->learnt.sent, work->controller) ? self->learnt.sent.words : NULL;
+    return learnt_take(&self->learnt.taken, work->controller) ? self->learnt.taken.words : NULL;
 }
 
 static uint32_t source_of(const work_t *work, uint32_t road) {
@@ -400,7 +411,10 @@ bool table_service_work(table_service_t *self, quiesce_t *controller,
 // ---- restarts, ticks ----------------------------------------------------------------------------
 
 void table_service_before_restart(table_service_t *self, const quiesce_t *controller) {
-    (void)learnt_take(&self->learnt.before, controller);
+    if (self->link.sent == self->learnt.taken.words) { // the host asks again
+        table_link_drop(&self->link);
+    }
+    (void)learnt_take(&self->learnt.taken, controller);
 }
 
 static bool put_back(const learnt_t *learnt, quiesce_t *controller) {
@@ -415,7 +429,7 @@ void table_service_after_restart(table_service_t *self, quiesce_t *controller) {
             self->of[i].refusal = QUIESCE_TABLE_OK; // it may have waited
         }
     }
-    if (!put_back(&learnt->before, controller)) {
+    if (!put_back(&learnt->taken, controller)) {
         (void)put_back(&learnt->kept, controller);
     }
 }

@@ -83,6 +83,9 @@ bool table_service_work(table_service_t *self, quiesce_t *controller,
                         const can_service_request_t *request, can_node_result_t *result,
                         int32_t *value);
 
+/// The target says how the record under way went (keeper.h).
+void table_service_stored(table_service_t *self, bool is_stored);
+
 /// There is no request any more.
 static inline void table_service_rest(table_service_t *self) {
     self->is_working = false;

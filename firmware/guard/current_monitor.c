@@ -1,5 +1,7 @@
 #include "current_monitor.h"
 
+#include "at_start.h"
+
 // What a bad tick adds; a good one takes 1 away.
 #define WRONG_ADDS 4u
 #define OVER_ADDS 8u
@@ -24,8 +26,8 @@ static void settle(current_monitor_t *self, int32_t current_mA) {
     }
 }
 
-void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,
-                          int32_t initial_mA) {
+AT_START void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,
+                                   int32_t initial_mA) {
     const uint32_t milliticks = (uint32_t)cfg->lag_us * cfg->tick_rate_Hz / 1000u;
     *self = (current_monitor_t){
         .error_mA = cfg->error_mA,

@@ -1,5 +1,6 @@
 #include "heat.h"
 
+#include "at_start.h"
 #include "quiesce_board.h"
 
 #define Q20 (INT64_C(1) << 20)
@@ -50,7 +51,7 @@ void heat_resume(heat_t *self, int64_t heat_q20) {
     self->is_excessive = heat_q20 > budget_q20 + budget_q20 / 16 + EXCESS_Q20;
 }
 
-void heat_init(heat_t *self, const heat_cfg_t *cfg) {
+AT_START void heat_init(heat_t *self, const heat_cfg_t *cfg) {
     const int64_t ticks = (int64_t)cfg->time_s * cfg->tick_rate_Hz;
     *self = (heat_t){
         .gain_q32 = (uint32_t)((INT64_C(1) << 32) * HEAT_SLICE_TICKS / ticks),

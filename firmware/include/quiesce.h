@@ -275,18 +275,20 @@ const char *quiesce_lacks_table(const quiesce_t *self);
 /// CRC-32 that the table in use carries: the law's, else its tracker's; 0 where there is none.
 uint32_t quiesce_table_hash(const quiesce_t *self);
 
-/// Room for tables that arrive in parts, beside those in use: the law's and, where a tracker of the
-/// build has tables, the tracker's, each with the one before it, and the one that arrives. A table
-/// is put to use whole and checked, or not at all. Contents are private.
+/// Room for tables that arrive in parts, beside those in use. Where a tracker of the build has
+/// tables: the law's and the tracker's, each with the one before it, and the one that arrives.
+/// Where none has: the law's, and one more, which what arrives takes from the table before it. A
+/// table is put to use whole and checked, or not at all. Contents are private.
 #define QUIESCE_TRACKERS_HAVE_TABLES                                                               \
     (QUIESCE_WITH_TRACKER_INVERSE || QUIESCE_WITH_TRACKER_NETWORK || QUIESCE_WITH_TRACKER_BANK)
-#define QUIESCE_TABLE_ROOMS (QUIESCE_TRACKERS_HAVE_TABLES ? 5u : 3u)
+#define QUIESCE_TABLE_ROOMS (QUIESCE_TRACKERS_HAVE_TABLES ? 5u : 2u)
 typedef struct {
     uint32_t words[QUIESCE_TABLE_ROOMS][QUIESCE_TABLE_WORDS];
     uint32_t filled;  ///< words that have arrived
     uint32_t summed;  ///< of them, those that crc covers
     uint32_t crc;     ///< from the third word on
     uint32_t arrival; ///< the room that is filled
+    uint32_t held;    ///< the room that somebody reads; QUIESCE_TABLE_ROOMS: none
     struct {
         uint32_t now, before;    ///< rooms; QUIESCE_TABLE_ROOMS: what ships
         const uint32_t *shipped; ///< NULL: what the law ships with
@@ -300,8 +302,20 @@ void quiesce_tables_init(quiesce_tables_t *tables);
 /// program; a good table, which stays the caller's. Then quiesce_tables_resume.
 void quiesce_tables_ship(quiesce_tables_t *tables, const uint32_t *words);
 
+/// Somebody reads a table in use, such as a store of the target: until the next call nothing that
+/// arrives takes its room, also once another table is in use. NULL: nobody does.
+void quiesce_tables_hold(quiesce_tables_t *tables, const uint32_t *words);
+
+/// Whether a table can arrive: false where the one room that it could take is held.
+bool quiesce_tables_have_room(const quiesce_tables_t *tables);
+
+/// The room of what arrives next, QUIESCE_TABLE_WORDS words: who fills it writes it from there with
+/// offset 0. Only where there is one; forgets what has arrived.
+uint32_t *quiesce_tables_room(quiesce_tables_t *tables);
+
 /// Appends words of a table that arrives; offset 0 starts anew. Returns false, and changes nothing,
-/// iff offset is neither 0 nor where the last part ended, or the part does not fit.
+/// iff offset is neither 0 nor where the last part ended, or the part does not fit, or at offset 0
+/// there is no room.
 bool quiesce_tables_write(quiesce_tables_t *tables, uint32_t offset, const uint32_t *words,
                           uint32_t count);
 
@@ -325,7 +339,8 @@ quiesce_table_verdict_t quiesce_tables_commit(quiesce_tables_t *tables, quiesce_
 bool quiesce_tables_keep(quiesce_tables_t *tables);
 
 /// Goes back to the table in use before the last commit or unload. Returns false, and changes
-/// nothing, iff that has been done already, there was none, or it is refused by now.
+/// nothing, iff that has been done already, there was none, another one has begun to arrive in its
+/// room, or it is refused by now.
 bool quiesce_tables_revert(quiesce_tables_t *tables, quiesce_t *self, quiesce_owner_t owner);
 
 /// Goes back to the table that ships, which the next revert undoes. Returns false iff law and

@@ -1,10 +1,12 @@
 #include "condition.h"
 
+#include "at_start.h"
+
 // What a single missing sample takes off a run of good ones: a sensor at half our rate never counts
 // as good, one that misses a tick in ten does.
 #define SLIP_COSTS_TICKS 4u
 
-void condition_init(condition_t *self, const condition_cfg_t *cfg) {
+AT_START void condition_init(condition_t *self, const condition_cfg_t *cfg) {
     const int64_t omega_q32 = radians_a_tick_q32(cfg->dc_cutoff_mHz, cfg->tick_rate_Hz);
     const int64_t one_q32 = INT64_C(1) << 32;
     // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.

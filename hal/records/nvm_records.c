@@ -161,7 +161,8 @@ bool nvm_records_open(hal_nvm_t *nvm, hal_nvm_memory_t *memory, uint32_t owner) 
     return true;
 }
 
-hal_nvm_found_t hal_nvm_read(hal_nvm_t *nvm, uint32_t record, uint32_t *words, uint32_t *count) {
+hal_nvm_found_t hal_nvm_read(hal_nvm_t *nvm, uint32_t record, uint32_t *words, uint32_t room,
+                             uint32_t *count) {
     head_t head;
     *count = 0;
     if (record >= HAL_NVM_RECORDS) {
@@ -172,7 +173,7 @@ hal_nvm_found_t hal_nvm_read(hal_nvm_t *nvm, uint32_t record, uint32_t *words, u
         return nvm->record[record].is_doubted ? HAL_NVM_LOST : HAL_NVM_NONE;
     }
     if (!read_log(nvm, at, head, NVM_HEAD_WORDS) || !is_entry(nvm, at, head) ||
-        !is_whole(nvm, at, head, words)) {
+        head[NVM_HEAD_COUNT] > room || !is_whole(nvm, at, head, words)) {
         return HAL_NVM_LOST;
     }
     *count = head[NVM_HEAD_COUNT];

@@ -54,10 +54,11 @@ static void find_tables(free_node_t *self) {
         (void)node_ship(&self->node, shipped_tables[i]);
     }
     for (uint32_t i = 0; i < sizeof records / sizeof records[0]; i++) {
-        const uint32_t count = kept_read(&self->kept, records[i]);
+        uint32_t *const words = quiesce_tables_room(&self->node.tables.tables);
+        const uint32_t count = kept_read(&self->kept, records[i], words, QUIESCE_TABLE_WORDS);
         const table_found_t found = {.record = records[i],
                                      .source = TABLE_FROM_STORE,
-                                     .words = self->kept.words,
+                                     .words = words,
                                      .count = count,
                                      .writes = kept_writes(&self->kept, records[i])};
         keeper_found_as(&self->node.tables.keeper, records[i], self->kept.state);

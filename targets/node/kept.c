@@ -26,9 +26,9 @@ static keeper_state_t state_of(hal_nvm_found_t found) {
     }
 }
 
-uint32_t kept_read(kept_t *kept, keeper_record_t record) {
+uint32_t kept_read(kept_t *kept, keeper_record_t record, uint32_t *words, uint32_t room) {
     uint32_t count;
-    kept->state = state_of(hal_nvm_read(&kept->nvm, (uint32_t)record, kept->words, &count));
+    kept->state = state_of(hal_nvm_read(&kept->nvm, (uint32_t)record, words, room, &count));
     return count;
 }
 
@@ -43,33 +43,37 @@ static void copy(uint32_t *to, const uint32_t *from, uint32_t count) {
 }
 
 // Parameters come after the hash of those that ship.
-static uint32_t head_words(keeper_record_t record) {
-    return record == KEEPER_PARAMS ? 1u : 0u;
-}
-
 bool kept_read_params(kept_t *kept, quiesce_params_t *params) {
-    if (kept_read(kept, KEEPER_PARAMS) != 1u + QUIESCE_PARAM_COUNT ||
-        kept->words[0] != kept->shipped_hash) {
+    if (kept_read(kept, KEEPER_PARAMS, kept->params, 1u + QUIESCE_PARAM_COUNT) !=
+            1u + QUIESCE_PARAM_COUNT ||
+        kept->params[0] != kept->shipped_hash) {
         return false;
     }
-    copy((uint32_t *)(void *)params, &kept->words[1], QUIESCE_PARAM_COUNT);
+    copy((uint32_t *)(void *)params, &kept->params[1], QUIESCE_PARAM_COUNT);
     return true;
+}
+
+static keeper_answer_t begin(kept_t *kept, keeper_record_t record, const uint32_t *words,
+                             uint32_t count) {
+    kept->is_writing = hal_nvm_begin(&kept->nvm, (uint32_t)record, words, count);
+    return kept->is_writing ? KEEPER_BEGUN : KEEPER_FAILED;
 }
 
 keeper_answer_t kept_store(void *context, keeper_record_t record, const uint32_t *words,
                            uint32_t count) {
     kept_t *const kept = context;
-    const uint32_t head = head_words(record);
     if (kept->is_writing) {
         return KEEPER_BUSY;
     }
-    if (count > HAL_NVM_MAX_WORDS - head) {
+    if (record != KEEPER_PARAMS) {
+        return begin(kept, record, words, count);
+    }
+    if (count > QUIESCE_PARAM_COUNT) {
         return KEEPER_FAILED;
     }
-    kept->words[0] = kept->shipped_hash;
-    copy(&kept->words[head], words, count);
-    kept->is_writing = hal_nvm_begin(&kept->nvm, (uint32_t)record, kept->words, head + count);
-    return kept->is_writing ? KEEPER_BEGUN : KEEPER_FAILED;
+    kept->params[0] = kept->shipped_hash;
+    copy(&kept->params[1], words, count);
+    return begin(kept, record, kept->params, 1u + count);
 }
 
 hal_nvm_progress_t kept_work(kept_t *kept) {

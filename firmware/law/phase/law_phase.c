@@ -14,6 +14,7 @@
 #include <stddef.h>
 
 #include "adapt_store.h"
+#include "at_start.h"
 #include "phase_state.h"
 #include "plant_pulses.h"
 
@@ -41,7 +42,7 @@ static const quiesce_word_t reports[QUIESCE_REPORT_WORDS] = {
 };
 
 // Unlocked, nothing learnt.
-static void init(void *state, const law_setup_t *setup) {
+AT_START static void init(void *state, const law_setup_t *setup) {
     phase_t *self = state;
     const quiesce_params_t *p = &setup->params;
     const phase_table_t *table = table_of(setup);

@@ -32,10 +32,12 @@ typedef enum {
     HAL_NVM_FAILED = 3,
 } hal_nvm_progress_t;
 
-/// Reads a record, 0 .. HAL_NVM_RECORDS - 1, into words, of which there are HAL_NVM_MAX_WORDS; they
-/// may be overwritten whatever is found. *count: of words; 0 where there is none. Takes as long as
-/// the record's CRC, so at the start; not while hal_nvm_work is busy.
-hal_nvm_found_t hal_nvm_read(hal_nvm_t *nvm, uint32_t record, uint32_t *words, uint32_t *count);
+/// Reads a record, 0 .. HAL_NVM_RECORDS - 1, into words, of which there are room; they may be
+/// overwritten whatever is found. A longer record is LOST to who reads so. *count: of words; 0
+/// where there is none. Takes as long as the record's CRC, so at the start; not while hal_nvm_work
+/// is busy.
+hal_nvm_found_t hal_nvm_read(hal_nvm_t *nvm, uint32_t record, uint32_t *words, uint32_t room,
+                             uint32_t *count);
 
 /// Begins to replace a record; count 0: from then on it has no words. words: the caller's,
 /// unchanged until it is done or has failed. Returns false iff a write is under way, there is no

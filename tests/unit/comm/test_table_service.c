@@ -596,6 +596,29 @@ static void test_memory_that_is_slow_full_or_missing(void) {
     TEST_ASSERT_EQUAL_HEX32(pulses[1], info(ROAD_LAW, TABLE_INFO_STORED_CRC));
 }
 
+// Its memory reads the words until it has them, while others arrive and are used.
+static void test_a_table_that_is_being_stored_keeps_its_room(void) {
+    static uint32_t saved[QUIESCE_TABLE_WORDS];
+    start(QUIESCE_LAW_PHASE);
+    make_pulses(1);
+    (void)load(pulses, pulses_count);
+    memcpy(saved, pulses, sizeof saved[0] * pulses_count);
+    const uint32_t *const words = quiesce_table_in_use(&node.controller, QUIESCE_OF_LAW);
+    memory.answer = KEEPER_BEGUN;
+    const can_frame_t request = make_request(OP(TABLE_SAVE), ROAD_LAW, 0, 9);
+    node_receive(&node, &request);
+    run(10);
+    can_node_answer(&node.can, CAN_NODE_STORE_FAILED, 0); // nobody waits for it any more
+    run(20);
+    for (uint32_t i = 2; i < 8; i++) {
+        make_pulses(i);
+        TEST_ASSERT_EQUAL(CAN_NODE_DONE, load(pulses, pulses_count).result);
+        TEST_ASSERT_EQUAL_HEX32_ARRAY(saved, words, pulses_count);
+    }
+    node_stored(&node, true);
+    TEST_ASSERT_EQUAL_HEX32(saved[1], info(ROAD_LAW, TABLE_INFO_STORED_CRC));
+}
+
 // What the node sends, put together; flow control without an end to its blocks.
 static uint32_t fetch(uint32_t road, uint8_t *bytes, uint32_t room) {
     const reply_t reply = ask(OP(TABLE_SEND), road, 0);
@@ -755,6 +778,7 @@ int main(void) {
     RUN_TEST(test_a_file_of_the_largest_size_is_heard_and_a_larger_one_is_not);
     RUN_TEST(test_a_table_stays_over_a_restart_and_a_change_of_law_and_back);
     RUN_TEST(test_memory_that_is_slow_full_or_missing);
+    RUN_TEST(test_a_table_that_is_being_stored_keeps_its_room);
     RUN_TEST(test_what_is_in_use_is_sent_back_as_its_file);
     RUN_TEST(test_what_was_learnt_is_saved_by_time_and_change);
     RUN_TEST(test_what_was_learnt_travels_as_a_table);

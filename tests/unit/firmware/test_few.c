@@ -63,25 +63,50 @@ static void test_few_knows_the_tables_of_its_own_laws_alone(void) {
     TEST_ASSERT_EQUAL_INT(QUIESCE_TABLE_MAGIC, quiesce_table_check(words, 3));
 }
 
-static uint32_t arrived_room(quiesce_tables_t *tables) {
-    const uint32_t word = SIGNS_MAGIC;
+static uint32_t room_of(const quiesce_tables_t *tables) {
     uint32_t count;
-    TEST_ASSERT_TRUE(quiesce_tables_write(tables, 0, &word, 1));
     const uint32_t *const words = quiesce_tables_arrival(tables, &count);
     return (uint32_t)(words - tables->words[0]) / QUIESCE_TABLE_WORDS;
 }
 
-// Its tracker has no tables: what is in use, the one before it, and what arrives.
-static void test_few_has_rooms_for_the_law_s_tables_alone(void) {
+static bool arrives(quiesce_tables_t *tables) {
+    const uint32_t word = SIGNS_MAGIC;
+    return quiesce_tables_write(tables, 0, &word, 1);
+}
+
+// Its tracker has no tables: what is in use, and what arrives, in the room of the one before.
+static void test_few_has_two_rooms_for_the_law_s_tables(void) {
     static quiesce_tables_t tables;
     quiesce_tables_init(&tables);
-    TEST_ASSERT_EQUAL_UINT32(3, sizeof tables.words / sizeof tables.words[0]);
-    TEST_ASSERT_EQUAL_UINT32(0, arrived_room(&tables));
+    TEST_ASSERT_EQUAL_UINT32(2, sizeof tables.words / sizeof tables.words[0]);
+    TEST_ASSERT_TRUE(arrives(&tables));
+    TEST_ASSERT_EQUAL_UINT32(0, room_of(&tables));
     tables.of[QUIESCE_OF_LAW].now = 0;
-    TEST_ASSERT_EQUAL_UINT32(1, arrived_room(&tables));
+    TEST_ASSERT_TRUE(arrives(&tables));
+    TEST_ASSERT_EQUAL_UINT32(1, room_of(&tables));
     tables.of[QUIESCE_OF_LAW].before = 0;
     tables.of[QUIESCE_OF_LAW].now = 1;
-    TEST_ASSERT_EQUAL_UINT32(2, arrived_room(&tables));
+    TEST_ASSERT_TRUE(arrives(&tables));
+    TEST_ASSERT_EQUAL_UINT32(0, room_of(&tables));
+    TEST_ASSERT_FALSE(quiesce_tables_revert(&tables, &controller, QUIESCE_OF_LAW));
+}
+
+// A store reads the table that was in use when it began, whatever is in use by now.
+static void test_few_takes_no_room_that_is_held(void) {
+    static quiesce_tables_t tables;
+    quiesce_tables_init(&tables);
+    quiesce_tables_hold(&tables, tables.words[0]);
+    TEST_ASSERT_TRUE(arrives(&tables));
+    TEST_ASSERT_EQUAL_UINT32(1, room_of(&tables));
+    tables.of[QUIESCE_OF_LAW].before = 0;
+    tables.of[QUIESCE_OF_LAW].now = 1;
+    TEST_ASSERT_FALSE(quiesce_tables_have_room(&tables));
+    TEST_ASSERT_FALSE(arrives(&tables));
+    TEST_ASSERT_EQUAL_UINT32(0, tables.of[QUIESCE_OF_LAW].before);
+    quiesce_tables_hold(&tables, NULL);
+    TEST_ASSERT_TRUE(quiesce_tables_have_room(&tables));
+    TEST_ASSERT_EQUAL_PTR(tables.words[0], quiesce_tables_room(&tables));
+    TEST_ASSERT_EQUAL_UINT32(1, tables.of[QUIESCE_OF_LAW].before);
 }
 
 static void test_few_runs_the_law_that_it_holds(void) {
@@ -103,7 +128,8 @@ int main(void) {
     RUN_TEST(test_few_refuses_every_law_that_it_lacks);
     RUN_TEST(test_few_refuses_every_tracker_that_it_lacks);
     RUN_TEST(test_few_knows_the_tables_of_its_own_laws_alone);
-    RUN_TEST(test_few_has_rooms_for_the_law_s_tables_alone);
+    RUN_TEST(test_few_has_two_rooms_for_the_law_s_tables);
+    RUN_TEST(test_few_takes_no_room_that_is_held);
     RUN_TEST(test_few_runs_the_law_that_it_holds);
     return UNITY_END();
 }

@@ -45,7 +45,7 @@ bool rig_has(nvm_rig_t *rig, uint32_t record, uint32_t count, uint32_t key,
     uint32_t found_count;
     memset(back, 0x5A, sizeof back);
     fill(words, count, key);
-    *found = hal_nvm_read(&rig->nvm, record, back, &found_count);
+    *found = hal_nvm_read(&rig->nvm, record, back, HAL_NVM_MAX_WORDS, &found_count);
     return (*found == HAL_NVM_KEPT || *found == HAL_NVM_OLDER) && found_count == count &&
            memcmp(words, back, count * sizeof *words) == 0;
 }
@@ -60,6 +60,6 @@ void rig_assert(nvm_rig_t *rig, hal_nvm_found_t found, uint32_t record, uint32_t
 void rig_assert_nothing(nvm_rig_t *rig, hal_nvm_found_t found, uint32_t record) {
     static uint32_t back[HAL_NVM_MAX_WORDS];
     uint32_t count = 7;
-    TEST_ASSERT_EQUAL(found, hal_nvm_read(&rig->nvm, record, back, &count));
+    TEST_ASSERT_EQUAL(found, hal_nvm_read(&rig->nvm, record, back, HAL_NVM_MAX_WORDS, &count));
     TEST_ASSERT_EQUAL_UINT32(0, count);
 }

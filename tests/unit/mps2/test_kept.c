@@ -8,6 +8,11 @@ static hal_nvm_memory_t memory;
 static kept_t kept;
 static quiesce_params_t shipped;
 static const quiesce_board_t *wired;
+static uint32_t back_words[QUIESCE_TABLE_WORDS];
+
+static uint32_t read_words(keeper_record_t record) {
+    return kept_read(&kept, record, back_words, QUIESCE_TABLE_WORDS);
+}
 
 // A power-up: only the memory is left.
 static void start(void) {
@@ -15,7 +20,7 @@ static void start(void) {
     memory = (hal_nvm_memory_t){.words = (volatile uint32_t *)NVM_MPS2_BASE};
     kept_open(&kept, &memory, wired, &shipped);
     for (uint32_t i = 0; i < KEEPER_RECORDS; i++) {
-        (void)kept_read(&kept, (keeper_record_t)i);
+        (void)read_words((keeper_record_t)i);
     }
 }
 
@@ -76,12 +81,12 @@ static void test_longest_table_comes_back_and_is_forgotten(void) {
     words[7] = 7;
     store(KEEPER_LAW_TABLE, words, QUIESCE_TABLE_WORDS);
     start();
-    TEST_ASSERT_EQUAL_UINT32(QUIESCE_TABLE_WORDS, kept_read(&kept, KEEPER_LAW_TABLE));
-    TEST_ASSERT_EQUAL_HEX32_ARRAY(words, kept.words, QUIESCE_TABLE_WORDS);
-    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_TRACKER_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(QUIESCE_TABLE_WORDS, read_words(KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_HEX32_ARRAY(words, back_words, QUIESCE_TABLE_WORDS);
+    TEST_ASSERT_EQUAL_UINT32(0, read_words(KEEPER_TRACKER_TABLE));
     TEST_ASSERT_EQUAL_UINT32(1, kept_writes(&kept, KEEPER_LAW_TABLE));
     store(KEEPER_LAW_TABLE, NULL, 0);
-    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(0, read_words(KEEPER_LAW_TABLE));
     TEST_ASSERT_EQUAL_UINT32(2, kept_writes(&kept, KEEPER_LAW_TABLE));
 }
 
@@ -91,10 +96,10 @@ static void test_table_of_another_board_is_not_used(void) {
     store(KEEPER_LAW_TABLE, words, 4);
     wired = &board;
     start();
-    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(0, read_words(KEEPER_LAW_TABLE));
     store(KEEPER_LAW_TABLE, words, 3);
     start();
-    TEST_ASSERT_EQUAL_UINT32(3, kept_read(&kept, KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(3, read_words(KEEPER_LAW_TABLE));
     TEST_ASSERT_EQUAL_UINT32(2, kept_writes(&kept, KEEPER_LAW_TABLE));
 }
 
@@ -106,7 +111,7 @@ static void flip(keeper_record_t record) {
 
 static keeper_state_t state_of(keeper_record_t record) {
     start();
-    (void)kept_read(&kept, record);
+    (void)read_words(record);
     return kept.state;
 }
 
@@ -122,27 +127,48 @@ static void test_how_each_record_was_found_is_told(void) {
         TEST_ASSERT_EQUAL(KEEPER_OLDER, state_of(record));
         flip(record);
         TEST_ASSERT_EQUAL(KEEPER_LOST, state_of(record));
-        TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, record));
+        TEST_ASSERT_EQUAL_UINT32(0, read_words(record));
     }
 }
 
 static void test_too_many_words_fail_at_once(void) {
     TEST_ASSERT_EQUAL(KEEPER_FAILED,
                       kept_store(&kept, KEEPER_LAW_TABLE, NULL, HAL_NVM_MAX_WORDS + 1u));
-    TEST_ASSERT_EQUAL(KEEPER_FAILED, kept_store(&kept, KEEPER_PARAMS, NULL, HAL_NVM_MAX_WORDS));
+    TEST_ASSERT_EQUAL(KEEPER_FAILED,
+                      kept_store(&kept, KEEPER_PARAMS, NULL, QUIESCE_PARAM_COUNT + 1u));
     TEST_ASSERT_EQUAL(HAL_NVM_IDLE, kept_work(&kept));
 }
 
-static void test_one_at_a_time_with_the_words_of_its_call(void) {
-    uint32_t words[2] = {1, 2};
+static void test_one_at_a_time(void) {
+    const uint32_t words[2] = {1, 2};
     TEST_ASSERT_EQUAL(KEEPER_BEGUN, kept_store(&kept, KEEPER_LEARNT, words, 2));
-    words[1] = 9;
     TEST_ASSERT_EQUAL(KEEPER_BUSY, kept_store(&kept, KEEPER_LAW_TABLE, words, 2));
     TEST_ASSERT_EQUAL(HAL_NVM_DONE, work());
     TEST_ASSERT_EQUAL(HAL_NVM_IDLE, kept_work(&kept)); // told once
-    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_LAW_TABLE));
-    TEST_ASSERT_EQUAL_UINT32(2, kept_read(&kept, KEEPER_LEARNT));
-    TEST_ASSERT_EQUAL_UINT32(2, kept.words[1]);
+    TEST_ASSERT_EQUAL_UINT32(0, read_words(KEEPER_LAW_TABLE));
+    TEST_ASSERT_EQUAL_UINT32(2, read_words(KEEPER_LEARNT));
+    TEST_ASSERT_EQUAL_UINT32(2, back_words[1]);
+}
+
+// They go on changing while they are written.
+static void test_parameters_are_stored_as_they_were_at_the_call(void) {
+    quiesce_params_t params = shipped;
+    quiesce_params_t back = {0};
+    TEST_ASSERT_EQUAL(KEEPER_BEGUN,
+                      kept_store(&kept, KEEPER_PARAMS, (const uint32_t *)(const void *)&params,
+                                 QUIESCE_PARAM_COUNT));
+    params.constant_current_mA++;
+    TEST_ASSERT_EQUAL(HAL_NVM_DONE, work());
+    TEST_ASSERT_TRUE(kept_read_params(&kept, &back));
+    TEST_ASSERT_EQUAL_MEMORY(&shipped, &back, sizeof back);
+}
+
+static void test_a_record_that_is_too_long_for_its_reader_is_lost(void) {
+    static uint32_t words[4] = {1, 2, 3, 4};
+    store(KEEPER_LEARNT, words, 4);
+    TEST_ASSERT_EQUAL_UINT32(0, kept_read(&kept, KEEPER_LEARNT, back_words, 3));
+    TEST_ASSERT_EQUAL(KEEPER_LOST, kept.state);
+    TEST_ASSERT_EQUAL_UINT32(4, kept_read(&kept, KEEPER_LEARNT, back_words, 4));
 }
 
 int main(void) {
@@ -153,6 +179,8 @@ int main(void) {
     RUN_TEST(test_table_of_another_board_is_not_used);
     RUN_TEST(test_how_each_record_was_found_is_told);
     RUN_TEST(test_too_many_words_fail_at_once);
-    RUN_TEST(test_one_at_a_time_with_the_words_of_its_call);
+    RUN_TEST(test_one_at_a_time);
+    RUN_TEST(test_parameters_are_stored_as_they_were_at_the_call);
+    RUN_TEST(test_a_record_that_is_too_long_for_its_reader_is_lost);
     return UNITY_END();
 }

@@ -64,7 +64,7 @@ static void test_records_fit_and_are_found_again(void) {
     uint32_t count = 0;
     TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory, 0));
     for (uint32_t record = 0; record < HAL_NVM_RECORDS; record++) {
-        (void)hal_nvm_read(&nvm, record, words, &count);
+        (void)hal_nvm_read(&nvm, record, words, HAL_NVM_MAX_WORDS, &count);
         words[0] = record;
         words[HAL_NVM_MAX_WORDS - 1u] = ~record;
         TEST_ASSERT_TRUE(hal_nvm_begin(&nvm, record, words, HAL_NVM_MAX_WORDS));
@@ -73,7 +73,8 @@ static void test_records_fit_and_are_found_again(void) {
     }
     TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory, 0));
     for (uint32_t record = 0; record < HAL_NVM_RECORDS; record++) {
-        TEST_ASSERT_EQUAL(HAL_NVM_KEPT, hal_nvm_read(&nvm, record, words, &count));
+        TEST_ASSERT_EQUAL(HAL_NVM_KEPT,
+                          hal_nvm_read(&nvm, record, words, HAL_NVM_MAX_WORDS, &count));
         TEST_ASSERT_EQUAL_UINT32(HAL_NVM_MAX_WORDS, count);
         TEST_ASSERT_EQUAL_HEX32(record, words[0]);
         TEST_ASSERT_EQUAL_HEX32(~record, words[HAL_NVM_MAX_WORDS - 1u]);

@@ -165,9 +165,9 @@ static uint32_t restart(void) {
     memory = (hal_nvm_memory_t){.area = &nvm_stm32f4_records, .may_erase = true};
     TEST_ASSERT_TRUE(nvm_records_open(&nvm, &memory, OWNER));
     for (uint32_t i = 0; i < HAL_NVM_RECORDS; i++) {
-        (void)hal_nvm_read(&nvm, i, words, &count);
+        (void)hal_nvm_read(&nvm, i, words, HAL_NVM_MAX_WORDS, &count);
     }
-    (void)hal_nvm_read(&nvm, 2, words, &count);
+    (void)hal_nvm_read(&nvm, 2, words, HAL_NVM_MAX_WORDS, &count);
     return count == 1u ? words[0] : 0u;
 }
 

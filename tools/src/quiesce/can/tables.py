@@ -95,7 +95,10 @@ class Tables:
                 why = str(error)
                 continue
             except TooLarge:
-                raise self._failure(f"the controller has no room for {len(data)} bytes")
+                raise self._failure(
+                    f"the controller has no room for {len(data)} bytes; where it is still storing "
+                    "a table, try again once it has"
+                )
             if self._is_whole(crc):
                 return
             why = "the controller did not get all of it"
