@@ -13,6 +13,7 @@ from quiesce.damper.data.record import Record
 from quiesce.damper.identify import identify
 from quiesce.damper.task import Plan
 from quiesce_benchmarks.part import Effort
+from quiesce_benchmarks.unseen import judged_cases
 from quiesce_benchmarks.unseen.cases import DAMPERS, QUICK, Case, cases_of
 from quiesce_benchmarks.unseen.measured import entries
 from quiesce_benchmarks.unseen.parts import rank, speed
@@ -93,6 +94,45 @@ def test_without_measurements_it_says_where_they_should_be(
     monkeypatch.setattr(rank, "data_folder", lambda: None)
     with pytest.raises(BenchFailure, match="no measurements at"):
         rank.measure(Effort(1, True, tmp_path))
+
+
+def test_a_case_is_judged_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that was stopped goes on; another seed's cases are its own."""
+    monkeypatch.setattr(judged_cases, "build_folder", lambda: tmp_path / "build")
+    monkeypatch.setattr(rank, "data_folder", lambda: tmp_path / "data")
+    monkeypatch.setattr(rank, "all_cases", lambda *_: [case_of(CURRENT), case_of(MOTION)])
+    asked = []
+
+    def identified(fit, _validation, plan: Plan):
+        asked.append((fit, plan.seed))
+        if len(asked) == 2:
+            raise KeyboardInterrupt
+        return []
+
+    monkeypatch.setattr(rank, "identify", identified)
+    monkeypatch.setattr(
+        rank, "judged", lambda case, _fitted: rank.Judged(case, "a", "b", 0.2, 0.1, 0.95)
+    )
+    with pytest.raises(KeyboardInterrupt):
+        rank.measure(Effort(1, True, tmp_path))
+    assert rank.measure(Effort(1, True, tmp_path)).values["rank_regret_worst_pct"] == 100.0
+    assert len(asked) == 3
+    rank.measure(Effort(1, True, tmp_path))
+    assert len(asked) == 3
+    rank.measure(Effort(2, True, tmp_path))
+    assert [seed for _, seed in asked[3:]] == [2, 2]
+
+
+def test_a_judged_case_that_is_damaged_or_anothers_is_none(tmp_path: Path) -> None:
+    kept = judged_cases.JudgedCases(tmp_path)
+    assert kept.get("one") is None
+    kept.put("one", {"chosen": "a"})
+    assert kept.get("one") == {"chosen": "a"} and kept.get("two") is None
+    file = next(tmp_path.iterdir())
+    file.write_text(file.read_text().replace("one", "two"))
+    assert kept.get("one") is None
+    file.write_text("{")
+    assert kept.get("one") is None
 
 
 def test_command_that_fails_is_told_with_its_last_line(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -235,6 +235,24 @@ def test_the_panel_moves_the_rig(tmp_path: Path) -> None:
     assert rig.end() == 0
 
 
+@pytest.mark.parametrize("target", ["mps2", "linux"])
+def test_the_panel_moves_a_rig_whose_controller_runs_elsewhere(tmp_path: Path, target: str) -> None:
+    rig = Page(tmp_path, "--sim", "--target", target)
+    with opened(rig.address) as browser:
+        text(browser, "#facts", lambda said: "RUN" in said)
+        browser.do("press", "#take")
+        browser.do("press", "#rig-control")
+        text(browser, "#rig-control", lambda said: said == "Switch control on")
+        text(browser, "#facts dd", lambda said: said == "IDLE")
+        browser.do("fill", "#rig-freq_Hz+input", "12.5")
+        text(browser, "#rig-panel", lambda said: "at 12.50 Hz" in said)
+        browser.do("press", "#rig-control")
+        text(browser, "#facts", lambda said: "RUN" in said)
+        browser.do("click")
+        until(browser, lambda said: "Stopped" in said["stop"])
+    assert rig.end() == 0
+
+
 RULES = ROOT / "sim_hil/data/rules/squeeze_2012_published.fcl"
 
 

@@ -19,6 +19,7 @@ from quiesce_benchmarks.damper.benchmark import no_data
 from quiesce_benchmarks.damper.real import data_folder
 from quiesce_benchmarks.part import Effort, Measured
 from quiesce_benchmarks.unseen.cases import Case, all_cases
+from quiesce_benchmarks.unseen.judged_cases import JudgedCases
 
 TITLE = "ranking and bands on whole currents, motions and amplitudes left out"
 # Of bands both too narrow and too wide are misses.
@@ -51,20 +52,28 @@ class Judged:
 
 
 def measure(effort: Effort) -> Measured:
-    """--quick: the default models with little effort; otherwise all of them, untruncated: hours."""
+    """--quick: the default models with little effort; otherwise all of them, untruncated: hours.
+    A run that is stopped goes on with the cases that are left (judged_cases.py)."""
     folder = data_folder()
     if folder is None:
         raise BenchFailure(no_data())
     names = names_of("quick" if effort.is_quick else "all")
     cases = all_cases(folder, effort.is_quick)
+    kept = JudgedCases.of(folder, {"models": names, "seed": effort.seed, "quick": effort.is_quick})
     progress = Progress(len(cases))
     found = []
     for case in cases:
+        known = kept.get(case.name)
+        if known is not None:
+            found.append(Judged(case, **known))
+            progress.done(f"{case.name}: judged before")
+            continue
         plan = Plan(
             names, seed=effort.seed, seconds=_ENDLESS_s, quick=effort.is_quick,
             jobs=os.cpu_count() or 1,
         )  # fmt: skip
         one = judged(case, identify(case.held.fit, case.held.validation, plan))
+        kept.put(case.name, {key: value for key, value in vars(one).items() if key != "case"})
         progress.done(f"{case.name}: {one.chosen}, {one.regret_pct:.1f} % above the best")
         found.append(one)
     return measured(found)
