@@ -26,14 +26,14 @@ static bool is_in_use(const quiesce_tables_t *tables, uint32_t room) {
 
 // What arrives next goes where nothing is kept, else where the table before is. SHIPPED: nowhere.
 static uint32_t free_room(const quiesce_tables_t *tables) {
-    uint32_t free = SHIPPED;
+    uint32_t found = SHIPPED;
     for (uint32_t room = 0; room < QUIESCE_TABLE_ROOMS; room++) {
         if (room != tables->held && !is_in_use(tables, room) &&
-            (free == SHIPPED || (is_taken(tables, free) && !is_taken(tables, room)))) {
-            free = room;
+            (found == SHIPPED || (is_taken(tables, found) && !is_taken(tables, room)))) {
+            found = room;
         }
     }
-    return free;
+    return found;
 }
 
 static void forget_arrival(quiesce_tables_t *tables) {
