@@ -20,11 +20,11 @@ typedef struct {
 } learnt_t;
 
 typedef struct {
-    learnt_t kept;  ///< as it was stored, or is being
-    learnt_t taken; ///< as it is sent to the host, or was before a restart
     uint32_t passed_ms;
     uint32_t left_s; ///< until it is looked at again
     uint32_t pause_s;
+    learnt_t kept;  ///< as it was stored, or is being
+    learnt_t taken; ///< as it is sent to the host, or was before a restart
 } learnt_store_t;
 
 /// Nothing is known.

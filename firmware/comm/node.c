@@ -32,6 +32,7 @@ bool node_init(node_t *node, const quiesce_board_t *board, const quiesce_params_
     node->drivers_are_held = false;
     node->held_ticks = 0;
     node->waits_for_release = false;
+    node->is_asked = false;
     const bool is_accepted = board == NULL ? quiesce_init(&node->controller, params)
                                            : quiesce_init_board(&node->controller, board, params);
     if (board != NULL) { // a restart reads it again
@@ -311,8 +312,18 @@ static void work_on_image(node_t *node) {
     }
 }
 
-const quiesce_params_t *node_task(node_t *node) {
-    switch (can_node_task(&node->can)) {
+// There is no request any more, whoever's it was.
+__attribute__((noinline)) static void rest_services(node_t *node) {
+    node->is_asked = false;
+    image_service_rest(&node->images);
+    table_service_rest(&node->tables);
+}
+
+// Apart, as is what else a tick without a request does not do: it saves no registers for it.
+__attribute__((noinline)) static const quiesce_params_t *work_on(node_t *node,
+                                                                 can_node_task_t task) {
+    node->is_asked = true;
+    switch (task) {
     case CAN_NODE_APPLY:
         return accept_staged(node);
     case CAN_NODE_SAVE:
@@ -326,13 +337,24 @@ const quiesce_params_t *node_task(node_t *node) {
         return NULL;
     case CAN_NODE_NOTHING:
     default:
-        image_service_rest(&node->images);
-        table_service_rest(&node->tables);
         return NULL;
     }
 }
 
-static bool table_frame(node_t *node, can_frame_t *frame) {
+// In node_tick without a call.
+__attribute__((always_inline)) static inline const quiesce_params_t *task_of(node_t *node) {
+    const can_node_task_t task = can_node_task(&node->can);
+    if (task != CAN_NODE_NOTHING) {
+        return work_on(node, task);
+    }
+    if (node->is_asked) {
+        rest_services(node);
+    }
+    return NULL;
+}
+
+// Apart, so that a tick without one saves no registers for it.
+__attribute__((noinline)) static bool table_frame(node_t *node, can_frame_t *frame) {
     const table_tick_t tick = {
         .controller = &node->controller,
         .passed_ms = node->can.schedule.passed_ms,
@@ -341,7 +363,8 @@ static bool table_frame(node_t *node, can_frame_t *frame) {
     return table_service_tick(&node->tables, &tick, frame);
 }
 
-uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
+__attribute__((always_inline)) static inline uint32_t
+frames_of(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
     uint32_t count = can_node_tick(&node->can, &node->said, &node->out, &node->controller, frames);
     image_service_pass(&node->images, node->can.schedule.passed_ms);
     if (table_service_pass(&node->tables, node->can.schedule.passed_ms) &&
@@ -351,13 +374,21 @@ uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
     return count;
 }
 
+const quiesce_params_t *node_task(node_t *node) {
+    return task_of(node);
+}
+
+uint32_t node_frames(node_t *node, can_frame_t frames[NODE_MAX_FRAMES]) {
+    return frames_of(node, frames);
+}
+
 uint32_t node_tick(node_t *node, const node_inputs_t *inputs, can_frame_t frames[NODE_MAX_FRAMES]) {
     node_step(node, inputs);
-    const quiesce_params_t *const params = node_task(node);
+    const quiesce_params_t *const params = task_of(node);
     if (params != NULL) {
         node_restart(node, params);
     }
-    return node_frames(node, frames);
+    return frames_of(node, frames);
 }
 
 uint32_t node_farewell(node_t *node, can_frame_t frames[QUIESCE_DAMPERS]) {

@@ -72,11 +72,12 @@ typedef struct {
     uint32_t restarts;    ///< with other parameters, since node_init
     uint32_t retunes;     ///< live parameters changed, likewise
     node_sources_t from;
-    table_service_t tables; ///< what is loaded; its keeper has the target's store
     image_service_t images; ///< an update of the program
     bool drivers_are_held;  ///< the target's, between ticks: they are to be off, and stay so
     uint32_t held_ticks;    ///< left, that a hold lasts beyond its cause
     bool waits_for_release; ///< an enable that was given while they were held does not count
+    bool is_asked;          ///< a request is, or was until the last tick
+    table_service_t tables; ///< what is loaded; its keeper has the target's store
 } node_t;
 
 /// Starts from rest, without a store (node_use_store afterwards): commands are the safe currents.

@@ -38,17 +38,18 @@ enum {
     TABLE_INFOS
 };
 
+/// What every tick looks at stands first: it is reached in one instruction.
 typedef struct {
-    quiesce_tables_t tables;
-    table_link_t link;
-    keeper_t keeper;
-    learnt_store_t learnt;
-    uint32_t board; ///< CRC-32 of its words, 0: there is none
+    bool is_working; ///< on a request, since an earlier tick
+    uint32_t board;  ///< CRC-32 of its words, 0: there is none
     struct {
         table_source_t source; ///< of the one that is loaded
         quiesce_table_verdict_t refusal;
     } of[ROADS];
-    bool is_working; ///< on a request, since an earlier tick
+    table_link_t link;
+    keeper_t keeper;
+    learnt_store_t learnt;
+    quiesce_tables_t tables;
 } table_service_t;
 
 /// Nothing is loaded or kept. board: NULL where parameters say what is wired.
