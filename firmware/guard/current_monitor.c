@@ -14,7 +14,7 @@ static current_lag_t lag_of(uint32_t milliticks) {
 // In ticks, rounded up.
 static uint32_t dead_ticks(uint32_t tick_rate_Hz) {
     const uint32_t ticks = (CURRENT_DEAD_MS * tick_rate_Hz + 999u) / 1000u;
-    return ticks < 1u ? 1u : ticks < CURRENT_DEAD_TICKS ? ticks : CURRENT_DEAD_TICKS;
+    return ticks < CURRENT_DEAD_TICKS ? ticks : CURRENT_DEAD_TICKS;
 }
 
 static void settle(current_monitor_t *self, int32_t current_mA) {
@@ -60,7 +60,7 @@ void current_monitor_follow(current_monitor_t *self, int32_t measured_mA) {
 // At the most a tick beyond the limit: what was bad for hours is not held against it for hours.
 static uint32_t leak(uint32_t count, bool is_bad, uint32_t adds, uint32_t limit) {
     if (!is_bad) {
-        return count > 0u ? count - 1u : 0u;
+        return count - (count > 0u ? 1u : 0u);
     }
     return count < limit ? count + adds : count;
 }

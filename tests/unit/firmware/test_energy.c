@@ -70,6 +70,20 @@ static void test_energy_begins_anew_after_a_gap(void) {
     TEST_ASSERT_FALSE(run(-100, 0, 1, 4096));
 }
 
+static void test_energy_forgets_all_of_it(void) {
+    (void)run(-100, 0, 1, 3000);
+    TEST_ASSERT_TRUE(energy.taken < 0 && energy.moved > 0 && energy.ticks > 0);
+    TEST_ASSERT_FALSE(energy_is_negative(&energy, 0, 0, false));
+    TEST_ASSERT_TRUE(energy.taken == 0 && energy.moved == 0 && energy.ticks == 0);
+}
+
+// The least power below zero is one, as that above is.
+static void test_energy_of_the_least_power_counts_as_its_magnitude(void) {
+    energy.moved = (1 << energy.shift) - 1;
+    (void)energy_is_negative(&energy, -1, 1, true);
+    TEST_ASSERT_EQUAL_INT64((1 << energy.shift) - 1, energy.moved);
+}
+
 static void test_energy_at_the_ends_of_its_numbers(void) {
     const int32_t most = (1 << 30) - 1;
     for (uint32_t i = 0; i < 10000; i++) {
@@ -86,6 +100,8 @@ int main(void) {
     RUN_TEST(test_energy_of_a_constant_force_is_none);
     RUN_TEST(test_energy_of_noise_and_of_rest_says_nothing);
     RUN_TEST(test_energy_begins_anew_after_a_gap);
+    RUN_TEST(test_energy_forgets_all_of_it);
+    RUN_TEST(test_energy_of_the_least_power_counts_as_its_magnitude);
     RUN_TEST(test_energy_at_the_ends_of_its_numbers);
     return UNITY_END();
 }
