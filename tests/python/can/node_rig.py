@@ -27,11 +27,12 @@ PARAMETERS = {
     "sensor_max_age_ticks": 1000,
     "sensor_recover_ticks": 1,
 }
-OTHER_DAMPERS = ("CurrentDemand1", "CurrentDemand2", "CurrentDemand3")  # the image has one
+# The image has one damper, and its processor no counter of cycles.
+NOT_SENT = ("CurrentDemand1", "CurrentDemand2", "CurrentDemand3", "LoopCycles")
 CONTROLLER = {
     m.frame_id
     for m in DATABASE.messages
-    if "Controller" in m.senders and m.name not in OTHER_DAMPERS
+    if "Controller" in m.senders and m.name not in NOT_SENT
 }
 
 

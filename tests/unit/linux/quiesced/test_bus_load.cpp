@@ -49,7 +49,7 @@ TEST(BusLoad, is_that_of_the_tools) {
 TEST(BusLoad, follows_bit_rate_and_tick_rate) {
     Config config = bus_of(1, 1);
     config.can->bitrate = 250000;
-    EXPECT_NEAR(total_pct(config), 109.35, 0.05);
+    EXPECT_NEAR(total_pct(config), 109.43, 0.05);
     config.can->bitrate = 1000000;
     EXPECT_NEAR(total_pct(config), 27.35, 0.05);
     config.can->bitrate = 0;
