@@ -30,9 +30,7 @@ PARAMETERS = {
 # The image has one damper, and its processor no counter of cycles.
 NOT_SENT = ("CurrentDemand1", "CurrentDemand2", "CurrentDemand3", "LoopCycles")
 CONTROLLER = {
-    m.frame_id
-    for m in DATABASE.messages
-    if "Controller" in m.senders and m.name not in NOT_SENT
+    m.frame_id for m in DATABASE.messages if "Controller" in m.senders and m.name not in NOT_SENT
 }
 
 

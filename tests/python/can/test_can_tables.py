@@ -212,7 +212,10 @@ def test_a_controller_that_asks_to_wait(controller, tool, tmp_path: Path, waits,
 def test_a_controller_without_room_is_asked_once(controller, tool, tmp_path: Path) -> None:
     controller.faults.most_bytes = 100
     file = written(tmp_path / "a.table", table(RULES))
-    failed(tool("load", "law", file), "the controller has no room for 176 bytes; where it is still storing")
+    failed(
+        tool("load", "law", file),
+        "the controller has no room for 176 bytes; where it is still storing",
+    )
     assert len([one for one in controller.frames if one[0] >> 4 == 1]) == 1
 
 
