@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from quiesce.base.errors import BenchFailure
 from quiesce.base.paths import build_folder, root
@@ -93,10 +94,17 @@ class Listener:
         wanted = self._database.by_name[name].frame_id
         end_s = time.monotonic() + ANSWER_S
         while time.monotonic() < end_s:
-            frame = self._bus.recv(timeout=1.0)
+            frame = self._frame()
             if frame is not None and frame.arbitration_id == wanted:
                 return True
         return False
+
+    def _frame(self) -> Any:
+        """None where there is none, or a line that a reset, or who listens late, has cut off."""
+        try:
+            return self._bus.recv(timeout=1.0)
+        except ValueError:
+            return None
 
 
 def boots(name: str) -> bool:
