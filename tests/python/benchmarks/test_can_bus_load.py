@@ -114,7 +114,7 @@ def test_each_sensor_and_damper_costs(sensors: int, dampers: int, with_sensors_p
     """105 bits a sensor every 1 ms; 95 bits a damper every 1 ms and every 10 ms."""
     totals = bus_load.totals_pct(load(), 500_000, sensors, dampers)
     assert totals["with_sensor_node"] == pytest.approx(with_sensors_pct, abs=0.05)
-    assert len(bus_load.on_bus(load(), sensors, dampers)) == 18 + sensors + 2 * dampers
+    assert len(bus_load.on_bus(load(), sensors, dampers)) == 19 + sensors + 2 * dampers
 
 
 def test_slcan_rate_covers_what_a_controller_sends() -> None:
