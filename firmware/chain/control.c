@@ -149,10 +149,8 @@ AT_START void control_init(control_t *self, const places_t *places,
     self->dampers = places->dampers;
     self->fixed_needs = needs_there(control_needs(params), places->bodies, places->dampers);
     self->provided = places_provide(places);
-    self->setup = (law_setup_t){
-        .params = *params,
-        .table = self->law->kind != NULL ? self->law->kind->shipped : NULL,
-    };
+    self->setup.params = *params;
+    self->setup.table = self->law->kind != NULL ? self->law->kind->shipped : NULL;
     self->blind_ticks = 0;
     self->blind_most_ticks = ticks_in_ms(CONTROL_BLIND_ms, params->tick_rate_Hz);
     find_needs(self);

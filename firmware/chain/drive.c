@@ -40,7 +40,7 @@ static void start_monitor(drive_t *self, const quiesce_board_damper_t *damper,
         .trip_mA = damper->trip_mA,
         .trip_ticks = at_least_one(ticks_in_us(damper->trip_us, rate_Hz)),
     };
-    current_monitor_init(&self->monitor, &monitor, 0);
+    current_monitor_init(&self->monitor, &monitor);
 }
 
 // A lower limit takes a slice and two ticks until it counts; then the command falls by its slew,

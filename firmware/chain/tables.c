@@ -8,29 +8,26 @@
 
 #define SHIPPED QUIESCE_TABLE_ROOMS
 
-static bool is_taken(const quiesce_tables_t *tables, uint32_t room) {
-    bool is_one = false;
+// How free a room is: 2 nothing is kept there, 1 the table before the one in use, 0 the one in use,
+// or somebody reads it.
+static uint32_t freedom(const quiesce_tables_t *tables, uint32_t room) {
+    uint32_t least = room == tables->held ? 0u : 2u;
     for (uint32_t i = 0; i < QUIESCE_TABLE_OWNERS; i++) {
-        is_one = is_one || tables->of[i].now == room || tables->of[i].before == room;
+        const uint32_t by = tables->of[i].now == room ? 0u : tables->of[i].before == room ? 1u : 2u;
+        least = by < least ? by : least;
     }
-    return is_one;
+    return least;
 }
 
-static bool is_in_use(const quiesce_tables_t *tables, uint32_t room) {
-    bool is_one = false;
-    for (uint32_t i = 0; i < QUIESCE_TABLE_OWNERS; i++) {
-        is_one = is_one || tables->of[i].now == room;
-    }
-    return is_one;
-}
-
-// What arrives next goes where nothing is kept, else where the table before is. SHIPPED: nowhere.
+// Where what arrives next goes: the first of the freest. SHIPPED: nowhere.
 static uint32_t free_room(const quiesce_tables_t *tables) {
     uint32_t found = SHIPPED;
+    uint32_t most = 0;
     for (uint32_t room = 0; room < QUIESCE_TABLE_ROOMS; room++) {
-        if (room != tables->held && !is_in_use(tables, room) &&
-            (found == SHIPPED || (is_taken(tables, found) && !is_taken(tables, room)))) {
+        const uint32_t freed = freedom(tables, room);
+        if (freed > most) {
             found = room;
+            most = freed;
         }
     }
     return found;

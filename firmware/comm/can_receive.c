@@ -261,18 +261,18 @@ static int32_t ticks_us(const can_receive_t *self, uint32_t ticks) {
     return (int32_t)(ticks < most_ticks ? ticks : most_ticks) * self->tick_us;
 }
 
-// Of two that wait the older one is passed over where ticks were lost, and in a calm.
-static bool is_one_too_many(can_sensor_t *self, uint32_t ticks, uint32_t calm_ticks) {
-    self->calm_ticks =
-        self->come == 1u && self->calm_ticks < calm_ticks ? (uint16_t)(self->calm_ticks + 1u) : 0u;
+static void count_calm(can_sensor_t *self, uint32_t calm_ticks) {
+    const bool is_calm = self->come == 1u && self->calm_ticks < calm_ticks;
+    self->calm_ticks = is_calm ? (uint16_t)(self->calm_ticks + 1u) : 0u;
     self->come = 0;
-    return self->count == 2u && (ticks > 1u || self->calm_ticks == calm_ticks);
 }
 
 static quiesce_sample_t hand_over_sample(can_receive_t *self, uint32_t number, uint32_t ticks) {
     can_sensor_t *const sensor = &self->sensor[number];
     freshness_pass(&sensor->from, ticks_us(self, ticks));
-    if (is_one_too_many(sensor, ticks, self->calm_ticks)) {
+    count_calm(sensor, self->calm_ticks);
+    // Of two that wait the older one is passed over where ticks were lost, and in a calm.
+    if (sensor->count == 2u && (ticks > 1u || sensor->calm_ticks == self->calm_ticks)) {
         pass_over_oldest(sensor);
     }
     if (!freshness_is_known(&sensor->from)) {

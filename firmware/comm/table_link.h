@@ -30,6 +30,12 @@ bool table_link_has_file(const table_link_t *self);
 /// Begins to send the file of a table, which stays where it is; returns its bytes.
 uint32_t table_link_send(table_link_t *self, const uint32_t *words, uint32_t board);
 
+/// Whether that table is on its way to the host.
+static inline bool table_link_is_sending(const table_link_t *self, const uint32_t *words) {
+    return self->sent == words &&
+           (self->isotp.state == ISOTP_AWAITING || self->isotp.state == ISOTP_SENDING);
+}
+
 /// What is under way, or has come, is of no use any more.
 void table_link_drop(table_link_t *self);
 

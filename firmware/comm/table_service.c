@@ -411,7 +411,7 @@ bool table_service_work(table_service_t *self, quiesce_t *controller,
 // ---- restarts, ticks ----------------------------------------------------------------------------
 
 void table_service_before_restart(table_service_t *self, const quiesce_t *controller) {
-    if (self->link.sent == self->learnt.taken.words) { // the host asks again
+    if (table_link_is_sending(&self->link, self->learnt.taken.words)) { // the host asks again
         table_link_drop(&self->link);
     }
     (void)learnt_take(&self->learnt.taken, controller);

@@ -7,8 +7,8 @@
 #define OVER_ADDS 8u
 
 // Backward Euler of the lag: 1 / (1 + lag in ticks).
-static current_lag_t lag_of(uint32_t milliticks) {
-    return (current_lag_t){.gain_q30 = (int32_t)((65536000u / (1000u + milliticks)) << 14)};
+static int32_t gain_q30(uint32_t milliticks) {
+    return (int32_t)((65536000u / (1000u + milliticks)) << 14);
 }
 
 // In ticks, rounded up.
@@ -17,30 +17,18 @@ static uint32_t dead_ticks(uint32_t tick_rate_Hz) {
     return ticks < CURRENT_DEAD_TICKS ? ticks : CURRENT_DEAD_TICKS;
 }
 
-static void settle(current_monitor_t *self, int32_t current_mA) {
-    const int32_t settled_mA = clamp_i32(current_mA, -CURRENT_MOST_mA, CURRENT_MOST_mA);
-    self->early.mA_q14 = settled_mA * 16384;
-    self->late.mA_q14 = settled_mA * 16384;
-    for (uint32_t i = 0; i < CURRENT_DEAD_TICKS; i++) {
-        self->before_mA[i] = (uint16_t)clamp_i32(settled_mA, 0, CURRENT_MOST_mA);
-    }
-}
-
-AT_START void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,
-                                   int32_t initial_mA) {
+AT_START void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg) {
     const uint32_t milliticks = (uint32_t)cfg->lag_us * cfg->tick_rate_Hz / 1000u;
-    *self = (current_monitor_t){
-        .error_mA = cfg->error_mA,
-        .fault_ticks = cfg->fault_ticks,
-        .trip_mA = cfg->trip_mA > 0 ? cfg->trip_mA : INT32_MAX,
-        .over_limit = cfg->trip_mA > 0 ? cfg->trip_ticks * OVER_ADDS : UINT32_MAX,
-        .early = lag_of(milliticks / 2u),
-        .late = lag_of(milliticks * 2u),
-        .last = dead_ticks(cfg->tick_rate_Hz) - 1u,
-        .is_checked = cfg->check != CURRENT_CHECK_NEVER,
-        .is_missed = cfg->check == CURRENT_CHECK_ALWAYS,
-    };
-    settle(self, initial_mA);
+    *self = (current_monitor_t){0};
+    self->error_mA = cfg->error_mA;
+    self->fault_ticks = cfg->fault_ticks;
+    self->trip_mA = cfg->trip_mA > 0 ? cfg->trip_mA : INT32_MAX;
+    self->over_limit = cfg->trip_mA > 0 ? cfg->trip_ticks * OVER_ADDS : UINT32_MAX;
+    self->early.gain_q30 = gain_q30(milliticks / 2u);
+    self->late.gain_q30 = gain_q30(milliticks * 2u);
+    self->last = dead_ticks(cfg->tick_rate_Hz) - 1u;
+    self->is_checked = cfg->check != CURRENT_CHECK_NEVER;
+    self->is_missed = cfg->check == CURRENT_CHECK_ALWAYS;
 }
 
 void current_monitor_reset(current_monitor_t *self) {
@@ -51,7 +39,12 @@ void current_monitor_reset(current_monitor_t *self) {
 }
 
 void current_monitor_follow(current_monitor_t *self, int32_t measured_mA) {
-    settle(self, measured_mA);
+    const int32_t settled_mA = clamp_i32(measured_mA, -CURRENT_MOST_mA, CURRENT_MOST_mA);
+    self->early.mA_q14 = settled_mA * 16384;
+    self->late.mA_q14 = settled_mA * 16384;
+    for (uint32_t i = 0; i < CURRENT_DEAD_TICKS; i++) {
+        self->before_mA[i] = (uint16_t)clamp_i32(settled_mA, 0, CURRENT_MOST_mA);
+    }
     self->wrong = 0;
     self->was_wrong = false;
     self->missing_ticks = 0;
@@ -75,8 +68,9 @@ static current_verdict_t judge(const current_monitor_t *self, int32_t measured_m
     if (self->wrong < self->fault_ticks * WRONG_ADDS) {
         return CURRENT_OK;
     }
+    const int32_t none_mA = self->error_mA >> 1;
     const bool is_open = current_monitor_expected_mA(self) >= 2 * self->error_mA &&
-                         abs_i32(measured_mA) < self->error_mA / 2;
+                         measured_mA < none_mA && measured_mA > -none_mA;
     return is_open ? CURRENT_OPEN_COIL : CURRENT_NOT_FOLLOWING;
 }
 

@@ -80,8 +80,8 @@ typedef struct {
     bool was_wrong; ///< the last new measurement
 } current_monitor_t;
 
-void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg,
-                          int32_t initial_mA);
+/// No current has been commanded; current_monitor_follow where one has.
+void current_monitor_init(current_monitor_t *self, const current_monitor_cfg_t *cfg);
 
 /// Verdict after this tick's measurement. command_mA is the command that was in force up to now.
 current_verdict_t current_monitor_step(current_monitor_t *self, uint16_t command_mA,

@@ -53,13 +53,12 @@ void heat_resume(heat_t *self, int64_t heat_q20) {
 
 AT_START void heat_init(heat_t *self, const heat_cfg_t *cfg) {
     const int64_t ticks = (int64_t)cfg->time_s * cfg->tick_rate_Hz;
-    *self = (heat_t){
-        .gain_q32 = (uint32_t)((INT64_C(1) << 32) * HEAT_SLICE_TICKS / ticks),
-        .continuous_mA = (uint16_t)cfg->continuous_mA,
-        .highest_mA = (uint16_t)cfg->highest_mA,
-        .line = 1,
-        .left_ticks = (uint8_t)cfg->first_ticks,
-    };
+    *self = (heat_t){0};
+    self->gain_q32 = (uint32_t)((INT64_C(1) << 32) * HEAT_SLICE_TICKS / ticks);
+    self->continuous_mA = (uint16_t)cfg->continuous_mA;
+    self->highest_mA = (uint16_t)cfg->highest_mA;
+    self->line = 1;
+    self->left_ticks = (uint8_t)cfg->first_ticks;
     if (cfg->highest_mA > cfg->continuous_mA) {
         start_line(self, cfg);
     }

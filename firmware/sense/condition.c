@@ -11,15 +11,14 @@ AT_START void condition_init(condition_t *self, const condition_cfg_t *cfg) {
     const int64_t one_q32 = INT64_C(1) << 32;
     // w is below 0.013, so that w/(1+w) = w - w^2 to better than the state's resolution needs.
     const int32_t dc_gain_q32 = (int32_t)(omega_q32 - omega_q32 * omega_q32 / one_q32);
-    *self = (condition_t){
-        .cfg = *cfg,
-        .scale = scale_from_ratio((uint32_t)cfg->scale, 1000u),
-        .dc_gain_q32 = dc_gain_q32,
-        .mean_most = UINT32_MAX / ((uint32_t)dc_gain_q32 + 1u),
-        .last_counts = INT32_MIN, // no ADC reports it
-        .noise = {.limit = 2u * cfg->min_noise_counts,
-                  .window_samples = cfg->tick_rate_Hz / cfg->period_ticks},
-    };
+    *self = (condition_t){0};
+    self->cfg = *cfg;
+    self->scale = scale_from_ratio((uint32_t)cfg->scale, 1000u);
+    self->dc_gain_q32 = dc_gain_q32;
+    self->mean_most = UINT32_MAX / ((uint32_t)dc_gain_q32 + 1u);
+    self->last_counts = INT32_MIN; // no ADC reports it
+    self->noise.limit = 2u * cfg->min_noise_counts;
+    self->noise.window_samples = cfg->tick_rate_Hz / cfg->period_ticks;
 }
 
 // One plausible sample: |counts| <= 2^23, so that no difference overflows. The first two are

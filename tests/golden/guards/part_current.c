@@ -88,7 +88,8 @@ static void monitor_case(uint32_t number) {
         int32_t command_mA = part_edge(&part, 0, 5000);
         uint32_t wrong_in = 1;
         uint32_t missing_in = 20;
-        current_monitor_init(&monitor, &cfg, command_mA);
+        current_monitor_init(&monitor, &cfg);
+        current_monitor_follow(&monitor, command_mA);
         for (uint32_t i = 0; i < STEPS / RESTARTS; i++) {
             const int32_t expected_mA = current_monitor_expected_mA(&monitor);
             command_mA = part_one_in(&part, 60) ? part_edge(&part, 0, 5000) : command_mA;

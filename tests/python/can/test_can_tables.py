@@ -214,7 +214,7 @@ def test_a_controller_without_room_is_asked_once(controller, tool, tmp_path: Pat
     file = written(tmp_path / "a.table", table(RULES))
     failed(
         tool("load", "law", file),
-        "the controller has no room for 176 bytes; where it is still storing",
+        "the controller has no room for 176 bytes at a time; where it is still storing",
     )
     assert len([one for one in controller.frames if one[0] >> 4 == 1]) == 1
 

@@ -6,8 +6,6 @@ runs at the machine's own pace; lines are read as text and only those that matte
 that a machine under load keeps up.
 """
 
-import re
-import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -29,21 +27,21 @@ from quiesce.firmware.image import (
     sealed,
 )
 from quiesce.firmware.release import sealed_elf
+from quiesce_benchmarks.board import emulated
+from quiesce_benchmarks.board.emulated import BOARDS
 
 DATABASE = load_database()
 DEADLINE_S = 120.0
 ASK_AGAIN_S = 5.0
 RESETS = 100
-# The board's USART is the machine's serial line of that number.
-BOARDS = {"olimex_h405": (), "nucleo_f446re": ("-serial", "null")}
 
 
 class Console:
     """Lines from and to an image, and the emulator's monitor."""
 
-    def __init__(self, port: serial.Serial, monitor: "subprocess.Popen[str]") -> None:
+    def __init__(self, port: serial.Serial, machine: emulated.Machine) -> None:
         self.port = port
-        self.monitor = monitor
+        self.machine = machine
         self.alive = 0
 
     def line(self) -> bytes:
@@ -88,11 +86,6 @@ class Console:
                     return reply
         pytest.fail(f"no reply to {operation}")
 
-    def reset(self) -> None:
-        assert self.monitor.stdin is not None
-        self.monitor.stdin.write("system_reset\n")
-        self.monitor.stdin.flush()
-
 
 def compiled(name: str) -> Path:
     return require(ROOT / f"build/stm32f4/targets/stm32f4/quiesce_stm32f4_{name}.elf")
@@ -104,27 +97,11 @@ def running(name: str, *options: str) -> AbstractContextManager[Console]:
 
 @contextmanager
 def running_image(image: Path, *options: str) -> Iterator[Console]:
-    qemu = subprocess.Popen(
-        ["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", *options]
-        + ["-serial", "pty", "-monitor", "stdio", "-kernel", str(image)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    try:
-        found = None
-        while found is None:
-            line = qemu.stdout.readline()
-            assert line, "QEMU has ended"
-            found = re.search(r"redirected to (\S+)", line)
-        with serial.Serial(found[1], timeout=DEADLINE_S) as port:
-            yield Console(port, qemu)
-    finally:
-        qemu.kill()
-        qemu.wait()
-        qemu.stdin.close()
-        qemu.stdout.close()
+    with (
+        emulated.running(image, *options) as machine,
+        serial.Serial(machine.console, timeout=DEADLINE_S) as port,
+    ):
+        yield Console(port, machine)
 
 
 @pytest.mark.parametrize("board", BOARDS)
@@ -183,7 +160,7 @@ def test_image_survives_resets_in_a_row(resets: int) -> None:
     with running("olimex_h405") as console:
         for _ in range(resets):
             start_streaming(console)
-            console.reset()
+            console.machine.reset()
             status = console.until("Status", lambda status: status["raw_is_streaming"] == 0)
             assert status["fault"] != "ESTOP"  # no fault of the processor
 
@@ -236,7 +213,7 @@ def test_image_restarts_latched_after_faults_and_is_silent_after_too_many() -> N
             assert console.until("CurrentDemand")["driver_is_enabled"] == 0
         console.send(FAULT_ID)
         assert_silent(console)
-        console.reset()  # as the watchdog does: the silence is not to end with it
+        console.machine.reset()  # as the watchdog does: the silence is not to end with it
         assert_silent(console)
 
 

@@ -704,6 +704,30 @@ static void test_what_was_learnt_travels_as_a_table(void) {
     TEST_ASSERT_EQUAL(CAN_NODE_NOTHING_TO_SEND, ask(OP(TABLE_SAVE), ROAD_LEARNT, 0).result);
 }
 
+// What was fetched before has nothing to do with what has come since.
+static void test_a_restart_drops_no_file_that_has_come(void) {
+    static uint8_t bytes[4u * MOST_WORDS];
+    start(QUIESCE_LAW_PHASE);
+    (void)fetch(ROAD_LEARNT, bytes, sizeof bytes);
+    make_pulses(777);
+    (void)transfer(pack(pulses, pulses_count, 0), &none);
+    params.slew_mA_s = 4000;
+    node_restart(&node, &params);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(TABLE_COMMIT), 0, pulses[1]).result);
+}
+
+static void test_a_restart_gives_up_what_is_fetched(void) {
+    start(QUIESCE_LAW_PHASE);
+    TEST_ASSERT_EQUAL(CAN_NODE_DONE, ask(OP(TABLE_SEND), ROAD_LEARNT, 0).result);
+    run(3);
+    params.slew_mA_s = 4000;
+    node_restart(&node, &params);
+    for (uint32_t i = 0; i < 1500u; i++) {
+        tick();
+        TEST_ASSERT_NULL(sent(QUIESCE_CAN_TABLE_FLOW_FRAME_ID));
+    }
+}
+
 // A law that learns nothing does not cost what another one has learnt.
 static void test_what_was_learnt_waits_for_its_law(void) {
     static uint32_t words[QUIESCE_TABLE_WORDS];
@@ -783,6 +807,8 @@ int main(void) {
     RUN_TEST(test_what_was_learnt_is_saved_by_time_and_change);
     RUN_TEST(test_what_was_learnt_travels_as_a_table);
     RUN_TEST(test_what_was_learnt_waits_for_its_law);
+    RUN_TEST(test_a_restart_drops_no_file_that_has_come);
+    RUN_TEST(test_a_restart_gives_up_what_is_fetched);
     RUN_TEST(test_an_armed_controller_takes_a_table_without_a_bump);
     RUN_TEST(test_a_table_that_changes_by_itself_is_a_fault);
     return UNITY_END();

@@ -19,7 +19,8 @@ static void start(current_check_t check, int32_t trip_mA, int32_t initial_mA) {
         .trip_mA = trip_mA,
         .trip_ticks = 5,
     };
-    current_monitor_init(&monitor, &cfg, initial_mA);
+    current_monitor_init(&monitor, &cfg);
+    current_monitor_follow(&monitor, initial_mA);
 }
 
 static current_verdict_t step(int32_t measured_mA) {
@@ -70,7 +71,7 @@ static void test_what_is_followed_is_expected_and_forgives(void) {
 static void test_no_lag_is_the_command(void) {
     const current_monitor_cfg_t cfg = {
         .check = CURRENT_CHECK_ALWAYS, .tick_rate_Hz = 4000, .error_mA = 1, .fault_ticks = 1};
-    current_monitor_init(&monitor, &cfg, 0);
+    current_monitor_init(&monitor, &cfg);
     TEST_ASSERT_EQUAL_INT32(1 << 30, monitor.early.gain_q30);
     TEST_ASSERT_EQUAL(CURRENT_OK, current_monitor_step(&monitor, 20000, 20001, CURRENT_NEW));
     TEST_ASSERT_EQUAL(CURRENT_NOT_FOLLOWING,
@@ -171,7 +172,7 @@ static void start_pulses(uint32_t rate_Hz) {
                                        .error_mA = 500,
                                        .lag_us = 5000,
                                        .fault_ticks = PULSE_FAULT_TICKS * rate_Hz / 1000u};
-    current_monitor_init(&monitor, &cfg, 0);
+    current_monitor_init(&monitor, &cfg);
 }
 
 static uint16_t pulse_mA(const pulses_t *p, uint32_t tick) {

@@ -17,7 +17,7 @@ static const current_monitor_cfg_t monitor_cfg = {.check = CURRENT_CHECK_ALWAYS,
 
 void setUp(void) {
     guard_init(&guard, &guard_cfg);
-    current_monitor_init(&monitor, &monitor_cfg, 0);
+    current_monitor_init(&monitor, &monitor_cfg);
 }
 void tearDown(void) {}
 
@@ -75,11 +75,12 @@ static current_verdict_t run_monitor(uint16_t command_mA, int32_t measured_mA, b
 static void test_monitor_names_the_fault(void) {
     TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 0, true, 15));
     TEST_ASSERT_EQUAL(CURRENT_OPEN_COIL, run_monitor(5000, 0, true, 30));
-    current_monitor_init(&monitor, &monitor_cfg, 5000);
+    current_monitor_init(&monitor, &monitor_cfg);
+    current_monitor_follow(&monitor, 5000);
     TEST_ASSERT_EQUAL(CURRENT_NOT_FOLLOWING, run_monitor(5000, 3000, true, 30));
-    current_monitor_init(&monitor, &monitor_cfg, 0);
+    current_monitor_init(&monitor, &monitor_cfg);
     TEST_ASSERT_EQUAL(CURRENT_NOT_FOLLOWING, run_monitor(0, 3000, true, 30)); // stuck on
-    current_monitor_init(&monitor, &monitor_cfg, 0);
+    current_monitor_init(&monitor, &monitor_cfg);
     TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(0, 0, false, 19));
     TEST_ASSERT_EQUAL(CURRENT_MISSING, run_monitor(0, 0, false, 1));
 }
@@ -87,9 +88,9 @@ static void test_monitor_names_the_fault(void) {
 static void test_monitor_off_and_extremes(void) {
     current_monitor_cfg_t off = monitor_cfg;
     off.check = CURRENT_CHECK_NEVER;
-    current_monitor_init(&monitor, &off, 0);
+    current_monitor_init(&monitor, &off);
     TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 0, true, 1000));
-    current_monitor_init(&monitor, &monitor_cfg, 0);
+    current_monitor_init(&monitor, &monitor_cfg);
     TEST_ASSERT_EQUAL(CURRENT_NOT_FOLLOWING, run_monitor(20000, INT32_MIN, true, 30));
     TEST_ASSERT_EQUAL(CURRENT_NOT_FOLLOWING, run_monitor(20000, INT32_MAX, true, 30));
 }
@@ -99,7 +100,8 @@ static void test_monitor_does_not_forgive_for_a_good_sample(void) {
     for (uint32_t good = 1; good <= 3; good += 2) {
         const uint32_t of = good == 1 ? 50 : 4;
         bool is_seen = false;
-        current_monitor_init(&monitor, &monitor_cfg, 1000);
+        current_monitor_init(&monitor, &monitor_cfg);
+        current_monitor_follow(&monitor, 1000);
         for (uint32_t i = 0; i < 1500 && !is_seen; i++) {
             const int32_t measured_mA = i % of < good ? 1000 : 20000;
             is_seen = current_monitor_step(&monitor, 1000, measured_mA, CURRENT_NEW) != CURRENT_OK;
@@ -121,7 +123,7 @@ static void start_trip(uint32_t trip_ticks) {
     cfg.check = CURRENT_CHECK_NEVER;
     cfg.trip_mA = 6000;
     cfg.trip_ticks = trip_ticks;
-    current_monitor_init(&monitor, &cfg, 0);
+    current_monitor_init(&monitor, &cfg);
 }
 
 static void test_monitor_trips_in_its_time_also_with_the_check_off(void) {
@@ -144,9 +146,10 @@ static void test_monitor_trips_in_its_time_also_with_the_check_off(void) {
 static void test_monitor_of_a_current_that_may_be_measured(void) {
     current_monitor_cfg_t cfg = monitor_cfg;
     cfg.check = CURRENT_CHECK_ONCE_SEEN;
-    current_monitor_init(&monitor, &cfg, 0);
+    current_monitor_init(&monitor, &cfg);
     TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 0, false, 1000));
-    current_monitor_init(&monitor, &cfg, 5000);
+    current_monitor_init(&monitor, &cfg);
+    current_monitor_follow(&monitor, 5000);
     TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 5000, true, 1));
     TEST_ASSERT_EQUAL(CURRENT_OK, run_monitor(5000, 0, false, 19));
     TEST_ASSERT_EQUAL(CURRENT_MISSING, run_monitor(5000, 0, false, 1));

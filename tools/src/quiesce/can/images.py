@@ -11,7 +11,7 @@ from quiesce.base.errors import BenchFailure
 from quiesce.can.database import Database
 from quiesce.can.link import Link
 from quiesce.can.services import BUSY, DONE, Reply, Services, no_answer
-from quiesce.can.transfer import Channel, TooLarge, TransferFailed
+from quiesce.can.transfer import Channel, TooLarge, TransferFailed, no_room
 from quiesce.table.file import table_bytes
 from quiesce.table.words import WORD, WORD_BYTES, crc_of, signed, unpacked
 
@@ -133,7 +133,7 @@ class Images:
                 why = str(error)
                 continue
             except TooLarge:
-                raise self._failure(f"the controller has no room for {len(data)} bytes at a time")
+                raise self._failure(no_room(len(data)))
             if self._took_piece(crc):
                 return
             why = "the controller did not get all of it"

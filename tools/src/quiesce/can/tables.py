@@ -9,7 +9,7 @@ from quiesce.can.database import Database
 from quiesce.can.link import Link
 from quiesce.can.roads import ROADS
 from quiesce.can.services import BUSY, DONE, Reply, Services, no_answer
-from quiesce.can.transfer import Channel, Progress, TooLarge, TransferFailed
+from quiesce.can.transfer import Channel, Progress, TooLarge, TransferFailed, no_room
 from quiesce.table.file import read_data
 from quiesce.table.words import WORD, opened, signed
 
@@ -95,10 +95,7 @@ class Tables:
                 why = str(error)
                 continue
             except TooLarge:
-                raise self._failure(
-                    f"the controller has no room for {len(data)} bytes; where it is still storing "
-                    "a table, try again once it has"
-                )
+                raise self._failure(no_room(len(data)))
             if self._is_whole(crc):
                 return
             why = "the controller did not get all of it"

@@ -33,7 +33,14 @@ class TransferFailed(Exception):
 
 
 class TooLarge(Exception):
-    """The receiver has no room for it: no try will help."""
+    """The receiver has no room for it: no other try at once will help."""
+
+
+def no_room(count: int) -> str:
+    return (
+        f"the controller has no room for {count} bytes at a time; where it is still storing a "
+        "table, try again once it has"
+    )
 
 
 class Channel:

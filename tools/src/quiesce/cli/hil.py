@@ -84,10 +84,9 @@ compared of a law with a table.
 
 --target linux runs the same scenarios as the image and the host beside it, and drives quiesced
 --lockstep, or a board with its lock-step image, tick by tick, over CAN; mps2-uart the image by the
-same messages. Command, state and
-fault of every tick are compared, all words of telemetry every 100 ticks or as --telemetry-every
-says. Channels: slcan:DEVICE[,baud=N]
-[,bitrate=N] (serial line, pty, adapter), slcan:unix:PATH, slcan:tcp:HOST:PORT, socketcan:INTERFACE.
+same messages. Command, state and fault of every tick are compared, all words of telemetry every 100
+ticks or as --telemetry-every says. Channels: slcan:DEVICE[,baud=N][,bitrate=N] (serial line, pty,
+adapter), slcan:unix:PATH, slcan:tcp:HOST:PORT, socketcan:INTERFACE.
 """
 
 
